@@ -1,0 +1,170 @@
+"""The linear reference in the frequency domain, and the error that loss factors bring into it in time."""
+
+import re
+import warnings
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from asperity.errors import InputError, LossFactorWarning
+from asperity.scenarios.linear_force import force_transfer, linear_force_psd, mean_square_transfer
+from asperity.scenes import track as of_tracks
+from asperity.scenes.track import linear_reference, loss_factor_error, warn_of_loss_factors
+from asperity.spectra import nominal_frequency, psd
+from asperity.structures.moving_kernel import moving_kernel
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+WHEEL, HEAVY = Wheel(600.0, 65e3), Wheel(1e12, 65e3)
+STIFFNESS = 1.25e9
+F = np.geomspace(20.0, 4000.0, 50)
+
+
+@dataclass
+class Spring:
+    """A rail that is a spring, softer between the sleepers: compliance (1 − cos 2πx/L) c + c₀."""
+
+    compliance: float = 0.0
+    ripple: float = 0.0
+    sleeper_spacing: float = 0.6
+
+    def receptance(self, frequency, x, x0):
+        at = self.compliance + self.ripple * (1.0 - np.cos(2 * np.pi * x / self.sleeper_spacing))
+        return np.multiply.outer(at, np.ones(np.shape(frequency), dtype=complex))
+
+
+def test_impedances_of_a_real_track_add():
+    track, x = Track.named("nordborg"), 0.17
+    transfer = force_transfer(F, WHEEL, track, STIFFNESS, x)[0]
+    # displacements under this force close the unit height: spring + rail down + wheel up
+    closed = transfer / STIFFNESS + transfer * track.receptance(F, x, x) + transfer * WHEEL.receptance(F)
+    assert_allclose(closed, 1.0, rtol=1e-12)
+
+
+def test_wheel_on_its_contact_spring_resonates():
+    resonance, omega = np.sqrt(STIFFNESS / 600.0), 2.0 * np.pi * F
+    transfer = force_transfer([0.0, *F], WHEEL, Spring(), STIFFNESS, 0.0)[0]
+    assert transfer[0] == 0.0
+    assert_allclose(transfer[1:], STIFFNESS / (1.0 - (resonance / omega) ** 2), rtol=1e-9)
+
+
+def test_mean_square_over_half_a_bay_is_that_of_the_bay():
+    track, positions = Track.named("nordborg"), 6
+    x = (np.arange(2 * positions) + 0.5) * 0.6 / (2 * positions)
+    bay = np.mean(np.abs(force_transfer(F, WHEEL, track, STIFFNESS, x)) ** 2, axis=0)
+    assert_allclose(mean_square_transfer(F, WHEEL, track, STIFFNESS, positions), bay, rtol=1e-8)
+
+
+def test_mean_square_against_the_closed_form():
+    # mean over the bay of 1/(a + c (1 − cos φ))² is (a + c)/(a (a + 2c))^1.5, a = 1/k without a wheel
+    a, c = 1.0 / STIFFNESS, 3e-10
+    mean = mean_square_transfer(F, HEAVY, Spring(0.0, c), STIFFNESS)
+    assert_allclose(mean, (a + c) / (a * (a + 2 * c)) ** 1.5, rtol=1e-6)
+
+
+@pytest.mark.parametrize("speed", [10.0, 56.0])
+def test_psd_holds_the_mean_square_of_the_moving_texture(speed):
+    # the mean square of a spring force over any speed is k² times that of the texture
+    wavenumber = np.linspace(1.0, 100.0, 2001)
+    texture = wavenumber**-2 * 1e-9
+    found = linear_force_psd(wavenumber * speed, texture, speed, HEAVY, Spring(), STIFFNESS)
+    expected = STIFFNESS**2 * np.trapezoid(texture, wavenumber)
+    assert np.trapezoid(found, wavenumber * speed) == pytest.approx(expected, rel=1e-6)
+
+
+def test_between_cells_the_reference_passes_the_texture_that_the_laws_follow():
+    """Waves of six cells, in steps of three quarters of a cell: 5 kHz at 30 m/s."""
+    cells = 1e-3 * np.arange(3000)
+    line = 1e-6 * np.sin(2 * np.pi * cells / 6e-3)
+    step, at = 25e-6, 0.1 + 0.75e-3 * np.arange(3000)
+    case = SimpleNamespace(speed=30.0, contact=SimpleNamespace(spacing=1e-3))
+    computed = SimpleNamespace(
+        case=case, textures=SimpleNamespace(start=0.0, line=line, followed=line), track=Spring(),
+        scene=SimpleNamespace(first=WHEEL, offsets=(0.0,)), first=SimpleNamespace(positions=[at]),
+        stiffness=STIFFNESS, frequency=np.fft.rfftfreq(1024, step),
+        psd=lambda line: psd(line, step, segment=1024)[1],
+    )  # fmt: skip
+    _, texture = linear_reference(computed)
+    assert 10 * np.log10(texture.sum() * computed.frequency[1] / 0.5e-12) == pytest.approx(0.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: force_transfer([-1.0], WHEEL, Spring(), STIFFNESS, 0.0), "frequency"),
+        (lambda: force_transfer(F, WHEEL, Spring(), 0.0, 0.0), "contact stiffness"),
+        (lambda: mean_square_transfer(F, WHEEL, Spring(), STIFFNESS, 0), "positions in a bay"),
+        (lambda: linear_force_psd(F, F, 0.0, WHEEL, Spring(), STIFFNESS), "speed"),
+        (lambda: linear_force_psd(F, F[:-1], 50.0, WHEEL, Spring(), STIFFNESS), "texture_psd"),
+    ],
+)
+def test_bad_input(call, message):
+    with pytest.raises(InputError, match=message):
+        call()
+
+
+# --- loss factors in time
+
+STEP = 50e-6
+LOSSY = Track.named("nordborg-loss-factor", ballast_loss_factor=2.0)
+
+
+def lost(track):
+    return loss_factor_error(track, WHEEL, STIFFNESS, 5000.0)
+
+
+@pytest.fixture(scope="module")
+def error():
+    return lost(LOSSY)
+
+
+def test_loss_factors_err_as_the_kernel_does(error):
+    """Force of a wheel on the transform of the kernel at rest, against the receptance of the track."""
+    assert len(error.bands) == len(error.force) == len(error.rail) == 31
+    assert [nominal_frequency(error.bands[i]) for i in (0, -1)] == ["5 Hz", "5 kHz"]
+    places, kernel = 0.6 / 12 * np.arange(12), moving_kernel(LOSSY, 0.0, STEP, positions=12)
+    lag = STEP * np.arange(kernel.weights.shape[1])
+    for band in (8, 11, 12, 16, 17):  # from 31.5 Hz to 250 Hz
+        frequency = error.bands[band] * 10.0 ** np.linspace(-0.049, 0.049, 40)
+        transform = kernel.weights @ np.exp(-2j * np.pi * lag[:, None] * frequency)
+        rail = transform / np.sinc(frequency * STEP) ** 2
+        nominal = np.array([LOSSY.receptance(frequency, x, x) for x in places])
+        carried = WHEEL.receptance(frequency) + 1.0 / STIFFNESS
+        for found, answer in ((error.force, lambda r, c=carried: 1 / (c + r)), (error.rail, lambda r: r)):
+            levels = [10 * np.log10(np.mean(np.abs(answer(each)) ** 2)) for each in (rail, nominal)]
+            assert levels[0] - levels[1] == pytest.approx(found[band], abs=0.03)
+
+
+def test_a_causal_track_errs_not_at_all():
+    found = lost(Track.named("nordborg", rail_loss_factor=0.0))
+    assert not np.any([found.force, found.rail])
+
+
+def test_a_large_error_is_warned_of_with_a_remedy_and_a_small_one_is_not(error):
+    with pytest.warns(LossFactorWarning) as caught:
+        warn_of_loss_factors(error)
+    text = str(caught[0].message)
+    assert "is up to −1.0 dB from that with constant loss factors" in text
+    assert re.search("more than 0.75 dB in the one-third octaves of 250 Hz, .*630 Hz: ", text)
+    assert "the loss factor 2 of the ballast" in text
+    # η k / ω at 631 Hz
+    assert "give ballast_damping, which is exact: 75.7 kN s/m dissipate as much at 631 Hz" in text
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_of_loss_factors(lost(Track.named("nordborg-loss-factor")))
+
+
+@pytest.mark.parametrize(
+    ("name", "keys", "part"),
+    [
+        ("uic60", {"pad_loss_factor": 0.5}, "the loss factor 0.5 of the pad .* give pad_damping"),
+        ("x2000", {}, "the loss factor 0.02 of the rail .* or give the rail a smaller one"),
+    ],
+)
+def test_the_part_with_the_largest_loss_factor_is_named(name, keys, part, monkeypatch):
+    monkeypatch.setattr(of_tracks, "DOUBTFUL", 0.01)
+    with pytest.warns(LossFactorWarning, match=part):
+        warn_of_loss_factors(lost(Track.named(name, **keys)))

@@ -1,0 +1,371 @@
+"""A ball rolls over a beam: moving loads, moving mass, bumps, energy, interruption, bad input."""
+
+import warnings
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import cumulative_trapezoid, solve_ivp
+
+from asperity.errors import (
+    CoarseSamplingWarning,
+    ComputationError,
+    ExtrapolationWarning,
+    InputError,
+    Outcome,
+    UnconvergedWarning,
+)
+from asperity.kernels.pointforce import evaluate
+from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table
+from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import StateTexture
+from asperity.reference.materials import material
+from asperity.rolling.outcome import contact_losses
+from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
+from one_contact import roll_ball
+
+STEEL = material("steel")
+BALL = Ball(0.025, STEEL)
+K = 2.4e10
+HERTZ = ForceCurve.hertz(K)
+WORKING = float(HERTZ.inverse(BALL.static_load))
+BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)
+ROUGH = {"speed": 1.0, "start": 0.3, "duration": 0.02, "time_step": 1e-5, "sensors": [0.35, 0.5]}
+
+
+def rolled(law, beam=BEAM, **changes):
+    return roll_ball(beam, BALL, law, **ROUGH | changes)
+
+
+def rough_texture(rms, seed=3, shortest=2e-4, spacing=1e-5, points=4000, start=0.29):
+    """A band-limited random texture."""
+    rng = np.random.default_rng(seed)
+    spectrum = np.fft.rfft(rng.standard_normal(points))
+    wavenumber = np.fft.rfftfreq(points, spacing)
+    spectrum[(wavenumber > 1 / shortest) | (wavenumber == 0)] = 0.0
+    heights = np.fft.irfft(spectrum, points)
+    return StateTexture.unfiltered(rms * heights / heights.std(), spacing, start)
+
+
+# --- moving force and moving mass -------------------------------------------------------------
+
+
+def fryba(beam, force, speed, t, x):
+    """Deflection under a moving constant force: Fryba, Vibration of Solids and Structures, Eq. 1.41."""
+    length, n = beam.length, np.arange(1, len(beam.natural_frequencies) + 1)[:, None]
+    first = (np.pi / length) ** 2 * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
+    alpha, drive = speed * np.pi / length / first, np.pi * speed / length
+    bracket = np.sin(n * drive * t) - alpha / n * np.sin(n**2 * first * t)
+    total = np.sum(np.sin(n * np.pi * x / length) * bracket / (n**2 * (n**2 - alpha**2)), axis=0)
+    return 2 * force * length**3 / (np.pi**4 * beam.bending_stiffness) * total
+
+
+def moving_force(alpha, time_step):
+    """Roll a soft linear spring, so that the force stays what it is: a moving constant force."""
+    beam = replace(BEAM, loss_factor=0.0)
+    critical = np.pi / beam.length * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
+    path = {"speed": alpha * critical, "start": 0.0, "duration": 1 / (alpha * critical), "sensors": [0.5]}
+    run = rolled(Linear(BALL.static_load, stiffness=1e-3), beam, time_step=time_step, **path)
+    assert_allclose(run.contact_force, BALL.static_load, rtol=1e-6)
+    return beam, alpha * critical, run
+
+
+@pytest.mark.parametrize(("alpha", "printed"), [(0.1, 1.0965), (0.5, 1.7054), (0.75, 1.7016)])
+def test_moving_force_reaches_fryba_s_amplification(alpha, printed):
+    beam, _, run = moving_force(alpha, 2e-5)
+    # the deflection of mid-span, twice integrated from the accelerometer there, from rest
+    velocity = cumulative_trapezoid(run.acceleration[0], run.time, initial=0.0)
+    deflection = cumulative_trapezoid(velocity, run.time, initial=0.0)
+    static = BALL.static_load * beam.length**3 / (48 * beam.bending_stiffness)
+    assert_allclose(deflection.max() / static, printed, rtol=1e-3)
+
+
+def test_deflection_under_a_moving_force_is_fryba_s_series():
+    errors = []
+    for time_step in (4e-5, 2e-5):
+        beam, speed, run = moving_force(0.5, time_step)
+        series = fryba(beam, BALL.static_load, speed, run.time[::25], run.position[::25])
+        errors.append(np.abs(run.over_displacement[::25] - series).max() / series.max())
+    assert errors[1] < 1e-4
+    assert 1.8 < np.log2(errors[0] / errors[1]) < 2.2
+
+
+def moving_mass(beam, ball, speed, times):
+    """Deflection under a mass that keeps touching a simply supported beam; total derivatives.
+
+    m d2/dt2 w(vt, t) = m (w_tt + 2 v w_xt + v^2 w_xx) = load - force, in the beam's own sines.
+    """
+    n = np.arange(1, len(beam.natural_frequencies) + 1)
+    k = n * np.pi / beam.length
+    scale = np.sqrt(2.0 / beam.mass)
+    omega = k**2 * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
+
+    def right(t, y):
+        q, v = np.split(y, 2)
+        shape, slope = scale * np.sin(k * speed * t), scale * k * np.cos(k * speed * t)
+        inertia = np.eye(n.size) + ball.mass * np.outer(shape, shape)
+        coriolis, centripetal = 2 * speed * slope @ v, speed**2 * (-(k**2) * shape) @ q
+        load = shape * (ball.static_load - ball.mass * (coriolis + centripetal))
+        restoring = 2 * beam.damping_ratios * omega * v + omega**2 * q
+        return np.concatenate([v, np.linalg.solve(inertia, load - restoring)])
+
+    rest = np.zeros(2 * n.size)
+    solution = solve_ivp(right, (0.0, times[-1]), rest, method="DOP853", rtol=1e-9, atol=1e-13, t_eval=times)
+    return np.sum(scale * np.sin(np.outer(speed * times, k)) * solution.y[: n.size].T, axis=1)
+
+
+def test_stiff_contact_converges_to_the_moving_mass():
+    beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=1.5e3)
+    path = {"speed": 20.0, "start": 0.0, "duration": 0.05, "time_step": 5e-6, "sensors": []}
+    runs = [rolled(HertzLaw(stiffness), beam, **path) for stiffness in (1e10, 1e11, 1e12)]
+    reference = moving_mass(beam, BALL, 20.0, runs[0].time[::100])
+    errors = [np.abs(run.over_displacement[::100] - reference).max() / reference.max() for run in runs]
+    # the compression of a Hertzian contact shrinks with K^(-2/3)
+    assert_allclose(np.log10(np.array(errors[:-1]) / errors[1:]), 2 / 3, atol=0.1)
+    assert errors[-1] < 1e-4
+
+
+# --- texture ----------------------------------------------------------------------------------
+
+BUMP = 2e-9  # m, small against the approach
+
+
+def bump_law(name):
+    x = np.arange(0.29, 0.34, 1e-5)
+    inside = np.abs(x - 0.315) < 0.01
+    line = -np.where(inside, 0.5 * BUMP * (1 + np.cos(np.pi * (x - 0.315) / 0.01)), 0.0)  # away from contact
+    texture = StateTexture.unfiltered(line, x[1] - x[0], 0.29)
+    if name == "printed":
+        return Printed(HERTZ, texture, datum=0.0)
+    if name == "table":
+        approaches = WORKING + np.linspace(-0.2e-6, 0.2e-6, 9)
+        return Table(ForceTable(HERTZ.force(approaches[:, None] - line), approaches, 0.29, x[1] - x[0]))
+    return {"shifted": Shifted, "areal": Areal}[name](HERTZ, texture)
+
+
+@pytest.mark.parametrize(
+    ("name", "followed"), [("shifted", 1.0), ("areal", 1.0), ("table", 1.0), ("printed", 2 / 3)]
+)
+def test_body_follows_a_slow_bump(name, followed):
+    stiff = Beam(1.0, bending_stiffness=1e6, mass_per_length=100.0, highest_frequency=5e3)
+    run = rolled(bump_law(name), stiff, speed=0.05, duration=0.4, time_step=5e-5, sensors=[])
+    rise = run.relative_displacement[0] - run.relative_displacement.min()
+    assert_allclose(rise / BUMP, followed, rtol=0.01)
+    assert_allclose(run.position[run.relative_displacement.argmin()], 0.315, atol=2e-4)
+
+
+def test_flights_are_found():
+    flying = np.array([1, 1, 0, 0, 1, 0, 1, 1, 1], dtype=bool)
+    events = contact_losses(flying, 0.5)
+    assert [(e.start, e.duration) for e in events] == [(0.0, 1.0), (2.0, 0.5), (3.0, 1.5)]
+    assert contact_losses(np.zeros(4, dtype=bool), 0.5) == []
+
+
+def test_a_linear_contact_pulls_and_is_never_lost_and_printed_flies_though_its_damper_acts():
+    texture = rough_texture(1e-6)
+    run = rolled(Linear(BALL.static_load, 2e7, 0.0, texture))
+    assert run.contact_force.min() < 0.0
+    assert run.contact_loss == []
+    run = rolled(Printed(HERTZ, texture, datum=0.0, damping=20.0))
+    assert 0.0 < run.in_contact.mean() < 1.0
+    assert np.all(run.contact_force[~run.in_contact][1:] != 0.0)
+
+
+# --- numerics ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("support", ["simply-supported", "free", "clamped"])
+def test_energy_balance_closes_and_the_better_the_finer(support):
+    beam = replace(BEAM, support=support)
+    law = Shifted(HERTZ, rough_texture(0.2e-6, shortest=5e-4), damping=30.0)
+    coarse, fine = (rolled(law, beam, time_step=h).energy for h in (1e-5, 2.5e-6))
+    assert fine.residual < coarse.residual / 8 < 1e-3 / 8
+    load, *others = coarse.shares.values()
+    assert_allclose(load, sum(others), atol=1.01 * coarse.residual * coarse.throughput)
+    assert coarse.shares["damping of the structure"] > 0.0
+    assert replace(coarse, throughput=0.0).residual == 0.0  # of nothing
+
+
+class Stepped:
+    """A law that Python steps, by its compiled form; remembers what it was asked."""
+
+    def __init__(self, prepared):
+        self.prepared, self.accepted = prepared, 0
+
+    def evaluate(self, step, approach):
+        return evaluate(self.prepared, step, approach)
+
+    def accept(self, step):
+        assert step == self.accepted + 1
+        self.accepted = step
+
+    def warn_of_flaws(self):
+        pass
+
+    def state(self):
+        return {"accepted": np.array(self.accepted)}
+
+    def restore(self, state):
+        self.accepted = int(state["accepted"])
+
+
+class Erratic(Stepped):
+    def evaluate(self, step, approach):
+        self.calls = getattr(self, "calls", 0) + 1
+        force, slope = super().evaluate(step, approach)
+        return force * (1.1 if step > 10 and self.calls % 2 else 1.0), slope
+
+
+class Broken(Stepped):
+    def evaluate(self, step, approach):
+        return (np.nan, 0.0) if step == 7 else super().evaluate(step, approach)
+
+
+@dataclass(frozen=True, eq=False)
+class FromPython:
+    law: Shifted
+    damping: float = 0.0
+    kind: type = Stepped
+    name: str = "from-python"
+
+    def prepare(self, positions):
+        return self.kind(self.law.prepare(positions))
+
+
+def test_python_and_compiled_stepping_agree_through_flights_and_landings():
+    law = Shifted(HERTZ, rough_texture(0.3e-6), 60.0)
+    compiled, stepped = (rolled(each, duration=0.015) for each in (law, FromPython(law, 60.0)))
+    assert len(stepped.contact_loss) == len(compiled.contact_loss) > 0
+    assert_allclose(stepped.contact_force, compiled.contact_force, atol=1e-4 * compiled.contact_force.max())
+    assert stepped.evaluations < 5 * len(stepped.time)
+    assert compiled.outcome is stepped.outcome is Outcome.CONVERGED
+
+
+class Shelf:
+    """A checkpoint in memory, which checks that what it gets is made of plain arrays."""
+
+    def __init__(self):
+        self.arrays, self.saves = None, 0
+
+    def load(self):
+        return self.arrays
+
+    def save(self, arrays):
+        assert all(isinstance(a, np.ndarray) and a.dtype != object for a in arrays.values())
+        self.arrays, self.saves = arrays, self.saves + 1
+
+
+@pytest.mark.parametrize("wrap", [lambda law: law, FromPython], ids=["compiled", "from Python"])
+def test_interrupted_run_goes_on_bit_by_bit(wrap):
+    law, path = wrap(Shifted(HERTZ, rough_texture(0.2e-6))), {"time_step": 5e-6}  # more than one chunk
+    whole = rolled(law, **path)
+    shelf, seen, again = Shelf(), [], []
+
+    def stop_half_way(done, total, message):
+        seen.append(done)
+        if done > total / 2 - 100:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rolled(law, **path, progress=stop_half_way, checkpoint=shelf)
+    resumed = rolled(law, **path, checkpoint=shelf, progress=lambda done, *_: again.append(done))
+    assert again[0] > seen[-1]
+    assert again[-1] == len(whole.time) - 1
+    for name in ("contact_force", "relative_displacement", "acceleration", "over_displacement"):
+        assert np.array_equal(getattr(resumed, name), getattr(whole, name))
+    assert (resumed.energy, resumed.evaluations) == (whole.energy, whole.evaluations)
+    finished = rolled(law, **path, checkpoint=shelf)
+    assert np.array_equal(finished.contact_force, whole.contact_force)
+    with pytest.raises(InputError, match=r"checkpoint.*roll anew"):
+        rolled(law, **path, sensors=[0.5], checkpoint=shelf)
+
+
+def test_smooth_rolling_starts_at_rest_carries_the_load_and_warns_of_nothing():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run = rolled(HertzLaw(K), highest_frequency=5000.0)
+    assert_allclose(run.contact_force[0], BALL.static_load, rtol=1e-9)
+    assert_allclose(run.relative_displacement[0], WORKING, rtol=1e-8)
+    assert_allclose(run.contact_force.mean(), BALL.static_load, rtol=0.02)
+    deflection = BEAM.receptance(0.0, 0.3, 0.3).real * BALL.static_load
+    assert_allclose(run.over_displacement[0], deflection, rtol=1e-10)
+    assert_allclose(np.diff(run.time), 1e-5)
+
+
+def test_a_start_on_the_beam_does_not_ring():
+    """The forced part of Frýba's series, each mode with its damping: nothing is left of a sudden start."""
+    beam, speed = replace(BEAM, highest_frequency=1e3), 1.0
+    found = rolled(HertzLaw(K), beam, duration=0.1, time_step=5e-5, sensors=[])
+    omega = 2.0 * np.pi * beam.natural_frequencies
+    k = np.pi / beam.length * np.arange(1, len(omega) + 1)
+    damped = omega**2 - (k * speed) ** 2 + 1j * beam.loss_factor * omega * k * speed
+    waves = np.outer(found.position, k)
+    answer = np.sin(waves) * (np.exp(1j * waves) / damped).imag
+    forced = 2.0 * BALL.static_load / beam.mass * np.sum(answer, axis=1)
+    first = k[0] * speed / omega[0]
+    assert np.abs(found.over_displacement - forced).max() < 2.0 * first**2 * forced.max()  # rest: by `first`
+
+
+def test_a_record_after_a_run_in_is_the_end_of_a_longer_run():
+    law = HertzLaw(K, rough_texture(0.05e-6))
+    whole, late = rolled(law), rolled(law, start=0.305, duration=0.015, settling=0.005)
+    assert late.time[0] == 0.0
+    assert_allclose(late.position[0], 0.305)
+    assert len(late.time) == len(late.position) == len(whole.time) - 500
+    for name in ("contact_force", "relative_displacement", "rolling_displacement", "acceleration"):
+        assert_allclose(getattr(late, name), getattr(whole, name)[..., 500:], rtol=1e-7, atol=1e-9)
+    work = [run.energy.shares["work of the loads"] for run in (late, whole)]
+    assert_allclose(*work, rtol=1e-9)
+
+
+# --- bad input and doubtful physics -----------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"speed": 0.0}, r"speed \(m/s\)"),
+        ({"duration": np.nan}, r"duration \(s\)"),
+        ({"time_step": np.inf}, r"time step \(s\)"),
+        ({"settling": -0.1}, r"settling \(s\)"),
+        ({"duration": 1e-6}, "at least one time step"),
+        ({"duration": 0.8}, r"path of contact 1 .*received 0.3 to 1.1; allowed: 0 to 1, on the structure"),
+        ({"settling": 0.4}, "path .* -0.1 to"),
+        ({"start": -0.1}, "Choose start, duration, run-in"),
+        ({"sensors": [1.2]}, "positions on the beam"),
+        ({"duration": 0.1}, "longer texture"),
+    ],
+)
+def test_bad_paths_are_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        rolled(HertzLaw(K, rough_texture(1e-7)), **change)
+
+
+def test_coarse_time_steps_are_named():
+    with pytest.warns(CoarseSamplingWarning) as caught:
+        rolled(HertzLaw(K), time_step=2e-4, highest_frequency=2000.0)
+    text = "\n".join(str(w.message) for w in caught)
+    for part in ("contact resonance", "highest mode", "highest frequency asked for", "time step of at most"):
+        assert part in text
+
+
+def test_continuation_beyond_the_data_is_named():
+    s = np.linspace(0.0, 1.05 * WORKING, 6)
+    law = Shifted(ForceCurve.from_samples(s, HERTZ.force(s)), rough_texture(0.1e-6))
+    with pytest.warns(ExtrapolationWarning, match=r"let contact\.approaches reach higher"):
+        rolled(law)
+
+
+def test_steps_that_do_not_converge_are_counted_and_forces_that_are_none_are_told_with_their_place():
+    with pytest.warns(UnconvergedWarning, match=r"take a smaller numerics\.time_step"):
+        run = rolled(FromPython(Shifted(HERTZ, None), kind=Erratic), duration=2e-4)
+    assert run.unconverged_steps > 0
+    assert run.outcome is Outcome.STEPS_UNCONVERGED
+    assert not run.outcome.ok
+    shelf = Shelf()
+    with pytest.raises(ComputationError, match=r"step 7, time 7e-05 s, position 0.30007 m.*smaller"):
+        rolled(FromPython(Shifted(HERTZ, None), kind=Broken), checkpoint=shelf)
+    assert shelf.saves == 0

@@ -1,0 +1,173 @@
+"""A wheel rolling on a track: steady loads, the frequency domain, convergence, points that are passed."""
+
+import numpy as np
+import pytest
+
+from asperity.errors import InputError
+from asperity.laws import HertzLaw, Linear
+from asperity.radiation.passing import passed_points
+from asperity.reduction.texture import StateTexture
+from asperity.reference import cnossos
+from asperity.scenarios.linear_force import linear_force_psd
+from asperity.spectra import band_levels, psd
+from asperity.structures.moving_kernel import HatResponse, moving_kernel
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+from asperity.surfaces.synthesis import from_bands
+from one_contact import roll_wheel
+
+SPEED, STEP = 56.0, 50e-6
+TRACK = Track(
+    bending_stiffness=4.725e6, mass_per_length=60.0, rail_loss_factor=0.004, pad_stiffness=300e6,
+    pad_damping=18e3, sleeper_mass=150.0, ballast_stiffness=150e6, ballast_damping=48e3, sleeper_spacing=0.6,
+)  # fmt: skip
+LOAD, MASS, HERTZ = 65e3, 600.0, 9.413e10
+APPROACH = (LOAD / HERTZ) ** (2 / 3)
+STIFFNESS = 1.5 * HERTZ * np.sqrt(APPROACH)
+WHEEL = Wheel(MASS, LOAD)
+
+
+@pytest.fixture(scope="module")
+def kernel():
+    return moving_kernel(TRACK, SPEED, STEP)
+
+
+def roughness(duration):
+    wavelengths, levels = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
+    line = from_bands(round(SPEED * duration / 1e-3), 1e-3, wavelengths, levels, seed=5).heights
+    return StateTexture.unfiltered(-line, 1e-3, -0.4 * SPEED)
+
+
+def linear(texture=None):
+    return Linear(LOAD, STIFFNESS, APPROACH, texture)
+
+
+def in_bands(force, texture, run, segment, low, high, speed=SPEED, wheel=WHEEL, track=TRACK):
+    """Band levels of a force, and of the one that the frequency domain expects of the texture it met."""
+    step = run.time[1]
+    frequency, found = psd(force, step, segment=segment)
+    _, density = psd(texture.at(run.position)[:, 0], speed * step, segment=segment)
+    expected = np.zeros_like(found)
+    expected[1:] = linear_force_psd(frequency[1:], density[1:], speed, wheel, track, STIFFNESS)
+    return band_levels(frequency, np.stack([found, expected]), low=low, high=high)
+
+
+def test_the_mean_force_is_the_load_and_tones_lie_at_the_sleeper_passing_frequency(kernel):
+    run = roll_wheel(kernel, WHEEL, HertzLaw(HERTZ), start=0.0, duration=0.75, settling=1.0)
+    # 70 sleepers are passed in 0.75 s at 56 m/s
+    samples = len(run.contact_force) - 1
+    spectrum = np.abs(np.fft.rfft(run.contact_force[:samples])) / samples
+    passing = round(0.75 * SPEED / 0.6)
+    assert run.contact_force.mean() == pytest.approx(LOAD, rel=2e-4)
+    tones = np.arange(passing, len(spectrum), passing)
+    assert spectrum[passing] > 100.0
+    assert np.sum(spectrum[tones] ** 2) > 0.9999 * np.sum(spectrum[1:] ** 2)
+
+
+def test_without_a_run_in_it_starts_steady(kernel):
+    run, steady = (
+        roll_wheel(kernel, WHEEL, HertzLaw(HERTZ), start=0.1, duration=0.02, settling=settling)
+        for settling in (0.0, 1.0)
+    )
+    assert run.contact_force[0] == LOAD
+    assert np.abs(run.contact_force[:20] / LOAD - 1.0).max() < 0.01
+    assert run.over_displacement[0] == pytest.approx(steady.over_displacement[0], rel=0.03)
+
+
+def test_linear_contact_is_within_one_decibel_of_the_frequency_domain():
+    rail, texture = moving_kernel(TRACK, SPEED, 25e-6), roughness(6.5)
+    run = roll_wheel(rail, WHEEL, linear(texture), start=0.0, duration=6.0, settling=0.4)
+    band, levels = in_bands(run.contact_force, texture, run, 16000, 125.0, 4000.0)
+    away = np.abs(np.log10(band / TRACK.pinned_pinned_frequency)) > 0.08  # from the peak and its split
+    assert away.sum() >= 13
+    assert np.abs(levels[0] - levels[1])[away].max() < 1.0
+
+
+def test_loss_factors_keep_the_force_at_the_resonance_of_the_wheel_on_the_track():
+    track, speed = Track.named("nordborg-loss-factor"), 10.0
+    rail = moving_kernel(track, speed, STEP, positions=12)
+    heights = 1e-8 * np.cumsum(np.random.default_rng(3).standard_normal(25_000))
+    texture = StateTexture.unfiltered(-(heights - heights.mean()), 2e-3, -5.0)
+    rough, smooth = (
+        roll_wheel(rail, WHEEL, linear(each), start=0.0, duration=4.0, settling=0.4)
+        for each in (texture, None)
+    )
+    # the contact is linear: without the tones of the sleepers, the force is that of the texture
+    force = rough.contact_force - smooth.contact_force
+    _, levels = in_bands(force, texture, rough, 20_000, 25.0, 1000.0, speed, track=track)
+    assert np.abs(levels[0] - levels[1]).max() < 0.75
+
+
+def test_a_flexible_wheel_follows_its_receptance(kernel):
+    """With a mode far below the resonance on the contact, the force dips where wheel and rail balance."""
+    wheel, texture, levels = Wheel(MASS, LOAD, [1800.0], [0.005], [40.0]), roughness(2.0), []
+    for each in (wheel, WHEEL):
+        run = roll_wheel(kernel, each, linear(texture), start=0.0, duration=1.2, settling=0.4)
+        levels.append(in_bands(run.contact_force, texture, run, 4000, 1250.0, 2500.0, wheel=each)[1])
+        assert run.contact_force.mean() == pytest.approx(LOAD, rel=2e-3)
+    change, predicted = levels[0] - levels[1]
+    assert np.abs(predicted).max() > 3.0
+    np.testing.assert_allclose(change, predicted, atol=0.7)
+
+
+def test_the_force_converges_with_the_square_of_the_time_step():
+    x = np.arange(0.0, 9.0, 1e-3)
+    texture, forces = StateTexture.unfiltered(-10e-6 * np.sin(2 * np.pi * x / 0.2), 1e-3, -6.0), []
+    for divide in (1, 2, 4):
+        rail = moving_kernel(TRACK, SPEED, 8e-5 / divide, duration=0.2)
+        run = roll_wheel(rail, WHEEL, HertzLaw(HERTZ, texture), start=0.0, duration=0.048, settling=0.096)
+        forces.append(run.contact_force[::divide])
+    n = min(map(len, forces))
+    coarse, fine = (np.linalg.norm(forces[i][:n] - forces[i + 1][:n]) for i in (0, 1))
+    assert 1.7 < np.log2(coarse / fine) < 2.4
+
+
+# --- points of the rail that are passed
+
+
+def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
+    run = roll_wheel(kernel, WHEEL, linear(roughness(1.2)), start=0.0, duration=0.6, settling=0.2)
+    points, history, origin = np.array([16.2, 16.5, 16.61]), run.history, run.history_start[0]
+    settled = history.shape[1] - len(run.time)
+    displacement, velocity = passed_points(kernel, history, origin, points, settled)
+    for x, moved in zip(points, displacement[0], strict=True):
+        below = np.interp(x, run.position, run.over_displacement)
+        assert np.interp(x, run.position, moved) == pytest.approx(below, rel=1e-3)
+    middle = 0.5 * (displacement[0, :, 2:] - displacement[0, :, :-2]) / STEP
+    assert np.std(velocity[0, :, 1:-1] - middle) < 0.1 * np.std(middle)  # second against sixth order
+    far = passed_points(kernel, history, origin, [16.2 + 300.0])[0]
+    assert np.abs(far).max() < 1e-3 * np.abs(displacement).max()
+    with pytest.raises(InputError, match="points on the rail"):
+        passed_points(kernel, history, origin, [np.nan])
+
+
+@pytest.mark.parametrize(
+    ("struck", "stride", "steps"),
+    [(-1.23, 1.5e-3, 5000), (1.47, 1.5e-3, 5000), (2.999, 1.4e-3, 5000), (1.47, 1.5e-3, 90)],
+)
+def test_a_blow_some_bays_away_is_felt_as_the_receptance_has_it(struck, stride, steps):
+    """One step of force at a place that is no node: the transform of hat times receptance."""
+    step, point = stride / SPEED, 0.13
+    rail = moving_kernel(TRACK, SPEED, step, duration=0.12, positions=4)
+    history = np.zeros(steps)
+    history[10] = 1.0
+    displacement, _ = passed_points(rail, history[None], struck - 10 * stride, [point])
+    taps = rail.weights.shape[1]
+    grid = HatResponse(rail.track, step, 3 * taps, 1)
+    receptance = grid.waves.receptance(point + 6.0, struck + 6.0)
+    expected = grid.response((grid.hat * receptance)[None])[0, : min(steps - 10, taps // 2)]
+    found = displacement[0, 0, 10 : 10 + len(expected)]
+    np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
+
+
+def test_a_steady_load_makes_no_sound_when_steps_end_on_sleepers():
+    """A step that counted twice, or not at all, would hit the rail with 65 kN."""
+    step = 0.6 / 400 / SPEED
+    rail = moving_kernel(TRACK, SPEED, step, duration=0.12, positions=4)
+    for start in (-16.8, 0.1):
+        _, velocity = passed_points(rail, np.full((1, 9000), LOAD), start, [start + 6.6, start + 6.9])
+        heard = velocity[0][:, 3000:] * np.hanning(6000)  # the load is there at once at first
+        spectrum = np.abs(np.fft.rfft(heard, axis=1)) ** 2
+        frequency = np.fft.rfftfreq(6000, step)
+        high = (frequency > 2000.0) & (frequency < 5000.0)
+        assert spectrum[:, high].sum() < 1e-6 * spectrum.sum()
