@@ -1,6 +1,5 @@
 """Cases as objects: SI numbers or text, changed by with_, told from the object, and the same in TOML."""
 
-import json
 import math
 import pickle
 
@@ -9,11 +8,12 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-import asperity
 from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail
 from asperity.case.cases import case_of, parse_case
 from asperity.case.describing import entries
 from asperity.errors import CaseError, InputError
+from asperity.scenarios.records import read_maps, spectrum_levels
+from asperity.studies.definition import study_of
 from asperity.units import quantity, written
 from asperity.values import Choice, Flag, MaterialOrName, Number, Quantity
 
@@ -160,18 +160,13 @@ class TestInMemory:
             BallOnBeam(surface=surface)
 
     def test_a_map_gives_what_its_file_gives(self, tmp_path):
-        heights = 1e-7 * np.random.default_rng(3).normal(size=(300, 80))
-        np.save(tmp_path / "map.npy", heights)
+        np.save(tmp_path / "map.npy", MAP.heights)
         on_disk = {"file": tmp_path / "map.npy", "pixel": "8 um", "height_unit": "m"}
-        case = BallOnBeam(
-            laws=["hertz"], duration=2e-3, start=0.0, surface=on_disk,
-            contact={"samples": 1, "window": 3e-4}, ball={"load": "5 N"},
-        )  # fmt: skip
-        held = {"file": HeightMap(heights, 8e-6), "pixel": None, "height_unit": None}
-        results = [asperity.run(each) for each in (case, case.with_(surface=held))]
-        one, other = (result["rolling/contact_force"].values for result in results)
-        np.testing.assert_array_equal(one, other)
-        assert np.ptp(one) > 0.0
+        (found,), (held,) = (
+            read_maps(BallOnBeam(surface=surface).surface) for surface in (on_disk, {"file": MAP})
+        )
+        np.testing.assert_array_equal(found.heights, held.heights)
+        assert found.spacing == held.spacing
 
     def test_lines_and_tables_of_a_wheel(self, tmp_path):
         bands = np.array([[0.1, 3.0], [0.08, 2.0], [0.063, 1.0]])
@@ -179,13 +174,8 @@ class TestInMemory:
         modes = np.array([[1000.0, 1e-3, 300.0]])
         case = WheelOnRail(surface={"spectrum": bands}, wheel={"modes": modes})
         on_disk = WheelOnRail(surface={"spectrum": tmp_path / "levels.csv"})
-        from asperity.scenarios.records import spectrum_levels
-
-        for one, other in zip(
-            spectrum_levels(case.surface.spectrum), spectrum_levels(on_disk.surface.spectrum), strict=True
-        ):
-            if not isinstance(one, str):
-                np.testing.assert_allclose(one, other)
+        found, held = (spectrum_levels(each.surface.spectrum)[:2] for each in (on_disk, case))
+        np.testing.assert_allclose(found, held)
         assert "table of 3 × 2 numbers" in case.text
         turn = Profile(1e-6 * np.random.default_rng(0).normal(size=2890), 1e-3)
         head = Profile(np.linspace(-0.02, 0.02, 41) ** 2 / -0.6, 1e-3)
@@ -274,28 +264,14 @@ def test_units_suit_their_numbers():
 
 
 class TestStudies:
-    def test_of_an_object_with_numbers(self, tmp_path, monkeypatch):
-        from asperity.studies.definition import study_of
-
-        case = BallOnBeam(
-            speed="2 m/s",
-            laws=["hertz"],
-            duration=5e-3,
-            surface={"spectrum": "iso3095", "level": -40},
-        )
+    def test_of_an_object_with_numbers(self):
+        case = BallOnBeam(laws=["hertz"], surface={"spectrum": "iso3095", "level": -40})
         plan = study_of(case, {"ball.load": [5, np.float64(6.0)], "seed": np.arange(1, 3)})
         assert plan.sweep == {"ball.load": ["5 N", "6 N"], "seed": [1, 2]}
-        first = plan.members()[0]
-        assert first.case == case.with_(**{"ball.load": 5})
+        assert plan.members()[0].case == case.with_(**{"ball.load": 5})
         assert parse_case(plan.text) == case
-        table = asperity.study(case, {"ball.load": [5, 6]}, workers=1)
-        assert table["ball.load"].values.tolist() == [5.0, 6.0]
-        np.testing.assert_allclose(table["mean_force"].values.ravel(), [5.0, 6.0], rtol=0.3)
-        assert json.loads(table.attrs["sweep"]) == {"ball.load": ["5 N", "6 N"]}
 
     def test_surfaces_in_memory_may_be_swept(self):
-        from asperity.studies.definition import study_of
-
         other = HeightMap(-MAP.heights, 8e-6)
         first, second = study_of(BallOnBeam(surface={"file": MAP}), {"surface.file": [MAP, other]}).members()
         assert first.case.surface.file is MAP
