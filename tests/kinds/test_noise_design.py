@@ -23,20 +23,20 @@ WHEEL, STIFFNESS = Wheel(600.0, 65e3), 1.25e9
 TRACKS = ("x2000", "nordborg", "uic60")
 
 
-def roughness_psd(speed, gain):
+def roughness_psd(speed):
     """One-sided PSD, m³, of the limit of ISO 3095 with the contact filter of CNOSSOS-EU, at f/v."""
     wavelength, level = cnossos.rail_roughness("iso3095")
     _, filtered = cnossos.contact_filter("50 kN, 920 mm")
     exact = 10.0 ** (np.rint(10.0 * np.log10(wavelength)) / 10.0)
-    energy = 1e-12 * 10.0 ** ((level + filtered + gain) / 10.0) * exact / (HALF_BAND - 1.0 / HALF_BAND)
+    energy = 1e-12 * 10.0 ** ((level + filtered) / 10.0) * exact / (HALF_BAND - 1.0 / HALF_BAND)
     order = np.argsort(exact)
     at = np.log(speed / FREQUENCY)
     return np.exp(np.interp(at, np.log(exact[order]), np.log(energy[order])))
 
 
-def levels(track, speed=30.0, gain=0.0):
+def levels(track, speed=30.0):
     """Sound power levels of rail and sleepers (2, b), dB re 1 pW, of one wheel."""
-    lines, texture = FREQUENCY.ravel(), roughness_psd(speed, gain).ravel()
+    lines, texture = FREQUENCY.ravel(), roughness_psd(speed).ravel()
     force = linear_force_psd(lines, texture, speed, WHEEL, track, STIFFNESS, positions=6)
 
     def spread(x):
@@ -49,19 +49,14 @@ def levels(track, speed=30.0, gain=0.0):
     return np.array(found)
 
 
-def heard(*arguments, **keywords):
+def heard(track, speed=30.0):
     """A-weighted levels of rail and sleepers."""
-    return a_weighted_total(levels(*arguments, **keywords), CENTRES)
+    return a_weighted_total(levels(track, speed), CENTRES)
 
 
 PADS = 60e6 * 2.0 ** np.arange(8)  # 60 MN/m to 7.7 GN/m
 REAL = PADS < 2e9
 """Pads of ballasted tracks; the stiffer ones stand for none."""
-
-
-def over_pads(name, **damping):
-    """A-weighted levels of rail and sleepers (pads, 2)."""
-    return np.array([heard(Track.named(name, pad_stiffness=pad, **damping)) for pad in PADS])
 
 
 @pytest.mark.parametrize("name", TRACKS)
@@ -70,7 +65,7 @@ def test_noise_against_pad_stiffness(name):
 
     Thompson; N. Vincent, P. Bouvet, D. J. Thompson, P. E. Gautier, J. Sound Vib. 193 (1996) 161-171.
     """
-    found = over_pads(name, pad_loss_factor=0.2)
+    found = np.array([heard(Track.named(name, pad_stiffness=pad, pad_loss_factor=0.2)) for pad in PADS])
     rail, sleepers = found[REAL].T
     assert (np.diff(rail) < -0.5).all()
     assert (np.diff(sleepers) > 1.0).all()
@@ -83,26 +78,6 @@ def test_noise_against_pad_stiffness(name):
     assert min(total[0], total[-1]) > total[best] + 1.0
     equal = np.exp(np.interp(0.0, sleepers - rail, np.log(PADS[REAL])))  # where both are as loud
     assert PADS[best] / 4.0 < equal < PADS[best] * 4.0
-
-
-@pytest.mark.parametrize("name", TRACKS)
-def test_the_decay_rate_rises_with_pad_stiffness(name):
-    waves = CENTRES[CENTRES > 450.0]  # above the cut-on of soft pads
-    soft, stiff = (
-        decay_rate(Track.named(name, pad_stiffness=pad, pad_loss_factor=0.2), waves) for pad in (100e6, 800e6)
-    )
-    assert (stiff > 1.1 * soft).all()  # the highest bands: the rail's own losses
-    assert (stiff > 3.0 * soft)[waves < 900.0].all()
-
-
-@pytest.mark.parametrize("name", TRACKS)
-def test_a_damper_that_stays_hides_it(name):
-    """Of a viscous damper the loss factor ωc/k falls as pads get stiffer: the rail gains less than half.
-
-    The rule is that of pads of one material, whose loss factor stays.
-    """
-    viscous, lossy = (np.ptp(over_pads(name, **own)[REAL, 0]) for own in ({}, {"pad_loss_factor": 0.2}))
-    assert viscous < 0.5 * lossy
 
 
 def test_twice_the_decay_rate_is_3_db_less_of_the_rail():
@@ -118,13 +93,6 @@ def test_twice_the_decay_rate_is_3_db_less_of_the_rail():
     change = (levels(twice) - levels(once))[0, waves]
     np.testing.assert_allclose(change, -3.0, atol=0.5)
     assert heard(twice)[0] - heard(once)[0] == pytest.approx(-3.0, abs=1.0)
-
-
-@pytest.mark.parametrize("name", TRACKS)
-def test_ten_decibels_of_roughness_are_ten_of_noise(name):
-    """The sound is linear in the roughness while contact is kept. Thompson."""
-    track = Track.named(name, pad_loss_factor=0.2)
-    np.testing.assert_allclose(heard(track, gain=10.0) - heard(track), 10.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("name", TRACKS)

@@ -28,7 +28,7 @@ def sleeper_per_rail(track, omega):
     return pad / (pad + ballast - track.sleeper_mass * omega**2)
 
 
-def bay_by_bay(track, cells=12, forces=12):
+def bay_by_bay(track, cells=24, forces=12):
     """Squared mobility, summed over many bays on both sides, forces on edges of cells; of sleepers."""
     bay, omega = track.sleeper_spacing, 2.0 * np.pi * FREQUENCIES
     places = (np.arange(-BAYS * cells, BAYS * cells) + 0.5) * bay / cells
