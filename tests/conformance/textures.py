@@ -114,7 +114,7 @@ def files():
         (folder / "a.sdf").write_bytes(sdf_binary(heights.T, 5))
         (folder / "b.sdf").write_bytes(sdf_ascii(words))
         np.save(folder / "d.npy", heights)
-        x3p(folder / "c.x3p", [heights.T * 1e-9])
+        (folder / "c.x3p").write_bytes(x3p([heights.T * 1e-9]))
         for file, source, hints in (
             ("a.sdf", "ISO 25178-71, binary", {}),
             ("b.sdf", "ISO 25178-71, ASCII", {}),

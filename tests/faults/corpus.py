@@ -1,7 +1,7 @@
 """What once failed: files, words after ``asperity``, the exit code that is right, and what has to be said.
 
 Each took minutes or all memory, ended with a traceback, or was read wrongly. What can be seen without the
-program is tested beside its function: `tests/test_hostile_text.py`, `tests/surfaces/test_hostile_files.py`,
+program is tested beside its function: `tests/test_hostile_text.py`, `tests/surfaces/test_malformed_files.py`,
 `tests/test_terminal.py`, `tests/rolling/test_stability.py`, `tests/scenarios/test_missing.py`.
 """
 

@@ -106,8 +106,8 @@ def surfaces(folder):
     return {
         "binary.sdf": sdf_binary(HEIGHTS, 5),
         "ascii.sdf": sdf_ascii(words),
-        "a.x3p": x3p(folder / "a.x3p", [HEIGHTS], kind="F").read_bytes(),
-        "stored.x3p": x3p(folder / "b.x3p", [HEIGHTS], compress=False).read_bytes(),
+        "a.x3p": x3p([HEIGHTS], kind="F"),
+        "stored.x3p": x3p([HEIGHTS], compress=False),
         "a.npz": (folder / "a.npz").read_bytes(),
         "a.npy": (folder / "a.npy").read_bytes(),
         "matrix.csv": "\n".join(";".join(row) for row in words).encode(),

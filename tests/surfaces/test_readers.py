@@ -1,0 +1,309 @@
+"""The same map in every format, read back in metres and in place; lines, ensembles, units, instruments."""
+
+import io
+import sys
+from contextlib import nullcontext
+from pathlib import Path
+from types import SimpleNamespace
+
+import h5netcdf
+import numpy as np
+import pytest
+from surface_files import SDF_TYPES, npy, sdf_ascii, sdf_binary, x3p, zipped
+
+from asperity.errors import InputError, MissingPointsWarning
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers import read_surface, read_surfaces
+
+# 4 points along x, 3 along y, no symmetry, nm
+HEIGHTS = np.add.outer(10.0 * np.arange(4), np.arange(3))
+STORED = HEIGHTS.T  # as images are
+NM = {"height_unit": "nm", "pixel": ("2 um", "3 um")}
+DATA = Path(__file__).parents[3] / "shared" / "data"
+IDENTITY = "".join(f"<r{i}{j}>{int(i == j)}</r{i}{j}>" for i in "123" for j in "123")
+ANY_ORDER = np.random.default_rng(1).permutation(12)
+POINTS = np.stack([2e-6 * (ANY_ORDER // 3), 3e-6 * (ANY_ORDER % 3), 1e-9 * HEIGHTS.flat[ANY_ORDER]], axis=1)
+LISTED = {"axes": ("A", "A"), "steps": ("", ""), "dimension": "<ListDimension>12</ListDimension>"}
+ABSOLUTE = {"axes": ("A", "I"), "steps": ("", ""), "sizes": (4, 1, 1)}
+
+
+def netcdf(*, x=(7.0, 9.0, 11.0, 13.0), lateral="um", unit="nm", **variables):
+    """Variables, each of dimensions, heights and attributes, with coordinates if their unit is not None."""
+    stream = io.BytesIO()
+    with h5netcdf.File(stream, "w") as file:
+        file.dimensions = {"x": 4, "y": 3, "sample": 2}
+        for name, (dimensions, heights, attributes) in (variables or {"z": ("xy", HEIGHTS, {})}).items():
+            names = ["sample", *dimensions] if heights.ndim == 3 else list(dimensions)
+            stated = {"units": unit} if unit else {}
+            file.create_variable(name, names, data=heights).attrs.update(stated | attributes)
+        for name, values in {"x": x, "y": (7.0, 10.0, 13.0)}.items() if lateral is not None else ():
+            file.create_variable(name, (name,), data=np.array(values)).attrs.update(
+                {"units": lateral} if lateral else {}
+            )
+    return stream.getvalue()
+
+
+def holed(marker, heights=STORED, at=(2, 1)):
+    """Heights with a marker at the second point along x and the third along y."""
+    stored = np.array(heights, dtype=float)
+    stored[at] = marker
+    return stored
+
+
+def words(heights):
+    return [["BAD" if np.isnan(v) else f"{v:g}" for v in row] for row in heights]
+
+
+WHOLE = {
+    **{
+        f"{kind} {order}": ("a.npy", npy(np.asarray(HEIGHTS, dtype=kind, order=order)), NM)
+        for kind in ("f8", "f4", ">f8", "i2", "u1")
+        for order in "CF"
+    },
+    "npz with a scalar": ("a.npz", zipped(("s.npy", npy(np.float64(1))), ("z.npy", npy(HEIGHTS))), NM),
+    "npz by name": ("a.npz", zipped(("b.npy", npy(STORED)), ("z.npy", npy(HEIGHTS))), NM | {"array": "z"}),
+    "transposed": ("a.npy", npy(STORED), NM | {"pixel": ("3 um", "2 um"), "transpose": True}),
+    **{f"sdf {code}": ("a.sdf", sdf_binary(STORED, code), {}) for code in SDF_TYPES},
+    "sdf in ASCII": ("a.sdf", sdf_ascii(words(STORED)), {}),
+    "sdf by its first bytes": ("data", sdf_binary(STORED, 5), {}),
+    **{
+        f"x3p {kind}": ("a.x3p", x3p([STORED - 5], kind=kind, height=("1e-9", "5e-9"), compress=zip_), {})
+        for kind, zip_ in zip("ILFD", (True, False) * 2, strict=True)
+    },
+    "x3p, not rotated": ("a.x3p", x3p([1e-9 * STORED], rotation=f"<Rotation>{IDENTITY}</Rotation>"), {}),
+    "x3p of points": ("a.x3p", x3p([[[0.0]]], data=POINTS.tobytes(), **LISTED), {}),
+    "netCDF": ("a.nc", netcdf(), {}),
+    "netCDF image": ("a.nc", netcdf(z=("yx", STORED, {})), {}),
+    "netCDF that falls": ("a.nc", netcdf(x=7 - 2.0 * np.arange(4), z=("xy", HEIGHTS[::-1], {})), {}),
+    "netCDF without units": ("a.nc", netcdf(lateral=None, unit=""), NM),
+    "netCDF with a unit of its steps": ("a.nc", netcdf(lateral=""), {"pixel_unit": "um"}),
+    "netCDF by name": ("a.nc", netcdf(s=("yx", STORED, {}), z=("xy", HEIGHTS, {})), {"array": "z"}),
+    "netCDF called heights": ("a.nc", netcdf(s=("yx", STORED, {}), heights=("xy", HEIGHTS, {})), {}),
+}
+PACKED = {"missing_value": np.int16(-999), "scale_factor": 0.5, "add_offset": 4.0}
+MARKERS = {1: 2**16 - 1, 2: 2**32 - 1, 3: np.nan, 5: -(2**15), 6: -(2**31), 7: np.nan}
+DATUMS = ["" if v < 0 else f"{v:g}e-9" for v in holed(-1).flat]
+HOLED = {
+    **{f"sdf {code}": ("a.sdf", sdf_binary(holed(marker), code)) for code, marker in MARKERS.items()},
+    "sdf in ASCII": ("a.sdf", sdf_ascii(words(holed(np.nan)))),
+    "x3p mask": ("a.x3p", x3p([STORED], kind="I", height=("1e-9", ""), valid=holed(0, STORED + 1) > 0)),
+    "x3p not a number": ("a.x3p", x3p([1e-9 * holed(np.nan)])),
+    "x3p infinite": ("a.x3p", x3p([1e-9 * holed(np.inf)])),
+    "x3p datums": ("a.x3p", x3p([STORED], link=False, datums=DATUMS)),
+    "netCDF": ("a.nc", netcdf(z=("xy", holed(-999, 2 * HEIGHTS - 8, (1, 2)).astype("i2"), PACKED))),
+}
+
+
+@pytest.fixture(autouse=True)
+def _read_here(monkeypatch):
+    """What is read in a process of its own elsewhere is read in this one."""
+    at_once = lambda function, arguments, *_: function(*arguments)  # noqa: E731
+    monkeypatch.setattr("asperity.surfaces.readers.instruments.sandboxed", at_once)
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write(name, contents):
+        (tmp_path / name).write_bytes(contents)
+        return tmp_path / name
+
+    return write
+
+
+@pytest.mark.parametrize(("name", "contents", "hints"), WHOLE.values(), ids=WHOLE)
+def test_a_map_is_the_same_in_every_format(write, name, contents, hints):
+    surface = read_surface(write(name, contents), **hints)
+    assert isinstance(surface, HeightMap)
+    np.testing.assert_allclose(surface.heights, 1e-9 * HEIGHTS, rtol=1e-14, atol=1e-24)
+    assert surface.spacing == pytest.approx((2e-6, 3e-6))
+    assert surface.source.startswith(name)
+
+
+@pytest.mark.parametrize(("name", "contents"), HOLED.values(), ids=HOLED)
+def test_a_missing_point_is_missing_in_every_format(write, name, contents):
+    with pytest.warns(MissingPointsWarning, match=r"1 points \(8\.33 % of all\) have no height.*left as NaN"):
+        surface = read_surface(write(name, contents))
+    expected = 1e-9 * holed(np.nan, HEIGHTS, (1, 2))
+    np.testing.assert_allclose(surface.heights, expected, rtol=1e-14, atol=1e-24)
+    assert surface.spacing == pytest.approx((2e-6, 3e-6))
+
+
+def test_eight_bit_sdf_has_no_marker(write):
+    assert read_surface(write("a.sdf", sdf_binary(holed(255), 0))).heights[1, 2] == pytest.approx(255e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "contents", "spacing"),
+    [
+        ("a.npy", npy(HEIGHTS[:, 1]), 2e-6),
+        ("a.npy", npy(HEIGHTS[:, 1:2]), 2e-6),
+        ("a.npy", npy(HEIGHTS[:, 1][None]), 3e-6),
+        # the published softgauges look like this: own version word, no spacing across
+        (
+            "a.sdf",
+            sdf_ascii(words([HEIGHTS[:, 1]]), steps=(2e-6, 0)).replace(b"aISO-1.0", b"aNPL-V1.0"),
+            2e-6,
+        ),
+        ("a.x3p", x3p([[1e-9 * HEIGHTS[:, 1]]], steps=("2e-6", "")), 2e-6),
+        ("a.x3p", x3p([[[0.0]]], data=POINTS[POINTS[:, 1] == 3e-6][:, ::2].tobytes(), **ABSOLUTE), 2e-6),
+        ("a.nc", netcdf(z=("x", HEIGHTS[:, 1], {})), 2e-6),
+    ],
+)
+def test_a_line_is_the_same_in_every_format(write, name, contents, spacing):
+    line = read_surface(write(name, contents), **(NM if name == "a.npy" else {}))
+    assert isinstance(line, Profile)
+    np.testing.assert_allclose(line.heights, 1e-9 * HEIGHTS[:, 1], rtol=1e-14)
+    assert line.spacing == pytest.approx(spacing)
+
+
+@pytest.mark.parametrize(
+    ("name", "contents", "hints"),
+    [
+        ("a.npz", zipped(("z.npy", npy(np.stack([HEIGHTS, 2 * HEIGHTS])))), NM),
+        ("a.nc", netcdf(z=("yx", np.stack([STORED, 2 * STORED]), {})), {}),
+        ("a.x3p", x3p([1e-9 * STORED, 2e-9 * STORED]), {}),
+    ],
+)
+def test_an_ensemble_is_read_whole_or_by_sample(write, name, contents, hints):
+    file = write(name, contents)
+    samples = read_surfaces(file, **hints)
+    assert len(samples) == 2
+    assert samples[1].source.endswith("[1]")
+    for one in (samples[1], read_surface(file, index=1, **hints)):
+        np.testing.assert_allclose(one.heights, 2e-9 * HEIGHTS, rtol=1e-14)
+    with pytest.raises(InputError, match=r"an ensemble of 2 samples.*Choose one of 0 to 1, as in index=0"):
+        read_surface(file, **hints)
+    with pytest.raises(InputError, match=r"index of a sample .*received 2; allowed: 0 to 1"):
+        read_surface(file, index=2, **hints)
+
+
+def test_netcdf_group(write):
+    file = write("a.nc", netcdf())
+    with h5netcdf.File(file, "a") as opened:
+        group = opened.create_group("surface")
+        group.dimensions = {"distance": 3}
+        group.create_variable("line", ("distance",), data=np.array([1.0, 2.0, 4.0])).attrs["units"] = "m"
+        group.create_variable("distance", ("distance",), data=np.array([0.0, 0.5, 1.0])).attrs["units"] = "m"
+    line = read_surface(file, array="surface/line")
+    np.testing.assert_array_equal(line.heights, [1.0, 2.0, 4.0])
+    assert line.spacing == 0.5
+
+
+def never_written():
+    stream = io.BytesIO()
+    with h5netcdf.File(stream, "w") as file:
+        file.dimensions = {"x": 50000, "y": 5000}
+        file.create_variable("heights", ("x", "y"), "f8", chunks=(500, 500)).attrs["units"] = "m"
+    return stream.getvalue()
+
+
+SEVERAL = zipped(("p.npy", npy(np.float64(1))), ("b.npy", npy(STORED)), ("z.npy", npy(HEIGHTS)))
+REFUSED = [  # file, its contents, hints, and what the message says
+    ("a.npy", npy(HEIGHTS), {"pixel": "1 um"}, "heights without a unit"),
+    ("a.npy", npy(HEIGHTS), {"height_unit": "um"}, "heights without a pixel size"),
+    ("a.npz", SEVERAL, NM, "received b, z; allowed: exactly one"),
+    ("a.npz", SEVERAL, NM | {"array": "q"}, "received 'q'; allowed: one of: p, b, z"),
+    ("a.nc", netcdf(unit=""), {}, "heights without a unit"),
+    ("a.nc", netcdf(lateral=None), {}, "heights without a pixel size"),
+    ("a.nc", netcdf(lateral=""), {}, r'x of a.nc:z: received no unit.*pixel_unit="um"'),
+    ("a.nc", netcdf(b=("xy", HEIGHTS, {}), z=("xy", HEIGHTS, {})), {}, "received b, z; allowed: exactly one"),
+    ("a.nc", netcdf(), {"array": "q"}, "received 'q'; allowed: one of: z, or group/variable"),
+    ("a.nc", netcdf(x=[0.0, 1.0, 2.5, 3.0]), {}, r"x of a\.nc:z: received coordinates that are not uniform"),
+    ("a.nc", never_written(), {"pixel": "1 um"}, r"50000 x 5000 points in \d+ bytes"),
+    ("a.nc", netcdf()[:3000], {}, "an intact netCDF-4 file"),
+    *(
+        (name, contents, {hint: value}, f"hints for .*received {hint}; allowed: no hints")
+        for name, contents in (("a.sdf", sdf_binary(STORED, 5)), ("a.x3p", x3p([STORED])))
+        for hint, value in (("height_unit", "um"), ("pixel", "1 um"), ("array", "a"))
+    ),
+    (
+        "a.x3p",
+        x3p(
+            [[[0.0]]],
+            data=np.array([(0, 5e-6), (1.3e-6, 7e-6), (2e-6, 4e-6), (3e-6, 1e-6)]).tobytes(),
+            **ABSOLUTE,
+        ),
+        {},
+        "coordinates that are not uniform",
+    ),
+]
+
+
+@pytest.mark.parametrize(("name", "contents", "hints", "message"), REFUSED)
+def test_what_a_file_does_not_say_is_asked_for(write, name, contents, hints, message):
+    with pytest.raises(InputError, match=message):
+        read_surface(write(name, contents), **hints)
+
+
+def test_maps_are_no_lines(write):
+    with pytest.raises(InputError, match="received a line; allowed: a height map"):
+        read_surfaces(write("a.npy", npy(HEIGHTS[:, 0])), **NM)
+
+
+@pytest.fixture
+def measured(write, monkeypatch):
+    """A file of one channel with the attributes that the documentation of SurfaceTopography names."""
+
+    def fake(*, unit="nm", uniform=True, heights=HEIGHTS):
+        topography = SimpleNamespace(
+            is_uniform=uniform,
+            unit=unit,
+            heights=lambda: heights,
+            pixel_size=(2000.0, 3000.0)[: heights.ndim],
+        )
+        channel = SimpleNamespace(name="Height", nb_grid_pts=heights.shape, physical_sizes=(1.0, 1.0))
+        channel.topography = lambda **_: topography
+        reader = SimpleNamespace(channels=[channel], default_channel=channel)
+        package = SimpleNamespace(open_topography=lambda path: nullcontext(reader))
+        monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
+        return write("a.plu", b"content")
+
+    return fake
+
+
+def test_instrument_file(measured):
+    file = measured(heights=np.ma.masked_equal(HEIGHTS, 12.0))
+    with pytest.warns(MissingPointsWarning, match=r"a\.plu:Height: 1 points"):
+        surface = read_surface(file)
+    np.testing.assert_allclose(surface.heights, 1e-9 * holed(np.nan, HEIGHTS, (1, 2)), rtol=1e-14)
+    assert surface.spacing == pytest.approx((2e-6, 3e-6))
+    assert isinstance(read_surface(measured(heights=HEIGHTS[:, 0]), array="Height"), Profile)
+
+
+def test_instrument_file_that_lacks_something(measured, monkeypatch):
+    for changes, hints, message in (
+        ({}, {"array": "Phase"}, r"array in a\.plu: received 'Phase'; allowed: one of: Height"),
+        ({"unit": None}, {}, "heights without a unit"),
+        ({"uniform": False}, {}, "points at no uniform spacing"),
+    ):
+        with pytest.raises(InputError, match=message):
+            read_surface(measured(**changes), **hints)
+    file = measured()
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    with pytest.raises(InputError, match=r'a .plu file.*pip install "asperity\[readers\]"'):
+        read_surface(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "hints", "shape", "spacing"),
+    [
+        ("al3d-1.al3d", {}, (200, 296), 4.38027e-7),
+        ("plu-1.plu", {}, (768, 576), 1.66e-6),
+        ("rubber_x3p.x3p", {}, (860, 634), 2.2799e-6),
+        (
+            "aa5754_um.npz",
+            {"array": "polished", "height_unit": "um", "pixel": "1.5625 um", "index": 0},
+            (512, 512),
+            1.5625e-6,
+        ),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::asperity.errors.MissingPointsWarning")
+def test_measured_files(name, hints, shape, spacing):
+    if not (DATA / name).exists():
+        pytest.skip("the measured file is not here")
+    if name.endswith(("al3d", "plu")):
+        pytest.importorskip("SurfaceTopography", reason="the extra asperity[readers] is not installed")
+    surface = read_surface(DATA / name, **hints)
+    assert surface.shape == shape
+    assert surface.spacing == pytest.approx((spacing, spacing), rel=1e-4)
