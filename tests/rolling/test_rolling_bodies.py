@@ -1,0 +1,290 @@
+"""Bodies on any number of contacts: closed forms, integrators, energy, laws from Python, interruption."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from rolling_parts import Shelf, rough, same
+from scipy.integrate import solve_ivp
+
+from asperity.kernels.pointforce import evaluate
+from asperity.laws import HertzLaw, Linear
+from asperity.reduction.texture import StateTexture
+from asperity.reference.materials import material
+from asperity.rolling.roll import roll_bodies
+from asperity.structures.beam import Beam
+from asperity.structures.body import Body, carriage, chain
+from asperity.structures.modal import ModalStructure
+from one_contact import first_contact
+
+STEEL = material("steel")
+BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)
+PATH = {"speed": 1.0, "start": 0.3, "duration": 0.02, "time_step": 1e-5, "settling": 0.005}
+MASS, LOAD, CONTACT = 0.5, 5.0, 2e7
+BALL = Body.rigid(MASS, LOAD)
+OMEGA, DRIVEN = np.sqrt(CONTACT / MASS), 2 * np.pi * 350.0
+
+
+def waves(amplitude, length, start, end, points=200):
+    """A sine along the path; the spline through it is exact to (2π/points)⁴/384."""
+    spacing = length / points
+    x = start + spacing * np.arange(int((end - start) / spacing) + 2)
+    return StateTexture.unfiltered(amplitude * np.sin(2 * np.pi * x / length), spacing, start)
+
+
+def rolled(over, law, body=BALL, **path):
+    path = {"speed": 1.0, "start": 0.0, "positions": [0.0]} | path
+    return first_contact(roll_bodies(over, [body], [law], **path))
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.CoarseSamplingWarning")
+def test_a_mass_over_waves_of_rigid_ground_is_the_closed_form_to_second_order():
+    """m z'' = −k (z − h), h = a sin Ωt downwards, from rest: Duhamel's integral."""
+    law = Linear(LOAD, CONTACT, texture=waves(1e-8, 2 * np.pi / DRIVEN, 0.0, 0.03))
+    errors = []
+    for h in (2e-5, 1e-5, 5e-6):
+        run = rolled(None, law, duration=0.02, time_step=h)
+        z = run.rolling_displacement - run.rolling_displacement[0]
+        scale = 1e-8 * OMEGA**2 / (OMEGA**2 - DRIVEN**2)
+        closed = scale * (np.sin(DRIVEN * run.time) - DRIVEN / OMEGA * np.sin(OMEGA * run.time))
+        errors.append(np.abs(z - closed).max() / np.abs(closed).max())
+    assert errors[-1] < 2e-3
+    assert_allclose([errors[0] / errors[1], errors[1] / errors[2]], 4.0, atol=0.2)
+
+
+FOUNDATION = ModalStructure([-10.0, 1e3], [], [], np.zeros((2, 0)), residual_flexibility=np.full(2, 1 / 3e6))
+OSCILLATOR = ModalStructure(
+    [-10.0, 1e3], [np.sqrt(4e6 / 2.0) / (2 * np.pi)], 450.0 / np.sqrt(4e6 * 2.0), np.ones((2, 1)), [2.0]
+)
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.CoarseSamplingWarning")
+@pytest.mark.parametrize(
+    ("over", "receptance"),
+    [(FOUNDATION, 1 / 3e6), (OSCILLATOR, 1 / (4e6 - 2.0 * DRIVEN**2 + 900j * DRIVEN))],
+    ids=["elastic foundation", "oscillator"],
+)
+def test_steady_waves_give_the_force_of_the_receptances(over, receptance):
+    """F = −h / (α of the ball + α of the contact + α of what is rolled over); damping ends the start."""
+    damping, a, h = 2000.0, 1e-8, 2 * np.pi / DRIVEN / 400
+    law = Linear(LOAD, CONTACT, texture=waves(-a, 2 * np.pi / DRIVEN, 0.0, 0.5), damping=damping)
+    run = rolled(over, law, duration=0.4, time_step=h)
+    t, force = run.time[-16000:], run.contact_force[-16000:] - LOAD  # forty periods
+    contact = 1 / (CONTACT + 1j * DRIVEN * damping)
+    spring = CONTACT * contact  # the texture works on the spring alone
+    expected = a * spring / (receptance + contact - 1 / (MASS * DRIVEN**2))
+    assert 2.0 * np.mean(force * np.exp(-1j * DRIVEN * t)) * 1j == pytest.approx(expected, rel=1e-3)
+
+
+def pitching(mass, load, places):
+    """A rigid body that heaves and pitches, with its mass as far out as its contacts."""
+    places = np.asarray(places, float)
+    return carriage(mass, mass * np.mean(places**2), places, load=load - mass * 9.80665)
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_equal_balls_under_a_rigid_carriage_share_it(count):
+    """Each as one ball with its share of mass and load: the carriage only heaves."""
+    shift = 0.1 * (np.arange(count) - 0.5 * (count - 1))
+    laws = [HertzLaw(2e9, rough(8e-8, 1e-5, 0.29 + place)) for place in shift]
+    alone = HertzLaw(2e9, rough(8e-8, 1e-5, 0.29))
+    one = roll_bodies(None, [Body.rigid(0.2, 6.0)], [alone], positions=[0.0], **PATH)
+    found = roll_bodies(None, [pitching(count * 0.2, count * 6.0, shift)], laws, positions=[0.0], **PATH)
+    assert one.contact_force.std() > 1.0
+    same(found.contact_force, np.tile(one.contact_force, (count, 1)), 1e-8)
+    heave, pitch = found.degrees_of_freedom[0]
+    same(heave, one.degrees_of_freedom[0][0], 1e-8)
+    assert np.abs(pitch).max() < 1e-6 * np.ptp(heave)
+
+
+def test_contacts_feel_each_other_through_the_beam_in_any_order_of_the_bodies():
+    law = HertzLaw(2.4e10, rough(2e-8, 1e-5, 0.29, 20000))
+    at, bodies = [0.0, 0.02, 0.09, 0.1], [Body.rigid(mass, LOAD) for mass in (0.4, 0.5, 0.6, 0.7)]
+    alone, found, turned = (
+        roll_bodies(
+            BEAM, [bodies[k] for k in order], [law] * len(order), positions=[at[k] for k in order], **PATH
+        ).contact_force
+        for order in ([0], [0, 1, 2, 3], [2, 0, 3, 1])
+    )
+    assert np.abs(found[0] - alone[0]).max() > 0.05 * LOAD
+    same(turned, found[[2, 0, 3, 1]], 1e-8)
+
+
+def test_two_moving_forces_superpose():
+    """Frýba, Vibration of Solids and Structures under Moving Loads: each mode in closed form."""
+    beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=2e3, loss_factor=0.0)
+    load, speed, apart = 50.0, 8.0, 0.23
+    # a contact so soft, and a mass so large, that the force stays the load
+    bodies, laws = [Body.rigid(1e3, load)] * 2, [Linear(load, 1e-3)] * 2
+    path = {"speed": speed, "start": 0.1, "duration": 0.06, "time_step": 1e-5, "positions": [0.0, apart]}
+    found = roll_bodies(beam, bodies, laws, **path)
+    same(found.contact_force, np.full((2, 6001), load), 1e-6)
+    t, expected = found.time, np.zeros_like(found.over_displacement)
+    for n, frequency in enumerate(beam.natural_frequencies, start=1):
+        omega, turn = 2 * np.pi * frequency, n * np.pi * speed
+        scale, q = np.sqrt(2.0 / beam.mass), 0.0
+        for first in (0.1, 0.1 + apart):
+            phase, factor = n * np.pi * first, scale * load / (omega**2 - turn**2)
+            # from the static displacement under the forces where they start, as it moves with them
+            rest = scale * load / omega**2 - factor
+            q = q + factor * np.sin(phase + turn * t) + rest * np.sin(phase) * np.cos(omega * t)
+            q = q + rest * turn * np.cos(phase) * np.sin(omega * t) / omega
+        expected += scale * np.sin(n * np.pi * found.positions) * q
+    same(found.over_displacement, expected, 1e-6)
+
+
+def test_a_rig_of_two_masses_is_that_of_an_adaptive_integrator_to_second_order():
+    """A wheel that carries a mass on spring and damper, over a sine on a Hertzian contact."""
+    rig, stiffness, amplitude, length = chain([0.4, 1.1], [4e5], [30.0]), 3e9, 5e-7, 4e-3
+
+    def force_at(t, y):
+        height = amplitude * np.sin(2 * np.pi * (0.3 + t) / length)
+        return stiffness * max(-y[0] - height, 0.0) ** 1.5
+
+    def rates(t, y):
+        total = rig.contacts[0] * force_at(t, y) - rig.damping @ y[2:] - rig.stiffness @ y[:2] - rig.pressing
+        return np.concatenate([y[2:], total / np.diag(rig.mass)])
+
+    lower, upper = rig.pressing
+    wheel = -(((lower + upper) / stiffness) ** (2 / 3) + amplitude * np.sin(2 * np.pi * 0.3 / length))
+    rest, time = [wheel, wheel - upper / 4e5, 0.0, 0.0], 1e-5 * np.arange(2001)
+    accuracy = {"rtol": 1e-12, "atol": 1e-18, "max_step": 2e-5}
+    told = solve_ivp(rates, (0.0, time[-1]), rest, "DOP853", time, **accuracy)
+    expected = np.array([force_at(t, y) for t, y in zip(told.t, told.y.T, strict=True)])
+    assert np.ptp(expected) > 2.0  # of 15 N
+    law, errors = HertzLaw(stiffness, waves(amplitude, length, 0.29, 0.4)), []
+    for h, every in ((1e-5, 1), (5e-6, 2), (2.5e-7, 40)):
+        run = rolled(None, law, rig, start=0.3, duration=0.02, time_step=h)
+        errors.append(np.abs(run.contact_force[::every] - expected).max())
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+    assert errors[2] < 1e-6 * expected.max()
+
+
+def test_a_sprung_carriage_answers_tones_and_balls_cancel():
+    """Four balls a quarter period apart on a texture of period L: of its tones k v/L only each fourth heaves.
+
+    On stiff linear contacts a carriage heaves by K/(K − M ω²) times the mean texture under its balls.
+    """
+    period, h, stiffness, mass, tones = 8e-3, 4e-6, 2e7, 0.8, np.arange(1, 9)
+    places = 0.25 * period * (np.arange(4) - 1.5)
+    x = 0.28 + period / 800 * np.arange(80000)
+    heights = 1e-8 * sum(np.cos(2 * np.pi * k * x / period) / k for k in tones)
+    law = Linear(5.0, stiffness, 0.0, StateTexture.unfiltered(heights, period / 800, 0.28), damping=200.0)
+    path = {"speed": 1.0, "start": 0.35, "settling": 0.04, "duration": 0.2, "time_step": h}
+    run = roll_bodies(None, [pitching(mass, 20.0, places)], [law] * 4, positions=[0.0], **path)
+    heave, pitch = np.abs(np.fft.rfft(run.degrees_of_freedom[0][:, :-1])) * 2 / (run.time.size - 1)
+    lines = np.round(tones / period * (run.time.size - 1) * h).astype(int)
+    omega = 2 * np.pi * tones / period
+    spring = 4 * (stiffness + 200j * omega)
+    one_ball = np.abs(spring / (spring - mass * omega**2)) * 1e-8 / tones
+    assert_allclose(heave[lines] / one_ball, [0, 0, 0, 1, 0, 0, 0, 1], atol=0.01)
+    between = np.setdiff1d(np.arange(2, lines[-1]), np.concatenate([lines - 1, lines, lines + 1]))
+    assert heave[between].max() < 1e-3 * heave[lines].max()
+    assert pitch[lines[[3, 7]]].max() < 1e-3 * pitch[lines[:3]].min()  # what does not heave, pitches
+
+
+def test_a_coordinate_too_fast_for_the_step_follows_at_rest():
+    """A wheel whose rim sits on a spring of 200 kHz is a wheel with a softer contact, at steps of 10 µs."""
+    stiff, light, mass = 6e10, 0.04, 0.46
+    rim = chain([light, mass], [stiff], [0.0])
+    between = (mass / (mass + light)) ** 2 / stiff  # static compliance of its mode at the rim
+    load, texture = float(rim.pressing.sum()), waves(3e-8, 4e-4, 0.28, 0.4)
+    hard, soft = (Linear(load, k, 0.0, texture, damping=300.0) for k in (5e8, 1 / (1 / 5e8 + between)))
+    expected = roll_bodies(None, [Body.rigid(mass + light, load)], [soft], positions=[0.0], **PATH)
+    assert expected.contact_force.std() > 1.0
+    found = roll_bodies(None, [rim], [hard], positions=[0.0], **PATH)
+    same(found.contact_force, expected.contact_force, 0.01)
+
+
+def test_the_energy_of_four_contacts_closes_contact_losses_included():
+    law = HertzLaw(2.4e10, rough(3e-7, 1e-5, 0.1, 60000), damping=3.0)
+    stretch = np.array([[1.0, 0.0, -1.0]])  # between the pair of balls and the mass above it
+    pair = Body(
+        np.diag([0.6, 0.002, 1.5]), 8.0 * stretch.T @ stretch, 3e5 * stretch.T @ stretch,
+        np.array([[1.0, -0.05, 0.0], [1.0, 0.05, 0.0]]), np.array([6.0, 0.0, 15.0]), np.array([-0.05, 0.05]),
+    )  # fmt: skip
+    bodies = [Body.rigid(0.5, 5.0), pair, Body.rigid(0.3, 8.0)]
+    found = roll_bodies(BEAM, bodies, [law] * 4, positions=[0.0, 0.15, 0.26], **PATH | {"time_step": 5e-6})
+    energy = found.energy
+    assert all(len(losses) > 2 for losses in found.contact_loss)
+    assert energy.residual < 1e-5
+    # every term counts
+    assert all(abs(share) > 1e-4 * energy.throughput for share in energy.shares.values())
+    assert 0.0 < energy.contact_damping < energy.throughput
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.LargeDeflectionWarning")
+def test_evaluations_for_each_contact_do_not_grow_with_their_number():
+    beam = Beam.rectangular(4.0, 0.05, 0.01, STEEL, highest_frequency=2e3)
+    law = HertzLaw(2.4e10, rough(2e-8, 1e-5, 0.05, 400000))
+    path, each = PATH | {"duration": 0.005, "settling": 0.0}, []
+    for count in (2, 32):
+        run = roll_bodies(beam, [BALL] * count, [law] * count, positions=0.1 * np.arange(count), **path)
+        each.append(run.evaluations / count / 500)
+        assert run.unconverged_steps == 0
+    assert each[1] < 1.3 * each[0] < 8.0
+
+
+class Stepped:
+    """A law that Python steps, and that can be interrupted."""
+
+    name, damping = "stepped", 0.0
+
+    def __init__(self, law, fails_at=-1):
+        self.law, self.fails_at = law, fails_at
+
+    def prepare(self, positions):
+        self.prepared, self.accepted, self.warned = self.law.prepare(positions), 0, 0
+        return self
+
+    def evaluate(self, step, approach):
+        if step == self.fails_at:
+            raise KeyboardInterrupt
+        return evaluate(self.prepared, step, approach)
+
+    def accept(self, step):
+        self.accepted += 1
+
+    def state(self):
+        return {"accepted": np.array(self.accepted)}
+
+    def restore(self, state):
+        self.accepted = int(state["accepted"])
+
+    def warn_of_flaws(self):
+        self.warned += 1
+
+
+def test_laws_that_python_steps_stand_beside_compiled_ones_and_go_on_amid_a_step():
+    smooth, other = (HertzLaw(2.4e10, rough(2e-8, 1e-5, 0.29, 20000, seed)) for seed in (2, 3))
+    path = PATH | {"duration": 0.001, "settling": 0.0, "positions": [0.0, 0.05]}
+    whole, resumed, shelf = Stepped(other), Stepped(other), Shelf()
+    expected, found = (roll_bodies(BEAM, [BALL] * 2, [smooth, law], **path) for law in (other, whole))
+    assert expected.contact_force[1].std() > 0.1 * LOAD
+    same(found.contact_force, expected.contact_force, 2e-5)
+    assert (whole.accepted, whole.warned) == (100, 1)
+    with pytest.raises(KeyboardInterrupt):
+        roll_bodies(BEAM, [BALL] * 2, [smooth, Stepped(other, 57)], checkpoint=shelf, **path)
+    again = roll_bodies(BEAM, [BALL] * 2, [smooth, resumed], checkpoint=shelf, **path)
+    assert int(shelf.arrays["law.1.accepted"]) == resumed.accepted == 100
+    assert_array_equal(again.contact_force, found.contact_force)
+
+
+def test_a_run_goes_on_where_it_was_bit_by_bit():
+    law = HertzLaw(2.4e10, rough(2e-7, 1e-5, 0.29, 30000), damping=2.0)
+    bodies = [BALL, pitching(0.8, 12.0, [-0.05, 0.05])]
+    path = PATH | {"duration": 0.05, "sensors": [0.4], "positions": [0.0, 0.12]}
+    whole, shelf = roll_bodies(BEAM, bodies, [law] * 3, **path), Shelf()
+
+    def stop(done, total, what):
+        if done > 0.4 * total:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        roll_bodies(BEAM, bodies, [law] * 3, progress=stop, checkpoint=shelf, **path)
+    assert 0 < shelf.arrays["motion.counts"][0] < 5500
+    resumed = roll_bodies(BEAM, bodies, [law] * 3, checkpoint=shelf, **path)
+    for name in ("contact_force", "relative_displacement", "over_displacement", "acceleration"):
+        assert_array_equal(getattr(resumed, name), getattr(whole, name))
+    assert_array_equal(resumed.degrees_of_freedom[1], whole.degrees_of_freedom[1])
+    assert resumed.energy == whole.energy
+    assert resumed.contact_loss == whole.contact_loss

@@ -1,0 +1,147 @@
+"""What rolling bodies refuse, warn of, and fail with."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from asperity import errors
+from asperity.errors import ComputationError, InputError, Outcome
+from asperity.kernels import stepping
+from asperity.laws import HertzLaw, Linear
+from asperity.reduction.texture import StateTexture
+from asperity.reference.materials import material
+from asperity.rolling.rest import at_rest
+from asperity.rolling.roll import roll_bodies
+from asperity.structures.beam import Beam
+from asperity.structures.body import Body
+from asperity.structures.moving_kernel import MovingKernel
+from asperity.structures.rail_poles import RailBetween
+from asperity.structures.track import Track
+
+BEAM = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=2e3)
+BALL, LAW, NONE = Body.rigid(0.5, 5.0), Linear(5.0, 1e7), np.zeros((2, 2))
+PATH = {"speed": 1.0, "start": 0.3, "duration": 0.01, "time_step": 1e-5}
+KERNEL = MovingKernel(Track.named("nordborg"), 1.0, 1e-5, np.ones((4, 100)))
+RAIL = RailBetween(KERNEL, {2.5: KERNEL, -2.5: KERNEL})
+
+
+def body(damping=NONE, stiffness=NONE):
+    """Two masses on one contact."""
+    parts = np.array(damping), np.array(stiffness), np.array([[1.0, 0.0]]), np.array([5.0, 0.0])
+    return Body(np.eye(2), *parts, np.zeros(1))
+
+
+def rolled(over=None, bodies=(BALL,), laws=(LAW,), positions=(0.0,), **changes):
+    return roll_bodies(over, bodies, laws, positions=positions, **PATH | changes)
+
+
+TWO = {"bodies": [BALL] * 2, "laws": [LAW] * 2}
+CLIFF = StateTexture.unfiltered(np.where(np.arange(4000) < 1400, 0.0, -10.0), 1e-5, 0.29)  # of 10 m
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "message"),
+    [
+        ({"bodies": [], "laws": [], "positions": []}, InputError, r"bodies: received none.*one or more"),
+        (TWO, InputError, r"positions of the bodies.*2 finite numbers, one for each body"),
+        (TWO | {"positions": [0.0, np.nan]}, InputError, r"positions of the bodies.*2 finite numbers"),
+        ({"laws": [LAW] * 2}, InputError, r"laws.*2.*1, one for each contact"),
+        (
+            TWO | {"over": BEAM, "positions": [0.0, 0.695]},
+            InputError,
+            r"path of contact 2.*0.995 to 1.005.*on the structure",
+        ),
+        ({"sensors": [0.5]}, InputError, r"sensors: received 1 on a rigid plane"),
+        ({"bodies": [Body.rigid(0.5, 0.0)]}, InputError, r"loads of the bodies.*none that presses"),
+        ({"bodies": [body([[0, 1.0], [0, 0]])]}, InputError, r"damping of a body.*not symmetric"),
+        (
+            {"bodies": [body(NONE, [[-1e3, 0], [0, 1e3]])]},
+            InputError,
+            r"stiffness of a body.*negative.*springs that pull back",
+        ),
+        (
+            TWO | {"over": RAIL, "positions": [0.0, 3.0]},
+            InputError,
+            r"distance of two contacts on the rail.*3.*-2\.5, 2\.5.*rail between",
+        ),
+        ({"over": RAIL, "speed": 50.0}, InputError, r"path.*50 m/s.*kernel was computed"),
+        ({"over": RAIL, "sensors": [1.0]}, InputError, r"sensors.*a rail is known under the contacts alone"),
+        (
+            {"laws": [HertzLaw(1e-3)]},
+            ComputationError,
+            r"do not come to rest on their contacts \(1\) at the start.*loads of 5 N",
+        ),
+        (
+            TWO | {"laws": [LAW, Linear(5.0, 1e7, 0.0, CLIFF)], "positions": [0.0, 0.0]},
+            ComputationError,
+            r"runs away: at step \d+, time .* contact force is .* under a load",
+        ),
+    ],
+)
+def test_what_cannot_roll_is_told(changes, error, message):
+    with pytest.raises(error, match=message):
+        rolled(**changes)
+
+
+def test_contacts_that_cannot_carry_together_are_told():
+    def weak(approach):
+        return min(max(1e6 * approach, 0.0), 2.51), 1e6 if 0.0 < approach < 2.51e-6 else 0.0
+
+    one, none = np.ones((1, 1)), np.zeros((1, 1))
+    pair = Body(one, none, none, np.ones((2, 1)), np.array([5.0]), np.zeros(2))
+    with pytest.raises(ComputationError, match=r"do not come to rest on their contacts \(2\) at the start"):
+        at_rest([pair], np.array([0.0, 1e4]), np.zeros((2, 2)), [weak, weak])
+
+
+def warned(law, over=BEAM, **changes):
+    """A run of two balls, and what was warned of, by category."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run = rolled(over, [BALL] * 2, [law] * 2, [0.0, 0.1], **changes)
+    found = {}
+    for warning in caught:
+        found.setdefault(warning.category, []).append(str(warning.message))
+    return run, found
+
+
+def test_time_steps_that_are_too_long_are_warned_of():
+    high = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=15e3)
+    _, seen = warned(Linear(5.0, 1e9), high, time_step=2e-5, highest_frequency=6e3)
+    for what in ("the contact resonance", "the highest mode of the structure", "the highest frequency asked"):
+        assert sum(what in message for message in seen[errors.CoarseSamplingWarning]) == 1
+
+
+def test_a_law_beyond_its_data_is_told_once_for_all_contacts():
+    class Short:
+        name, damping = "short", 0.0
+
+        def prepare(self, positions):
+            return HertzLaw(1e9).prepare(positions)._replace(upper=1e-7)
+
+    (message,) = warned(Short())[1][errors.ExtrapolationWarning]
+    assert "short: the contact was closer than its largest computed state in 2002 of 2002" in message
+
+
+def test_forces_that_miss_the_tolerance_are_counted(monkeypatch):
+    """Sweeps of Python: with one alone the contacts have not heard of each other."""
+
+    class Python:
+        name, damping = "stepped", 0.0
+
+        def prepare(self, positions):
+            return self
+
+        def evaluate(self, step, approach):
+            return 5.0 + 1e7 * (approach + 1e-7 * np.sin(step)), 1e7
+
+        accept = restore = lambda self, value: None
+        state = dict
+        warn_of_flaws = staticmethod(lambda: None)
+
+    assert warned(Python(), duration=1e-4)[0].outcome is Outcome.CONVERGED
+    monkeypatch.setattr(stepping, "SWEEPS", 1)
+    run, seen = warned(Python(), duration=1e-4)
+    (message,) = seen[errors.UnconvergedWarning]
+    assert "stepped: 10 of 10 time steps (100 %) missed the tolerance" in message
+    assert (run.outcome, run.unconverged_steps) == (Outcome.STEPS_UNCONVERGED, 10)
