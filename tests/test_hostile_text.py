@@ -19,6 +19,7 @@ from asperity.case.tables import LEVELS, read_levels, read_table
 from asperity.case.toml import read_toml
 from asperity.errors import CaseError, ComputationError, InputError
 from asperity.files import alone_in, refuse_unwritable, write_bytes
+from asperity.parameters import Quantity
 from asperity.results import GROUPS, read_result, save
 from asperity.schema import VERSION
 from asperity.store import Store
@@ -29,7 +30,6 @@ from asperity.surfaces.readers import read_surface
 from asperity.surfaces.readers.text import parsed_header
 from asperity.text_files import number_in
 from asperity.units import quantity
-from asperity.values import Quantity
 
 BALL = 'kind = "ball-on-beam"\n'
 CASE = {"kind": "ball-on-beam", "surface": {"rms": "1 um"}}

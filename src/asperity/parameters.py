@@ -1,12 +1,477 @@
-"""A parameter, declared once: kind, default, meaning, limits; cases, forms and checks follow from it."""
+"""A parameter, declared once: kind of value, default, meaning, limits; cases and forms follow from it."""
 
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
-from typing import Any
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, NoReturn
 
-from asperity.values import ListOf, ValueKind, Within
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.arguments import nearest, no_file, shown
+from asperity.errors import InputError
+from asperity.reference.materials import MATERIALS, Material
+from asperity.units import factor, quantity, written
+
+_WORDS = {
+    "m": ("a length", "25 mm"),
+    "s": ("a time", "0.5 s"),
+    "m/s": ("a speed", "1 m/s"),
+    "kg": ("a mass", "0.5 kg"),
+    "N": ("a force", "5 N"),
+    "Pa": ("a pressure", "3 GPa"),
+    "kg/m^3": ("a density", "2700 kg/m^3"),
+    "Hz": ("a frequency", "5 kHz"),
+    "N s/m": ("a damping constant", "10 N s/m"),
+    "N/m": ("a stiffness", "300 MN/m"),
+    "N m^2": ("a bending stiffness", "4.7 MN m^2"),
+    "kg/m": ("a mass per length", "60 kg/m"),
+    "kg m": ("a rotary inertia per length", "0.24 kg m"),
+    "kg m^2": ("a moment of inertia", "1500 kg m^2"),
+    "dB": ("a level", "+0 dB"),
+    "rad": ("an angle", "30 deg"),
+}
+
+LEAST, MOST = 1e-30, 1e30
+"""Numbers in SI lie between these: nothing in mechanics is outside, and ten multiplied are finite."""
+
+EMPTY = "Add to it, or remove the key."
+BACKSLASH = (
+    "In double quotes a backslash changes the letter after it: write Windows paths in single quotes, as in "
+    r"file = 'C:\data\beam.x3p', or with / instead."
+)
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where keys and values come from.
+
+    Attributes
+    ----------
+    source : str
+        Its name, for messages.
+    folder : Path
+        Where relative paths start.
+    units : bool
+        Whether quantities must carry their units, as in a file; from Python they may be numbers in SI.
+    """
+
+    source: str = "case"
+    folder: Path = Path()
+    units: bool = False
+
+    @classmethod
+    def file(cls, path: object) -> Origin:
+        """Origin of what stands in a file."""
+        return cls(str(path), Path(str(path)).parent, units=True)
+
+
+FROM_PYTHON = Origin()
+
+
+class Problems(ValueError):
+    """Several errors of one value, each an `InputError` about one key of it."""
+
+    def __init__(self, errors: list[InputError]) -> None:
+        self.errors = errors
+        super().__init__("; ".join(map(str, errors)))
+
+
+class ValueKind:
+    """A kind of value, as `Quantity`: called with what stands behind a key, it returns the value in SI."""
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        raise NotImplementedError
+
+    def __call__(self, value: Any, origin: Origin = FROM_PYTHON) -> Any:
+        """Return the value in SI, or raise an `InputError`."""
+        raise NotImplementedError
+
+    def refuse(self, value: object, remedy: str = "") -> NoReturn:
+        """Say that a value is none of this kind."""
+        raise InputError("value", shown(value), self.allowed, remedy)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What numbers of a kind may be."""
+
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+
+    def hold(self, value: float) -> bool:
+        """Whether a number lies within them."""
+        return not (
+            (self.above is not None and value <= self.above)
+            or (self.at_least is not None and value < self.at_least)
+            or (self.at_most is not None and value > self.at_most)
+        )
+
+    def __str__(self) -> str:
+        named = {"greater than": self.above, "at least": self.at_least, "at most": self.at_most}
+        words = " and ".join(f"{word} {limit}" for word, limit in named.items() if limit is not None)
+        return f" {words}" if words else ""
+
+
+def is_absurd(value: float) -> bool:
+    """Whether a number is so large or small that its products are not finite."""
+    return value != 0 and not LEAST <= abs(value) <= MOST
+
+
+@dataclass(frozen=True)
+class Quantity(ValueKind):
+    """A number with a unit, written as a string; from Python also a number in SI.
+
+    Parameters
+    ----------
+    dimension : str
+        The SI unit of the value behind the door.
+    above, at_least : float, optional
+        What the value must be greater than, or not less than.
+    infinite : bool
+        Whether "inf" is a value, too.
+    """
+
+    dimension: str
+    above: float | None = None
+    at_least: float | None = None
+    infinite: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        word, example = _WORDS[self.dimension]
+        infinite = ', or "inf"' if self.infinite else ""
+        return f'{word}{Bounds(self.above, self.at_least)}{infinite}, with its unit, as "{example}"'
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> float:
+        """Return the value in SI."""
+        number = self._number(value.item() if isinstance(value, np.generic) else value, origin)
+        if not math.isfinite(number) and not (self.infinite and number > 0):
+            self.refuse(value, "Give a finite value.")
+        if math.isfinite(number) and is_absurd(number):
+            self.refuse(value, f"In {self.dimension}, numbers lie between {LEAST:g} and {MOST:g}.")
+        if not Bounds(self.above, self.at_least).hold(number):
+            self.refuse(value)
+        return number
+
+    def _number(self, value: object, origin: Origin) -> float:
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            if origin.units:
+                given = "dB" if self.dimension == "dB" else f"SI units ({self.dimension})"
+                remedy = f'Add unit and quotes: "{shown(value)} {self.dimension}" if it is in {given}.'
+                self.refuse(value, remedy)
+            if isinstance(value, int) and abs(value) > MOST:
+                raise InputError("value", "a huge number", self.allowed)
+            return float(value)
+        if not isinstance(value, str):
+            self.refuse(value)
+        try:
+            return quantity(value, self.dimension)
+        except InputError as error:
+            self.refuse(value, error.remedy)
+
+
+@dataclass(frozen=True)
+class Number(ValueKind):
+    """A pure number."""
+
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    whole: bool = False
+    infinite: bool = False  # "inf" is a value, too
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        limits = Bounds(self.above, self.at_least, self.at_most)
+        return f"a {'whole ' * self.whole}number{limits}" + ', or "inf"' * self.infinite
+
+    def __call__(self, value: Any, origin: Origin = FROM_PYTHON) -> float | int:
+        """Return the number."""
+        value = value.item() if isinstance(value, np.generic) else value
+        if self.infinite and isinstance(value, str | float) and value in ("inf", math.inf):
+            return math.inf
+        if isinstance(value, bool) or not isinstance(value, int if self.whole else int | float):
+            self.refuse(value, "Write it without quotes and unit." if isinstance(value, str) else "")
+        finite = isinstance(value, int) or math.isfinite(value)
+        if not finite or is_absurd(value) or not Bounds(self.above, self.at_least, self.at_most).hold(value):
+            self.refuse(value)
+        return value if self.whole else float(value)
+
+
+@dataclass(frozen=True)
+class Choice(ValueKind):
+    """One of a few words, or of those that a registry holds when it is asked."""
+
+    words: tuple[str, ...] | Callable[[], tuple[str, ...]]
+    numbers: tuple[int, ...] = ()  # that mean the words, one each
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """The words."""
+        return self.words() if callable(self.words) else self.words
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return ", ".join(f'"{word}"' for word in self.known)
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
+        """Return the word."""
+        if isinstance(value, int) and not isinstance(value, bool) and value in self.numbers:
+            return self.known[self.numbers.index(value)]
+        if not isinstance(value, str) or value not in self.known:
+            self.refuse(value, nearest(value, self.known))
+        return value
+
+
+@dataclass(frozen=True)
+class Flag(ValueKind):
+    """Yes or no."""
+
+    allowed = "true or false"
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> bool:
+        """Return the flag."""
+        if not isinstance(value, bool):
+            self.refuse(value, "Write it without quotes.")
+        return value
+
+
+@dataclass(frozen=True)
+class Text(ValueKind):
+    """A word, as the name of an array; files can hold no null character and no half of one."""
+
+    allowed = "a text in quotes"
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
+        """Return the text."""
+        if not isinstance(value, str) or not value.strip() or "\0" in value:
+            self.refuse(value)
+        if any("\ud800" <= character <= "\udfff" for character in value):
+            self.refuse(value)
+        return value
+
+
+@dataclass(frozen=True)
+class LengthUnit(ValueKind):
+    """The unit of heights in a file that does not name it."""
+
+    allowed = 'a unit of length, as "um"'
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
+        """Return the unit, once it is known to be one."""
+        if not isinstance(value, str):
+            self.refuse(value)
+        try:
+            factor(value, "m")
+        except InputError as error:
+            self.refuse(value, error.remedy)
+        return value
+
+
+@dataclass(frozen=True)
+class File(ValueKind):
+    """An existing file, whose path starts at the folder of the case; from Python also what it would hold.
+
+    Parameters
+    ----------
+    held : tuple of types
+        Objects that may stand in its place.
+    several : type, optional
+        One of them, of which also a list may.
+    columns : tuple of int
+        Numbers of columns that an array in its place may have; empty where none may stand there.
+    content : str
+        What the file is.
+    """
+
+    held: tuple[type, ...] = ()
+    several: type | None = None
+    columns: tuple[int, ...] = ()
+    content: str = "an existing file, relative to the case"
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return f"the path of {self.content}"
+
+    def __call__(self, value: Any, origin: Origin = FROM_PYTHON) -> Any:
+        """Return the path, absolute, or what stands in its place."""
+        if isinstance(value, self.held):
+            return value
+        alike = self.several and isinstance(value, list | tuple) and len(value)
+        if self.several and alike and all(isinstance(each, self.several) for each in value):
+            return tuple(value)
+        if self.columns and isinstance(value, np.ndarray):
+            return self._table(value)
+        return self._path(value, origin)
+
+    def _table(self, value: NDArray[Any]) -> NDArray[np.float64]:
+        if value.ndim != 2 or value.shape[1] not in self.columns or value.dtype.kind not in "fiu":
+            shapes = " or ".join(f"(n, {count})" for count in self.columns)
+            raise InputError("table", shown(value), f"an array of shape {shapes} of real numbers in SI")
+        table = np.array(value, dtype=np.float64, order="C")
+        table.flags.writeable = False
+        return table
+
+    def _path(self, value: object, origin: Origin) -> Path:
+        if not isinstance(value, str | Path) or "\0" in str(value) or not str(value):
+            held = "" if origin.units else "".join(f", or a {each.__name__}" for each in self.held)
+            raise InputError("file", shown(value), self.allowed + held)
+        path = (origin.folder / value).absolute()
+        if reason := no_file(path):
+            remedy = f"It is {reason}."
+            if reason == "no such file":
+                escaped = any(not character.isprintable() for character in str(value))
+                remedy = BACKSLASH if escaped else f"There is no such file in {path.parent.resolve()}."
+            self.refuse(str(value), remedy)
+        return path
+
+
+@dataclass(frozen=True)
+class Either(ValueKind):
+    """One of a few words, or else a value of another kind; `last` where the words are told behind that."""
+
+    words: tuple[str, ...]
+    other: ValueKind
+    last: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        both = [Choice(self.words).allowed, self.other.allowed]
+        return ", or ".join(both[::-1] if self.last else both)
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> Any:
+        """Return the word, or the other value."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        try:
+            return self.other(value, origin)
+        except InputError as error:
+            remedy = nearest(value, self.words) or error.remedy
+            raise InputError("value", error.received, self.allowed, remedy) from None
+
+
+@dataclass(frozen=True)
+class ListOf(ValueKind):
+    """A list of values of one kind, of at least so many."""
+
+    each: ValueKind
+    least: int = 0
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return f"a list, each {self.each.allowed}"
+
+    def __call__(self, value: Any, origin: Origin = FROM_PYTHON) -> tuple[Any, ...]:
+        """Return the values; errors are told of each, by number."""
+        value = value.tolist() if isinstance(value, np.ndarray) else value
+        if not isinstance(value, list | tuple):
+            self.refuse(value)
+        if len(value) < self.least:
+            received = f"{len(value)} values" if len(value) else "an empty list"
+            raise InputError("value", received, f"at least {self.least}, each {self.each.allowed}", EMPTY)
+        read, errors = [], []
+        for number, item in enumerate(value, 1):
+            try:
+                read.append(self.each(item, origin))
+            except InputError as error:
+                errors.append(error.about(f"[{number}]"))
+        if errors:
+            raise Problems(errors)
+        return tuple(read)
+
+
+GIVEN = "given in the case"
+"""Source of a material that states none."""
+
+
+Within = tuple[str, str, str]
+"""The least and the largest plausible value, as they are written in TOML, and the reason."""
+
+_SOLIDS = "solids that roll lie between"
+_OF_A_MATERIAL: dict[str, tuple[ValueKind, Within | None]] = {
+    "name": (Text(), None),
+    "youngs_modulus": (Quantity("Pa", above=0), ("1 kPa", "10 TPa", _SOLIDS)),
+    "poisson_ratio": (Number(above=-1, at_most=0.5), None),
+    "density": (Quantity("kg/m^3", above=0), ("1 kg/m^3", "100000 kg/m^3", _SOLIDS)),
+    "citation": (Text(), None),
+}
+
+
+@dataclass(frozen=True)
+class MaterialOrName(ValueKind):
+    """A named material, or one of its own by numbers."""
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return (
+            f'{Choice(tuple(MATERIALS)).allowed}, or numbers: {{ youngs_modulus = "72 GPa", '
+            'poisson_ratio = 0.33, density = "2700 kg/m^3" }'
+        )
+
+    def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> Material:
+        """Return the material."""
+        if isinstance(value, Material):
+            if MATERIALS.get(value.name) == value:
+                return value
+            return _own_material({name: each for name, each in asdict(value).items() if each}, FROM_PYTHON)
+        if isinstance(value, Mapping):
+            return _own_material(value, origin)
+        if not isinstance(value, str) or value not in MATERIALS:
+            self.refuse(value, nearest(value, tuple(MATERIALS)))
+        return MATERIALS[value]
+
+
+def _own_material(given: Mapping[Any, Any], origin: Origin) -> Material:
+    """Material of numbers with units, and of a name and a source if there are; all errors at once."""
+    optional, read = {"name", "citation"}, dict[str, Any]()
+    unknown = sorted(map(str, given.keys() - _OF_A_MATERIAL.keys()))
+    numbers = [name for name in _OF_A_MATERIAL if name not in optional]
+    allowed = ", ".join(_OF_A_MATERIAL)
+    errors = [InputError(name, "an unknown key", allowed, nearest(name, numbers)) for name in unknown]
+    for name, (kind, within) in _OF_A_MATERIAL.items():
+        if name not in given:
+            errors += [] if name in optional else [InputError(name, "nothing", kind.allowed)]
+            continue
+        try:
+            read[name] = kind(given[name], origin)
+            errors += outside(name, read[name], kind, within)
+        except InputError as error:
+            errors.append(error.about(name))
+    if errors:
+        raise Problems(errors)
+    return Material(**({"name": name_of_numbers(read["youngs_modulus"]), "citation": GIVEN} | read))
+
+
+def name_of_numbers(youngs_modulus: float) -> str:
+    """Name of a material that states none."""
+    return f"{youngs_modulus / 1e9:.4g} GPa"
+
+
+def outside(name: str, value: object, kind: ValueKind, within: Within | None) -> Iterator[InputError]:
+    """Error about a number out of its limits; zero, infinity and NaN, where they may stand, may."""
+    if within is None or not isinstance(value, int | float) or value in (0.0, math.inf) or value != value:
+        return
+    low, high, reason = within
+    unit = kind.dimension if isinstance(kind, Quantity) else ""
+    least, most = (quantity(limit, unit) if unit else float(limit) for limit in (low, high))
+    if not least <= value <= most:
+        received = written(value, unit, unit) if unit else f"{value:.4g}"
+        yield InputError(name, received, f"{low} to {high}", f"{reason[0].upper()}{reason[1:]}.")
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ from asperity.case import PRESETS
 from asperity.case.cases import as_case, case_class
 from asperity.case.describing import entries
 from asperity.errors import CaseError
+from asperity.parameters import ListOf, Number, Quantity
 from asperity.units import quantity
-from asperity.values import ListOf, Number, Quantity
 
 SOURCE = Path(asperity.__file__).parent
 MODULES = sorted(SOURCE.rglob("*.py"))

@@ -12,10 +12,10 @@ from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRa
 from asperity.case.cases import case_of, parse_case
 from asperity.case.describing import entries
 from asperity.errors import CaseError, InputError
+from asperity.parameters import Choice, Flag, MaterialOrName, Number, Quantity
 from asperity.scenarios.records import read_maps, spectrum_levels
 from asperity.studies.definition import study_of
 from asperity.units import quantity, written
-from asperity.values import Choice, Flag, MaterialOrName, Number, Quantity
 
 MAP = HeightMap(1e-7 * np.random.default_rng(1).normal(size=(40, 30)), 8e-6)
 ROUGH = BallOnBeam(surface={"rms": 0.5e-6})

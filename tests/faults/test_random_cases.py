@@ -12,9 +12,9 @@ from asperity.case import PRESETS
 from asperity.case.cases import case_class, case_of
 from asperity.case.describing import entries
 from asperity.errors import AsperityError
+from asperity.parameters import Choice, Number, Quantity
 from asperity.schema.entry import UNKNOWN
 from asperity.units import quantity
-from asperity.values import Choice, Number, Quantity
 
 SHORT = {
     "ball-on-beam": {

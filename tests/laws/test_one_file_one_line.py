@@ -21,7 +21,7 @@ FILE = '''
 from asperity.laws.areal import Areal
 from asperity.laws.spec import LawSpec, Look, Need
 from asperity.parameters import key
-from asperity.values import Quantity
+from asperity.parameters import Quantity
 
 
 def build(materials):

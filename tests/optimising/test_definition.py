@@ -7,7 +7,7 @@ import asperity
 from asperity.case.toml import read_toml
 from asperity.errors import CaseError, InputError
 from asperity.optimising.definition import Aim, assignment_template, bands_of, load_assignment, with_texture
-from asperity.values import FROM_PYTHON
+from asperity.parameters import FROM_PYTHON
 from small_cases import COARSE, WHEEL
 
 CASE = COARSE | {"start": "0.2 m", "duration": "0.2 s"}

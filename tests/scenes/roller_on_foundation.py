@@ -14,10 +14,9 @@ from asperity.case.form import section
 from asperity.case.over import RolledOver
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NumericsKeys
-from asperity.parameters import key
+from asperity.parameters import Choice, MaterialOrName, key
 from asperity.reference.materials import Material
 from asperity.structures.modal import STATIC, STATIC_DAMPING
-from asperity.values import Choice, MaterialOrName
 
 
 @dataclass(frozen=True)

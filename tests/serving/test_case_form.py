@@ -7,8 +7,8 @@ from asperity.case.cases import case_class, case_of, parse_case, template
 from asperity.case.describing import entries
 from asperity.case.toml import read_toml
 from asperity.errors import InputError
+from asperity.parameters import Origin
 from asperity.serving.case_form import case_data, form_values, forms
-from asperity.values import Origin
 
 UNITS = Origin("the case", units=True)
 

@@ -10,8 +10,7 @@ from asperity.case.over import BeamKeys
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NumericsKeys
 from asperity.case.surface import OF_RAILS, Surface
-from asperity.parameters import key
-from asperity.values import Choice
+from asperity.parameters import Choice, key
 
 
 class BallOnBeam(Case):

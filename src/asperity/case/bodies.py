@@ -11,8 +11,7 @@ from asperity.case.over import BeamKeys, RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
 from asperity.errors import InputError
-from asperity.parameters import key
-from asperity.values import Choice
+from asperity.parameters import Choice, key
 
 STRUCTURES = ("plane", "beam", "track", "structure")
 """What may be rolled over; but for the plane, each is a section of the case."""

@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 from asperity.case.surface import ADDED_LEVEL, LENGTH, LEVEL, LEVELS, POSITION, MeasuredLine
 from asperity.case.tables import TableFile, fitted_to, read_modes, read_receptance
 from asperity.errors import InputError
-from asperity.parameters import key, optional
+from asperity.parameters import Choice, Either, File, ListOf, MaterialOrName, Number, Quantity, key, optional
 from asperity.reference.cnossos import WHEEL_ROUGHNESS
 from asperity.reference.materials import Material
 from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
-from asperity.values import Choice, Either, File, ListOf, MaterialOrName, Number, Quantity
 
 if TYPE_CHECKING:
     from asperity.structures.wheel import Wheel

@@ -16,7 +16,7 @@ from asperity.case.scene import Case
 from asperity.case.toml import plain_data, read_definition, read_toml, refuse_vast
 from asperity.errors import CaseError, InputError
 from asperity.laws import family_of, law_keys, spec_of
-from asperity.values import FROM_PYTHON, Origin
+from asperity.parameters import FROM_PYTHON, Origin
 
 _HEAD = """\
 # {title} Run it with: asperity run CASE

@@ -12,10 +12,9 @@ from asperity.arguments import nearest
 from asperity.case.content import content, described_value, holds_memory
 from asperity.case.form import Section
 from asperity.errors import InputError
-from asperity.parameters import Key
+from asperity.parameters import GIVEN, Key, Number, Origin, Problems, Quantity, name_of_numbers
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import written
-from asperity.values import GIVEN, Number, Origin, Problems, Quantity, name_of_numbers
 
 _UNIT = re.compile(r"\d\.? ([^\"',\]]+)")  # in an example, as "25 mm" or ["0.2 m", "0.4 m"]
 _COLUMN = 32  # where comments of a commented case start, if the value leaves room

@@ -12,8 +12,7 @@ from typing import Any, ClassVar, NamedTuple, NoReturn, Self
 from asperity.arguments import nearest, shown
 from asperity.case.content import Keyed, content, described_value, holds_memory
 from asperity.errors import CaseError, InputError
-from asperity.parameters import Key
-from asperity.values import FROM_PYTHON, Origin, Problems, outside
+from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, outside
 
 
 class Inner(NamedTuple):

@@ -18,12 +18,22 @@ from asperity.case.form import Section
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
 from asperity.case.tables import RECEPTANCES, read_table
 from asperity.errors import InputError, PhysicsWarning
-from asperity.parameters import key, keys_of, optional
+from asperity.parameters import (
+    Choice,
+    File,
+    LengthUnit,
+    ListOf,
+    MaterialOrName,
+    Number,
+    Quantity,
+    key,
+    keys_of,
+    optional,
+)
 from asperity.reference.materials import Material
 from asperity.reference.tracks import TRACKS
 from asperity.structures.track import Track
 from asperity.surfaces.heightmap import Profile
-from asperity.values import Choice, File, LengthUnit, ListOf, MaterialOrName, Number, Quantity
 
 if TYPE_CHECKING:
     from asperity.structures.beam import Support

@@ -20,10 +20,9 @@ from asperity.case.toml import toml_text
 from asperity.contact.hertz import Hertz, relative_radius
 from asperity.errors import InputError
 from asperity.laws import Need, family_of, law_keys, names, spec_of
-from asperity.parameters import Key, key, optional
+from asperity.parameters import Choice, Key, ListOf, Quantity, Text, key, optional
 from asperity.reference.materials import contact_modulus
 from asperity.units import written
-from asperity.values import Choice, ListOf, Quantity, Text
 
 if TYPE_CHECKING:
     from asperity.radiation.pass_by import Passage

@@ -17,10 +17,9 @@ from asperity.case.over import FREQUENCY
 from asperity.case.surface import LENGTH, POSITION
 from asperity.case.tables import TableFile, read_ratios
 from asperity.errors import InputError
-from asperity.parameters import key, optional
+from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
 from asperity.reference.cnossos import PAD_CLASSES, WHEEL_TRANSFER
 from asperity.units import written
-from asperity.values import Choice, Either, ListOf, Number, Quantity
 
 if TYPE_CHECKING:
     from asperity.radiation.pass_by import Passage

@@ -17,12 +17,7 @@ from asperity.case.form import Section
 from asperity.case.tables import TableFile, read_levels
 from asperity.case.toml import read_definition, read_toml, toml_text
 from asperity.errors import InputError
-from asperity.parameters import key, optional
-from asperity.surfaces import steps
-from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import read_surface, read_surfaces
-from asperity.units import factor, written
-from asperity.values import (
+from asperity.parameters import (
     Choice,
     Either,
     File,
@@ -34,7 +29,13 @@ from asperity.values import (
     Problems,
     Quantity,
     Text,
+    key,
+    optional,
 )
+from asperity.surfaces import steps
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers import read_surface, read_surfaces
+from asperity.units import factor, written
 
 LENGTH = Quantity("m", above=0)
 POSITION = Quantity("m", at_least=0)

@@ -19,11 +19,11 @@ from asperity.arguments import no_file, shown
 from asperity.case.content import name_of
 from asperity.errors import InputError
 from asperity.files import amount
+from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
-from asperity.values import FROM_PYTHON, File, Origin, Problems
 
 LARGEST_TABLE = 10 * 2**20  # bytes of text
 NETCDF = (".nc", ".nc4")

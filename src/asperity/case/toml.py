@@ -15,7 +15,7 @@ import numpy as np
 from asperity import text_files
 from asperity.case.content import described_value
 from asperity.errors import InputError
-from asperity.values import BACKSLASH
+from asperity.parameters import BACKSLASH
 
 LARGEST_CASE = 2**20  # bytes
 MOST_PARTS = 20

@@ -15,11 +15,10 @@ from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.surface import Surface
 from asperity.case.tables import check_band_levels, read_levels
 from asperity.errors import InputError
-from asperity.parameters import key
+from asperity.parameters import Choice, key
 from asperity.structures.body import GRAVITY
 from asperity.structures.track import Track
 from asperity.units import written
-from asperity.values import Choice
 
 STEPS_PER_PERIOD = 8  # of the highest frequency
 CLOSE = 1.2  # a time step may be changed by this factor to bring positions onto the grid

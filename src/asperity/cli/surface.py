@@ -17,6 +17,7 @@ from asperity.arguments import Array, shown
 from asperity.case import surface as recipes
 from asperity.errors import InputError
 from asperity.files import write_bytes
+from asperity.parameters import Origin
 from asperity.reporting.figure import write_chart, write_columns
 from asperity.reporting.texture_figures import lines_chart, surface_chart
 from asperity.spectra import nominal
@@ -38,7 +39,6 @@ from asperity.surfaces.statistics import (
 from asperity.surfaces.steps import stepped
 from asperity.terminal import say
 from asperity.units import quantity
-from asperity.values import Origin
 
 Surfaces = Sequence[HeightMap | Profile]
 Spectra = dict[str, tuple[Array, Array]]

@@ -26,10 +26,10 @@ from asperity.case.cases import case_of, demo_case
 from asperity.case.scene import Case
 from asperity.case.toml import read_toml
 from asperity.errors import AsperityError, CaseError, reason
+from asperity.parameters import Origin
 from asperity.sandbox import MEMORY, limit_process
 from asperity.serving.case_form import case_data, form_values
 from asperity.serving.uploads import examined, identifier_of, surface_named
-from asperity.values import Origin
 
 if TYPE_CHECKING:
     from asperity.serving.contact_preview import PressedSample

@@ -16,7 +16,7 @@ from asperity.case.cases import case_class
 from asperity.case.describing import CaseKey, allowed_in, entries, entry_of
 from asperity.case.toml import toml_value
 from asperity.errors import InputError
-from asperity.values import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
+from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
 
 LONGEST_VALUE = 2000
 """Characters of one value: more than any list of a case needs."""

@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike
 
 from asperity.arguments import Array, Complex, finite_array, not_negative, positive, shown
 from asperity.errors import InputError
-from asperity.parameters import keys_of, parameter
+from asperity.parameters import Number, Quantity, keys_of, parameter
 from asperity.reference.tracks import named_track
 from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
-from asperity.values import Number, Quantity
 
 
 @dataclass(frozen=True)

@@ -24,11 +24,11 @@ from asperity.case.describing import CaseKey, entry_of, in_toml, value_in_toml
 from asperity.case.scene import Case
 from asperity.case.toml import plain_data, read_definition, read_toml, toml_text
 from asperity.errors import CaseError, InputError
+from asperity.parameters import FROM_PYTHON, Origin
 from asperity.reference.materials import Material
 from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
 from asperity.store import content_key
 from asperity.units import factor, unit_in
-from asperity.values import FROM_PYTHON, Origin
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
 _RANGE = re.compile(
