@@ -52,7 +52,7 @@ def test_large_parts_of_scipy_wait_until_they_are_used():
 
 
 def test_a_report_is_written_without_what_draws_for_papers():
-    chapters = "import asperity.kinds.report as r; r.names_of_reports()"
+    chapters = "import asperity.scenes.report as r; r.names_of_reports()"
     code = f"import sys; {chapters}; print('matplotlib' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
@@ -98,18 +98,9 @@ def test_nothing_is_pickled_and_no_text_is_evaluated():
             assert not names & banned, f"{module}: {names & banned}"
 
 
-KIND = {
-    "Computed", "bodies_of", "compute", "contacts_of", "geometry_of", "layout", "rows", "settings_of",
-    "textures_of", "warn_of",
-}  # fmt: skip
-"""What each kind of case offers under the same name, see `asperity.scenarios.kind.Kind`."""
-
-
 def has_its_own_name(module, name):
     """Whether a name is not one of those that several modules have to share."""
     inside = module.relative_to(SOURCE).parts
-    if inside[0] == "kinds" and len(inside) > 2:
-        return name not in KIND
     if inside[:2] == ("surfaces", "readers"):
         return name != "read"  # each format is read by the `read` of its module
     return inside != ("cli", "__init__.py")  # commands are called as what they do

@@ -19,7 +19,7 @@ from asperity.reporting.page import page
 from asperity.reporting.uncertainty import changes_table, settings_table
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted
-from asperity.scenes.chapters import chapters_of
+from asperity.scenes.report import CHAPTERS
 from asperity.schema import contents_of, convergence
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import LongStrip
@@ -277,7 +277,7 @@ class TestKept:
     def test_a_result_is_written_read_and_shown(self, ball, tmp_path):
         asperity.save(ball, tmp_path / "run.nc")
         assert asperity.open_result(tmp_path / "run.nc").identical(ball)
-        assert ">Uncertainty</h2>" in page(ball, chapters_of(ball)[-1:])
+        assert ">Uncertainty</h2>" in page(ball, CHAPTERS[-1:])
         table = changes_table(ball)
         assert table.head == ["band / Hz", *ball["convergence"]["setting"].values.tolist()]
         assert len(table.rows) == ball["spectra"].sizes["band"]

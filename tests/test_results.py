@@ -9,9 +9,9 @@ import xarray as xr
 
 import asperity
 from asperity.errors import InputError
-from asperity.kinds.notebook import Result
 from asperity.results import GROUPS, case_text, checked, read_result, save, variable
 from asperity.sandbox import sandboxed
+from asperity.scenes.notebook import Result
 from asperity.schema import VERSION
 
 

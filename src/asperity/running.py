@@ -12,9 +12,9 @@ from asperity.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from asperity.case.scene import Case
-    from asperity.kinds.notebook import Result
     from asperity.progress import Progress
     from asperity.scenarios.preparing import PreparedCase
+    from asperity.scenes.notebook import Result
 
 
 def run(
@@ -64,9 +64,9 @@ def run(
     """
     from asperity.case.cases import as_case
     from asperity.errors import PhysicsWarning
-    from asperity.kinds.notebook import Result
     from asperity.progress import shown_progress
     from asperity.scenarios.preparing import PreparedCase
+    from asperity.scenes.notebook import Result
     from asperity.scenes.result import computed_result
     from asperity.threads import one_thread_in_linear_algebra
 
@@ -125,8 +125,8 @@ def open_result(path: str | os.PathLike[str]) -> Result:
     >>> asperity.open_result(path).identical(result)
     True
     """
-    from asperity.kinds.notebook import Result
     from asperity.results import read_result
+    from asperity.scenes.notebook import Result
 
     return Result.of(read_result(path))
 

@@ -41,7 +41,7 @@ LAW = LawSpec(
 SCRIPT = """
 import json, pathlib, sys
 from asperity.case.cases import parse_case, template
-from asperity.kinds.report import report
+from asperity.scenes.report import report
 from asperity.running import run
 from asperity.studies.running import study
 

@@ -12,8 +12,8 @@ import xarray as xr
 
 import asperity
 from asperity.errors import InputError
-from asperity.kinds.notebook import Result
 from asperity.progress import shown_progress
+from asperity.scenes.notebook import Result
 
 CASE = asperity.BallOnBeam(laws=["hertz", "linear"], duration=5e-3, surface={"spectrum": "iso3095"})
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from asperity.kinds.report import report
+from asperity.scenes.report import report
 from small_cases import Made
 
 

@@ -13,6 +13,7 @@ from asperity.reporting.chart import (
     BLUE,
     COLOURS,
     GREEN,
+    GRID,
     INK,
     TIME,
     VERMILLION,
@@ -112,6 +113,16 @@ def axes_chart():
     )
 
 
+def scene_chart():
+    """A drawing: a body and words, one axis with a name and one without."""
+    body = Shape(np.array([0.0, 4.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]), fill=BLUE)
+    notes = [Note(words, 1.0, 0.5) for words in ("1 m/s", "R = 2 m")]
+    foot = Boxes(*(np.array([at]) for at in (0.0, 0.5, -0.5, 0.0)), colour=GRID, hatch="/", edge=INK)
+    return Chart(
+        (Panel(Axis("x / m", -1.0, 5.0), Axis("", -1.0, 2.0), (body, foot, *notes), equal=True, plain=True),)
+    )
+
+
 def words_chart():
     """Bars that stand and bars that lie, by words."""
     words, count = ("rail", "sleepers", "wheel with its axle", "sum"), np.arange(4.0)
@@ -133,6 +144,7 @@ CHARTS = {
     "map": map_chart(),
     "axes": axes_chart(),
     "words": words_chart(),
+    "scene": scene_chart(),
 }
 
 
@@ -194,7 +206,7 @@ DRAWN = [
     ("run", 0, BLUE), ("run", 0, VERMILLION), ("run", 1, BLUE), ("spectrum", 0, BLUE),
     ("spectrum", 0, VERMILLION), ("bands", 0, BLUE), ("bands", 1, GREEN), ("bands", 1, INK),
     ("map", 0, "#fcffa4"), ("map", 0, INK), ("map", 1, "#00224e"), ("map", 1, "#fee838"),
-    ("axes", 0, GREEN), ("axes", 1, INK), ("words", 0, BLUE), ("words", 1, GREEN),
+    ("axes", 0, GREEN), ("axes", 1, INK), ("words", 0, BLUE), ("words", 1, GREEN), ("scene", 0, BLUE),
 ]  # fmt: skip
 
 

@@ -12,9 +12,9 @@ import xarray as xr
 from report_tree import report_tree
 
 import asperity
-from asperity.kinds.comparing import names_of
 from asperity.reporting.comparison import MAIN, NamedRun, compared, working_filter
 from asperity.reporting.comparison_page import listed_keys, summary
+from asperity.scenes.comparing import names_of
 from asperity.schema import contact
 from asperity.spectra import a_weighted_total, a_weighting
 

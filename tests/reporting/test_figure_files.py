@@ -1,6 +1,5 @@
 """Figures as files: what matplotlib draws of a chart, what a drawing is as SVG, which figures are meant."""
 
-import re
 from io import BytesIO
 
 import numpy as np
@@ -10,8 +9,6 @@ from xarray import DataTree
 from asperity.errors import InputError
 from asperity.reporting.chart import (
     BLUE,
-    COLOURS,
-    INK,
     Area,
     Axis,
     Boxes,
@@ -24,7 +21,6 @@ from asperity.reporting.chart import (
     Second,
     Shape,
 )
-from asperity.reporting.drawing import svg_of
 from asperity.reporting.figure import Figure, chosen_figures, write_chart, write_figures
 from asperity.reporting.panels import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.paper import draw, save_figure
@@ -175,39 +171,6 @@ def test_lines_stand_below_each_other(tmp_path):
     chart = lines_chart(lines, 1e-3)
     assert [name for _, name in chart.panels[0].y.ticks] == ["1", "2", "3"]
     assert write_chart(chart, "lines", tmp_path / "lines.PNG").read_bytes()[:4] == b"\x89PNG"
-
-
-SIDE = Panel(
-    Axis("x / m", 0.0, 10.0),
-    Axis("", 0.0, 2.0),
-    (
-        Shape(np.array([0.0, 10.0, 10.0, 0.0]), np.array([0.0, 0.0, 0.5, 0.5]), fill=BLUE),
-        Boxes(ONE, TWO, ONE, TWO, hatch="/", edge=INK),
-        Line(X, X, marker="^", dashes=(2.0, 1.0)),
-        Rules(ONE),
-        Note("1 m/s", 5.0, 1.0),
-        Note("<R = 2 m>", 5.0, 1.0),
-    ),
-    title="from the side",
-    equal=True,
-    height=2.0,
-)
-
-
-def test_a_drawing_is_svg_in_the_colours_of_the_page():
-    told = svg_of(Chart((SIDE,), drawing=True), 'a "scene"', COLOURS)
-    assert told.count('role="img" aria-label="a &quot;scene&quot;"') == 2  # for a wide page and a phone
-    used = set(re.findall(r'(?:fill|stroke)="([^"]+)"', told))
-    assert used <= {"none", *(f"var(--c{n})" for n in range(len(COLOURS)))}
-    assert f"var(--c{list(COLOURS).index(BLUE)})" in used
-    assert "&lt;R = 2 m&gt;" in told
-    wide = told.partition("drawing narrow")[0]
-    heights = {text: float(y) for y, text in re.findall(r'<text [^>]*y="([\d.]+)"[^>]*>([^<]+)<', wide)}
-    assert abs(heights["1 m/s"] - heights["&lt;R = 2 m&gt;"]) >= 9.0  # a word moves out of the way of another
-    left, foot = re.findall(r'd="M([\d.]+) ([\d.]+)L', wide)[0]
-    width = float(re.findall(r'viewBox="0 0 ([\d.]+)', wide)[0])
-    assert 0 < float(left) < width
-    assert re.search(rf"M{left} {foot}h[\d.]+", wide)  # the axis stands at the foot
 
 
 def part(name, title):

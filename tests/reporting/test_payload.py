@@ -122,10 +122,8 @@ def test_endless_boxes_and_colours_reach_the_page():
     assert (arrays[mark["low"]][0], arrays[mark["high"]][0]) == (-np.inf, np.inf)
 
 
-def test_drawings_and_notes_without_a_place_are_left_out():
-    nowhere = Note("here", np.nan, 1.0)
-    found, _ = read({"scene": chart(drawing=True), "a": chart(nowhere)})
-    assert list(found) == ["a"]
+def test_notes_without_a_place_are_left_out():
+    found, _ = read({"a": chart(Note("here", np.nan, 1.0))})
     assert found["a"]["panels"][0]["marks"] == []
 
 

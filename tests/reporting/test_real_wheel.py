@@ -11,13 +11,13 @@ from report_reading import HOSTILE, Reader, read_csv
 from report_tree import figures_by_name, laws_in
 
 from asperity.cli.studying import print_table
-from asperity.kinds.report import figures_of, page_of
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Line, Note, Rules
 from asperity.reporting.study_figures import key_chart
 from asperity.scenes.figures.force import AROUND_PEAK, around_peak
 from asperity.scenes.figures.motion import point_labels
 from asperity.scenes.figures.noise import sound_power_table
+from asperity.scenes.report import figures_of, page_of
 from asperity.studies.member import kept, names_kept
 from asperity.studies.table import USUAL, USUAL_IN_FIGURES, chosen, columns_of
 

@@ -16,7 +16,6 @@ from report_tree import DATUM, LAWS, LOAD, figures_by_name, report_tree, uncerta
 
 from asperity.convergence.group import sentence
 from asperity.errors import ComputationError, InputError
-from asperity.kinds.report import figures_of, page_of, report
 from asperity.laws import spec_of
 from asperity.reporting.chart import envelope, smooth_on_log_axis
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
@@ -27,6 +26,7 @@ from asperity.reporting.payload import chart_script
 from asperity.reporting.tables import practice_table, reference_table
 from asperity.reporting.uncertainty import uncertainty_table
 from asperity.scenes.acceleration_answers import acceleration_answers
+from asperity.scenes.report import figures_of, page_of, report
 from asperity.spectra import a_weighting, nominal_frequency
 
 PARTS = list(figures_by_name().values())

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from report_tree import report_tree
 
-from asperity.kinds.notebook import Result
 from asperity.results import save
+from asperity.scenes.notebook import Result
 from asperity.schema.rolling import POSITION
 from asperity.serving.answering import _answered
 from asperity.serving.comparison_view import compared_runs, numbered_names
@@ -102,7 +102,7 @@ def test_a_damaged_run_is_refused_in_words(path, tmp_path):
 
 def test_the_report_is_written_beside_its_result(path, monkeypatch):
     written = []
-    monkeypatch.setattr("asperity.kinds.report.report", lambda tree, folder: written.append((tree, folder)))
+    monkeypatch.setattr("asperity.scenes.report.report", lambda tree, folder: written.append((tree, folder)))
     assert _answered(json.dumps({"question": "report", "path": str(path)})) == {}
     ((tree, folder),) = written
     assert folder == path.parent

@@ -10,7 +10,6 @@ import pytest
 from asperity.case.cases import parse_case
 from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
-from asperity.kinds.report import figures_of
 from asperity.laws import Printed, Shifted
 from asperity.laws.layout import force
 from asperity.reduction.filter import response
@@ -18,6 +17,7 @@ from asperity.running import prepare_case, run
 from asperity.scenarios.reducing import patch_planes
 from asperity.scenes import compute as ball_on_beam
 from asperity.scenes import compute as wheel_on_rail
+from asperity.scenes.report import figures_of
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
 

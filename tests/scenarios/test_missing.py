@@ -6,7 +6,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import PhysicsWarning
-from asperity.kinds.report import page_of
+from asperity.scenes.report import page_of
 from asperity.schema import Entry
 from asperity.schema.entry import UNKNOWN
 from asperity.schema.spectra import NO_SIGNAL

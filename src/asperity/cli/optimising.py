@@ -14,8 +14,6 @@ from asperity.case.content import content, file_digest
 from asperity.case.describing import in_toml
 from asperity.case.toml import read_definition, toml_text
 from asperity.errors import InputError
-from asperity.kinds.report import PAGE as REPORT
-from asperity.kinds.report import write_page
 from asperity.laws import spec_of
 from asperity.optimising.definition import load_assignment
 from asperity.optimising.running import Optimised, optimise
@@ -26,6 +24,8 @@ from asperity.reporting.payload import number_cell
 from asperity.reporting.study_figures import TextureBands, optimised_chart
 from asperity.reporting.tables import ReportTable
 from asperity.results import save
+from asperity.scenes.report import PAGE as REPORT
+from asperity.scenes.report import write_page
 from asperity.store import content_key
 from asperity.terminal import say
 from asperity.text_files import write_csv

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 
 from asperity.files import amount, discard, left_overs, refuse_unwritable, together
-from asperity.kinds import comparing
-from asperity.kinds.report import PAGE, SUMMARY, figures_of, write_page, write_summary
 from asperity.reporting.comparison import compared
 from asperity.reporting.comparison_page import listed_keys, summary
 from asperity.reporting.data import signed
 from asperity.reporting.figure import chosen_figures, write_figures
 from asperity.reporting.sound import TABLE, listen
 from asperity.results import read_result
+from asperity.scenes import comparing
+from asperity.scenes.report import PAGE, SUMMARY, figures_of, write_page, write_summary
 from asperity.store import Store, is_private, kernel_folders
 from asperity.terminal import say, say_files, say_table
 

@@ -150,11 +150,11 @@ def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
     with files.together(directory, last=PAGE) as new:
         save(tree, new / RESULT)
         if report:
-            from asperity.kinds.report import write_page
+            from asperity.scenes.report import write_page
 
             write_page(tree, new / PAGE)
         if (directory / PAGE).exists():
-            from asperity.kinds.report import names_of_reports
+            from asperity.scenes.report import names_of_reports
 
             for name in names_of_reports():
                 if not (new / name).exists():

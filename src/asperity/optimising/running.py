@@ -30,7 +30,7 @@ from asperity.store import Store, content_key
 from asperity.threads import one_thread_in_linear_algebra
 
 if TYPE_CHECKING:
-    from asperity.kinds.notebook import Result
+    from asperity.scenes.notebook import Result
 
 FORMAT = 1
 """Raise it when what is kept of a trial no longer means what it meant."""

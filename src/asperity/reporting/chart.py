@@ -17,8 +17,8 @@ Dashes = tuple[float, ...]
 """Lengths that are drawn and left out, in turn, in points at a width of one; empty for a full line."""
 FREQUENCY, TIME = "frequency", "time"
 """Quantities by which axes are linked: a cursor on one stands on all."""
-WIDE, NARROW = 9.6, 4.5
-"""Inches: a figure as wide as the page, and as that of a phone."""
+WIDE = 9.6
+"""Inches: a figure as wide as the page."""
 INK, MUTED, GRID = "#1c2126", "#5b6670", "#dfe3e7"
 BLUE, VERMILLION, GREEN = "#0067a5", "#c8500a", "#00805c"
 
@@ -240,7 +240,7 @@ class Panel:
     equal: bool = False  # a metre is as long along x as along y
     beside: bool = False  # in one row with the panel before, where the page is wide enough
     share: float = 1.0  # of the width of its row
-    bare: bool = False  # without axes: a drawing
+    plain: bool = False  # a drawing: no grid, and no axis without a label
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,8 +250,6 @@ class Chart:
     panels: tuple[Panel, ...]
     # where a reader may want to go: by name, stretches of x (n, 2); a button shows one after the other
     places: Mapping[str, Numbers] = field(default_factory=lambda: MappingProxyType({}))
-    # no diagram: drawn once, as it is, and not zoomed; an axis without a label is not drawn
-    drawing: bool = False
 
 
 MARGIN = 0.04

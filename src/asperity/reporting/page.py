@@ -17,7 +17,6 @@ from asperity import __version__
 from asperity.printable import printable
 from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Chart, Line, colour_variables
-from asperity.reporting.drawing import svg_of
 from asperity.reporting.figure import Chapter, Figure, Lines
 from asperity.reporting.tables import ReportTable
 from asperity.reporting.uncertainty import setting_names
@@ -28,7 +27,7 @@ _UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
 
 @dataclass(frozen=True, eq=False)
 class PageFigure:
-    """A figure of a page, which the script of the page draws unless it is a `drawing`."""
+    """A figure of a page, which the script of the page draws."""
 
     name: str
     title: str
@@ -36,7 +35,6 @@ class PageFigure:
     chart: Chart
     numbers: list[ReportTable] = field(default_factory=list)  # shown where no script runs
     file: str = ""  # with its numbers, beside the page
-    drawing: Markup | None = None  # elements of the page
 
 
 @dataclass(frozen=True)
@@ -125,23 +123,20 @@ def drawable_figures(tree: DataTree, chapters: Sequence[Chapter]) -> list[Figure
     return [figure for chapter in chapters for figure in chapter.figures if figure.drawable(tree)]
 
 
-def page_figure(tree: DataTree, figure: Figure, lines: Lines, colours: Mapping[str, str]) -> PageFigure:
+def page_figure(tree: DataTree, figure: Figure, lines: Lines) -> PageFigure:
     """A figure of the page, from numbers that were collected."""
-    chart = figure.chart(tree, lines)
-    drawing = Markup(svg_of(chart, figure.title, colours)) if chart.drawing else None
-    numbers = [] if chart.drawing else [payload.numbers_table(lines.columns)]
-    told = figure.name, figure.title, figure.said(tree)
-    return PageFigure(*told, chart, numbers, f"{figure.name}.csv", drawing)
+    told, numbers = (figure.name, figure.title, figure.said(tree)), payload.numbers_table(lines.columns)
+    return PageFigure(*told, figure.chart(tree, lines), [numbers], f"{figure.name}.csv")
 
 
 def _sections(
-    tree: DataTree, chapters: Sequence[Chapter], collected: Mapping[str, Lines], colours: Mapping[str, str]
+    tree: DataTree, chapters: Sequence[Chapter], collected: Mapping[str, Lines]
 ) -> list[PageSection]:
     """Chapters of the page, with numbers that were collected; one without any data is left out."""
     found = []
     for chapter in chapters:
         figures = drawable_figures(tree, [chapter])
-        drawn = [page_figure(tree, figure, collected[figure.name], colours) for figure in figures]
+        drawn = [page_figure(tree, figure, collected[figure.name]) for figure in figures]
         blocks: list[PageFigure | ReportTable] = [*drawn]
         blocks += [table for make in chapter.tables if (table := make(tree))]
         if blocks:
@@ -186,7 +181,7 @@ def page(
     if collected is None:
         collected = {figure.name: figure.collect(tree) for figure in drawable_figures(tree, shown)}
     checks, colours = headline.lights(tree), data.law_colours(tree)
-    drawn = _sections(tree, shown, collected, colours)
+    drawn = _sections(tree, shown, collected)
     kind, parameters = data.stated(tree, provenance.KIND), data.json_list(tree, provenance.PARAMETERS)
     changed = [parameter for parameter in parameters if not parameter.get("is_default", True)]
     differing = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -283,8 +283,3 @@ def beyond_limits(
         if low < limits[0] or high > limits[1]
     ]
     return f" {axis} suits the main law; beyond it: {', '.join(left)}." if left else ""
-
-
-def by_name(lines: Mapping[str, Numbers]) -> list[Series]:
-    """Series of laws by name, of numbers that stand in no file."""
-    return [Series(law, "", numbers, label=law, places={"law": law}) for law, numbers in lines.items()]

@@ -107,8 +107,6 @@ def draw(chart: Chart, title: str = "") -> ShownFigure:
             if len(row) == 1 and number + 1 < len(rows) and _goes_on(row[0], *rows[number + 1]):
                 figure.axes[-1].tick_params(axis="x", labelbottom=False)
                 figure.axes[-1].set_xlabel("")
-        if chart.drawing:
-            _spare(figure, chart)
         if title:
             figure.suptitle(title, x=0.01, ha="left", fontweight="bold", fontsize=10)
     return figure
@@ -125,19 +123,6 @@ def _goes_on(panel: Panel, below: Panel, *beside: Panel) -> bool:
     """Whether the panel below has the same axis, which then need not be named twice."""
     same = (panel.x.label, panel.x.ticks) == (below.x.label, below.x.ticks)
     return same and limits(panel, "x") == limits(below, "x") and not (below.title or beside)
-
-
-def _spare(figure: Figure, chart: Chart) -> None:
-    """Leave out what a drawing does not need: grids, and axes without a name."""
-    for axes, panel in zip(figure.axes, chart.panels, strict=True):
-        axes.grid(visible=False)
-        axes.spines[["right", "top"]].set_visible(False)
-        if not panel.x.label:
-            axes.spines["bottom"].set_visible(False)
-            axes.set_xticks([])
-        if not panel.y.label:
-            axes.spines["left"].set_visible(False)
-            axes.set_yticks([])
 
 
 def _draw_row(figure: Figure, place: SubplotSpec, row: list[Panel], named: set[tuple[str, str]]) -> None:
@@ -159,10 +144,12 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, st
     axes.set(xlim=x, ylim=y)
     if panel.equal:
         axes.set_aspect("equal")
-    if panel.equal or any(isinstance(mark, Field) for mark in panel.marks):
+    if panel.plain or any(isinstance(mark, Field) for mark in panel.marks):
         axes.grid(visible=False)
-    if panel.bare:
-        axes.set_axis_off()
+    if panel.plain:
+        named = {"left": bool(panel.y.label), "bottom": bool(panel.x.label)}
+        axes.spines[["right", "top", *(side for side, name in named.items() if not name)]].set_visible(False)
+        axes.tick_params(**named, **{f"label{side}": name for side, name in named.items()})
     above = _legend(axes, width, OPPOSITE if panel.x.second else 0.0, named)
     if panel.title:
         axes.set_title(panel.title, pad=6 + above)

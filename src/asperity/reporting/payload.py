@@ -126,7 +126,7 @@ SCRIPTS = ("numbers", "ticks", "marks", "panel", "cursor", "legend", "figures")
 def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str]) -> str:
     """What the script draws, by the name of its figure, as text that may stand in a script element.
 
-    `colours` are those of the page, in the order of its CSS variables. Drawings are left out.
+    `colours` are those of the page, in the order of its CSS variables.
     """
     arrays, look = Arrays(), list(colours)
     told = {
@@ -135,7 +135,6 @@ def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str]) -> str:
             "places": {place: np.asarray(found).tolist() for place, found in chart.places.items()},
         }
         for name, chart in charts.items()
-        if not chart.drawing
     }
     found = {"charts": told, "colours": look, "arrays": arrays.told, "data": arrays.packed}
     text = json.dumps(found, ensure_ascii=True, separators=(",", ":"), allow_nan=False)

@@ -120,8 +120,8 @@ def write_comparison_page(paths: list[str], names: list[str], folder: str) -> di
 
 def write_report(path: str) -> dict[str, Any]:
     """Write the report of a run, with the numbers of its figures, beside its result."""
-    from asperity.kinds.report import report
     from asperity.results import read_result
+    from asperity.scenes.report import report
 
     report(read_result(path), Path(path).parent)
     return {}

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from asperity.kinds.comparing import compare, compared_levels, named_runs, shown_levels
 from asperity.reporting.comparison import compared
 from asperity.reporting.comparison_page import compared_sections, summary
+from asperity.scenes.comparing import compare, compared_levels, named_runs, shown_levels
 from asperity.serving.blocks import told_blocks
 
 

@@ -11,7 +11,6 @@ from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
 from asperity.reporting import data
-from asperity.reporting.chart import COLOURS
 from asperity.reporting.page import page_figure
 from asperity.results import read_result
 from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
@@ -104,4 +103,4 @@ def _spacing(coordinate: NDArray[np.float64]) -> float:
 def _figures(tree: DataTree) -> dict[str, str]:
     """Figures of the report that tell most of the force."""
     found = [figure for figure in FIGURES if figure.drawable(tree)]
-    return told_blocks([page_figure(tree, figure, figure.collect(tree), COLOURS) for figure in found])
+    return told_blocks([page_figure(tree, figure, figure.collect(tree)) for figure in found])

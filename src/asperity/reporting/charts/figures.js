@@ -57,7 +57,7 @@ class Figure {
     make("span", { textContent: told.y.label }, names);
     make("span", { className: "beside", textContent: others.join("; ") }, names);
     const host = make("div", { className: "host", tabIndex: 0 }, box);
-    const what = [this.title, told.title, `${field ? field.label : told.y.label} over ${told.x.label}`];
+    const what = [this.title, told.title, [field?.label ?? told.y.label, told.x.label].filter(Boolean).join(" over ")];
     for (const [name, value] of [["role", "application"], ["aria-label", what.filter(Boolean).join(": ")], ["aria-describedby", "chart-keys"]]) {
       host.setAttribute(name, value);
     }

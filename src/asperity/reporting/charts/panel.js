@@ -90,9 +90,9 @@ function plotAxis(panel, way, side, measures, colour, k, second = false) {
   };
   const { turned, names } = laid(...ascending(panel.seen(way)));
   const rows = Math.max(1, ...names.map((name) => name.split("\n").length));
-  const kept = (plot, splits) => splits;
+  const kept = (plot, splits) => splits, { plain } = panel.told;
   return {
-    scale: way, side, font: `${Math.round(12 * k)}px ${FONT}`, stroke: colour("--c0"), gap: 4 * k, rotate: turned ? -90 : 0,
+    scale: way, side, show: !plain || Boolean(panel.told[way].label), font: `${Math.round(12 * k)}px ${FONT}`, stroke: colour("--c0"), gap: 4 * k, rotate: turned ? -90 : 0,
     lineGap: 1.15,
     size: (plot, values) => k * (way === "x"
       ? (turned ? longest(values ?? names) + 12 : 10 + 14 * rows)
@@ -100,7 +100,7 @@ function plotAxis(panel, way, side, measures, colour, k, second = false) {
     splits: (plot, n, low, high) => [...laid(low, high).at, ...laid(low, high).minor].sort((a, b) => a - b),
     values: (plot, splits) => splits.map((at) => found.names[found.at.indexOf(at)] ?? ""),
     filter: kept, space: 1,
-    grid: { show: !second && !field, stroke: colour("--c2"), width: k, filter: kept },
+    grid: { show: !second && !field && !plain, stroke: colour("--c2"), width: k, filter: kept },
     ticks: { stroke: colour("--c1"), width: k, size: 4 * k, filter: kept },
   };
 }
@@ -150,7 +150,7 @@ function plotOf(panel, outer, height, colour, k) {
   };
   return new uPlot({
     width: Math.round((size.width + size.left + size.right) * k), height: Math.round((size.height + size.top + size.bottom) * k),
-    padding: [told.x.second ? 4 * k : size.top * k, told.y.second ? 4 * k : padding, 0, 0],
+    padding: [told.x.second ? 4 * k : size.top * k, told.y.second ? 4 * k : padding, 0, told.plain && !told.y.label ? size.left * k : 0],
     legend: { show: false },
     cursor: { drag: { x: true, y: true, uni: 40, dist: 4, setScale: false }, points: { show: false }, focus: { prox: -1 },
       bind: { dblclick: () => () => showAll(panel) } },

@@ -85,6 +85,7 @@ FORCE_SPECTRUM = Figure(
         f"{data.laws(tree, spectra.FORCE_PSD)[0]}. Ticks stand at the one-third octaves."
         + panels.shaded_words(tree)
     ),
+    worth=lambda tree: "track" not in tree.children,
 )
 
 WIDEST = 20.0
@@ -149,6 +150,7 @@ LINEAR_SPECTRUM = replace(
     columns=(*FORCE_SPECTRUM.columns, REFERENCE_PSD),
     draw=_linear_spectrum,
     caption=_linear_spectrum_caption,
+    worth=lambda tree: "track" in tree.children,
 )
 
 
@@ -304,6 +306,7 @@ FORCE_PIECE = Figure(
     _forces,
     _piece_caption,
     rows=piece,
+    worth=lambda tree: "track" not in tree.children,
 )
 FORCE_PEAK = replace(
     FORCE_PIECE,
@@ -311,6 +314,7 @@ FORCE_PEAK = replace(
     title="Contact force around its largest value",
     caption=_peak_caption,
     rows=around_peak,
+    worth=lambda tree: "track" in tree.children,
 )
 FORCE_ENVELOPE = Figure(
     "force_envelope",
@@ -321,3 +325,5 @@ FORCE_ENVELOPE = Figure(
     _whole_caption,
     further=(CONTACT_FORCE, TIME),
 )
+FORCE = (FORCE_ENVELOPE, FORCE_PIECE, FORCE_PEAK, FORCE_SPECTRUM, LINEAR_SPECTRUM, FORCE_BANDS)
+"""Of a track the force around its largest value, and marks of it in the spectrum."""

@@ -1,1 +1,0 @@
-"""Reports, comparisons and notebooks of results of any scene."""
