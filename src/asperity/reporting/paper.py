@@ -147,9 +147,9 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, st
     if panel.plain or any(isinstance(mark, Field) for mark in panel.marks):
         axes.grid(visible=False)
     if panel.plain:
-        named = {"left": bool(panel.y.label), "bottom": bool(panel.x.label)}
-        axes.spines[["right", "top", *(side for side, name in named.items() if not name)]].set_visible(False)
-        axes.tick_params(**named, **{f"label{side}": name for side, name in named.items()})
+        shown: dict[str, Any] = {"left": bool(panel.y.label), "bottom": bool(panel.x.label)}
+        axes.spines[["right", "top", *(side for side, name in shown.items() if not name)]].set_visible(False)
+        axes.tick_params(**shown, **{f"label{side}": name for side, name in shown.items()})
     above = _legend(axes, width, OPPOSITE if panel.x.second else 0.0, named)
     if panel.title:
         axes.set_title(panel.title, pad=6 + above)

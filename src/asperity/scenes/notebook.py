@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Callable
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Of
-from asperity.schema import provenance
+from asperity.schema import Entry, provenance
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, LONGEST_LOSS, TIME
 from asperity.schema.spectra import BAND, FORCE_LEVEL
 
@@ -100,7 +101,7 @@ def _numbers(tree: DataTree) -> str:
     """Mean and rms of the force, and its losses, by law."""
     heads = ["law", "mean force", "rms about it", "largest", "time without contact", "longest loss"]
     rows = [f"<tr>{''.join(f'<th>{name}</th>' for name in heads)}</tr>"]
-    losses = {
+    losses: dict[Entry, Callable[[float], str]] = {
         CONTACT_LOSS_SHARE: "{:.2%}".format,
         LONGEST_LOSS: lambda s: data.engineering(s, "s") if s > 0 else "–",
     }
@@ -132,9 +133,9 @@ def _overview(tree: DataTree) -> chart.Chart:
     shown: chart.Mark = chart.Line(time / second, main.values / size, width=1.0, **look)
     if len(starts) < len(time):
         shown = chart.Area(time[starts] / second, low, high, opacity=1.0, **look)
-    ends = (end / size for end in panels.main_limits([main], ()))
-    axes = chart.Axis(f"time / {symbol}"), chart.Axis(f"contact force / {unit}", *ends)
-    drawn = [chart.Panel(*axes, (shown,), main.law, height=3.0)]
+    low_end, high_end = panels.main_limits([main], ())
+    up = chart.Axis(f"contact force / {unit}", low_end / size, high_end / size)
+    drawn = [chart.Panel(chart.Axis(f"time / {symbol}"), up, (shown,), main.law, height=3.0)]
     if data.present(tree, FORCE_LEVEL):
         band = data.values(tree, BAND)
         levels = panels.styled(tree, band, Of(FORCE_LEVEL, "{law}")(tree))

@@ -243,7 +243,8 @@ def _supports(support: str, length: float, height: float) -> list[Mark]:
             marks.append(Shape(*foot, width=0.9))
         elif support == "clamped":
             edges = np.array([*sorted((x, x + outward * size)), -height - size, size])
-            marks.append(Boxes(*edges[:, None], colour=GRID, hatch="/", edge=INK))
+            left, right, low, high = edges[:, None]
+            marks.append(Boxes(left, right, low, high, colour=GRID, hatch="/", edge=INK))
     return marks
 
 
@@ -328,7 +329,8 @@ def _track(tree: DataTree, of: Lengths) -> list[Panel]:
 
 def _rail(left: float, right: float, spacing: float) -> list[Mark]:
     """Rail, and pads, sleepers and ballast below it."""
-    bottom, look = -RAIL - PAD - SLEEPER, {"colour": MUTED, "dashes": (3, 2)}
+    bottom = -RAIL - PAD - SLEEPER
+    look: dict[str, Any] = {"colour": MUTED, "dashes": (3, 2)}
     marks: list[Mark] = [_block(left, -RAIL, right - left, RAIL, **look)]
     for x in np.arange(np.ceil(left / spacing), np.floor(right / spacing) + 1) * spacing:
         marks.append(_block(x - 0.08, -RAIL - PAD, 0.16, PAD, fill=MUTED, colour=""))
