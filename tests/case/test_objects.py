@@ -8,11 +8,12 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail
+import asperity
+from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail, laws
 from asperity.case.cases import case_of, parse_case
 from asperity.case.describing import entries
 from asperity.errors import CaseError, InputError
-from asperity.parameters import Choice, Flag, MaterialOrName, Number, Quantity
+from asperity.parameters import Choice, Flag, MaterialOrName, Number, Quantity, key
 from asperity.scenarios.records import read_maps, spectrum_levels
 from asperity.studies.definition import study_of
 from asperity.units import quantity, written
@@ -270,6 +271,24 @@ class TestStudies:
         assert plan.sweep == {"ball.load": ["5 N", "6 N"], "seed": [1, 2]}
         assert plan.members()[0].case == case.with_(**{"ball.load": 5})
         assert parse_case(plan.text) == case
+
+    def test_a_law_from_a_notebook_is_varied_by_a_key_of_its_own(self):
+        """What other processes do not know is rolled in this one: the damper takes energy."""
+
+        def build(materials):
+            damper = materials.parameters["viscosity"]
+            return laws.HertzLaw(materials.hertz_constant, materials.line, damper, materials.name)
+
+        damper = key(Quantity("N s/m", at_least=0.0), "0 N s/m", "damper in the contact")
+        laws.register(laws.LawSpec("damped", "Smooth contact.", build, parameters={"viscosity": damper}))
+        try:
+            surface = {"spectrum": "iso3095", "level": -40}
+            case = BallOnBeam(laws=["damped"], duration=0.05, settling=0.02, surface=surface)
+            table = asperity.study(case, {"damped.viscosity": [0, 30.0]})
+        finally:
+            laws.unregister("damped")
+        none, some = table["force_level_a"].sel(law="damped").values
+        assert none > some + 0.1
 
     def test_surfaces_in_memory_may_be_swept(self):
         other = HeightMap(-MAP.heights, 8e-6)

@@ -51,8 +51,7 @@ def law_keys() -> dict[str, Mapping[str, Key]]:
 def register(law: LawSpec) -> None:
     """Add a law, which may then stand in cases of any kind.
 
-    It is known to this process until `unregister`; the processes of a study on several cores have to
-    register it themselves.
+    It is known to this process until `unregister`, where the members of a study that roll it are computed.
 
     Parameters
     ----------
@@ -86,6 +85,11 @@ def register(law: LawSpec) -> None:
         require(spec.role not in taken, f"role of law {spec.name}", received, allowed)
     _specs.update({spec.name: spec for spec in law.family})
     _families[law.name] = tuple(spec.name for spec in law.family)
+
+
+def comes_with_the_program(name: str) -> bool:
+    """Whether every process knows a law, or it was registered in this one."""
+    return family_of(name) in BUILT_IN
 
 
 def unregister(name: str) -> None:

@@ -16,6 +16,7 @@ from concurrent.futures import (
     Executor,
     Future,
     ProcessPoolExecutor,
+    ThreadPoolExecutor,
     wait,
 )
 from contextlib import closing, contextmanager
@@ -25,6 +26,7 @@ from asperity.arguments import shown, whole
 from asperity.case.scene import Case
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
+from asperity.laws.registry import comes_with_the_program
 from asperity.progress import shown_progress
 from asperity.studies.cluster import Heart
 from asperity.studies.definition import Member, Study, load_study, study_of
@@ -96,6 +98,12 @@ def _ended(futures: Collection[Future[Outcome]], heart: Heart) -> Iterator[Futur
 def _submitted(executor: Executor, member: Member) -> Future[Outcome]:
     assert member.case is not None
     return executor.submit(compute_member, member.key, member.case)
+
+
+def _in_this_process(members: Sequence[Member]) -> Outcomes:
+    """Compute members one by one where their laws are registered."""
+    with ThreadPoolExecutor(1) as here:
+        yield from through(here, members)
 
 
 def locally(members: Sequence[Member], workers: int | None = None) -> Outcomes:
@@ -195,7 +203,8 @@ def study(
         a range, as ``{"speed": "80..300 km/h, 6 steps"}``: six values, both ends among them.
     executor : concurrent.futures.Executor, optional
         Where the members are computed: for instance the executor of a Dask client. By default processes of
-        this machine; a script then needs ``if __name__ == "__main__":`` around the call.
+        this machine; a script then needs ``if __name__ == "__main__":`` around the call. Laws registered from
+        Python are rolled in this process.
     workers : int, optional
         Number of these processes; one per processor by default.
     progress : callable, optional
@@ -246,6 +255,9 @@ def study(
     def compute(waiting: Sequence[Member]) -> Outcomes:
         if executor is not None:
             return through(executor, waiting)
+        laws = {law for member in waiting if member.case is not None for law in member.case.laws}
+        if not all(map(comes_with_the_program, laws)):
+            return _in_this_process(waiting)
         if waiting and waiting[0].case is not None:  # once here, and not in every process
             compile_kernels(told)
         return locally(waiting, workers)
