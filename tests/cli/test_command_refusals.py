@@ -1,0 +1,230 @@
+"""What is wrong is told in a message, with exit code 2, and nothing is computed or written."""
+
+import os
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import CASE, RAIL, SMALL, call, words_of
+
+MAP = 'file = "map.npy"\nheight_unit = "um"\npixel = "8 um"'
+LINE = 'line = "line.npy"\nline_unit = "nm"\nline_spacing = "8 um"'
+BALL = '[ball]\nload = "60 N"\n'
+SAMPLES = '[contact]\nsamples = 2\napproaches = ["{}", "{}"]\n'
+WHEEL = '[wheel]\nline = "wheel.npy"\nline_unit = "um"\n'
+
+
+def on(surface):
+    """The case with another surface."""
+    return CASE.replace('rms = "0.5 um"', surface)
+
+
+CASES = {
+    "keys": CASE + 'hurts = 0.7\n[ball]\nradius = "-1 mm"\n',
+    "window": CASE + BALL + '[contact]\nwindow = "0.2 mm"\n',
+    "strips": 'speed = "5 m/s"\n' + on('rms = "0.5 um"\nshortest = "0.2 mm"') + BALL
+    + '[contact]\nwindow = "0.5 mm"\nspacing = "60 um"\nsample_length = "1 mm"\n',
+    "hardness": CASE + BALL + '[contact]\nhardness = "1 MPa"\n',
+    "step": CASE.replace('"0.01 s"', '"20 us"') + '[numerics]\ntime_step = "30 us"\n',
+    "above": on('rms = "0.1 um"') + SAMPLES.format("-1 um", "-0.9 um"),
+    "one": on('rms = "0.1 um"') + SAMPLES.format("-9 um", "3 um"),
+    "wide": on(MAP) + '[contact]\nwindow = "0.6 mm"\n',
+    "short": SMALL.replace('spectrum = "iso3095"', LINE),
+    "several": on('file = "map.npy"\nheight_unit = "um"')
+    + '[ball]\nload = "20 kN"\n[contact]\nspacing = "8 um"\nwindow = "0.5 mm"\n',
+    "backslash-d": on(r'file = "C:\data\beam.x3p"'),
+    "backslash-U": on(r'file = "C:\Users\beam.x3p"'),
+    "backslash-t": on(r'file = "C:\temp\beam.x3p"'),
+    "single": on(r"file = 'C:\temp\beam.x3p'"),
+    "unquoted": CASE.replace('"0.01 s"', "0.01 s"),
+    "array": on('file = "maps.npz"'),
+    "unit": on('file = "maps.npz"\narray = "polished"'),
+    "line-array": on('line = "maps.npz"'),
+    "line-unit": on('line = "maps.npz"\nline_array = "line"'),
+    "line-spacing": on('line = "maps.npz"\nline_array = "line"\nline_unit = "um"'),
+    "decimal": on('line = "comma.txt"\nline_unit = "um"'),
+    "heading": on('line = "pairs.txt"\nline_unit = "um"'),
+    "holes": on('file = "holes.npy"\nheight_unit = "um"\npixel = "8 um"'),
+    "wheel": RAIL + WHEEL,
+    "distance": f'{RAIL}{WHEEL}line_spacing = "1 mm"\n',
+    "undamped": f'{RAIL}[track]\nname = "uic60"\nrail_loss_factor = 0.0\npad_loss_factor = 0.0\n'
+    "ballast_loss_factor = 0.0\n",
+    "study": 'case = "case.toml"\n[sweep]\nseed = [1, 2]\n',
+}  # fmt: skip
+ENCODED = {
+    "little": CASE.encode("utf-16-le"),
+    "big": CASE.encode("utf-16-be"),
+    "odd": CASE.encode("utf-16")[:-1],
+    "latin": "# caf\u00e9\n".encode("cp1252"),
+    "bytes": bytes(range(256)),
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_folder(tmp_path_factory):
+    """One folder for all: nothing is left in it."""
+    folder, rng = tmp_path_factory.mktemp("refused"), np.random.default_rng(0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+        for name, text in (CASES | {"case": CASE, "small": SMALL, "rail": RAIL}).items():
+            Path(f"{name}.toml").write_text(text)
+        for name, content in ENCODED.items():
+            Path(f"{name}.toml").write_bytes(content)
+        np.save("map.npy", rng.normal(size=(64, 64)))
+        np.save("line.npy", rng.normal(size=900))
+        np.save("wheel.npy", np.zeros((2890, 10)))
+        np.save("holes.npy", np.where(np.eye(80) > 0, np.nan, np.arange(80) * 1e-9))
+        hole = rng.normal(size=(40, 40))
+        hole[3:8, 3:30] = np.nan
+        np.save("hole.npy", hole)
+        np.savez("maps.npz", polished=rng.normal(size=(3, 40, 32)), line=rng.normal(size=200))
+        Path("comma.txt").write_text("0,5\n1,5\n2,75\n")
+        Path("pairs.txt").write_text("".join(f"{x} {x % 3}\n" for x in range(20)))
+        Path("odd.txt").write_text("# unit: kg\n1\n2\n")
+        Path("map.png").write_bytes(b"heights in a picture")
+        Path("taken").write_text("in the way")
+        for name, file in (("others", "run.nc"), ("page", "report.html")):
+            Path(name).mkdir()
+            Path(name, file).write_text("precious")
+        yield folder
+
+
+HINTS = "--height-unit um --pixel '2 um'"
+VARY = "study rail.toml --vary"
+WINDOWS = r"write Windows paths in single quotes, as in file = 'C:\data\beam.x3p', or with /"
+UTF16 = "text in UTF-16 without a byte-order mark"
+REFUSED = [
+    # use
+    ("rn", "No such command 'rn'"),
+    ("run case.toml --outptu x", "No such option"),
+    ("run", "Missing argument"),
+    ("compare", "Missing argument 'RUNS...'"),
+    ("new ball-on-bam", 'Error: kind: received \'ball-on-bam\'; allowed: "ball-on-beam", "wheel-on-rail", '
+     '"bodies", "study", "optimisation". Did you mean "ball-on-beam"?'),
+    ("new ball-on-beam --law aerial", "law: received 'aerial'; allowed: … Did you mean \"areal\"?"),
+    # files and folders
+    ("run|check|study absent.toml", "Error: absent.toml: received no such file; allowed: the path of a"),
+    ("run .", "received a folder"),
+    ("run|check case.toml -o case.toml", "folder of the results: received case.toml … case.toml is a file); "
+     "allowed: a folder that can be written to. Choose another folder with -o."),
+    ("run|check case.toml -o taken/out", "folder of the results: received taken/out … taken is a file)"),
+    ("study study.toml -o taken/out", "folder of the results: received taken/out … taken is a file)"),
+    ("run|check case.toml -o others", "others: received a run.nc that cannot be read … --overwrite"),
+    ("run|check case.toml -o page", "page: received a report.html without its run.nc"),
+    ("report|figures|cite|listen nothing", "nothing: received no such file; allowed: a result file"),
+    ("report {run} -o taken", "folder of the report: received taken"),
+    ("figures {run} -o taken", "folder of the figures: received taken … Choose another folder with -o."),
+    ("compare {run} {run} -o taken", "folder of the comparison: received taken"),
+    # encodings and TOML
+    ("check little.toml", f"little.toml: received {UTF16} … Save the file as UTF-8."),
+    ("check big.toml", f"big.toml: received {UTF16} … Save the file as UTF-8."),
+    ("check odd.toml", "odd.toml: received a byte that is no UTF-16 … Save the file as UTF-8."),
+    ("check latin.toml", "latin.toml: received a byte that is no UTF-8 in line 1 … Save the file as UTF-8."),
+    ("check bytes.toml", "bytes.toml: received bytes that are no text … Save the file as UTF-8."),
+    ("check backslash-d.toml", WINDOWS),
+    ("check backslash-U.toml", WINDOWS),
+    ("check backslash-t.toml", WINDOWS),  # TOML takes \t for a tab
+    ("check single.toml", r"surface.file: received 'C:\temp\beam.x3p'; allowed: the path of an"),
+    ("check unquoted.toml", "double quotes"),
+    # cases
+    ("run|check keys.toml", 'keys.toml: 2 errors … Did you mean "hurst"? … ball.radius'),
+    ("run|check window.toml", "contact.window: received 2"),
+    ("run|check strips.toml", "contact.sample_length: received strips of"),
+    ("run|check hardness.toml", "contact.hardness: received 0.001 GPa"),
+    ("run|check step.toml", "duration: received 0.02 ms; allowed: at least one"),
+    ("run|check above.toml", "contact.approaches: received up to -0.9 um, where the samples carry 0 N"),
+    ("run|check one.toml", "contact.approaches: received up to 3 um, where the samples carry … and none at "
+     "-9 um; allowed: at least two approaches in contact. Add some around"),
+    ("run|check wide.toml", "contact.window: received 600 um; allowed: at most the measured map, 510 um"),
+    ("run|check short.toml", "Error: surface.line: received 0.0072 m; allowed: at least"),
+    ("run|check several.toml", "several.toml: 3 errors … - contact.window: received 504 um; allowed: at "
+     'least … Give it, as in pixel = "1.5 um" in [surface]. … - $ASPERITY_THREADS: received \'many\''),
+    ("run|check array.toml", 'Choose one, as in array = "polished" in [surface].'),
+    ("run|check unit.toml", 'Give it, as in height_unit = "um" in [surface].'),
+    ("run|check line-array.toml", 'Choose one, as in line_array = "polished" in [surface].'),
+    ("run|check line-unit.toml", 'Give it, as in line_unit = "um" in [surface].'),
+    ("run|check line-spacing.toml", 'Give it, as in line_spacing = "1.5 um" in [surface].'),
+    ("run|check decimal.toml", "Write decimal points, or semicolons between columns."),
+    ("run|check heading.toml", 'Write it into the heading, as "x (mm)".'),
+    ("run|check holes.toml", "Set fill = true in [surface]."),
+    ("run|check wheel.toml", 'Give it, as in line_spacing = "1.5 um" in [wheel].'),
+    ("run|check distance.toml", "wheel.line_distance: received no distance for 10 lines"),
+    ("run|check undamped.toml", "track: received no damping at all"),
+    # measured files
+    ("surface absent.x3p", "Error: absent.x3p: received no such file; allowed: "),
+    ("surface maps.npz", "Choose one, as in --array polished."),
+    ("surface maps.npz --array line", "Give it, as in --height-unit um."),
+    ("surface maps.npz --array line --height-unit um", 'Give it, as in --pixel "1.5 um".'),
+    (f"surface maps.npz --array polished --index 3 {HINTS}", "3"),
+    ("surface comma.txt --height-unit um --pixel '1 um'", 'Give --decimal "," if the comma is the decimal '
+     "mark; if it separates columns, give"),
+    ("surface comma.txt --height-unit um --pixel '1 um' --decimal ,", "received 3 points along axis 0"),
+    ("surface pairs.txt --height-unit um", "or give --pixel-unit mm."),
+    ("surface odd.txt --pixel '1 um'", "leave the bracket out and give --height-unit um."),
+    (f"surface map.npy --rotate '30 m' {HINTS}", "--direction: received '30 m'; allowed: an angle, as 30 ("),
+    (f"surface map.npy --direction left {HINTS}", "--direction: received 'left'; allowed: an angle"),
+    (f"surface map.npy --direction nan {HINTS}", "--direction: received 'nan'; allowed: an angle"),
+    (f"surface line.npy --direction 30 {HINTS}",
+     "--direction: received a line; allowed: a height map. Leave it out."),
+    (f"surface map.npy -o picture.doc {HINTS}", "allowed: a name that ends in .png, .pdf, .svg"),
+    ("surface map.png -o map.png", "another name"),
+    # studies
+    (f"{VARY} speed", "--vary: received 'speed'; allowed: a key of the case, =, and its values"),
+    (f"{VARY} seed=1 --vary seed=1", "--vary: received seed more than once"),
+    (f"{VARY} 'seed=1, 2.5'", "sweep.seed[2]: received 2.5"),
+    (f"{VARY} speed=20", "sweep.speed[1]: received 20; allowed: a speed"),
+    (f"{VARY} 'speed=20 m/s,'", "sweep.speed[2]: received ''"),
+    (f"{VARY} 'speed=-1 m/s'", "sweep.speed[1]: received '-1 m/s'"),
+    (f"{VARY} wheel.load=inf", "sweep.wheel.load[1]: received 'inf'"),
+    (f"{VARY} 'wheel.load=5 kN,5000 N'", "wheel.load: received '5000 N' more than once"),
+    (f"{VARY} seed=1 --workers 2 --scheduler x", "--workers: received a number beside --scheduler"),
+    (f"{VARY} seed=1 --show 'transit exposure'", "--show: received 'transit_exposure'; allowed: names of "
+     "what a study keeps: "),
+    (f"{VARY} seed=1 -o rail.toml", "rail.toml is a file)"),
+    ("study rail.toml", "case: received nothing"),
+    # runs
+    ("listen {run} --what drums", "received 'drums'; allowed: acceleration"),
+    ("figures {run} scene force_band -o new", 'Nearest: "force_bands" (Contact force levels in one-third '
+     "octaves)"),
+    ("compare {run}", "runs to compare: received 1; allowed: two to 8 runs. Give a run.nc or its folder for"),
+    ("compare {run} absent", "absent: received no such file; allowed: a result file that a run has written"),
+    ("compare {run} {run} --law areal", "law: received 'areal'; allowed: a law of the runs: hertz, linear"),
+]  # fmt: skip
+
+
+def contents(folder):
+    return {path: path.stat().st_mtime_ns for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize(("line", "message"), REFUSED)
+def test_what_is_wrong_is_told_before_anything_is_computed(line, message, ran, own_folder, monkeypatch):
+    if "several" in line:
+        monkeypatch.setenv("ASPERITY_THREADS", "many")
+    before = contents(own_folder)
+    commands, *words = shlex.split(line.replace("{run}", ran.path))
+    for command in commands.split("|"):
+        told = words_of(call(command, *words, code=2).stderr)
+        place = 0
+        for part in message.split(" … "):
+            assert part in told[place:], told
+            place = told.index(part, place) + len(part)
+        assert told.count("absent") <= 1
+        assert "Traceback" not in told
+        assert contents(own_folder) == before
+
+
+@pytest.mark.parametrize("command", ["run case.toml", "check case.toml", "study study.toml"])
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no folder in which nobody makes files")
+def test_a_folder_that_not_even_the_superuser_writes_to_is_refused(command):
+    assert "folder of the results" in call(*command.split(), "-o", "/proc/out", code=2).stderr
+    assert not os.path.exists("cache")
+
+
+def test_missing_heights_have_no_spectra(own_folder):
+    """All else is said of them: the file of spectra is the last."""
+    told = call("surface", "hole.npy", *shlex.split(HINTS), "--psd", "-o", "hole.png", code=2).stderr
+    words = "--psd: received more than 5 % of points without a height; allowed: nearly complete heights"
+    assert words in told

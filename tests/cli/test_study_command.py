@@ -1,0 +1,217 @@
+"""The command line of studies: of a file, and of a case with --vary."""
+
+import csv
+import errno
+import json
+import re
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+from unittest.mock import Mock
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from asperity.running import run
+from asperity.spectra import a_weighting
+from command_line import SMALL, call, words_of
+
+FILTERED = SMALL.replace('["hertz", "linear"]', '["hertz", "linear", "hertz-filtered", "linear-filtered"]')
+FILTERED += 'level = "-20 dB"\n[contact]\nspacing = "10 um"\nwindow = "0.4 mm"\n'
+STUDY = """
+case = "filtered.toml"
+[sweep]
+seed = [1, 2, 3, 4, 5, 6, 7, 8]
+"ball.load" = ["5 N", "1 MN"]
+"""
+"""The heavy ball is refused: its contact is wider than the beam is high."""
+AGAIN = ("study", "study.toml", "-o", "out", "--workers", "1")
+PEAK = "peak_force [N]"
+
+
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory):
+    """Folder of a study of sixteen members of which eight fail, and what was said."""
+    folder = tmp_path_factory.mktemp("study")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+        Path("filtered.toml").write_text(FILTERED)
+        Path("study.toml").write_text(STUDY)
+        outcome = call(*AGAIN)
+        with xr.open_dataset("out/study.nc", engine="h5netcdf") as found:
+            table = found.load()
+    return SimpleNamespace(folder=folder, out=folder / "out", said=outcome, table=table)
+
+
+@pytest.fixture
+def out(computed, monkeypatch):
+    """The study and its results, in the working folder."""
+    for name in ("filtered.toml", "study.toml"):
+        shutil.copy(computed.folder / name, name)
+    shutil.copytree(computed.out, "out")
+    monkeypatch.setenv("ASPERITY_CACHE", str(computed.folder / "cache"))
+    return Path("out")
+
+
+def columns(path):
+    """Columns of a CSV file by their titles."""
+    with open(path, encoding="utf-8", newline="") as file:
+        heading, *rows = csv.reader(file)
+    return {name: [row[k] for row in rows] for k, name in enumerate(heading)}
+
+
+def numbers(column):
+    return np.array([float(value or "nan") for value in column])
+
+
+def test_what_was_computed_is_printed(computed):
+    """What members met, each once."""
+    told, warned = words_of(computed.said.stdout), computed.said.stderr
+    assert "Study of 8 seed × 2 ball.load" in warned
+    for text in (
+        "8 values of seed",
+        "ball.load [N]",
+        "contact loss",
+        "hertz-filtered",
+        " ± ",
+        "–",
+        "dB(A) over",
+    ):
+        assert text in told
+    assert "100 Hz" not in told
+    assert "prediction interval; it holds the value of one more seed with a" in told
+    assert str((computed.out / "study.nc").resolve()) in told
+    (rest,) = [line for line in warned.splitlines() if "after rest" in line]
+    assert rest.startswith("Warning (8 of 16 members): the record starts 0 ms after rest")
+    (failed,) = [line for line in warned.splitlines() if line.startswith("Failed")]
+    assert failed.startswith("Failed (8 of 16 members): ")
+    assert "  - seed = 6, ball.load = 1 MN\n  - and 2 more\n" in warned
+
+
+def test_the_table_is_written_as_numbers_and_text(computed):
+    """The largest forces, too, and total levels: sums over bands, with the weighting of IEC 61672."""
+    found, table = columns(computed.out / "study.csv"), computed.table
+    assert list(found)[:3] == ["seed [1]", "ball.load [N]", "law"]
+    assert table["contact_loss_share"].dims == ("seed", "ball.load", "law")
+    assert table["completed"].values.tolist() == [[1, 0]] * 8
+    for name, title in (("contact_loss_share", "contact_loss_share [1]"), ("peak_force", PEAK)):
+        np.testing.assert_array_equal(numbers(found[title]), table[name].values.ravel())
+
+    def of_light(*titles):
+        """Columns of the load that is carried, by seed and law."""
+        return np.stack([numbers(found[title]).reshape(table["peak_force"].shape)[:, 0] for title in titles])
+
+    titles = [name for name in found if name.startswith("force_level ")]
+    weights = a_weighting(np.array([float(name.split()[1]) for name in titles]))[:, None, None]
+    total = 10 * np.log10(np.nansum(10 ** ((of_light(*titles) + weights) / 10), axis=0))
+    np.testing.assert_allclose(of_light("force_level_a [dB(A) re 1 N]")[0], total, atol=1e-4)
+    (change,) = of_light("force_level_a_difference_to_linear_filtered [dB]")
+    practice = table["law"].values.tolist().index("linear-filtered")
+    np.testing.assert_allclose(change, total - total[:, [practice]], atol=2e-4)
+    assert (table["peak_force"] > table["mean_force"])[:, 0].all()
+
+
+def test_means_deviations_and_band_over_the_seeds_are_written(computed):
+    """By load and law, as numpy has them; the row of the load that failed is empty."""
+    mean, peak = columns(computed.out / "study_mean.csv"), computed.table["peak_force"].values
+    done = [load != "1000000.0" for load in mean["ball.load [N]"]]
+    assert done == [True] * 4 + [False] * 4
+    np.testing.assert_allclose(numbers(mean[PEAK]), peak.mean(0).ravel())
+    np.testing.assert_allclose(numbers(mean[f"± {PEAK}"]), peak.std(0, ddof=1).ravel())
+    band = columns(computed.out / "ensemble.csv")
+    low, high = (f"force_level_{end} [dB re 1 N]" for end in ("low", "high"))
+    assert list(band)[:6] == ["ball.load [N]", "law", "band [Hz]", "force_level [dB re 1 N]", low, high]
+    levels = computed.table["force_level"]
+    assert len(band["law"]) == levels[0].size
+    assert float(band["force_level [dB re 1 N]"][0]) == pytest.approx(float(levels[:, 0, 0, 0].mean()))
+    assert float(band[low][0]) < float(levels[:, 0, 0, 0].mean()) < float(band[high][0])
+    page = (computed.out / "study.html").read_text(encoding="utf-8")
+    assert '<figure id="ensemble" class="chart">' in page
+    assert 'href="ensemble.csv"' in page
+
+
+def test_a_member_is_what_a_run_of_its_case_is(out, computed):
+    one = f'seed = 3\n{FILTERED}[ball]\nload = "5 N"\n'
+    Path("one.toml").write_text(one)
+    one = run("one.toml")["rolling"]
+    member = computed.table.sel({"seed": 3, "ball.load": 5.0})
+    np.testing.assert_array_equal(member["contact_loss_share"], one["contact_loss_share"][:, 0])
+    np.testing.assert_array_equal(member["rms_force"], one["contact_force"][:, 0].std("time"))
+
+
+def test_a_case_is_varied_in_the_units_that_were_typed_with_a_figure_for_each_key():
+    vary = ["--vary", "speed = 3.6 km/h, 7.2 km/h", "--vary", "ball.load=5 N,0.006 kN", "--vary", "seed=1"]
+    said = call("study", "small.toml", *vary, "--workers", "1").stdout
+    out = Path("runs/small")
+    found = columns(out / "study.csv")
+    assert sorted(set(found["speed [km/h]"])) == ["3.6", "7.2"]
+    assert sorted(set(found["ball.load [N]"])) == ["5.0", "6.0"]  # the unit of the first value
+    assert "speed [km/h]" in said
+    with xr.open_dataset(out / "study.nc", engine="h5netcdf") as table:
+        assert table["speed"].values.tolist() == pytest.approx([1.0, 2.0])
+        assert table["speed"].attrs["units"] == "m/s"
+        assert table["completed"].values.all()
+        assert np.ptp(table["rms_force"].values[..., 0]) > 0.0
+    page = (out / "study.html").read_text(encoding="utf-8")
+    figures = re.findall('<figure id="(.*?)" class="chart">', page)
+    assert figures == ["key-speed", "key-ball.load"]  # of one seed there is nothing to draw
+    assert '<td class="number">3.6</td>' in page  # without a script its numbers are read
+    assert not (out / "study_mean.csv").exists()
+
+
+def test_names_in_a_table_are_no_formulas_and_no_markup():
+    for name in ("=cmd|x.npy", "[red]a [um].npy"):
+        with open(name, "wb") as file:
+            np.save(file, 0.02 * np.random.default_rng(0).normal(size=(40, 40)))
+    Path("study.toml").write_text(
+        '[case]\nkind = "ball-on-beam"\nlaws = ["linear"]\nstart = "0.45 m"\nduration = "5 ms"\n'
+        'settling = "0 s"\n[case.surface]\nheight_unit = "um"\npixel = "20 um"\n'
+        '[case.contact]\nspacing = "20 um"\nsamples = 1\n'
+        '[sweep]\n"surface.file" = ["=cmd|x.npy", "[red]a [um].npy"]\n'
+    )
+    assert "[red]a [um].npy" in call(*AGAIN).stdout
+    found = columns("out/study.csv")
+    assert next(iter(found.values())) == ["'=cmd|x.npy", "[red]a [um].npy"]
+    assert found["completed [1]"] == ["1", "1"]  # numbers stay as they are
+
+
+def test_columns_and_figures_are_those_that_are_asked_for(out):
+    """With the words of --show, bands too."""
+    said = call(*AGAIN, "--show", "rms_force, force_level", "--json").stdout
+    titles = {title.split()[0] for title in json.loads(said)["columns"]}
+    assert titles == {"seed", "ball.load", "law", "rms_force", "force_level"}
+    said = call(*AGAIN, "--show", "mean_force").stdout
+    assert "mean force [N]" in said
+    assert "peak" not in said
+
+
+def test_an_earlier_study_stays_whole_until_all_is_there_that_replaces_it(out, monkeypatch):
+    before = {file.name: file.read_bytes() for file in out.iterdir()}
+    full = Mock(side_effect=OSError(errno.ENOSPC, "No space left"))
+    monkeypatch.setattr("asperity.cli.studying._page", full)
+    assert "out could not be written: the disk is full" in call(*AGAIN, code=3).stderr
+    assert {file.name: file.read_bytes() for file in out.iterdir()} == before
+
+
+def test_another_study_is_never_overwritten_unasked(out):
+    before = (out / "study.nc").stat().st_mtime_ns
+    call(*AGAIN)
+    assert (out / "study.nc").stat().st_mtime_ns > before
+    Path("study.toml").write_text(STUDY.replace("[1, 2, 3, 4, 5, 6, 7, 8]", "[1, 2]"))
+    assert "out: received the study.nc of another study" in call(*AGAIN, code=2).stderr
+    Path("out/study.nc").write_text("precious")
+    assert "out: received the study.nc of another study" in call(*AGAIN, code=2).stderr
+    assert Path("out/study.nc").read_text() == "precious"
+    call(*AGAIN, "--overwrite")
+    with xr.open_dataset("out/study.nc", engine="h5netcdf") as found:
+        assert found.sizes["seed"] == 2
+
+
+def test_a_study_of_which_all_members_fail_has_failed():
+    Path("study.toml").write_text('case = "case.toml"\n[sweep]\n"beam.height" = ["1 um", "2 um"]\n')
+    told = call(*AGAIN, code=3).stderr
+    assert told.splitlines()[-1].startswith("Error: all 2 members failed, the first one so: ")
+    assert told.strip().endswith("Try: one of them with 'asperity run'.")
+    assert "Traceback" not in told

@@ -1,0 +1,161 @@
+"""``asperity surface``: what is in a measured file, in words, numbers and pictures."""
+
+import csv
+import importlib
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import call, words_of
+
+HINTS = ("--height-unit", "um", "--pixel", "2 um")
+
+
+@pytest.fixture(autouse=True)
+def drawn(monkeypatch):
+    """Titles and names of pictures, which are not drawn here."""
+    found = []
+    module = importlib.import_module("asperity.cli.surface")
+    monkeypatch.setattr(module, "write_chart", lambda chart, title, path: found.append((title, path)))
+    return found
+
+
+def noise(*shape):
+    return np.random.default_rng(0).normal(size=shape)
+
+
+def surface(heights, *words, name="map.npy"):
+    """What is said of heights, in micrometres and 2 µm apart."""
+    np.save(name, heights)
+    return call("surface", name, *HINTS, *words)
+
+
+def column(path, title):
+    with open(path, encoding="utf-8", newline="") as file:
+        found = [row[title] for row in csv.DictReader(file)]
+    return np.array([float(value) for value in found if value])
+
+
+@pytest.mark.parametrize(
+    ("words", "picture", "title", "message"),
+    [
+        ("a", "maps-a-surface.png", "maps.npz, a, the first of 3 maps", "maps.npz, a: 3 maps, each 40 × 32 "
+         "points, 0.08 × 0.064 mm, 2 × 2 µm apart, 0.00% without a height"),
+        ("a --transpose -o a.svg", "a.svg", "maps.npz, a, the first of 3 maps", "3 maps, each 32 × 40"),
+        ("a --index 2", "maps-a-2-surface.png", "maps.npz, a, map 2", "a map of 40 × 32 points"),
+        ("a --index 0 --lines", "maps-a-0-surface.png", "maps.npz, a, map 0",
+         "32 parallel lines, each of 40 points, 0.08 mm"),
+        ("b", "maps-b-surface.png", "maps.npz, b", "a plane has no texture to be tested"),
+    ],
+)  # fmt: skip
+def test_an_array_has_words_and_a_picture_of_its_own(words, picture, title, message, drawn):
+    np.savez("maps.npz", a=noise(3, 40, 32), b=np.ones((30, 30)).cumsum(0))
+    said = words_of(call("surface", "maps.npz", *HINTS, "--array", *words.split()).stdout)
+    assert message in said
+    assert re.search(r"wavelengths 4 µm to 0.0\d+ mm.*?: [SR]q ", said)
+    assert drawn == [(title, Path(picture))]
+
+
+def test_missing_points_are_said_and_filled_by_an_option():
+    heights = noise(300)
+    heights[5] = np.nan
+    told = surface(heights)
+    assert "a line of 300 points, 0.6 mm, 2 µm apart, 0.33% without a height" in told.stdout
+    assert "Rq" in told.stdout
+    assert "--fill interpolates them" in told.stderr
+    assert "0.00% without a height" in surface(heights, "--fill").stdout
+
+
+def test_coordinates_may_be_given_their_unit():
+    Path("plain.txt").write_text("".join(f"{x} {x % 3}\n" for x in range(20)))
+    read = call("surface", "plain.txt", "--height-unit", "um", "--pixel-unit", "mm")
+    assert "a line of 20 points, 20 mm" in read.stdout
+
+
+def test_lines_measured_side_by_side_are_no_map():
+    lines = noise(3, 900) * [[2.0], [4.0], [6.0]]
+    lines[1, 850:] = np.nan
+    shown = surface(lines).stdout
+    assert "map.npy: 3 parallel lines, each of 900 points, 1.8 mm, 2 µm apart, 1.85% without" in shown
+    assert "--map takes it for a map" in shown
+    assert "wavelengths 4 µm to 1.8 mm" in shown
+    measured = re.search(r"Rq +([\d.]+) µm  rms height \(([\d.]+) µm to ([\d.]+) µm\)", shown)
+    assert [float(number) for number in measured.groups()] == pytest.approx([4.0, 2.0, 6.0], rel=0.05)
+    assert "Sal" not in shown
+    assert "--map" not in surface(lines, "--lines").stdout
+    refused = call("surface", "map.npy", *HINTS, "--map", code=2).stderr  # three rows have no slopes
+    assert "3 points along axis 0" in refused
+
+
+def test_spectra_of_a_surface_are_written():
+    """The PSD of a wave of amplitude A has its peak at 1/λ and the integral A²/2."""
+    x = 2.0 * np.arange(200)
+    wave = np.tile(2.0 * np.sin(2 * np.pi * x / 50.0)[:, None], (1, 120))
+    assert str(Path("map-psd.csv").resolve()) in surface(wave, "--psd", "--map").stdout
+    wavenumber = column("map-psd.csv", "wavenumber along x [1/m]")
+    density = column("map-psd.csv", "PSD along x [m³]")
+    assert wavenumber[density.argmax()] == pytest.approx(1 / 50e-6)
+    assert density.sum() * wavenumber[0] == pytest.approx(0.5 * (2e-6) ** 2, rel=1e-3)
+    across = column("map-psd.csv", "PSD along y [m³]")
+    assert across[2:].max() < 1e-12 * density.max()  # each line across is level, at a height of its own
+
+
+@pytest.mark.parametrize(("angle", "std"), [("90", 90), ("30 deg", 150), ("0.5235987756 rad", 150)])
+def test_a_map_is_turned(angle, std):
+    """What varies along x varies at 180° less the angle of the direction in which it is rolled over."""
+    ridges = np.tile(np.repeat(noise(60), 3)[:, None], (1, 140))
+    said = surface(ridges, "--map", "--direction", angle).stdout
+    assert abs(int(re.search(r"Std +(\d+)°", said)[1]) - std) <= 2
+    if angle == "90":
+        assert "a map of 140 × 180 points" in said
+
+
+def test_it_says_whether_a_map_is_the_same_everywhere_and_which_way_it_runs():
+    rng = np.random.default_rng(3)
+    ridges = np.repeat(rng.normal(size=64), 2)[:, None] + 0.5 * rng.normal(size=(128, 128))
+    even = surface(ridges).stdout
+    direction = int(re.search(r"Std +(\d+)°  direction from x", even)[1])
+    assert min(direction, 180 - direction) <= 2
+    assert "the same everywhere, as far as chance tells" in even
+    trend = surface(ridges * np.linspace(0.3, 2.0, 128)).stdout
+    assert "(p = 0.025): not the same everywhere" in trend
+    ridges[3:20, 4:90] = np.nan
+    hole = surface(ridges).stdout
+    assert re.search(r"Std +–", hole)
+    words = "Homogeneity, Std and spectra are those of a map with at least 95% of its points: --fill"
+    assert words in hole
+
+
+def test_a_few_spikes_take_no_spectrum_away():
+    """Three spikes of 16,384 points: direction, homogeneity and spectra are those of what lies between."""
+    wave = np.sin(2 * np.pi * np.arange(128) / 16.0)[:, None] + 0.5 * noise(128, 128)
+    wave[[30, 60, 90], [70, 20, 110]] = 300.0
+    said = surface(1e-3 * wave, "--spikes", "--psd").stdout
+    assert re.search(r"Std +(0|1|179|180)°", said)
+    assert "are those of the map with its missing points, 0.00018 of all, interpolated" in said
+    wavenumber = column("map-psd.csv", "wavenumber along x [1/m]")
+    density = column("map-psd.csv", "PSD along x [m³]")
+    assert wavenumber[density.argmax()] == pytest.approx(1 / 32e-6)
+    assert density.sum() * wavenumber[0] == pytest.approx(0.5e-18 + 0.25e-18, rel=0.05)
+
+
+def test_lines_of_a_rail_are_held_against_the_limit_of_its_roughness():
+    """A corrugation of 10 µm has 10 lg 50 = 17.0 dB in its band, where the limit is −5.6."""
+    x = np.arange(4000) * 1e-3
+    lines = np.array([10.0 * np.sin(2 * np.pi * x / 25e-3 + phase) for phase in (0.0, 1.0, 2.0)])
+    lines += 0.02 * noise(*lines.shape)
+    lines[1, 3000:] = np.nan  # a short line stays out of it
+    np.save("rail.npy", lines)
+    rail = ["surface", "rail.npy", "--height-unit", "um", "--pixel", "1 mm"]
+    said = call(*rail).stdout
+    measured = dict(re.findall(r"^ +([\d.]+) mm +-?[\d.]+ +(-?[\d.]+ +\w+)", said, re.MULTILINE))
+    assert len(measured) == 22
+    assert measured["25"].split() == ["17.0", "FAIL"]
+    assert [band for band, each in measured.items() if each.endswith("FAIL")] == ["25"]
+    document = json.loads(call(*rail, "--json").stdout)["third_octaves"]
+    assert document["limit"][0] == 17.1
+    assert document["wavelength"][0] == pytest.approx(0.4, rel=0.01)
+    assert "ISO 3095" not in surface(lines[0]).stdout  # it is too short for its bands
