@@ -7,7 +7,7 @@ import pytest
 
 from asperity.case.cases import parse_case
 from asperity.errors import InputError, ShortRecordWarning
-from asperity.running import prepare_case, run
+from asperity.running import prepare_case
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.linear_force import force_transfer
 from asperity.scenarios.textures import textures_of
@@ -33,119 +33,90 @@ sample_length = "60 mm"
 highest_frequency = "4 kHz"
 poles = 60
 """
-LINE = 'line = "line.txt"\ncontinuation = "{}"'
 LINES = 'line = "lines.npz"\nline_unit = "um"\nline_spacing = "1 mm"\n'
+APART = 'line_distance = "5 mm"\n'
 
 
 def case(folder, surface="smooth = true", wheel="", duration="40 ms"):
     return parse_case(CASE.format(surface=surface, wheel=wheel, duration=duration), folder / "case.toml")
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
-    return tmp_path
+def laid(folder, lines, surface="smooth = true", wheel="", duration="40 ms"):
+    """Textures of a case with measured lines, µm."""
+    np.savez(folder / "lines.npz", lines=np.atleast_2d(lines))
+    return textures_of(case(folder, surface, wheel, duration))
 
 
-def write_line(folder, length):
-    z = turn(round(length / 1e-3))
-    rows = "\n".join(f"{a}\t{b:.6f}" for a, b in enumerate(z))
-    (folder / "line.txt").write_text("x [mm]\tz [um]\n" + rows + "\n")
+def all_of(path):
+    return path.rows(0, path.shape[0])
 
 
 def turn(points, seed=0):
     """Smooth noise in µm that closes on itself."""
-    rng = np.random.default_rng(seed)
-    kernel = np.hanning(25)
-    noise = rng.standard_normal(points)
-    return np.convolve(np.concatenate([noise, noise[:24]]), kernel, "valid")
+    noise = np.random.default_rng(seed).standard_normal(points)
+    return np.convolve(np.concatenate([noise, noise[:24]]), np.hanning(25), "valid")
 
 
 class TestRail:
-    def test_line_is_the_same_all_across(self, folder):
-        write_line(folder, 6.0)
-        found = textures_of(case(folder, LINE.format("refuse")))
-        np.testing.assert_allclose(np.ptp(found.path.rows(0, found.path.shape[0]), axis=1), 0.0, atol=1e-15)
-        assert np.std(found.line) == pytest.approx(1e-6 * np.std(turn(6000)), rel=0.1)
-        assert "EN 15610" in found.origin
-        assert "spikes kept" in found.origin
-
-    def test_record_shorter_than_the_run_is_refused_by_default(self, folder):
-        write_line(folder, 2.0)
+    def test_a_line_is_the_same_all_across_and_goes_on_as_the_case_says(self, tmp_path):
+        rows = "\n".join(f"{a}\t{b:.6f}" for a, b in enumerate(turn(2000)))
+        (tmp_path / "line.txt").write_text(f"x [mm]\tz [um]\n{rows}\n")
+        for how, again in (("mirror", slice(1998, 998, -1)), ("repeat", slice(1000))):
+            found = textures_of(case(tmp_path, f'line = "line.txt"\ncontinuation = "{how}"'))
+            np.testing.assert_allclose(np.ptp(all_of(found.path), axis=1), 0.0, atol=1e-15)
+            assert np.std(found.line) == pytest.approx(1e-6 * np.std(turn(2000)), rel=0.1)
+            np.testing.assert_allclose(found.line[2000:3000], found.line[again], atol=1e-12)
+            for said in ("EN 15610", "spikes kept", f"{how}ed"):
+                assert said in found.origin
         with pytest.raises(InputError, match="rail's record: received 2 m"):
-            textures_of(case(folder, LINE.format("refuse")))
+            textures_of(case(tmp_path, 'line = "line.txt"\ncontinuation = "refuse"'))
 
-    @pytest.mark.parametrize("how", ["mirror", "repeat"])
-    def test_record_goes_on_as_the_case_says(self, folder, how):
-        write_line(folder, 2.0)
-        found = textures_of(case(folder, LINE.format(how)))
-        first = found.line[:2000]
-        again = found.line[2000:3000] if how == "repeat" else found.line[1998:998:-1]
-        expected = first[:1000] if how == "repeat" else found.line[2000:3000]
-        np.testing.assert_allclose(again, expected, atol=1e-12)
-        assert f"{how}ed" in found.origin
-
-    def test_several_lines_need_their_distance(self, folder):
-        np.savez(folder / "lines.npz", rail=np.stack([turn(6000, s) for s in range(3)]))
+    def test_several_lines_lie_beside_each_other(self, tmp_path):
+        lines = [turn(6000, seed) for seed in range(3)]
+        found = laid(tmp_path, lines, LINES + APART)
+        assert np.ptp(all_of(found.path), axis=1).max() > 0.0
         with pytest.raises(InputError, match=r"surface\.line_distance: received no distance for 3 lines"):
-            textures_of(case(folder, LINES))
-        found = textures_of(case(folder, LINES + 'line_distance = "5 mm"'))
-        assert np.ptp(found.path.rows(0, found.path.shape[0]), axis=1).max() > 0.0
+            laid(tmp_path, lines, LINES)
 
-    def test_wrong_unit_asks(self, folder):
-        np.savez(folder / "lines.npz", rail=turn(6000)[None])
-        surface = LINES.replace('"um"', '"m"')
+    def test_what_is_doubtful_is_refused_until_it_is_asked_for(self, tmp_path):
+        metres = LINES.replace('"um"', '"m"')
         with pytest.raises(InputError, match="Is the unit right"):
-            textures_of(case(folder, surface))
-        assert textures_of(case(folder, surface + "accept_levels = true")).line.std() > 0.1
-
-    def test_gaps_are_refused_unless_filled(self, folder):
-        line = turn(6000)
-        line[3000] = np.nan
-        np.savez(folder / "lines.npz", rail=line[None])
+            laid(tmp_path, turn(6000), metres)
+        assert laid(tmp_path, turn(6000), metres + "accept_levels = true").line.std() > 0.1
+        gap = np.where(np.arange(6000) == 3000, np.nan, turn(6000))
         with pytest.raises(InputError, match="missing points inside"):
-            textures_of(case(folder, LINES))
-        found = textures_of(case(folder, LINES + 'processing = ["fill"]'))
-        assert "1 points filled" in found.origin
+            laid(tmp_path, gap, LINES)
+        assert "1 points filled" in laid(tmp_path, gap, LINES + 'processing = ["fill"]').origin
 
 
 class TestWheel:
-    def test_turn_of_the_record_is_the_turn_of_the_wheel(self, folder):
-        np.savez(folder / "lines.npz", wheel=turn(2870)[None])
-        found = textures_of(case(folder, wheel=LINES, duration="80 ms"))
-        wheel = found.parts["wheel"]
+    def test_turn_of_the_record_is_the_turn_of_the_wheel(self, tmp_path):
+        wheel = laid(tmp_path, turn(2870), wheel=LINES, duration="80 ms").parts["wheel"]
         np.testing.assert_array_equal(wheel[2870:], wheel[:-2870])
-        assert found.line is not None
-
-    def test_line_shorter_than_a_turn_is_refused(self, folder):
-        np.savez(folder / "lines.npz", wheel=turn(2500)[None])
         with pytest.raises(InputError, match=r"wheel\.line: received 2\.5 m"):
-            textures_of(case(folder, wheel=LINES))
+            laid(tmp_path, turn(2500), wheel=LINES)
 
-    def test_short_lines_are_left_out(self, folder):
-        lines = np.stack([turn(2890, s) for s in range(3)])
+    def test_short_lines_are_left_out(self, tmp_path):
+        lines = np.stack([turn(2890, seed) for seed in range(3)])
         lines[1, 2000:] = np.nan
-        np.savez(folder / "lines.npz", wheel=lines)
         with pytest.warns(ShortRecordWarning, match="1 of 3 lines of the wheel"):
-            textures_of(case(folder, wheel=LINES + 'line_distance = "5 mm"'))
+            laid(tmp_path, lines, wheel=LINES + APART)
 
-    def test_lines_measured_to_and_fro_are_brought_into_register(self, folder):
+    def test_lines_measured_to_and_fro_are_brought_into_register(self, tmp_path):
         same = turn(2890)
-        np.savez(folder / "lines.npz", wheel=np.stack([same, same[::-1], np.roll(same, 7)]))
-        found = textures_of(case(folder, wheel=LINES + 'line_distance = "5 mm"'))
+        found = laid(tmp_path, [same, same[::-1], np.roll(same, 7)], wheel=LINES + APART)
         assert "2 brought into register (1 turned round)" in found.origin
-        inside = found.path.rows(0, found.path.shape[0])[:, 5:-5]
-        np.testing.assert_allclose(np.ptp(inside, axis=1), 0.0, atol=1e-7)
+        np.testing.assert_allclose(np.ptp(all_of(found.path)[:, 5:-5], axis=1), 0.0, atol=1e-7)
+
+
+WHEELS = LINES.replace("lines", "wheels") + APART + 'line_array = "flat"\nprocessing = ["curvature"]\n'
 
 
 @either
-def test_flat_of_a_measured_wheel_is_found(folder, measured):
-    np.savez(folder / "wheels.npz", flat=wheel_lines(0.6, measured=measured), other=np.zeros((10, 2880)))
-    wheel = (
-        'radius = "0.459 m"\nline = "wheels.npz"\nline_array = "flat"\nline_unit = "um"\n'
-        'line_spacing = "1 mm"\nline_distance = "5 mm"\nprocessing = ["curvature"]'
-    )
-    found = run(case(folder, wheel=wheel, duration="0.11 s"))
+def test_flat_of_a_measured_wheel_is_found(tmp_path, runs, measured):
+    flat = wheel_lines(0.6, measured=measured)
+    np.savez(tmp_path / "wheels.npz", flat=flat, other=np.zeros((10, 2880)))
+    found = runs(case(tmp_path, wheel='radius = "0.459 m"\n' + WHEELS, duration="0.11 s"))
     force = found["rolling/contact_force"].sel(law="areal", contact=1)
     assert float(force.max()) > 2 * 65e3
     struck = found["rolling/position"].values[force.values > 0.9 * float(force.max())]
@@ -159,28 +130,23 @@ def test_flat_of_a_measured_wheel_is_found(folder, measured):
 @pytest.mark.parametrize(
     ("measured", "speed"), [(False, 56), *(pytest.param(True, v, marks=where_measured) for v in (20, 80))]
 )
-def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, measured, speed):
-    np.savez(folder / "wheels.npz", flat=wheel_lines(0.4, measured=measured))
+@pytest.mark.usefixtures("own_cache")
+def test_impact_of_a_measured_flat_is_that_of_the_receptances(tmp_path, measured, speed):
+    np.savez(tmp_path / "wheels.npz", flat=wheel_lines(0.4, measured=measured))
     text = CASE.replace("56 m/s", f"{speed} m/s").replace('"areal", "linear"', '"linear"')
-    text = text.replace("1 mm", "0.5 mm").replace("samples = 2", "samples = 1").format(
-        surface="smooth = true", duration=f"{3.2 / speed:g} s",
-        wheel='line = "wheels.npz"\nline_array = "flat"\nline_unit = "um"\nline_spacing = "1 mm"\n'
-        'line_distance = "5 mm"\nprocessing = ["curvature"]',
-    )  # fmt: skip
-    prepared = prepare_case(parse_case(text, folder / "case.toml"))
-    computed = compute(prepared, lambda done, total, message: None)
-    chain = computed
-    wheel = first_contact(chain.runs["linear"])
+    text = text.replace('spacing = "1 mm"', 'spacing = "0.5 mm"').replace("poles = 60", 'kernel = "scatter"')
+    text = text.format(surface="smooth = true", duration=f"{3.2 / speed:g} s", wheel=WHEELS)
+    computed = compute(prepare_case(parse_case(text, tmp_path / "case.toml")), lambda *_: None)
+    wheel, textures, step = first_contact(computed.first), computed.textures, computed.case.time_step
     # the middle lines are lowest at 0.267 m; the wheel strikes where it reaches the flat's far end
     struck = float(wheel.position[np.argmax(wheel.contact_force)])
     assert 0.267 < struck % 2.88 < 0.30
-    at = chain.textures.start + chain.shape.spacing[0] * np.arange(len(chain.textures.followed))
-    texture = np.interp(wheel.position, at, chain.textures.followed)
+    at = textures.start + computed.shape.spacing[0] * np.arange(len(textures.followed))
+    texture = np.interp(wheel.position, at, textures.followed)
     mirrored = np.concatenate([texture, texture[::-1]])
-    _, stiffness = working_point(computed.case.contact, chain.shape, chain.reduction)
-    step = computed.case.time_step
-    transfer = force_transfer(
-        np.fft.rfftfreq(len(mirrored), step), computed.scene.first, computed.track, stiffness, [struck % 0.6]
-    )
-    still = 65e3 + np.fft.irfft(np.fft.rfft(mirrored) * transfer[0], len(mirrored))[: len(texture)]
+    _, stiffness = working_point(computed.case.contact, computed.shape, computed.reduction)
+    frequency = np.fft.rfftfreq(len(mirrored), step)
+    first, track = computed.scene.first, computed.track
+    (transfer,) = force_transfer(frequency, first, track, stiffness, [struck % 0.6])
+    still = 65e3 + np.fft.irfft(np.fft.rfft(mirrored) * transfer, len(mirrored))[: len(texture)]
     assert wheel.contact_force.max() == pytest.approx(still.max(), rel=0.1)
