@@ -13,14 +13,12 @@ from asperity.cli.planning import plan, planned
 from asperity.contact import HalfSpace
 from asperity.contact.scan import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
-from asperity.running import prepare_case, run
-from asperity.scenarios.expecting import Work
+from asperity.running import prepare_case
+from asperity.scenarios.expecting import Work, try_contacts
 from asperity.scenes.validity import SLOPE
 from asperity.surfaces.levelling import band_limit
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for
 from asperity.surfaces.synthesis import self_affine
-
-pytestmark = pytest.mark.usefixtures("cache_of_module")
 
 NO_WORK = Work({}, {}, 0, None, 0.0)
 MAPS = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"
@@ -42,16 +40,24 @@ sample_length = "2.2 mm"
 [numerics]
 highest_frequency = "4 kHz"
 """
+MIDDLE, ROUGH, FINE = {"rms": 0.12}, {"rms": 0.4}, {"rms": 1.0, "shortest": 20, "hurst": 0.2}
+CELLS = "share of the load on asperities of a single cell"
+CUT_OFF = "share of contacts that the window cuts off, filters"
 
 
-def result(surface, laws=("areal",), spacing=10, window=0.66):
-    text = CASE.format(surface=surface, laws=json.dumps(list(laws)), spacing=spacing, window=window)
-    return run(parse_case(text))
+def text(surface, laws=("areal",), spacing=10, window=0.66):
+    return CASE.format(surface=surface, laws=json.dumps(list(laws)), spacing=spacing, window=window)
 
 
 def synthetic(rms, shortest=60, hurst=0.8, **keys):
     waves = f'longest = "0.4 mm"\nshortest = "{shortest} um"\nhurst = {hurst}'
-    return result(f'rms = "{rms} um"\n{waves}', **keys)
+    return text(f'rms = "{rms} um"\n{waves}', **keys)
+
+
+def tried(written):
+    """Contacts of a case that are tried before it is run."""
+    prepared = prepare_case(parse_case(written))
+    return try_contacts(prepared.case, prepared.shape, prepared.textures, lambda *_: None)
 
 
 def validity(tree):
@@ -62,200 +68,167 @@ def messages(tree, category="OutOfRangeWarning"):
     return [w for w in json.loads(tree.attrs["warnings"]) if w["category"] == category]
 
 
-class TestInRange:
-    def test_a_slightly_rough_contact_is_in_range(self):
-        tree = synthetic(0.02)
+@pytest.mark.parametrize("kind", ["smooth", "rough", "fine"])
+def test_a_check_foresees_what_the_run_will_find_fault_with(runs, kind):
+    """Area, slope, grid and window, each of the same grade; the gravest first."""
+    keys = {"smooth": {"rms": 0.02}, "rough": ROUGH, "fine": FINE | {"window": 0.44}}[kind]
+    case = parse_case(synthetic(**keys))
+    told, tree = planned(prepare_case(case)), runs(case)
+    area, found = tree["contact"].attrs["contact_area_ratio"], validity(tree)
+    said = next(row["value"] for row in told["plan"] if row["name"] == "real contact")
+    assert float(re.search(r"about (\d+) %", said)[1]) == pytest.approx(100 * area, abs=10)
+    for name in ("real contact area", "rms slope", "on asperities of a single cell"):
+        foreseen = [w["grade"] for w in told["warnings"] if name in w["message"]]
+        assert foreseen == [w["grade"] for w in messages(tree) if name in w["message"]]
+    cut_off = "contacts that the window cuts off, the loading curve"
+    foreseen = [w["grade"] for w in told["warnings"] if cut_off in w["message"]]
+    truncated = messages(tree, "TruncatedContactWarning")
+    assert foreseen == [w["grade"] for w in truncated if "loading" in w["message"]]
+    grades = [w["grade"] for w in json.loads(tree.attrs["warnings"])]
+    assert grades == sorted(grades, key=["out of range", "warning", "note"].index)
+    if kind == "smooth":
         assert not messages(tree)
-        found = validity(tree)
         assert all(entry["grade"] == "" for name, entry in found.items() if "cuts off" not in name)
-        assert float(tree["contact"].attrs["contact_area_ratio"]) == pytest.approx(1.0, abs=0.03)
-        assert tree["contact"].attrs["isolated_share"] < 0.01
+        assert area == pytest.approx(1.0, abs=0.03)
         assert not tree.attrs["verdict"].startswith(("Out of range", "Doubtful"))
-
-
-class TestArea:
-    @pytest.mark.parametrize(("rms", "grade"), [(0.12, "warning"), (0.4, "out of range")])
-    def test_a_rough_contact_is_warned_of_and_table_is_named(self, rms, grade):
-        tree = synthetic(rms, laws=["areal", "table"])
-        ratio = tree["contact"].attrs["contact_area_ratio"]
-        assert 0.7 < ratio < 0.9 if grade == "warning" else ratio < 0.7
-        (warning,) = messages(tree)
-        assert warning["grade"] == grade
-        assert f"{ratio:.2f}, in range from 0.9 on" in warning["message"]
-        assert "Read table, which was rolled as well." in warning["message"]
-        table = tree["rolling/contact_force"].sel(law="table").values.std()
-        assert tree.attrs["verdict"].startswith(
-            {"warning": "Doubtful", "out of range": "Out of range"}[grade]
-        )
-        assert f"real contact area {100 * ratio:.2g} %" in tree.attrs["verdict"]
-        assert f"table varies by {table:.3g} N rms" in tree.attrs["verdict"]
-
-    def test_without_table_it_is_the_remedy(self):
-        (warning,) = messages(synthetic(0.4))
-        assert "Take table." in warning["message"]
-
-    def test_table_alone_is_not_concerned(self):
-        tree = synthetic(0.4, laws=["table"])
-        assert not messages(tree)
-        assert "range" not in tree.attrs["verdict"]
-
-    @pytest.mark.parametrize(
-        ("rms", "shortest", "window"), [(0.02, 60, 0.66), (0.4, 60, 0.66), (1.0, 20, 0.44)]
-    )
-    def test_check_foresees_what_the_run_will_find_fault_with(self, rms, shortest, window):
-        """Area, slope, grid and window, each of the same grade."""
-        keys = f'rms = "{rms} um"\nlongest = "0.4 mm"\nshortest = "{shortest} um"\nhurst = 0.2'
-        text = CASE.format(laws='["areal"]', surface=keys, spacing=10, window=window)
-        prepared = prepare_case(parse_case(text))
-        told = planned(prepared)
-        tree = run(prepared)
-        rows = {row["name"]: row["value"] for row in told["plan"]}
-        area = float(re.search(r"about (\d+) %", rows["real contact"])[1])
-        assert area == pytest.approx(100 * tree["contact"].attrs["contact_area_ratio"], abs=10)
-        names = ("real contact area", "rms slope", "on asperities of a single cell")
-        for name in names:
-            foreseen = [w["grade"] for w in told["warnings"] if name in w["message"]]
-            assert foreseen == [w["grade"] for w in messages(tree) if name in w["message"]]
-        cut_off = "contacts that the window cuts off, the loading curve"
-        foreseen = [w["grade"] for w in told["warnings"] if cut_off in w["message"]]
-        found = [w["grade"] for w in messages(tree, "TruncatedContactWarning") if "loading" in w["message"]]
-        assert foreseen == found
-
-    def test_a_line_without_samples_has_no_real_contact(self):
-        case = prepare_case(parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n'))
-        assert "real contact" not in dict(plan(case, NO_WORK))
-
-
-class TestGrid:
-    def test_asperities_of_a_single_cell(self):
-        tree = synthetic(1.0, shortest=20, hurst=0.2)
-        entry = validity(tree)["share of the load on asperities of a single cell"]
+    elif kind == "rough":
+        assert ["Take table." in w["message"] for w in messages(tree)] == [True]
+    else:
         share = tree["contact"].attrs["isolated_share"]
         assert share > 0.05
-        assert entry["grade"] == ("out of range" if share > 0.25 else "warning")
-        assert entry["remedy"] == (
+        assert found[CELLS]["grade"] == ("out of range" if share > 0.25 else "warning")
+        assert found[CELLS]["remedy"] == (
             'A grid that would do: contact.spacing = "5 um" resolves all waves, or surface.shortest = '
             '"40 um" leaves out the waves that this one does not resolve.'
         )
 
-    @pytest.mark.parametrize(("shortest", "spacing"), [(20, 5), (40, 10)])
-    def test_both_remedies_help(self, shortest, spacing):
-        tree = synthetic(1.0, shortest=shortest, hurst=0.2, spacing=spacing)
-        assert tree["contact"].attrs["isolated_share"] < 0.05
 
-    def test_the_wave_to_leave_out_leaves_the_slope_that_was_asked_for(self):
-        surface = self_affine(
-            (300, 300), (2e-6, 2e-6), rms=6e-6, hurst=0.7, longest=0.2e-3, shortest=4e-6, seed=1
-        )
-        assert rms_slope(surface) > 2 * SLOPE[0]
-        limited = band_limit(surface, shortest=shortest_wave_for(surface, SLOPE[0]))
-        assert rms_slope(limited) == pytest.approx(SLOPE[0], rel=0.1)
-        assert shortest_wave_for(limited, 1.0) == 0.0
+@pytest.mark.parametrize(
+    ("keys", "grade", "verdict"), [(MIDDLE, "warning", "Doubtful"), (ROUGH, "out of range", "Out of range")]
+)
+def test_a_rough_contact_is_warned_of_and_table_is_named(runs, keys, grade, verdict):
+    tree = runs(parse_case(synthetic(**keys, laws=["areal", "table"])))
+    ratio = tree["contact"].attrs["contact_area_ratio"]
+    assert 0.7 < ratio < 0.9 if grade == "warning" else ratio < 0.7
+    (warning,) = messages(tree)
+    assert warning["grade"] == grade
+    assert f"{ratio:.2f}, in range from 0.9 on" in warning["message"]
+    assert "Read table, which was rolled as well." in warning["message"]
+    table = tree["rolling/contact_force"].sel(law="table").values.std()
+    assert tree.attrs["verdict"].startswith(verdict)
+    assert f"real contact area {100 * ratio:.2g} %" in tree.attrs["verdict"]
+    assert f"table varies by {table:.3g} N rms" in tree.attrs["verdict"]
+
+
+def test_table_alone_is_not_concerned(runs):
+    tree = runs(parse_case(synthetic(**ROUGH, laws=["table"])))
+    assert not messages(tree)
+    assert "range" not in tree.attrs["verdict"]
+
+
+def test_a_line_without_samples_has_no_real_contact():
+    case = prepare_case(parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n'))
+    assert "real contact" not in dict(plan(case, NO_WORK))
+
+
+@pytest.mark.parametrize("keys", [{"spacing": 5}, {"shortest": 40}])
+def test_both_remedies_of_a_coarse_grid_help(keys):
+    assert tried(synthetic(**FINE | keys)).pressed.isolated_share < 0.05
+
+
+def test_the_wave_to_leave_out_leaves_the_slope_that_was_asked_for():
+    waves = {"hurst": 0.7, "longest": 0.2e-3, "shortest": 4e-6}
+    surface = self_affine((300, 300), (2e-6, 2e-6), rms=6e-6, seed=1, **waves)
+    assert rms_slope(surface) > 2 * SLOPE[0]
+    limited = band_limit(surface, shortest=shortest_wave_for(surface, SLOPE[0]))
+    assert rms_slope(limited) == pytest.approx(SLOPE[0], rel=0.1)
+    assert shortest_wave_for(limited, 1.0) == 0.0
 
 
 class TestWindow:
-    def test_the_window_that_is_named_holds_the_contacts(self):
-        small = synthetic(0.3, window=0.36)
-        entry = validity(small)["share of contacts that the window cuts off, filters"]
+    def test_the_window_that_is_named_holds_the_contacts(self, runs):
+        small = runs(parse_case(synthetic(0.3, window=0.36)))
+        entry = validity(small)[CUT_OFF]
         assert entry["grade"] == "out of range"
         named = float(re.search(r'contact\.window = "([\d.]+) mm" holds them', entry["remedy"])[1])
         assert 0.5 < named < 1.0
         (warning,) = [w for w in messages(small, "TruncatedContactWarning") if "loading" in w["message"]]
         assert entry["remedy"] in warning["message"]
-        large = validity(synthetic(0.3, window=named))
-        for name, found in large.items():
-            assert "cuts off" not in name or float(found["value"].rstrip(" %")) < 1.0
+        assert tried(synthetic(0.3, window=0.36)).cut_off > 0.1
+        assert tried(synthetic(0.3, window=named)).cut_off < 0.01
 
-    def test_only_contacts_that_are_rolled_reach_the_headline(self):
+    def test_only_contacts_that_are_rolled_reach_the_headline(self, runs):
         """The highest of the given states is cut off, but the ball does not get there."""
-        keys = 'rms = "0.02 um"\nlongest = "0.4 mm"\nshortest = "60 um"'
-        text = CASE.format(laws='["areal"]', surface=keys, spacing=10, window=0.44)
         states = 'approaches = ["-0.1 um", "0 um", "0.3 um", "0.6 um", "1 um", "1.5 um", "4 um"]'
-        quiet = run(parse_case(text.replace("samples = 3", f"samples = 3\n{states}")))
-        assert validity(quiet)["share of contacts that the window cuts off, filters"]["grade"] != ""
+        smooth = synthetic(0.02, window=0.44).replace("samples = 3", f"samples = 3\n{states}")
+        quiet = runs(parse_case(smooth))
+        assert validity(quiet)[CUT_OFF]["grade"] != ""
         entry = validity(quiet)["share of the time in contacts that the window cuts off, areal"]
         assert (entry["value"], entry["grade"]) == ("0 %", "")
         assert quiet.attrs["verdict"].startswith("The ball never loses contact")
         held = float(re.search(r"Forces above ([\d.]+) N", entry["meaning"])[1])
-        force = quiet["rolling/contact_force"].values
-        assert force.max() < held < quiet["contact/force"].values[-1]
+        assert quiet["rolling/contact_force"].values.max() < held < quiet["contact/force"].values[-1]
 
-    def test_maps_that_are_too_small_for_it_end_the_approaches(self, tmp_path):
-        surface = self_affine(
-            (70, 70), (10e-6, 10e-6), rms=0.3e-6, hurst=0.8, longest=0.4e-3, shortest=60e-6, seed=2
-        )
+    def test_maps_that_are_too_small_for_it_end_the_approaches(self, runs, tmp_path):
+        waves = {"hurst": 0.8, "longest": 0.4e-3, "shortest": 60e-6}
+        surface = self_affine((70, 70), (10e-6, 10e-6), rms=0.3e-6, seed=2, **waves)
         np.savez(tmp_path / "map.npz", map=surface.heights * 1e6)
         keys = 'file = "map.npz"\narray = "map"\nheight_unit = "um"\npixel = "10 um"'
-        text = CASE.format(surface=keys, laws='["areal"]', spacing=10, window=0.5)
-        found = validity(run(parse_case(text, tmp_path / "case.toml")))
-        remedy = found["share of contacts that the window cuts off, filters"]["remedy"]
+        case = text(keys, window=0.5)
+        remedy = validity(runs(parse_case(case, tmp_path / "case.toml")))[CUT_OFF]["remedy"]
         held = float(re.search(r"the maps are 0\.69 mm wide: .* approaches up to ([\d.]+) µm", remedy)[1])
-        ended = text.replace('window = "0.5 mm"', 'window = "0.69 mm"').replace(
-            "samples = 3", f'samples = 1\napproaches = ["-0.5 um", "0 um", "{held / 2} um", "{held} um"]'
-        )
-        after = validity(run(parse_case(ended, tmp_path / "case.toml")))
-        assert after["share of contacts that the window cuts off, filters"]["grade"] in ("", "note")
+        ended = f'samples = 1\napproaches = ["-0.5 um", "0 um", "{held / 2} um", "{held} um"]'
+        case = text(keys, window=0.69).replace("samples = 3", ended)
+        assert validity(runs(parse_case(case, tmp_path / "case.toml")))[CUT_OFF]["grade"] in ("", "note")
 
-    def test_window_of_smooth_bodies_is_a_tenth_wider_than_their_patch(self):
+    def test_a_scan_names_its_window_and_that_of_smooth_bodies_is_a_tenth_wider_than_their_patch(self):
         x = 1e-5 * np.arange(-20, 21)
         body = (x[:, None] ** 2 + x**2) / (2 * 0.025)
         expected = 1.1 * 2 * np.sqrt(0.025 * 2e-6)  # a = sqrt(R δ)
         assert window_for(body, (1e-5, 1e-5), 2e-6) == pytest.approx(expected, rel=0.03)
-
-    def test_a_scan_names_its_window(self):
-        x = 1e-5 * np.arange(-10, 11)
-        body = (x[:, None] ** 2 + x**2) / (2 * 0.025)
         with pytest.warns(PhysicsWarning, match=r"A window of 0\.\d+ mm holds them\.") as caught:
-            HalfSpace((21, 21), 1e-5, 115e9).scan(np.zeros((25, 21)), body, [1e-6, 2e-6])
+            HalfSpace((21, 21), 1e-5, 115e9).scan(np.zeros((25, 21)), body[10:31, 10:31], [1e-6, 2e-6])
         assert caught[0].message.grade is Grade.OUT
 
 
-class TestGrades:
-    def told(self, solved, unconverged, truncated):
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            warn_of_flaws(Counts(solved, 0, unconverged, truncated), "the path", "numerics.force_accuracy")
-        return caught[0].message
+@pytest.mark.parametrize(
+    ("counts", "grade", "parts"),
+    [
+        (
+            (9206, 0, 29),
+            Grade.NOTE,
+            ("29 of 9206 contact solutions of the path (0.32 %)", "too seldom to matter"),
+        ),
+        ((36488, 0, 16064), Grade.OUT, ("(44 %)", "so often that levels are wrong")),
+        ((10_000, 5, 0), Grade.NOTE, ()),
+        ((10_000, 2000, 0), Grade.OUT, ()),
+    ],
+)
+def test_flaws_are_graded_by_their_share(counts, grade, parts):
+    """Contacts that are not converged, and those that are cut off."""
+    solved, unconverged, truncated = counts
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        warn_of_flaws(Counts(solved, 0, unconverged, truncated), "the path", "numerics.force_accuracy")
+    (message,) = (each.message for each in caught)
+    assert message.grade is grade
+    assert all(part in str(message) for part in parts)
 
-    def test_few_contacts_cut_off_do_not_read_like_many(self):
-        few, many = self.told(9206, 0, 29), self.told(36488, 0, 16064)
-        assert (few.grade, many.grade) == (Grade.NOTE, Grade.OUT)
-        assert "29 of 9206 contact solutions of the path (0.32 %)" in str(few)
-        assert "too seldom to matter" in str(few)
-        assert "(44 %)" in str(many)
-        assert "so often that levels are wrong" in str(many)
 
-    @pytest.mark.parametrize(
-        ("share", "grade"),
-        [(0.0099, Grade.NOTE), (0.01, Grade.WARNING), (0.099, Grade.WARNING), (0.1, Grade.OUT)],
-    )
-    def test_limits_of_a_share(self, share, grade):
-        assert Grade.of_share(share) is grade
-
-    def test_unconverged_contacts_are_graded_too(self):
-        assert self.told(10_000, 5, 0).grade is Grade.NOTE
-        assert self.told(10_000, 2000, 0).grade is Grade.OUT
-
-    def test_a_plain_warning_has_the_middle_grade(self):
-        assert PhysicsWarning("text").grade is Grade.WARNING
-
-    def test_the_gravest_come_first_in_the_result(self):
-        tree = synthetic(0.6, shortest=20, window=0.44)
-        grades = [w["grade"] for w in json.loads(tree.attrs["warnings"])]
-        order = ["out of range", "warning", "note"]
-        assert grades == sorted(grades, key=order.index)
-        assert grades[0] == "out of range"
+def test_limits_of_a_share():
+    shares = {0.0099: Grade.NOTE, 0.01: Grade.WARNING, 0.099: Grade.WARNING, 0.1: Grade.OUT}
+    assert {share: Grade.of_share(share) for share in shares} == shares
+    assert PhysicsWarning("text").grade is Grade.WARNING
 
 
 @pytest.mark.skipif(not MAPS.is_file(), reason=f"measured maps of {MAPS} are missing")
-def test_a_measured_map_that_areal_cannot_do_says_so():
+def test_a_measured_map_that_areal_cannot_do_says_so(runs):
     keys = f'file = "{MAPS}"\narray = "bb20"\nheight_unit = "um"\npixel = "1.5625 um"'
-    tree = result(keys, laws=["areal", "table", "linear-filtered"], spacing=8, window=0.7)
+    tree = runs(parse_case(text(keys, laws=["areal", "table", "linear-filtered"], spacing=8, window=0.7)))
     verdict = tree.attrs["verdict"]
     assert verdict.startswith("Out of range for areal: real contact area ")
-    assert "rms slope 0.2" in verdict
-    assert "of the load on single cells" in verdict
-    assert "; table varies by" in verdict
+    for part in ("rms slope 0.2", "of the load on single cells", "; table varies by"):
+        assert part in verdict
     assert {w["grade"] for w in messages(tree)} == {"out of range", "warning"}
     contact = tree["contact"].attrs
     assert contact["contact_area_ratio"] < 0.1
