@@ -1,12 +1,14 @@
 """The program as a user starts it, in a folder of its own."""
 
-import json
 import os
+import signal
 import subprocess
 import sys
+import time
+from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
+import xarray
 
 from asperity.results import read_result
 
@@ -35,9 +37,9 @@ highest_frequency = "2 kHz"
 """A case of a second, with kept blocks."""
 
 
-def program(folder, *words, code=START, **more):
+def program(folder, *words, code=START, env=(), **more):
     """Start the program; its cache lies beside its results."""
-    environment = os.environ | {"ASPERITY_CACHE": str(folder / "cache")} | more.pop("env", {})
+    environment = os.environ | {"ASPERITY_CACHE": str(folder / "cache")} | dict(env)
     environment.pop("COVERAGE_PROCESS_CONFIG", None)  # what measures it breaks by signals and full disks
     return subprocess.Popen(
         [sys.executable, "-X", "faulthandler", "-c", code, *words],
@@ -51,20 +53,26 @@ def ended(process, timeout=300):
     return process.returncode, out + err
 
 
-def prepared(folder, text=CASE, name="case.toml"):
-    """Make the folder and write the case into it."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / name).write_text(text)
-    return folder
-
-
 def promised(code, told):
     """Whatever happens, the program ends with one of its exit codes and without a traceback."""
     assert code in (0, 2, 3, 130), told
     assert "Traceback" not in told, told
     assert "the program failed" not in told, told
-    if code in (2, 3):
-        assert "Error: " in told
+    assert code not in (2, 3) or "Error: " in told
+    return code, told
+
+
+def outcome(folder, *words, **more):
+    """Let the program run to its end, as it promises; return its exit code and all it said."""
+    return promised(*ended(program(folder, *words, **more)))
+
+
+def prepared(folder, **files):
+    """Make the folder and write a case into it, and what else is given, by name without ``.toml``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in ({"case": CASE} | files).items():
+        (folder / f"{name}.toml").write_text(text)
+    return folder
 
 
 def left(folder):
@@ -72,21 +80,43 @@ def left(folder):
     return [path for path in Path(folder).rglob(".*") if path.is_file() or path.suffix == ".part"]
 
 
-def numbers(folder):
-    """All arrays of a run, and its attributes but for time and clock."""
-    tree = read_result(folder)
-    arrays = {
-        f"{node.path}/{name}": values.values
-        for node in tree.subtree
-        for name, values in node.to_dataset(inherit=False).variables.items()
-    }
-    return arrays, {name: tree.attrs[name] for name in ("case", "verdict", "warnings")}
-
-
 def same(first, second):
     """Whether two runs are the same to the last bit."""
-    (arrays, attributes), (others, found) = numbers(first), numbers(second)
-    assert json.dumps(attributes) == json.dumps(found)
-    assert arrays.keys() == others.keys()
-    for name, values in arrays.items():
-        np.testing.assert_array_equal(values, others[name], err_msg=name)
+    one, other = read_result(first), read_result(second)
+    xarray.testing.assert_equal(one, other)
+    for name in ("case", "verdict", "warnings"):
+        assert one.attrs[name] == other.attrs[name]
+
+
+def goes_on(folder, whole):
+    """The same command again ends as a run does that nothing disturbs, and leaves nothing behind."""
+    assert outcome(folder, *RUN)[0] == 0
+    same(whole, folder / "out")
+    assert left(folder) == []
+
+
+@contextmanager
+def in_time(seconds):
+    """Fail where work hangs."""
+
+    def late(number, frame):
+        raise TimeoutError(f"more than {seconds} s")
+
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def until(there, seconds=90):
+    """Wait for something to be there."""
+    last = time.monotonic() + seconds
+    while not there():
+        assert time.monotonic() < last, "it never came"
+        time.sleep(0.05)

@@ -1,77 +1,118 @@
-"""What once failed, replayed by the program: each ends in time, with its exit code and one message."""
+"""What once failed, replayed: each ends in time, with its exit code and one message.
 
-import json
+Each took minutes or all memory, ended with a traceback, or was read wrongly. What can be seen without the
+command line is tested beside its function: `tests/test_hostile_text.py`,
+`tests/surfaces/test_malformed_files.py`, `tests/test_terminal.py`, `tests/rolling/test_stability.py`,
+`tests/scenarios/test_missing.py`.
+"""
+
 import os
 import re
 import signal
-import subprocess
 import sys
+from pathlib import Path
 from threading import Timer
 
 import numpy as np
 import pytest
-from corpus import ABSURD, CIRCLES, CORPUS
-from program import LONG, ended, left, program, promised
+from click.testing import CliRunner
+from program import RUN, in_time, left, promised
+from surface_files import npy
 
 import asperity
+from asperity.cli import main
 from asperity.errors import InputError
 from asperity.files import atomic_write
 from asperity.interrupts import interruptible
 from asperity.sandbox import sandboxed
 
-SECONDS = 30
-"""Of processor time that no failure takes."""
-FORKS = f"""
-import json, os, signal, sys
-import asperity.cli, asperity.case.cases, asperity.studies.definition, asperity.surfaces.readers
-from asperity.__main__ import start
-for line in sys.stdin:
-    folder, words = json.loads(line)
-    child = os.fork()
-    if child == 0:
-        os.chdir(folder)
-        told = os.open("told", os.O_CREAT | os.O_WRONLY)
-        os.dup2(told, 1), os.dup2(told, 2)
-        signal.setitimer(signal.ITIMER_PROF, {SECONDS})
-        signal.alarm(10 * {SECONDS})
-        sys.argv[1:] = words
-        code = 1
-        try:
-            start()
-        except SystemExit as end:
-            code = end.code or 0
-        finally:
-            os._exit(code)
-    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
-"""
-"""Starts the program as often as it is told to, by forks: it imports its modules once."""
+SECONDS = 60
+"""That no failure takes."""
+BALL = 'kind = "ball-on-beam"\nlaws = ["hertz"]\nduration = "5 ms"\n'
+ROUGH = '[surface]\nrms = "0.3 um"\n'
+MAP = '[surface]\nfile = "{}"\nheight_unit = "um"\npixel = "8 um"\n'
+ONE = "[contact]\nsamples = 1\n"
+FREE = '[ball]\nload = "20 N"\n[beam]\nsupport = "free"\nsuspension_frequency = "0.1 Hz"\n'
+CIRCLES = Path(__file__).with_name("circles.nc").read_bytes()  # in which HDF5 turns in circles
+ENDS = Path(__file__).with_name("ends.nc").read_bytes()  # which ends the process that opens it
 
 
-@pytest.fixture(scope="module")
-def forks(tmp_path_factory):
-    cache = str(tmp_path_factory.mktemp("cache"))
-    with subprocess.Popen(
-        [sys.executable, "-c", FORKS], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-        env=os.environ | {"ASPERITY_CACHE": cache},
-    ) as server:  # fmt: skip
-        yield server
-        server.stdin.close()
+def case(text, says, code=2, **files):
+    """A case that is checked: the words, the exit code that is right, what has to be said, and the files."""
+    return ("check", "case.toml"), code, says, {"case.toml": text} | files
+
+
+def study(sweep, says):
+    """A study that cannot begin."""
+    files = {"case.toml": BALL + ROUGH, "study.toml": f'case = "case.toml"\n[sweep]\n{sweep}'}
+    return ("study", "study.toml"), 2, says, files
+
+
+CORPUS = {
+    "9999 seeds": study(
+        f'seed = {list(range(9999))}\n"ball.load" = ["-1 N"]\n', r"1 error\n.*load\[1\]: received '-1 N'"
+    ),
+    "lists for words": study("laws = [[[1]]]\n", r"sweep\.laws\[1\]: received \[1\]"),
+    "a list for a word": case("kind = []\n", r"kind: received \[\]"),
+    "a wave of 10 m": case(f'{BALL}{ROUGH}longest = "10 m"\n', "received 10 m .*at most 134217728 points"),
+    "an anisotropy of 1e-9": case(f"{BALL}{ROUGH}anisotropy = 1e-9\n", "anisotropy: .*allowed: 0.01 to 100"),
+    "a beam 1 um wide": case(f'{BALL}{ROUGH}[beam]\nwidth = "1 um"\n', "width: .*allowed: at least 187 um"),
+    "a beam 1 um high": case(f'{BALL}{ROUGH}[beam]\nheight = "1 um"\n', "height: .*allowed: at least 187 um"),
+    "a ball of 1e-9 kg": case(f'{BALL}{ROUGH}[ball]\nmass = "1e-9 kg"\n', "heights with an rms slope of 1"),
+    "1 mm/s": case(f'{BALL}speed = "1 mm/s"\n{ROUGH}', r"contact\.spacing: received 0\.1 um at 0.001 m/s"),
+    "approaches that never touch": case(
+        f'{BALL}{ROUGH}{ONE}approaches = ["-78 um", "-77 um"]\n',
+        r"contact\.approaches: received up to -77 um, where the samples carry 0 N",
+    ),
+    "a free beam on 0.1 Hz": (
+        ("run", "case.toml", "--no-report"),
+        3,
+        r"displaced by up to 51.6 m under the contact(.*\n)*Error: hertz: nothing touches in all of the rec",
+        {"case.toml": f"{BALL}{ROUGH}{ONE}{FREE}"},
+    ),
+    "a constant map": case(
+        f'{BALL.replace("5 ms", "0.2 s")}{MAP.format("map.npy")}',
+        "a plane without roughness, map.npy",
+        **{"map.npy": npy(np.ones((200, 200)))},
+    ),
+    "a folder of 300 letters": (
+        ("run", "case.toml", "-o", "a" * 300), 2, "File name too long", {"case.toml": BALL + ROUGH}
+    ),
+    "a name that is no UTF-8": (("check", "\udcff.toml"), 2, r"\\xff\.toml: received no such file", {}),
+    "a map whose name is markup": case(
+        BALL + MAP.format("map [um] v2.npy") + ONE,
+        r"map \[um\] v2\.npy",
+        code=0,
+        **{"map [um] v2.npy": npy(np.random.default_rng(1).normal(size=(120, 120)))},
+    ),
+    "a folder whose name is markup": (
+        ("check", "a [/b]/case.toml"), 2, r"a \[/b\]/case\.toml: 1 error", {"a [/b]/case.toml": BALL}
+    ),
+    "a name that controls a terminal": case(
+        BALL + MAP.format("\\u001b[31m.npy"), r"surface\.file: received '\\x1b\[31m\.npy'"
+    ),
+    "a library that ends": (
+        ("surface", "a.nc", "--height-unit", "um", "--pixel", "1 um"),
+        2,
+        "a file that ends the program that opens it",
+        {"a.nc": ENDS},
+    ),
+}  # fmt: skip
 
 
 @pytest.fixture
-def replay(tmp_path, request):
+def replay(own_cache, tmp_path, monkeypatch):
     """Let the program run in a folder with these files; returns its exit code and all it said."""
 
     def replay(words, files):
+        monkeypatch.chdir(tmp_path)
         for file, contents in files.items():
-            (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
-            (tmp_path / file).write_bytes(contents if isinstance(contents, bytes) else contents.encode())
-        if LONG or not hasattr(os, "fork"):
-            return ended(program(tmp_path, *words), timeout=10 * SECONDS)
-        server = request.getfixturevalue("forks")
-        server.stdin.write(json.dumps([str(tmp_path), words]) + "\n")
-        server.stdin.flush()
-        return int(server.stdout.readline()), (tmp_path / "told").read_text()
+            Path(file).parent.mkdir(parents=True, exist_ok=True)
+            Path(file).write_bytes(contents if isinstance(contents, bytes) else contents.encode())
+        with in_time(SECONDS):
+            done = CliRunner().invoke(main, words)
+        assert isinstance(done.exception, SystemExit | None), done.exception
+        return promised(done.exit_code, done.output)
 
     return replay
 
@@ -80,7 +121,6 @@ def replay(tmp_path, request):
 def test_what_once_failed(name, tmp_path, replay):
     words, code, says, files = CORPUS[name]
     found, told = replay(words, files)
-    promised(found, told)
     assert found == code
     assert re.search(says, told), told
     assert len(told) < (2000 if code else 20_000)
@@ -111,13 +151,31 @@ def test_a_right_seal_around_a_hostile_file_leaves_the_program_free_to_end(circl
             asperity.open_result(circles)
 
 
-@pytest.mark.parametrize("name", ABSURD)
-def test_absurd_bodies_press_no_more_than_their_load(name, tmp_path, replay):
-    text, load, largest, files = ABSURD[name]
-    found, told = replay(("run", "case.toml", "-o", "out", "--no-report"), files | {"case.toml": text})
-    promised(found, told)
+WHEEL = (
+    f'kind = "wheel-on-rail"\nlaws = ["hertz"]\nduration = "50 ms"\n[surface]\nspectrum = "iso3095"\n{ONE}'
+)
+DAMPED = f'{WHEEL}damping = "{{}} N s/m"\n[numerics]\nhighest_frequency = "2 kHz"\n'
+LIGHT = f'{BALL.replace("5 ms", "20 ms")}{ROUGH}{ONE}[ball]\nload = "5 N"\nmass = "1e-5 kg"\n'
+MODES = "frequency (Hz), damping ratio, modal mass (kg)\n" + "".join(
+    f"{300 + 20 * i}, 0.001, 100\n" for i in range(200)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "load", "largest"),
+    [
+        (DAMPED.format("1e6"), 65e3, 2.0),
+        (DAMPED.format("1e9"), 65e3, 2.0),
+        (LIGHT, 5.0, 5.0),
+        (f'{WHEEL}[wheel]\nmodes = "modes.csv"\n', 65e3, 3.0),
+    ],
+    ids=["damping of 1e6 N s/m", "damping of 1e9 N s/m", "a ball of 1e-5 kg", "200 modes of 100 kg"],
+)
+def test_absurd_bodies_press_no_more_than_their_load(text, load, largest, replay):
+    """Legal cases whose forces once grew beyond all measure, and how many times the load none may reach."""
+    found, told = replay(RUN, {"case.toml": text, "modes.csv": MODES})
     assert found == 0, told
-    force = asperity.open_result(tmp_path / "out")["rolling/contact_force"].values
+    force = asperity.open_result("out")["rolling/contact_force"].values
     assert np.isfinite(force).all()
     assert force.max() < largest * load
     assert force.mean() == pytest.approx(load, rel=0.02)

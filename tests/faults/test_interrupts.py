@@ -9,10 +9,11 @@ import time
 from pathlib import Path
 
 import pytest
-from program import CASE, LONG, RUN, ended, left, prepared, program, promised, same
+from program import CASE, LONG, RUN, ended, goes_on, left, outcome, prepared, program, promised, same
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are ended by signals")
 
+STUDIES = ("study", "study.toml")
 STUDY = 'case = "case.toml"\n[sweep]\nseed = [1, 2, 3]\n'
 AT_A_WRITE = """
 import os, sys
@@ -52,92 +53,83 @@ util.spawnv_passfds = interrupted
 from asperity.__main__ import start
 start()
 """
+WHEN_IT_LISTENS = """
+import asperity.__main__ as program
+from contextlib import contextmanager
+interruptible = program.interruptible
 
+@contextmanager
+def told():
+    with interruptible():
+        print("listens", flush=True)
+        yield
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    """A run that nothing disturbs."""
-    folder = prepared(tmp_path_factory.mktemp("whole"))
-    assert ended(program(folder, *RUN))[0] == 0
-    return folder / "out"
-
-
+program.interruptible = told
+program.start()
+"""
+"""Says when signals are heard: before, Python itself has no words for an interrupt."""
 KILLED = [(n, when) for n in range(1, 26) for when in ("before", "after")]
 
 
-@pytest.mark.parametrize(
-    ("number", "when"), KILLED if LONG else [each for each in KILLED if each[0] in (1, 5)]
-)
-def test_a_run_killed_at_a_write_goes_on(whole, tmp_path, number, when):
+@pytest.mark.parametrize(("number", "when"), KILLED if LONG else [(1, "after"), (5, "before"), (5, "after")])
+def test_a_run_killed_at_a_write_goes_on(undisturbed, tmp_path, number, when):
     folder = prepared(tmp_path / "run")
-    killed = program(
-        folder, *RUN, code=AT_A_WRITE,
-        env={"KILLED_AT": str(number), "KILLED": when},
-    )  # fmt: skip
+    killed = program(folder, *RUN, code=AT_A_WRITE, env={"KILLED_AT": str(number), "KILLED": when})
     code, told = ended(killed)
     assert code in (0, -signal.SIGKILL), told
-    assert ended(program(folder, *RUN))[0] == 0
-    same(whole, folder / "out")
-    assert left(folder) == []
+    goes_on(folder, undisturbed / "out")
 
 
 @pytest.mark.parametrize("seed", range(40 if LONG else 1))
-def test_a_run_killed_at_any_moment_goes_on(whole, tmp_path, seed):
+def test_a_run_killed_at_any_moment_goes_on(undisturbed, tmp_path, seed):
     folder = prepared(tmp_path / "run")
     killed = program(folder, *RUN)
     time.sleep(random.Random(seed).uniform(0.2, 4.0))
     killed.kill()
     ended(killed)
-    assert ended(program(folder, *RUN))[0] == 0
-    same(whole, folder / "out")
-    assert left(folder) == []
+    goes_on(folder, undisturbed / "out")
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-@pytest.mark.parametrize("words", [("new", "study"), ("check", "case.toml"), ("study", "study.toml")])
-def test_every_interrupt_is_told_in_a_word(tmp_path, name, words):
-    folder = prepared(prepared(tmp_path), STUDY, "study.toml")
-    for delay in [0.02 * n for n in range(40)] if LONG else [0.0, 0.15, 0.5, 1.5]:
-        code = "from asperity.__main__ import start; print('started', flush=True); start()"
-        started = program(folder, *words, code=code, start_new_session=True)
-        assert started.stdout.readline() == "started\n"
-        time.sleep(delay)
+@pytest.mark.parametrize(
+    ("words", "delay"),
+    [(("new", "study"), 0.0), (("check", "case.toml"), 0.2), (STUDIES, 0.0), (STUDIES, 0.7)],
+)
+def test_every_interrupt_is_told_in_a_word(tmp_path, name, words, delay):
+    folder = prepared(tmp_path, study=STUDY)
+    for later in [0.02 * n for n in range(40)] if LONG else [0.0]:
+        started = program(folder, *words, code=WHEN_IT_LISTENS, start_new_session=True)
+        assert started.stdout.readline() == "listens\n"
+        time.sleep(delay + later)
         os.killpg(started.pid, getattr(signal, name))
-        returned, told = ended(started)
-        if returned == -getattr(signal, name):  # Python itself has no words for an interrupt
-            assert delay < 0.1
-            continue
-        promised(returned, told)
-        assert returned in (0, 130)
-        assert returned == 0 or "interrupted" in told
+        code, told = promised(*ended(started))
+        assert code in (0, 130)
+        assert code == 0 or "interrupted" in told
     assert left(folder) == []
 
 
 def test_an_interrupt_while_a_process_starts_waits_for_it(tmp_path):
     """It may fall to any thread, whichever signals the one that starts processes lets wait."""
-    folder = prepared(prepared(tmp_path), STUDY, "study.toml")
-    code, told = ended(program(folder, "study", "study.toml", code=AT_A_START))
-    promised(code, told)
+    folder = prepared(tmp_path, study=STUDY)
+    code, told = outcome(folder, *STUDIES, code=AT_A_START)
     assert code == 130
     assert "interrupted" in told
 
 
-def test_two_runs_beside_each_other_are_the_same(whole, tmp_path):
+def test_runs_beside_each_other_are_the_same(undisturbed, tmp_path):
     folder = prepared(tmp_path / "beside")
-    count = 8 if LONG else 2
-    started = [program(folder, "run", "case.toml", "-o", f"out{n}", "--no-report") for n in range(count)]
-    for number, process in enumerate(started):
+    outs = [f"out{n}" for n in range(8 if LONG else 2)]
+    started = [program(folder, "run", "case.toml", "-o", out, "--no-report") for out in outs]
+    for out, process in zip(outs, started, strict=True):
         code, told = ended(process)
         assert code == 0, told
-        same(whole, folder / f"out{number}")
+        same(undisturbed / "out", folder / out)
     assert left(folder) == []
 
 
 def test_of_two_runs_in_one_folder_one_is_refused(tmp_path):
-    folder = prepared(prepared(tmp_path), CASE.replace("5 N", "6 N"), "other.toml")
-    started = [
-        program(folder, "run", name, "-o", "out", "--no-report") for name in ("case.toml", "other.toml")
-    ]
+    folder = prepared(tmp_path, other=CASE.replace("5 N", "6 N"))
+    started = [program(folder, RUN[0], f"{name}.toml", *RUN[2:]) for name in ("case", "other")]
     found = sorted(ended(process) for process in started)
     assert [code for code, _ in found] == [0, 2], found
     refused = found[1][1]

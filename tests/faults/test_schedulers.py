@@ -6,15 +6,18 @@ import re
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
+from program import ended, prepared, program, promised, until
+
+from asperity.errors import InputError
+from asperity.studies import cluster
 
 pytest.importorskip("distributed", reason='needs pip install "asperity[cluster]"')
 posix = pytest.mark.skipif(sys.platform == "win32", reason="processes are stopped by signals")
 
 BALL = 'kind = "ball-on-beam"\nduration = "0.1 s"\nlaws = ["hertz"]\n[surface]\nspectrum = "iso3095"\n'
-STUDY = 'case = "ball.toml"\n[sweep]\nseed = [1, 2, 3, 4, 5, 6, 7, 8]\nstart = ["0 m", "0.9 m"]\n'
+STUDY = 'case = "case.toml"\n[sweep]\nseed = [1, 2, 3, 4, 5, 6, 7, 8]\nstart = ["0 m", "0.9 m"]\n'
 IMPATIENT = (
     "from asperity.studies import cluster, running\n"
     "cluster.PATIENCE, cluster.SILENCE, running.BEAT = 2.0, 4.0, 1.0\n"
@@ -27,65 +30,51 @@ IMPATIENT = (
 def served(tmp_path):
     """A scheduler and a worker, each a process."""
     environment = os.environ | {"ASPERITY_CACHE": str(tmp_path / "far"), "ASPERITY_THREADS": "1"}
-    file = tmp_path / "scheduler.json"
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
-    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--no-dashboard", "--port", "0"]
-    scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--scheduler-file", str(file)], **quiet)
-    dask = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file)]
-    worker = subprocess.Popen(
-        [*dask, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--death-timeout", "60"], **quiet
-    )
-    until = time.monotonic() + 60
-    while not file.exists() and time.monotonic() < until:
-        time.sleep(0.1)
-    yield scheduler, file
-    for process in (scheduler, worker):
+    file = tmp_path / "scheduler.json"
+    own = {
+        "scheduler": ["--port", "0", "--host", "127.0.0.1"],
+        "worker": ["--nthreads", "1", "--no-nanny", "--death-timeout", "60"],
+    }
+    dask = [sys.executable, "-m", "distributed.cli.dask_"]
+    started = [
+        subprocess.Popen(
+            [*dask[:2], dask[2] + name, "--no-dashboard", "--scheduler-file", str(file), *words], **quiet
+        )
+        for name, words in own.items()
+    ]
+    until(file.exists)
+    yield started[0], json.loads(file.read_text())["address"]
+    for process in started:
         process.kill()
         process.wait()
 
 
-def study(folder, address, **more):
-    (folder / "ball.toml").write_text(BALL)
-    (folder / "study.toml").write_text(STUDY)
-    return subprocess.Popen(
-        [sys.executable, "-c", IMPATIENT, "study", "study.toml", "--scheduler", address],
-        cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        env=os.environ | {"ASPERITY_CACHE": str(folder / "near")}, **more,
-    )  # fmt: skip
-
-
-def address_in(file):
-    return json.loads(file.read_text())["address"]
+def study(folder, address):
+    folder = prepared(folder, case=BALL, study=STUDY)
+    return program(folder, "study", "study.toml", "--scheduler", address, code=IMPATIENT)
 
 
 @posix
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP], ids=["dies", "hangs"])
 def test_a_scheduler_that_is_lost_half_way(served, tmp_path, end):
-    scheduler, file = served
-    with study(tmp_path, address_in(file)) as running:
-        until = time.monotonic() + 90
-        while not list((tmp_path / "near").glob("*.npz")) and time.monotonic() < until:
-            time.sleep(0.05)
+    scheduler, address = served
+    with study(tmp_path, address) as running:
+        until(lambda: list((tmp_path / "cache").glob("*.npz")))
         scheduler.send_signal(end)
-        try:
-            _, told = running.communicate(timeout=60)
-        finally:
-            running.kill()
-    assert running.returncode == 3, told
+        code, told = promised(*ended(running, timeout=60))
+    assert code == 3, told
     assert "the scheduler has not answered for" in told
-    ended = int(re.search(r"; (\d+) of 16 members had ended and are kept", told)[1])
-    assert 0 < ended == len(list((tmp_path / "near").glob("*.npz")))
-    assert "Traceback" not in told
+    count = int(re.search(r"; (\d+) of 16 members had ended and are kept", told)[1])
+    assert 0 < count == len(list((tmp_path / "cache").glob("*.npz")))
     assert len(told) < 2000
     assert not [path for path in (tmp_path / "runs").rglob("*") if path.is_file()]
 
 
 @pytest.mark.parametrize(
-    "address", ["tcp://127.0.0.1:9", "tcp://127.0.0.1:99999999", "tls://127.0.0.1:9", "x"]
+    "address", ["tcp://127.0.0.1:9", "tcp://127.0.0.1:99999999", "tls://127.0.0.1:9", "nowhere at all"]
 )
-def test_an_address_where_nobody_is(tmp_path, address):
-    with study(tmp_path, address) as running:
-        _, told = running.communicate(timeout=60)
-    assert running.returncode == 2
-    assert f"scheduler: received '{address}'" in told
-    assert "Traceback" not in told
+def test_an_address_where_nobody_is(monkeypatch, address):
+    monkeypatch.setattr(cluster, "PATIENCE", 1.0)
+    with pytest.raises(InputError, match=rf"^scheduler: received '{address}' .*'dask scheduler'"):
+        cluster.cluster(address).__enter__()
