@@ -10,31 +10,22 @@ from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
 
 HEIGHTS = np.arange(12.0).reshape(3, 4)
+MAP = HeightMap(HEIGHTS, (1e-6, 2e-6), "made")
+LINE = Profile([0.0, 1.0, np.nan, 3.0], 1e-3, "wheel")
 
 
-@pytest.fixture
-def surface():
-    return HeightMap(HEIGHTS, (1e-6, 2e-6), "made")
-
-
-def test_heights_are_a_read_only_copy():
+@pytest.mark.parametrize("view", [lambda array: array, lambda array: array[:]])
+def test_heights_are_a_read_only_copy(view):
     original = HEIGHTS.copy()
-    surface = HeightMap(original, (1.0, 1.0))
+    given = view(original)
+    given.flags.writeable = given is original
+    surface = HeightMap(given, (1.0, 1.0))
     original[0, 0] = 99.0
     assert surface.heights[0, 0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         surface.heights[0, 0] = 1.0
     with pytest.raises(dataclasses.FrozenInstanceError):
         surface.spacing = (1.0, 1.0)
-
-
-def test_a_read_only_view_of_a_writeable_array_is_copied():
-    original = HEIGHTS.copy()
-    view = original[:]
-    view.flags.writeable = False
-    surface = HeightMap(view, (1.0, 1.0))
-    original[0, 0] = 99.0
-    assert surface.heights[0, 0] == 0.0
 
 
 def test_integers_become_floats_and_masked_points_missing():
@@ -46,103 +37,80 @@ def test_integers_become_floats_and_masked_points_missing():
     assert surface.spacing == (1.0, 1.0)
 
 
-def test_coordinates_and_size(surface):
-    assert surface.shape == (3, 4)
-    assert surface.size == pytest.approx((3e-6, 8e-6))
-    np.testing.assert_allclose(surface.x, [0, 1e-6, 2e-6])
-    np.testing.assert_allclose(surface.y, [0, 2e-6, 4e-6, 6e-6])
+def test_a_map_has_coordinates_lines_and_pieces():
+    assert MAP.shape == (3, 4)
+    assert MAP.size == pytest.approx((3e-6, 8e-6))
+    np.testing.assert_allclose(MAP.x, [0, 1e-6, 2e-6])
+    np.testing.assert_allclose(MAP.y, [0, 2e-6, 4e-6, 6e-6])
+    np.testing.assert_array_equal(MAP.line().heights, HEIGHTS[:, 2])
+    np.testing.assert_array_equal(MAP.line(0).heights, HEIGHTS[:, 0])
+    assert (MAP.line().spacing, MAP.line().source) == (1e-6, "made")
+    np.testing.assert_array_equal(MAP.crop((1e-6, 2e-6), (2e-6, 6e-6)).heights, HEIGHTS[1:3, 1:4])
+    np.testing.assert_array_equal(MAP.transposed().heights, HEIGHTS.T)
+    assert MAP.transposed().spacing == (2e-6, 1e-6)
 
 
-def test_line_runs_along_x(surface):
-    np.testing.assert_array_equal(surface.line().heights, HEIGHTS[:, 2])
-    np.testing.assert_array_equal(surface.line(0).heights, HEIGHTS[:, 0])
-    assert surface.line().spacing == 1e-6
-    assert surface.line().source == "made"
+def test_a_line_has_coordinates_and_pieces():
+    assert LINE.shape == (4,)
+    assert LINE.size == pytest.approx(4e-3)
+    np.testing.assert_allclose(LINE.x, [0, 1e-3, 2e-3, 3e-3])
+    np.testing.assert_array_equal(LINE.crop(1e-3, 3e-3).heights, [1.0, np.nan, 3.0])
 
 
-@pytest.mark.parametrize("index", [-1, 4])
-def test_no_such_line(surface, index):
-    with pytest.raises(InputError, match=r"index of a line of the map: received .*allowed: 0 to 3"):
-        surface.line(index)
-
-
-def test_crop_and_transpose(surface):
-    piece = surface.crop((1e-6, 2e-6), (2e-6, 6e-6))
-    np.testing.assert_array_equal(piece.heights, HEIGHTS[1:3, 1:4])
-    turned = surface.transposed()
-    np.testing.assert_array_equal(turned.heights, HEIGHTS.T)
-    assert turned.spacing == (2e-6, 1e-6)
+SQUARE = np.zeros((2, 2))
 
 
 @pytest.mark.parametrize(
-    ("start", "size"),
+    ("make", "message"),
     [
-        ((2e-6, 0), (2e-6, 4e-6)),
-        ((-1e-6, 0), (2e-6, 4e-6)),
-        ((0, 0), (1e-6, 4e-6)),
-        ((np.nan, 0), (2e-6, 4e-6)),
+        *(
+            (lambda heights=heights: HeightMap(heights, (1.0, 1.0)), message)
+            for heights, message in (
+                (np.zeros(3), r"shape \(3,\)"),
+                (np.zeros((1, 3)), r"shape \(1, 3\)"),
+                (np.zeros((2, 2), dtype=complex), "complex128"),
+                (np.array([["a", "b"], ["c", "d"]]), "<U1"),
+                ([[1.0, 2.0], [3.0]], "unequal length"),
+                ([[1.0, np.inf], [0.0, 0.0]], "infinite"),
+                (np.full((2, 2), np.nan), "every point is missing"),
+            )
+        ),
+        *(
+            (lambda spacing=spacing: HeightMap(SQUARE, spacing), "spacing of the height map")
+            for spacing in (0.0, -1.0, np.nan, np.inf, "a", None, (1.0, 0.0), (1.0, 1.0, 1.0))
+        ),
+        *(
+            (lambda start=start, size=size: MAP.crop((start, 0), (size, 4e-6)), "piece of the map along x")
+            for start, size in ((2e-6, 2e-6), (-1e-6, 2e-6), (0, 1e-6), (np.nan, 2e-6))
+        ),
+        *(
+            (lambda index=index: MAP.line(index), r"index of a line of the map: received .*allowed: 0 to 3")
+            for index in (-1, 4)
+        ),
+        (lambda: LINE.crop(2e-3, 3e-3), "piece of the line"),
+        (lambda: Profile([0.0, 1.0], -1.0), "spacing of the profile"),
+        (lambda: Profile(SQUARE, 1.0, "wheel"), r"heights of wheel: received an array of shape \(2, 2\)"),
     ],
 )
-def test_crop_outside_the_map(surface, start, size):
-    with pytest.raises(InputError, match="piece of the map along x"):
-        surface.crop(start, size)
-
-
-@pytest.mark.parametrize(
-    ("heights", "message"),
-    [
-        (np.zeros(3), r"shape \(3,\)"),
-        (np.zeros((1, 3)), r"shape \(1, 3\)"),
-        (np.zeros((2, 2), dtype=complex), "complex128"),
-        (np.array([["a", "b"], ["c", "d"]]), "<U1"),
-        ([[1.0, 2.0], [3.0]], "unequal length"),
-        ([[1.0, np.inf], [0.0, 0.0]], "infinite"),
-        (np.full((2, 2), np.nan), "every point is missing"),
-    ],
-)
-def test_bad_heights(heights, message):
+def test_what_is_wrong_is_said(make, message):
     with pytest.raises(InputError, match=message):
-        HeightMap(heights, (1.0, 1.0))
+        make()
 
 
-@pytest.mark.parametrize("spacing", [0.0, -1.0, np.nan, np.inf, "a", None, (1.0, 0.0), (1.0, 1.0, 1.0)])
-def test_bad_spacing(spacing):
-    with pytest.raises(InputError, match="spacing of the height map"):
-        HeightMap(np.zeros((2, 2)), spacing)
-
-
-def test_profile():
-    profile = Profile([0.0, 1.0, np.nan, 3.0], 1e-3, "wheel")
-    assert profile.shape == (4,)
-    assert profile.size == pytest.approx(4e-3)
-    assert profile.missing_share == 0.25
-    np.testing.assert_allclose(profile.x, [0, 1e-3, 2e-3, 3e-3])
-    np.testing.assert_array_equal(profile.crop(1e-3, 3e-3).heights, [1.0, np.nan, 3.0])
-    with pytest.raises(InputError, match="piece of the line"):
-        profile.crop(2e-3, 3e-3)
-    with pytest.raises(InputError, match="spacing of the profile"):
-        Profile([0.0, 1.0], -1.0)
-    with pytest.raises(InputError, match=r"heights of wheel: received an array of shape \(2, 2\)"):
-        Profile(np.zeros((2, 2)), 1.0, "wheel")
-
-
-def test_operations_delegate_to_levelling():
-    x, y = np.meshgrid(np.arange(8.0), np.arange(6.0), indexing="ij")
-    plane = HeightMap(3 * x - 2 * y + 1, (1.0, 1.0))
-    assert abs(plane.levelled().heights).max() < 1e-12
-    holed = plane.heights.copy()
-    holed[3, 3] = np.nan
-    assert HeightMap(holed, (1.0, 1.0)).filled().missing_share == 0
-    assert plane.band_limited(shortest=3.0).shape == plane.shape
-    slope = Profile(2 * np.arange(50.0), 1.0)
+@pytest.mark.parametrize("made", [HeightMap(np.tile(HEIGHTS, (4, 2)), 1.0), Profile(np.arange(50.0), 1.0)])
+def test_methods_do_what_the_functions_do(made):
+    x = np.reshape(made.x, (-1, *(1,) * (made.heights.ndim - 1)))
+    slope = dataclasses.replace(made, heights=2 * x + np.zeros(made.shape))
     assert abs(slope.levelled().heights).max() < 1e-12
-    holed = slope.heights.copy()
-    holed[20] = np.nan
-    assert Profile(holed, 1.0).filled().heights[20] == pytest.approx(40.0)
-    assert slope.band_limited(shortest=3.0).shape == slope.shape
+    holed = np.array(slope.heights)
+    holed.flat[20] = np.nan
+    np.testing.assert_allclose(
+        dataclasses.replace(made, heights=holed).filled().heights, slope.heights, atol=1.0
+    )
+    assert slope.band_limited(shortest=3.0).shape == made.shape
 
 
-@pytest.mark.parametrize("shape", [(40, 30), (2000, 20), (500,)])
+@pytest.mark.parametrize("shape", [(40, 30), (700, 20), (500,)])
 def test_surfaces_show_themselves_in_a_notebook(shape):
     heights = 1e-6 * np.random.default_rng(0).normal(size=shape)
     heights.flat[3] = np.nan

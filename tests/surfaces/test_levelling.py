@@ -1,14 +1,15 @@
-import warnings
+"""Levelling, form, wavelength band, grid and direction of measured surfaces, against closed forms."""
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity import BallOnBeam
-from asperity.errors import CaseError, InputError, MissingPointsWarning, ShortRecordWarning
-from asperity.surfaces.cleaning import fill
+from asperity.errors import CaseError, InputError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, fit_form, level, remove_form, resample
+from asperity.surfaces.spectra import texture_direction
+from asperity.surfaces.steps import inscribed, rotated
 
 UM = 1e-6
 
@@ -18,22 +19,25 @@ def make_map(function, shape=(60, 40), spacing=(2 * UM, 3 * UM)):
     return HeightMap(function(x[:, None], y[None, :]) + np.zeros(shape), spacing)
 
 
-def with_holes(surface, seed=0, share=0.1):
+def with_holes(surface, share=0.1):
     heights = np.array(surface.heights)
-    heights[np.random.default_rng(seed).random(heights.shape) < share] = np.nan
+    heights[np.random.default_rng(0).random(heights.shape) < share] = np.nan
     return type(surface)(heights, surface.spacing)
+
+
+ROUGH = HeightMap(np.random.default_rng(2).standard_normal((64, 48)) * UM, (UM, UM))
+FLAT = HeightMap(np.zeros((20, 20)), (UM, UM))
 
 
 @pytest.mark.parametrize(("word", "degree"), [("plane", 1), ("quadratic", 2)])
 def test_a_form_has_one_word_in_cases_and_in_python_and_its_degree_is_understood(word, degree):
     """A case writes the word, whichever it was given."""
-    rough = HeightMap(np.random.default_rng(2).standard_normal((30, 20)) * UM, (UM, UM))
-    assert np.array_equal(rough.levelled(word).heights, rough.levelled(degree).heights)
-    cases = [BallOnBeam(surface={"file": rough, "form": form}) for form in (word, degree)]
+    assert np.array_equal(ROUGH.levelled(word).heights, ROUGH.levelled(degree).heights)
+    cases = [BallOnBeam(surface={"file": ROUGH, "form": form}) for form in (word, degree)]
     assert [case.surface.form for case in cases] == [word, word]
     for form in (True, 0, 3, "sphere", 2.0, None):
         with pytest.raises(CaseError, match=r'surface\.form: .*allowed: "plane", "quadratic"'):
-            BallOnBeam(surface={"file": rough, "form": form})
+            BallOnBeam(surface={"file": ROUGH, "form": form})
 
 
 @pytest.mark.parametrize("degree", [0, 1, 2])
@@ -46,108 +50,52 @@ def test_level_removes_its_polynomial_exactly_with_points_missing(degree):
     left = level(with_holes(surface), degree).heights
     assert 0.05 < np.isnan(left).mean() < 0.15
     assert_allclose(left[np.isfinite(left)], 0.0, atol=1e-19)
+    line = level(surface.line(), degree).heights
+    assert_allclose(line, 0.0, atol=1e-19)
 
 
-def test_level_is_a_projection_and_leaves_zero_mean():
-    rough = HeightMap(np.random.default_rng(2).standard_normal((30, 20)) * UM, (UM, UM))
-    once = level(rough, 2)
-    assert_allclose(once.heights.mean(), 0.0, atol=1e-20)
-    assert_allclose(level(once, 2).heights, once.heights, atol=1e-19)
+def cap(radius, x, y):
+    """A ball about a place of the map, or a hollow."""
+    square = (x - 40 * UM) ** 2 + (y - 90 * UM) ** 2
+    return 7 * UM + np.sign(radius) * (np.sqrt(radius**2 - square) - abs(radius))
 
 
-def test_level_a_profile():
-    line = Profile(3.0 + 0.2 * np.arange(50.0), 1.0)
-    assert_allclose(level(line).heights, 0.0, atol=1e-13)
+def roller(radius, x, y):
+    """A cylinder that lies in a direction of the plane."""
+    return np.sqrt(radius**2 - (x * np.cos(0.4) + y * np.sin(0.4) - 70 * UM) ** 2)
 
 
-def test_level_says_which_degrees_there_are():
-    with pytest.raises(InputError, match="degree: received 3"):
-        level(Profile([1.0, 2.0, 3.0, 4.0, 5.0], 1.0), 3)
-    with pytest.raises(InputError, match="2 valid points"):
-        level(Profile([1.0, 2.0, np.nan], 1.0), 2)
-
-
-@pytest.mark.parametrize("radius", [25e-3, -2e-3])
-def test_sphere_is_found_and_removed(radius):
-    centre, top = np.array([40e-6, 90e-6]), 7 * UM
-
-    def cap(x, y):
-        square = (x - centre[0]) ** 2 + (y - centre[1]) ** 2
-        return top + np.sign(radius) * (np.sqrt(radius**2 - square) - abs(radius))
-
-    ball = with_holes(make_map(cap))
-    assert_allclose(fit_form(ball, "sphere").radius, radius, rtol=1e-6)
-    left = remove_form(ball, "sphere").heights
-    assert np.nanmax(np.abs(left)) < 1e-14
-
-
-def test_steep_sphere_is_no_paraboloid():
-    ball = make_map(lambda x, y: np.sqrt((0.2e-3) ** 2 - (x - 60 * UM) ** 2 - (y - 50 * UM) ** 2))
-    assert_allclose(fit_form(ball, "sphere").radius, 0.2e-3, rtol=1e-6)
-    assert np.abs(remove_form(ball, "polynomial", degree=2).heights).max() > 1e-7
-
-
-def test_cylinder_in_any_direction_of_the_plane():
-    def roller(x, y):
-        across = x * np.cos(0.4) + y * np.sin(0.4) - 70 * UM
-        return np.sqrt(1e-3**2 - across**2)
-
-    surface = make_map(roller)
-    assert_allclose(fit_form(surface, "cylinder").radius, 1e-3, rtol=1e-6)
-    assert np.abs(remove_form(surface, "cylinder").heights).max() < 1e-13
-
-
-def test_circle_of_a_profile():
-    x = np.linspace(-1e-4, 1e-4, 81)
-    line = Profile(np.sqrt(4e-3**2 - (x - 2e-5) ** 2), x[1] - x[0])
-    assert_allclose(fit_form(line).radius, 4e-3, rtol=1e-6)
-    assert np.abs(remove_form(line).heights).max() < 1e-14
-
-
-def test_roughness_survives_form_removal():
-    ripple = make_map(lambda x, y: 0.1 * UM * np.sin(2 * np.pi * x / (12 * UM)) + 0.0 * y)
-    ball = make_map(lambda x, y: -((x - 60 * UM) ** 2 + (y - 60 * UM) ** 2) / (2 * 25e-3))
-    left = remove_form(HeightMap(ripple.heights + ball.heights, ball.spacing)).heights
-    assert_allclose(left, ripple.heights, atol=0.01 * UM)
-
-
-def test_form_says_what_is_wrong():
-    flat = make_map(lambda x, y: 0.0 * x * y)
-    with pytest.raises(InputError, match="no curvature"):
-        remove_form(flat, "sphere")
-    with pytest.raises(InputError, match="form: received 'cone'"):
-        remove_form(flat, "cone")
-    with pytest.raises(InputError, match="degree: received 13"):
-        remove_form(flat, "polynomial", degree=13)
-
-
-def inner_amplitude(line, wavelength):
-    x = line.x
-    inner = slice(line.shape[0] // 4, -line.shape[0] // 4)
-    basis = np.stack([np.sin(2 * np.pi * x / wavelength), np.cos(2 * np.pi * x / wavelength)], axis=1)
-    return np.linalg.lstsq(basis[inner], line.heights[inner], rcond=None)[0]
+@pytest.mark.parametrize(
+    ("form", "shape", "radius"),
+    [("sphere", cap, 25e-3), ("sphere", cap, -2e-3), ("sphere", cap, 0.2e-3), ("cylinder", roller, 1e-3)],
+)
+def test_a_form_is_found_and_removed(form, shape, radius):
+    surface = with_holes(make_map(lambda x, y: shape(radius, x, y)))
+    assert_allclose(fit_form(surface, form).radius, radius, rtol=1e-6)
+    assert np.nanmax(np.abs(remove_form(surface, form).heights)) < 1e-13
+    if form == "sphere":
+        circle = make_map(lambda x, y: shape(radius, x, 90 * UM + 0 * y)).line()
+        assert_allclose(fit_form(circle).radius, radius, rtol=1e-6)
+        assert np.abs(remove_form(circle).heights).max() < 1e-13
+    paraboloid = np.nanmax(np.abs(remove_form(surface, "polynomial", degree=2).heights))
+    assert (paraboloid > 1e-8) == (abs(radius) < 0.5e-3)  # a steep cap is none
 
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
 def test_gaussian_transmission_with_zero_phase(ratio):
-    cut_off, wavelength = 80 * UM, 80 * UM * ratio
-    x = np.arange(4000) * UM
-    line = Profile(np.sin(2 * np.pi * x / wavelength), UM)
-    expected = np.exp(-np.log(2.0) / ratio**2)  # ISO 16610-21
-    assert_allclose(inner_amplitude(band_limit(line, shortest=cut_off), wavelength), [expected, 0], atol=1e-5)
-    assert_allclose(
-        inner_amplitude(band_limit(line, longest=cut_off), wavelength), [1 - expected, 0], atol=1e-5
-    )
-
-
-def test_areal_gaussian_halves_a_wave_at_the_cut_off_in_any_direction():
-    size, step, wave = 256, UM, 20 * UM
-    x, y = np.meshgrid(np.arange(size) * step, np.arange(size) * step, indexing="ij")
-    for angle in (0.0, 0.7):
-        wavy = np.sin(2 * np.pi * (x * np.cos(angle) + y * np.sin(angle)) / wave)
-        left = band_limit(HeightMap(wavy, (step, step)), shortest=wave).heights
-        inner = (slice(64, 192),) * 2
-        assert_allclose(left[inner], 0.5 * wavy[inner], atol=2e-5)
+    """exp(−ln 2 (λc/λ)²) of ISO 16610-21 for lines, and for maps in any direction."""
+    expected, wave = np.exp(-np.log(2.0) / ratio**2), 40 * UM
+    wavy = [Profile(np.sin(2 * np.pi * np.arange(1000) * UM / wave), UM)]
+    for cos, sin in ((1.0, 0.0), (0.8, 0.6)):
+        made = make_map(lambda x, y, c=cos, s=sin: np.sin(2 * np.pi * (x * c + y * s) / wave), (256, 200))
+        wavy.append(made)
+    for surface in wavy:
+        inner = (slice(100, -100), slice(60, -60))[: surface.heights.ndim]
+        low, high = (
+            band_limit(surface, **{limit: wave / ratio}).heights[inner] for limit in ("shortest", "longest")
+        )
+        assert_allclose(low, expected * surface.heights[inner], atol=2e-5)
+        assert_allclose(high, (1 - expected) * surface.heights[inner], atol=2e-5)
 
 
 def test_band_limit_keeps_a_constant_and_missing_points():
@@ -155,60 +103,6 @@ def test_band_limit_keeps_a_constant_and_missing_points():
     low = band_limit(surface, shortest=20 * UM).heights
     assert_allclose(low[np.isfinite(low)], 4 * UM, rtol=1e-12)
     assert (np.isnan(low) == np.isnan(surface.heights)).all()
-
-
-def test_band_limit_says_what_is_wrong():
-    line = Profile(np.zeros(100), UM)
-    with pytest.raises(
-        InputError, match="shortest wavelength: received 1e-06; allowed: at least two samples, 2e-06 m"
-    ):
-        band_limit(line, shortest=UM)
-    with pytest.raises(InputError, match="shortest < longest"):
-        band_limit(line, longest=10 * UM, shortest=20 * UM)
-    with pytest.warns(ShortRecordWarning, match="exceeds the surface"):
-        band_limit(line, longest=200 * UM)
-
-
-def test_fill_restores_a_harmonic_surface():
-    surface = make_map(lambda x, y: (x * x - y * y) / 1.0 + 0.3 * x * y)
-    holed = np.array(surface.heights)
-    holed[20:28, 10:16] = np.nan
-    holed[3, 3] = np.nan
-    filled = fill(HeightMap(holed, surface.spacing, "patch"))
-    assert_allclose(filled.heights, surface.heights, atol=1e-20)
-    assert filled.source == "patch; 2.04% of the points filled"
-
-
-def test_fill_a_profile_with_straight_lines_and_level_ends():
-    with pytest.warns(MissingPointsWarning, match=r"50.0% of the points"):
-        filled = fill(Profile([np.nan, 1.0, np.nan, np.nan, 4.0, 5.0, 6.0, np.nan], 1.0))
-    assert_allclose(filled.heights, [1.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 6.0])
-
-
-@pytest.mark.filterwarnings("ignore::asperity.errors.MissingPointsWarning")
-def test_lines_side_by_side_are_filled_along_themselves_or_not_at_all():
-    """Three lines out of register, each with a flat of its own: none gets that of a neighbour."""
-    lines = np.zeros((3, 120))
-    lines[0, 20:30], lines[1, 100:110], lines[2, 20:30] = -1.0, -1.0, -1.0
-    lines[:] += 0.01 * np.arange(120)
-    holed = lines.copy()
-    holed[1, 15:35] = np.nan  # beside the flats of both neighbours
-    holed[1, 60:] = np.nan  # a short line: its own flat was not reached
-    for surface in (HeightMap(holed, (5e-3, 1e-3)), HeightMap(holed.T, (1e-3, 5e-3))):
-        filled = surface.filled()
-        heights = filled.heights if surface.shape[0] == 3 else filled.heights.T
-        assert_allclose(heights[1, :60], 0.01 * np.arange(60), atol=1e-12)
-        assert np.isnan(heights[1, 60:]).all()
-        assert filled.source == "5.56% of the points filled"
-    taken_for_a_map = HeightMap(holed, (5e-3, 1e-3)).filled(lines=False)
-    assert taken_for_a_map.heights[1, 25] < -0.4  # a second flat
-
-
-def test_fill_leaves_a_complete_surface_alone():
-    surface = make_map(lambda x, y: x + y)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert fill(surface) is surface
 
 
 @pytest.mark.parametrize("new", [8.0, 4.0, 1.0])
@@ -223,18 +117,105 @@ def test_resample_keeps_waves_that_fit(new):
     assert_allclose(resampled.heights, np.cos(2 * np.pi * 20.5 * centres / length), atol=2e-3)
 
 
-def test_resample_removes_what_would_alias():
+def test_resample_removes_what_would_alias_and_keeps_the_mean():
     x = (np.arange(512) + 0.5) / 512
-    short = HeightMap(np.cos(np.pi * 114 * x)[:, None] * np.ones(64), (UM, UM))  # 8.98 µm
+    short = HeightMap(3.0 + np.cos(np.pi * 114 * x)[:, None] * np.ones(64), (UM, UM))  # 8.98 µm
     left = resample(short, (8 * UM, UM)).heights
     assert left.shape == (64, 64)
-    assert_allclose(left, 0.0, atol=1e-12)
+    assert_allclose(left, 3.0, atol=1e-12)
 
 
-def test_resample_keeps_the_mean_and_says_what_is_wrong():
-    rough = HeightMap(np.random.default_rng(0).standard_normal((128, 96)), (UM, UM))
-    assert_allclose(resample(rough, 4 * UM).heights.mean(), rough.heights.mean(), atol=1e-3)
-    with pytest.raises(InputError, match="spacing"):
-        resample(rough, 60 * UM)
-    with pytest.raises(InputError, match="Use fill first"):
-        resample(with_holes(rough), 4 * UM)
+def wave(angle, wavelength=12 * UM, shape=(160, 120)):
+    """Crests at right angles to a direction, degrees from x towards y."""
+    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    return make_map(lambda x, y: np.sin(2 * np.pi * (x * cos + y * sin) / wavelength), shape, (UM, UM))
+
+
+def test_quarter_turns_move_points_and_change_none():
+    """Rolling along +y: the first axis runs along y, and what lay at small x lies at large y'."""
+    heights = np.random.default_rng(0).normal(size=(5, 3))
+    heights[1, 2] = np.nan
+    surface = HeightMap(heights, (UM, 2 * UM))
+    along_y = rotated(surface, np.pi / 2)
+    assert along_y.spacing == (2 * UM, UM)
+    assert_array_equal(along_y.heights, heights[::-1].T)
+    assert_array_equal(rotated(surface, np.pi).heights, heights[::-1, ::-1])
+    assert_array_equal(rotated(surface, -np.pi / 2).heights, heights[:, ::-1].T)
+    assert_array_equal(rotated(surface, 0.0).heights, heights)
+
+
+@pytest.mark.parametrize("direction", [30.0, -50.0, 120.0])
+def test_a_wave_along_the_direction_becomes_a_wave_along_x(direction):
+    """Of known phase, the same at all places across; and Std turns against the direction."""
+    turned = rotated(wave(direction), np.radians(direction))
+    middle = np.array([159, 119]) * UM / 2 @ [np.cos(np.radians(direction)), np.sin(np.radians(direction))]
+    n = turned.shape[0]
+    place = middle + UM * (np.arange(n) - 0.5 * (n - 1))
+    expected = np.sin(2 * np.pi * place / (12 * UM))[:, None]
+    assert_allclose(turned.heights, np.broadcast_to(expected, turned.shape), atol=4e-3)
+    after = np.degrees(texture_direction(rotated(wave(40.0), np.radians(direction))))
+    assert (after - (40.0 - direction) + 90) % 180 - 90 == pytest.approx(0.0, abs=2.5)
+
+
+@pytest.mark.parametrize("degrees", [1.0, 20.0, 45.0, 66.0, 89.0, 110.0, 200.0, 333.0])
+@pytest.mark.parametrize("sides", [(3.0, 2.0), (2.0, 3.0), (10.0, 1.0), (1.0, 1.0)])
+def test_the_rectangle_lies_inside_and_none_larger_does(sides, degrees):
+    """Against a search over all rectangles about the middle."""
+    cos, sin = abs(np.cos(np.radians(degrees))), abs(np.sin(np.radians(degrees)))
+    a, b = inscribed(*sides, np.radians(degrees))
+    assert a * cos + b * sin <= sides[0] * (1 + 1e-9)
+    assert a * sin + b * cos <= sides[1] * (1 + 1e-9)
+    tried = np.linspace(1e-6, min(sides[0] / cos, sides[1] / sin), 4001)
+    fitting = np.minimum((sides[0] - tried * cos) / sin, (sides[1] - tried * sin) / cos)
+    assert a * b == pytest.approx((tried * fitting).max(), rel=1e-3)
+
+
+def test_planes_turn_exactly_and_nothing_lies_beyond_the_points():
+    surface = make_map(lambda x, y: 3 * x - y + 7 * UM, (40, 30), (UM, 2 * UM))
+    turned = rotated(surface, np.radians(20.0))
+    assert turned.spacing == (UM, UM)
+    gradient = [np.diff(turned.heights, axis=axis) / UM for axis in (0, 1)]
+    cos, sin = np.cos(np.radians(20)), np.sin(np.radians(20))
+    assert_allclose(gradient[0], 3 * cos - sin, rtol=1e-9)
+    assert_allclose(gradient[1], -3 * sin - cos, rtol=1e-9)
+    assert rotated(wave(10.0, shape=(101, 101)), np.pi / 4).shape == (71, 71)  # sides of 100/√2 steps
+
+
+def test_points_beside_a_missing_one_are_missing_and_no_others():
+    surface = wave(0.0)
+    heights = np.array(surface.heights)
+    heights[80, 60] = np.nan
+    turned = rotated(HeightMap(heights, surface.spacing), np.radians(30))
+    whole = rotated(surface, np.radians(30))
+    gone = np.isnan(turned.heights)
+    assert 1 <= gone.sum() <= 5  # four cells of the map hold less than five points of its own spacing
+    assert_allclose(turned.heights[~gone], whole.heights[~gone], atol=0.05)
+
+
+LINE = Profile(np.zeros(100), UM)
+
+
+@pytest.mark.parametrize(
+    ("made", "message"),
+    [
+        (lambda: level(LINE, 3), "degree: received 3"),
+        (lambda: level(Profile([1.0, 2.0, np.nan], 1.0), 2), "2 valid points"),
+        (lambda: remove_form(FLAT, "sphere"), "no curvature"),
+        (lambda: remove_form(FLAT, "cone"), "form: received 'cone'"),
+        (lambda: remove_form(FLAT, "polynomial", degree=13), "degree: received 13"),
+        (lambda: band_limit(LINE, shortest=UM), "shortest wavelength: received 1e-06; allowed: at least two"),
+        (lambda: band_limit(LINE, longest=10 * UM, shortest=20 * UM), "shortest < longest"),
+        (lambda: resample(ROUGH, 60 * UM), "spacing"),
+        (lambda: resample(with_holes(ROUGH), 4 * UM), "Use fill first"),
+        (lambda: rotated(HeightMap(np.eye(90, 2), UM), np.pi / 4), "received 45 degrees on a map of 90 x 2"),
+        (lambda: rotated(FLAT, np.inf), "a finite angle"),
+    ],
+)
+def test_what_is_wrong_is_said(made, message):
+    with pytest.raises(InputError, match=message):
+        made()
+
+
+def test_a_filter_longer_than_the_surface_is_doubted():
+    with pytest.warns(ShortRecordWarning, match="exceeds the surface"):
+        band_limit(LINE, longest=200 * UM)

@@ -1,146 +1,159 @@
-import warnings
+"""Roughness parameters, spectra and correlation of maps, lines and strips, against closed forms."""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy import fft
+from scipy.integrate import quad
+from scipy.special import ndtri
+from scipy.stats import norm
 
 from asperity.errors import InputError, ShortRecordWarning
+from asperity.surfaces import spectra
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.spectra import (
-    LagSums,
-    autocorrelation,
-    autocorrelation_lengths,
-    psd_1d,
-    psd_2d,
-    psd_radial,
-    texture_direction,
+from asperity.surfaces.statistics import (
+    areal_statistics,
+    material_ratio_curve,
+    profile_statistics,
+    stratified,
 )
-from asperity.surfaces.statistics import areal_statistics, profile_statistics
 
 UM = 1e-6
 
 
-def gaussian_correlated(shape, spacing, lengths, rms, seed):
-    """Periodic surface with autocorrelation exp(-(x/lx)² - (y/ly)²)."""
+def gaussian_correlated(shape, spacing, lengths, seed):
+    """Periodic surface of 1 µm rms with autocorrelation exp(-(x/lx)² - (y/ly)²)."""
     q = [2 * np.pi * fft.fftfreq(n, d) for n, d in zip(shape, spacing, strict=True)]
     exponent = (q[0][:, None] * lengths[0]) ** 2 + (q[1][None, :] * lengths[1]) ** 2
     power = np.exp(-exponent / 4.0)
     noise = np.random.default_rng(seed).standard_normal(shape)
-    return HeightMap(fft.ifft2(fft.fft2(noise) * np.sqrt(power / power.mean())).real * rms, spacing)
+    return HeightMap(fft.ifft2(fft.fft2(noise) * np.sqrt(power / power.mean())).real * UM, spacing)
 
 
-def wave(amplitude, wavelength, shape=(2000, 50), spacing=(UM, UM)):
-    x = np.arange(shape[0]) * spacing[0]
-    return HeightMap(
-        np.repeat(amplitude * np.sin(2 * np.pi * x / wavelength)[:, None], shape[1], axis=1), spacing
-    )
+def values(statistics):
+    return {item.symbol: item.value for item in statistics}
 
 
-def by_symbol(statistics):
-    return {s.symbol: s for s in statistics}
+def waves(amplitude, wavelength, shape=(2000, 50)):
+    x = np.arange(shape[0]) * UM
+    return HeightMap(amplitude * np.sin(2 * np.pi * x / wavelength)[:, None] * np.ones(shape[1]), (UM, UM))
 
 
 def test_areal_statistics_of_a_sine_wave():
     amplitude, wavelength = 0.4 * UM, 40 * UM
     with pytest.warns(ShortRecordWarning, match="upper bound"):  # a straight lay never decorrelates
-        found = by_symbol(areal_statistics(wave(amplitude, wavelength)))
-    assert_allclose(found["Sq"].value, amplitude / np.sqrt(2.0), rtol=1e-12)
-    assert_allclose(found["Sa"].value, amplitude * 2.0 / np.pi, rtol=3e-3)
-    assert_allclose(found["Ssk"].value, 0.0, atol=1e-12)
-    assert_allclose(found["Sku"].value, 1.5, rtol=1e-12)
-    assert_allclose(found["Sz"].value, 2.0 * amplitude, rtol=1e-12)
+        named = areal_statistics(waves(amplitude, wavelength))
+    found = values(named)
     slope = 2.0 * np.pi * amplitude / (wavelength * np.sqrt(2.0))
-    assert_allclose(found["Sdq"].value, slope, rtol=5e-3)  # whole waves less three points at the ends
-    assert_allclose(found["Sdr"].value, slope**2 / 2.0, rtol=1e-2)
-    # parts of a wave at the ends change the mean products by up to wavelength/(2π length)
-    assert_allclose(found["Sal"].value, np.arccos(0.2) / (2.0 * np.pi) * wavelength, rtol=3.2e-3)
-    assert found["Str"].value < 0.36  # at most this map's half width, 25 µm, shows
-    assert found["Sq"].bandwidth == (2 * UM, 2000 * UM)
-    assert (found["Sq"].unit, found["Sdq"].unit) == ("m", "1")
+    for symbol, expected, off in (
+        ("Sq", amplitude / np.sqrt(2.0), 1e-12),
+        ("Sa", amplitude * 2.0 / np.pi, 3e-3),
+        ("Sku", 1.5, 1e-12),
+        ("Sz", 2.0 * amplitude, 1e-12),
+        ("Sdq", slope, 5e-3),  # whole waves less three points at the ends
+        ("Sdr", slope**2 / 2.0, 1e-2),
+        # parts of a wave at the ends change the mean products by up to wavelength/(2π length)
+        ("Sal", np.arccos(0.2) / (2.0 * np.pi) * wavelength, 3.2e-3),
+    ):
+        assert found[symbol] == pytest.approx(expected, rel=off), symbol
+    assert_allclose(found["Ssk"], 0.0, atol=1e-12)
+    assert found["Str"] < 0.36  # at most this map's half width, 25 µm, shows
+    assert named[0].bandwidth == (2 * UM, 2000 * UM)
+    assert {item.symbol: item.unit for item in named}["Std"] == "rad"
 
 
 def test_slope_of_a_plane_is_exact():
     x, y = np.meshgrid(np.arange(30.0), np.arange(20.0), indexing="ij")
-    rough = HeightMap(0.3 * x + 0.4 * y * 2.0, (1.0, 2.0))
     with pytest.warns(ShortRecordWarning):
-        found = by_symbol(areal_statistics(rough))
-    assert_allclose(found["Sdq"].value, 0.5, rtol=1e-12)
-    assert_allclose(found["Sdr"].value, np.sqrt(1.25) - 1.0, rtol=1e-12)
+        found = values(areal_statistics(HeightMap(0.3 * x + 0.4 * y * 2.0, (1.0, 2.0))))
+    assert_allclose([found["Sdq"], found["Sdr"]], [0.5, np.sqrt(1.25) - 1.0], rtol=1e-12)
 
 
-def test_slope_formula_is_of_sixth_order():
-    errors = []
-    for points in (16, 32):
-        x = np.arange(40 * points) / points
-        rms = by_symbol(profile_statistics(Profile(np.sin(2 * np.pi * x), 1.0 / points)))["Rdq"].value
-        errors.append(abs(rms / (2 * np.pi / np.sqrt(2)) - 1.0))
-    x = 2 * np.pi / np.array([16, 32])
+@pytest.mark.parametrize("points", [8, 16])
+def test_slope_formula_has_its_response(points):
+    """Seven points: (45 sin x − 9 sin 2x + sin 3x)/30x of a wave of x a sample, of sixth order."""
+    x = 2 * np.pi / points
+    line = Profile(np.sin(x * np.arange(300 * points + 6)), 1.0)
     response = (45 * np.sin(x) - 9 * np.sin(2 * x) + np.sin(3 * x)) / (30 * x)
-    assert_allclose((1 - response)[0] / (1 - response)[1], 64.0, rtol=0.05)
-    assert errors[0] < 5e-3
+    assert_allclose(values(profile_statistics(line))["Rdq"], response * x / np.sqrt(2), rtol=1e-9)
 
 
 def test_profile_statistics_of_a_sine_wave_with_own_bandwidth():
-    x = np.arange(1000) * UM
-    found = by_symbol(
-        profile_statistics(Profile(3 * UM * np.sin(2 * np.pi * x / (50 * UM)), UM), (8 * UM, UM))
-    )
-    assert list(found) == [
-        *("Rq", "Ra", "Rsk", "Rku", "Rt", "Rz", "Rp", "Rv", "Rdq"),
-        *("Rk", "Rpk", "Rvk", "Rmr1", "Rmr2"),
-    ]
-    assert_allclose(found["Rq"].value, 3 * UM / np.sqrt(2.0), rtol=1e-12)
-    assert_allclose(found["Rdq"].value, 2 * np.pi * 3 / (50 * np.sqrt(2.0)), rtol=3e-3)
-    assert found["Rq"].bandwidth == (8 * UM, UM)
+    line = waves(3 * UM, 50 * UM, (1000, 2)).line(0)
+    named = profile_statistics(line, (8 * UM, UM))
+    found = values(named)
+    assert " ".join(found) == "Rq Ra Rsk Rku Rt Rz Rp Rv Rdq Rk Rpk Rvk Rmr1 Rmr2"
+    assert_allclose(found["Rq"], 3 * UM / np.sqrt(2.0), rtol=1e-12)
+    assert named[0].bandwidth == (8 * UM, UM)
+
+
+def test_lines_have_parameters_of_their_sections():
+    """Sines of five amplitudes in five sections: their heights are averaged, the total height is not."""
+    x = np.arange(4000) * UM
+    line = Profile(np.repeat([1.0, 2.0, 3.0, 4.0, 5.0], 800) * UM * np.sin(2 * np.pi * x / 80e-6), UM)
+    named = profile_statistics(line)
+    found, longer = values(named), values(profile_statistics(line, section=1.6e-3))
+    assert_allclose([found["Rz"], found["Rp"], found["Rt"]], [6 * UM, 3 * UM, 10 * UM], rtol=1e-3)
+    assert named[5].meaning.endswith("mean of 5 sections of 0.8 mm")
+    assert longer["Rz"] == pytest.approx(6e-6, rel=1e-3)  # 2 and 4 µm, of two whole sections
+    assert longer["Rq"] == pytest.approx(1e-6 * np.sqrt(11.0 / 2.0), rel=1e-6)
 
 
 def test_skewness_and_kurtosis_of_an_exponential_distribution():
     heights = -np.log((np.arange(200000) + 0.5) / 200000)
     heights = np.random.default_rng(0).permutation(heights).reshape(500, 400)
-    found = by_symbol(areal_statistics(HeightMap(heights, (1.0, 1.0))))
-    assert_allclose([found["Ssk"].value, found["Sku"].value], [2.0, 9.0], rtol=5e-3)
-    assert_allclose([found["Sq"].value, found["Sa"].value], [1.0, 2.0 / np.e], rtol=1e-3)
+    found = values(areal_statistics(HeightMap(heights, (1.0, 1.0))))
+    assert_allclose([found["Ssk"], found["Sku"]], [2.0, 9.0], rtol=5e-3)
+    assert_allclose([found["Sq"], found["Sa"]], [1.0, 2.0 / np.e], rtol=1e-3)
 
 
-def test_gaussian_correlation_gives_sal_and_str():
+def test_a_gaussian_correlation_has_its_lengths_slope_and_spectra_in_closed_form():
     lengths = (20 * UM, 8 * UM)
-    maps = [gaussian_correlated((1024, 1024), (UM, UM), lengths, UM, seed=s) for s in range(5)]
-    shortest, longest = np.mean([autocorrelation_lengths(m) for m in maps], axis=0)
-    reach = np.sqrt(np.log(5.0))
-    assert_allclose([shortest, longest], [lengths[1] * reach, lengths[0] * reach], rtol=0.04)
+    maps = [gaussian_correlated((1000, 500), (UM, UM), lengths, seed) for seed in range(6)]
+    found = [values(areal_statistics(m)) for m in maps]
+    shortest, longest = np.mean([(each["Sal"], each["Sal"] / each["Str"]) for each in found], axis=0)
+    assert_allclose([shortest, longest], np.sqrt(np.log(5.0)) * np.array(lengths)[::-1], rtol=0.04)
     slope = np.sqrt(2.0 / lengths[0] ** 2 + 2.0 / lengths[1] ** 2) * UM
-    assert_allclose(by_symbol(areal_statistics(maps[0]))["Sdq"].value, slope, rtol=0.01)
+    assert_allclose(np.mean([each["Sdq"] for each in found]), slope, rtol=0.01)
+    for axis, length in enumerate(lengths):
+        wavenumber, _ = spectra.psd_1d(maps[0], axis)
+        profile = np.mean([spectra.psd_1d(m, axis)[1] for m in maps], axis=0)
+        expected = 2 * np.sqrt(np.pi) * length * UM**2 * np.exp(-((np.pi * wavenumber * length) ** 2))
+        assert_allclose(profile[2:40].sum(), expected[2:40].sum(), rtol=0.05)
+    round_ = [gaussian_correlated((512, 512), (UM, UM), (10 * UM, 10 * UM), seed) for seed in range(5)]
+    q, _ = spectra.psd_radial(round_[0])
+    mean = np.mean([spectra.psd_radial(m)[1] for m in round_], axis=0)
+    expected = UM**2 * (10 * UM) ** 2 / (4 * np.pi) * np.exp(-((q * 10 * UM) ** 2) / 4.0)
+    inside = (q > 4e4) & (q < 4e5)
+    assert_allclose(np.mean(mean[inside] / expected[inside]), 1.0, atol=0.05)
 
 
 def test_missing_points_are_left_out():
-    surface = gaussian_correlated((400, 400), (UM, UM), (12 * UM, 12 * UM), UM, seed=1)
+    surface = gaussian_correlated((400, 400), (UM, UM), (12 * UM, 12 * UM), seed=1)
     holed = np.array(surface.heights)
     holed[150:170, 60:90] = np.nan
     holed[np.random.default_rng(0).random(holed.shape) < 0.005] = np.nan
-    whole, part = (by_symbol(areal_statistics(s)) for s in (surface, HeightMap(holed, surface.spacing)))
-    for symbol in ("Sq", "Sa", "Sdq", "Sal"):
-        assert_allclose(part[symbol].value, whole[symbol].value, rtol=0.01)
-    assert_allclose(part["Str"].value, whole["Str"].value, rtol=0.02)
+    whole, part = (values(areal_statistics(s)) for s in (surface, HeightMap(holed, surface.spacing)))
+    for symbol, off in (("Sq", 0.01), ("Sa", 0.01), ("Sdq", 0.01), ("Sal", 0.01), ("Str", 0.02)):
+        assert_allclose(part[symbol], whole[symbol], rtol=off)
 
 
 def test_autocorrelation_against_direct_sums():
     heights = np.random.default_rng(5).standard_normal((12, 9))
     heights[4, 4] = np.nan
     z = heights - np.nanmean(heights)
-    lobe = autocorrelation(HeightMap(heights, (1.0, 1.0)))
+    lobe = spectra.autocorrelation(HeightMap(heights, (1.0, 1.0)))
     assert lobe.shape == (13, 9)
     assert lobe[6, 4] == 1.0
     direct = np.nanmean(z[3:, 2:] * z[:-3, :-2]) / np.nanmean(z**2)
-    assert_allclose(lobe[9, 6], direct, rtol=1e-12)
-    assert_allclose(lobe[3, 2], direct, rtol=1e-12)
+    assert_allclose([lobe[9, 6], lobe[3, 2]], direct, rtol=1e-12)
 
 
 @pytest.mark.parametrize("columns", [1, 8, 9])
 def test_products_at_lags_add_up_over_pieces(columns):
     """Against direct sums, at lags that no two pieces share."""
     pieces = [np.random.default_rng(rows).standard_normal((rows, columns)) for rows in (11, 10, 11)]
-    lags = LagSums(11, columns, 4)
+    lags = spectra.LagSums(11, columns, 4)
     for piece in pieces:
         lags.add(piece)
     sums, pairs = lags.sums(), np.outer(*lags.pairs())
@@ -158,19 +171,16 @@ def test_products_at_lags_add_up_over_pieces(columns):
             assert pairs[4 + along, side + across] == len(products)
 
 
-def test_both_spectra_integrate_to_the_mean_square():
-    surface = gaussian_correlated((256, 128), (2 * UM, 3 * UM), (20 * UM, 9 * UM), UM, seed=4)
-    mean_square = surface.heights.var()
-    qx, qy, areal = psd_2d(surface, window=False)
-    assert_allclose(areal.sum() * (qx[1] - qx[0]) * (qy[1] - qy[0]), mean_square, rtol=1e-12)
-    weights = np.outer(*(np.sin(np.pi * np.arange(n) / n) ** 2 for n in surface.shape)) ** 2
+def test_spectra_integrate_to_the_mean_square_under_their_windows():
+    surface = gaussian_correlated((256, 128), (2 * UM, 3 * UM), (20 * UM, 9 * UM), seed=4)
     z = surface.heights - surface.heights.mean()
-    _, _, windowed = psd_2d(surface)
-    expected = np.average(z**2, weights=weights)
-    assert_allclose(windowed.sum() * (qx[1] - qx[0]) * (qy[1] - qy[0]), expected, rtol=1e-12)
-    for axis in (0, 1):
-        wavenumber, profile = psd_1d(surface, axis)
-        weight = np.sin(np.pi * np.arange(surface.shape[axis]) / surface.shape[axis]) ** 4
+    along, across = (np.sin(np.pi * np.arange(n) / n) ** 4 for n in surface.shape)
+    for window, weights in ((False, np.ones(z.shape)), (True, np.outer(along, across))):
+        qx, qy, areal = spectra.psd_2d(surface, window)
+        expected = np.average(z**2, weights=weights)
+        assert_allclose(areal.sum() * (qx[1] - qx[0]) * (qy[1] - qy[0]), expected, rtol=1e-12)
+    for axis, weight in enumerate((along, across)):
+        wavenumber, profile = spectra.psd_1d(surface, axis)
         expected = np.average((z**2).mean(axis=1 - axis), weights=weight)
         assert_allclose(profile.sum() * wavenumber[1], expected, rtol=1e-12)
 
@@ -178,49 +188,32 @@ def test_both_spectra_integrate_to_the_mean_square():
 def test_profile_spectrum_is_four_pi_times_the_areal_one_summed_across():
     x, y = np.meshgrid(np.arange(256) / 256, np.arange(128) / 128, indexing="ij")
     surface = HeightMap(3.0 * np.cos(2 * np.pi * 10 * x) * np.cos(2 * np.pi * 5 * y), (0.5, 0.25))
-    qx, qy, areal = psd_2d(surface)
+    qx, qy, areal = spectra.psd_2d(surface)
     across = 4.0 * np.pi * areal.sum(axis=1) * (qy[1] - qy[0])
-    wavenumber, profile = psd_1d(surface)
+    wavenumber, profile = spectra.psd_1d(surface)
     assert_allclose(across[np.isclose(qx / (2 * np.pi), wavenumber[10])], profile[10], rtol=1e-12)
     assert_allclose(profile[8:13].sum() * wavenumber[1], 9.0 / 4.0, rtol=1e-12)
 
 
-def test_profile_spectrum_has_the_closed_form_of_a_gaussian_correlation():
-    maps = [gaussian_correlated((256, 256), (UM, UM), (8 * UM, 16 * UM), UM, seed=s) for s in range(8)]
-    wavenumber = psd_1d(maps[0])[0]
-    profile = np.mean([psd_1d(m)[1] for m in maps], axis=0)
-    closed_form = 2 * np.sqrt(np.pi) * 8 * UM * UM**2 * np.exp(-((np.pi * wavenumber * 8 * UM) ** 2))
-    assert_allclose(profile[2:20].sum(), closed_form[2:20].sum(), rtol=0.05)
+FLAT, GAP = HeightMap(np.ones((10, 10)), (1.0, 1.0)), np.random.default_rng(0).random((10, 10))
+GAP[0, 0] = np.nan
 
 
-def test_radial_spectrum_has_the_closed_form_of_a_gaussian_correlation():
-    length = 10 * UM
-    maps = [gaussian_correlated((1024, 1024), (UM, UM), (length, length), UM, seed=s) for s in range(4)]
-    q, _ = psd_radial(maps[0])
-    mean = np.mean([psd_radial(m)[1] for m in maps], axis=0)
-    closed_form = UM**2 * length**2 / (4 * np.pi) * np.exp(-((q * length) ** 2) / 4.0)
-    inside = (q > 4e4) & (q < 4e5)
-    assert_allclose(np.mean(mean[inside] / closed_form[inside]), 1.0, atol=0.05)
-
-
-def test_statistics_say_what_is_wrong():
-    flat = HeightMap(np.ones((10, 10)), (1.0, 1.0))
-    with pytest.raises(InputError, match="equal heights"):
-        autocorrelation(flat)
-    with pytest.raises(InputError, match="equal heights"):
-        profile_statistics(Profile(np.zeros(10), 1.0))
-    with pytest.raises(InputError, match="at least 7 points"):
-        profile_statistics(Profile([1.0, 2.0, 3.0], 1.0))
-    with pytest.raises(InputError, match="no seven valid points"):
-        profile_statistics(Profile([1.0, np.nan, 3.0, np.nan] * 5, 1.0))
-    with pytest.raises(InputError, match="threshold"):
-        autocorrelation_lengths(flat, 1.0)
-    holed = np.random.default_rng(0).random((10, 10))
-    holed[0, 0] = np.nan
-    with pytest.raises(InputError, match=r"1\.00% missing points"):
-        psd_2d(HeightMap(holed, (1.0, 1.0)))
-    with pytest.raises(InputError, match="axis: received 2"):
-        psd_1d(flat, 2)
+@pytest.mark.parametrize(
+    ("made", "message"),
+    [
+        (lambda: spectra.autocorrelation(FLAT), "equal heights"),
+        (lambda: profile_statistics(Profile(np.zeros(10), 1.0)), "equal heights"),
+        (lambda: profile_statistics(Profile([1.0, 2.0, 3.0], 1.0)), "at least 7 points"),
+        (lambda: profile_statistics(Profile([1.0, np.nan, 3.0, np.nan] * 5, 1.0)), "no seven valid points"),
+        (lambda: spectra.autocorrelation_lengths(FLAT, 1.0), "threshold"),
+        (lambda: spectra.psd_2d(HeightMap(GAP, (1.0, 1.0))), r"1\.00% missing points"),
+        (lambda: spectra.psd_1d(FLAT, 2), "axis: received 2"),
+    ],
+)
+def test_what_is_wrong_is_said(made, message):
+    with pytest.raises(InputError, match=message):
+        made()
 
 
 def turned_texture(degrees, ratio, rng, points=128):
@@ -235,33 +228,82 @@ def turned_texture(degrees, ratio, rng, points=128):
 def test_the_direction_of_a_rough_texture_is_not_decided_by_its_longest_waves():
     """Ridges of known direction, and two of equal height that cross at 60 degrees: one of both is named."""
     rng = np.random.default_rng(11)
-    directions, errors = rng.uniform(0.0, 180.0, 12), []
-    for degrees in directions:
-        found = np.degrees(texture_direction(HeightMap(turned_texture(degrees, 2.0, rng), (1.0, 1.0))))
-        errors.append((found - degrees + 90) % 180 - 90)
+
+    def found(heights):
+        return np.degrees(spectra.texture_direction(HeightMap(heights, (1.0, 1.0))))
+
+    directions = rng.uniform(0.0, 180.0, 12)
+    errors = [(found(turned_texture(d, 2.0, rng)) - d + 90) % 180 - 90 for d in directions]
     assert np.sqrt(np.mean(np.square(errors))) < 6.0  # 16 by the power of heights
-    crossed = turned_texture(20.0, 10.0, rng) + turned_texture(80.0, 10.0, rng)
-    found = np.degrees(texture_direction(HeightMap(crossed, (1.0, 1.0))))
-    assert min(abs(found - 20.0), abs(found - 80.0)) < 4.0
+    crossed = found(turned_texture(20.0, 10.0, rng) + turned_texture(80.0, 10.0, rng))
+    assert min(abs(crossed - 20.0), abs(crossed - 80.0)) < 4.0
 
 
 @pytest.mark.parametrize("degrees", [0, 30, 90, 150])
+@pytest.mark.filterwarnings("ignore::asperity.errors.ShortRecordWarning")
 def test_direction_is_among_the_areal_statistics(degrees):
-    """Std: ridges that run across the direction in which the heights vary."""
-    angle = np.radians(degrees)
+    """Std: ridges, under noise, that run across the direction in which the heights vary."""
+    angle, rng = np.radians(degrees), np.random.default_rng(1)
     x, y = np.meshgrid(np.arange(128), np.arange(128), indexing="ij")
-    rng = np.random.default_rng(1)
     across = x * np.cos(angle) + y * np.sin(angle)
-    heights = sum(np.sin(2 * np.pi * across / w + rng.uniform(0, 6)) for w in (5.0, 7.0, 11.0))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ShortRecordWarning)
-        found = by_symbol(areal_statistics(HeightMap(heights, (1.0, 1.0))))
-    assert found["Std"].unit == "rad"
-    assert abs((np.degrees(found["Std"].value) - degrees + 90) % 180 - 90) <= 2.0
+    heights = sum(np.sin(2 * np.pi * across / w + rng.uniform(0, 6)) for w in np.linspace(4, 12, 20))
+    heights += 3 * rng.standard_normal(x.shape)
+
+    def std():
+        return values(areal_statistics(HeightMap(heights, (1.0, 1.0))))["Std"]
+
+    found = std()
+    assert abs((np.degrees(found) - degrees + 90) % 180 - 90) <= 2.0
     heights[3:6, 4:40:9] = np.nan  # a few points are filled for it, more than 5 % are not
-    few = HeightMap(heights, (1.0, 1.0))
+    assert std() == pytest.approx(found, abs=0.01)
     heights[:8] = np.nan
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ShortRecordWarning)
-        assert by_symbol(areal_statistics(few))["Std"].value == pytest.approx(found["Std"].value, abs=0.01)
-        assert np.isnan(by_symbol(areal_statistics(HeightMap(heights, (1.0, 1.0))))["Std"].value)
+    assert np.isnan(std())
+
+
+RATIO = (np.arange(200_000) + 0.5) / 200_000
+
+
+def line_over(curve, low, high):
+    """Line of least squares through a curve over an interval: its heights at 0 and at 1."""
+    middle, width = 0.5 * (low + high), high - low
+    mean = quad(curve, low, high)[0] / width
+    slope = quad(lambda m: (m - middle) * curve(m), low, high)[0] * 12.0 / width**3
+    return mean - slope * middle, mean + slope * (1.0 - middle)
+
+
+def test_three_straight_pieces_have_the_core_of_the_middle_one():
+    """From 3 to 1 over 10 %, to 0 over 70 %, to −4 over 20 %: the core is the middle line, drawn out."""
+    heights = np.interp(RATIO, [0.0, 0.1, 0.8, 1.0], [3.0, 1.0, 0.0, -4.0])
+    found = stratified(np.random.default_rng(0).permutation(heights).reshape(400, 500))
+    expected = {"k": 10 / 7, "pk": 13 / 7, "vk": 26 / 7, "mr1": 13 / 140, "mr2": 0.8 + 1 / 70}
+    assert found == pytest.approx(expected, rel=1e-3)
+
+
+def test_the_first_of_the_flattest_secants_counts():
+    """A sine is flattest at its crests and, as much, in its valleys: the line lies over the first 40 %."""
+    found = stratified(np.sin(2.0 * np.pi * RATIO))
+    top, bottom = line_over(lambda m: np.cos(np.pi * m), 0.0, 0.4)
+    assert found["k"] == pytest.approx(top - bottom, rel=1e-4)
+    assert found["mr1"] == pytest.approx(np.arccos(min(top, 1.0)) / np.pi, abs=1e-4)
+    assert found["mr2"] == pytest.approx(np.arccos(bottom) / np.pi, abs=1e-3)
+    below = quad(lambda m: bottom - np.cos(np.pi * m), found["mr2"], 1.0)[0]
+    assert found["vk"] == pytest.approx(2.0 * below / (1.0 - found["mr2"]), rel=1e-3)
+
+
+def test_normal_heights_have_a_symmetric_core():
+    """The line over the middle 40 % of Φ⁻¹: 2.58 standard deviations high, a tenth of the points above it."""
+    found = stratified(ndtri(RATIO))
+    top, bottom = line_over(lambda m: norm.isf(m), 0.3, 0.7)
+    assert found["k"] == pytest.approx(top - bottom, rel=1e-4)
+    assert found["pk"] == pytest.approx(found["vk"], rel=1e-3)
+    assert found["mr1"] == pytest.approx(norm.sf(top), abs=1e-4)
+    above = norm.pdf(top) - top * norm.sf(top)
+    assert found["pk"] == pytest.approx(2.0 * above / norm.sf(top), rel=1e-3)
+
+
+def test_the_curve_falls_from_the_highest_to_the_lowest():
+    """Of heights that are spread evenly it is a straight line; missing ones have no part in it."""
+    heights = np.append(np.linspace(-1.0, 1.0, 1001), [np.nan] * 10)
+    ratio, height = material_ratio_curve(heights, 11)
+    assert_allclose(ratio, np.linspace(0, 1, 11))
+    assert_allclose(height, 1.0 - 2.0 * ratio, atol=1e-12)

@@ -1,3 +1,5 @@
+"""Textures that are made: continued records, self-affine surfaces, likenesses of maps, homogeneity."""
+
 from pathlib import Path
 
 import numpy as np
@@ -8,18 +10,47 @@ from scipy import fft, integrate, stats
 from asperity import spectra
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.homogeneity import homogeneity, more_than_chance
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.likeness import gaussian_correlation, height_table
 from asperity.surfaces.readers import read_surfaces
 from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, psd_2d
-from asperity.surfaces.synthesis import from_bands, from_map, long_self_affine, self_affine
+from asperity.surfaces.synthesis import close, extend, from_map, long_self_affine, self_affine
 
 UM = 1e-6
 SHEET = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"
+RAMP = np.arange(5.0)
 AFFINE = {"rms": 0.5 * UM, "hurst": 0.7, "longest": 60 * UM, "shortest": 4 * UM}
 
 
-def test_self_affine_ensemble_has_the_rms_and_the_slope_of_its_spectrum():
+@pytest.mark.parametrize(
+    ("rows", "how", "start", "expected"),
+    [
+        (3, "refuse", 0, [0, 1, 2]),
+        (3, "refuse", 2, [2, 3, 4]),
+        (11, "mirror", 0, [0, 1, 2, 3, 4, 3, 2, 1, 0, 1, 2]),
+        (5, "mirror", -2, [2, 1, 0, 1, 2]),
+        (7, "repeat", 0, [0, 1, 2, 3, 4, 0, 1]),
+        (4, "repeat", -2, [3, 4, 0, 1]),
+    ],
+)
+def test_records_are_cut_mirrored_or_repeated(rows, how, start, expected):
+    assert_array_equal(extend(RAMP, rows, how, spacing=1.0, start=start), expected)
+    strip = extend(np.outer(RAMP, [1.0, 10.0]), rows, how, spacing=1.0, start=start)
+    assert_array_equal(strip, np.outer(expected, [1.0, 10.0]))
+
+
+def test_closing_spreads_the_step_over_both_sides_of_the_join():
+    line = np.linspace(0.0, 1.0, 101)
+    closed = close(line, 20)
+    assert closed[0] == closed[-1] == 0.5
+    assert_array_equal(closed[20:-20], line[20:-20])
+    assert np.abs(np.diff(np.concatenate([closed, closed]))).max() < 0.06
+    assert_array_equal(close(line, 0), line)
+    assert_allclose(extend(line, 101, "repeat", spacing=1.0, crossfade=20), closed)
+
+
+def test_self_affine_ensemble_has_the_rms_and_the_spectrum_in_closed_form():
     maps = [self_affine((256, 256), (UM, UM), seed=s, **AFFINE).heights for s in range(12)]
     # about 18 independent patches per map: standard error of the mean rms about 1.5 %
     assert_allclose(np.sqrt(np.mean(np.square(maps))), 0.5 * UM, rtol=0.04)
@@ -37,12 +68,9 @@ def test_self_affine_ensemble_has_the_rms_and_the_slope_of_its_spectrum():
     ratio = density[inside] / (np.array(shape)[inside] * AFFINE["rms"] ** 2 / total)
     assert_allclose(np.mean(ratio), 1.0, atol=0.04)
     assert abs(np.polyfit(np.log(wavenumber[inside]), np.log(ratio), 1)[0]) < 0.05
-
-
-def test_self_affine_has_nothing_beyond_the_cut_off():
-    qx, qy, density = psd_2d(self_affine((256, 256), (UM, UM), seed=1, **AFFINE))
-    q = np.hypot(qx[:, None], qy[None, :])
-    assert density[q > 1.1 * 2 * np.pi / AFFINE["shortest"]].max() < 1e-6 * density.max()
+    qx, qy, density = psd_2d(HeightMap(maps[1], (UM, UM)))
+    beyond = np.hypot(qx[:, None], qy[None, :]) > 1.1 * 2 * np.pi / AFFINE["shortest"]
+    assert density[beyond].max() < 1e-6 * density.max()
 
 
 def test_self_affine_anisotropy_is_the_ratio_of_correlation_lengths():
@@ -52,85 +80,26 @@ def test_self_affine_anisotropy_is_the_ratio_of_correlation_lengths():
     assert_allclose(longest / shortest, 4.0, rtol=0.15)
 
 
-def test_self_affine_takes_no_map_beyond_all_measure():
-    with pytest.raises(InputError, match=r"longest: received 10 m at 8e-06 m, which take a map of 2500000 x"):
-        self_affine((600, 63), (8e-6, 8e-6), rms=UM, hurst=0.8, longest=10.0, shortest=16 * UM, seed=1)
-    with pytest.raises(InputError, match=r"allowed: at most 134217728 points.*nearer to 1"):
-        self_affine((64, 64), (UM, UM), seed=1, **(AFFINE | {"anisotropy": 1e9}))
+@pytest.mark.parametrize("lay", [-25.0, 30.0, 90.0, 160.0])
+@pytest.mark.parametrize("strip", [self_affine, long_self_affine])
+def test_a_drawn_out_texture_lies_at_any_angle(strip, lay):
+    """Ridges lie where the mean square of the slope, a tensor, is least."""
+    made = strip(
+        (1600, 200), (1e-5, 1e-5), rms=1e-7, hurst=0.8, longest=2e-4, shortest=4e-5, anisotropy=4.0,
+        lay=np.deg2rad(lay), seed=3,
+    )  # fmt: skip
+    heights = made.rows(0, 1600)
+    assert np.std(heights) == pytest.approx(1e-7, rel=0.1)
+    gx, gy = np.gradient(heights)
+    steepest = 0.5 * np.arctan2(2 * np.mean(gx * gy), np.mean(gx**2) - np.mean(gy**2))
+    off = (np.rad2deg(steepest) + 90 - lay + 90) % 180 - 90
+    assert abs(off) < 3.0
 
 
 def test_self_affine_does_not_close_on_itself():
     surface = self_affine((64, 64), (UM, UM), seed=3, **AFFINE).heights
     step_inside, step_around = np.std(np.diff(surface, axis=0)), np.std(surface[0] - surface[-1])
     assert step_around > 3 * step_inside
-
-
-def test_seeds_reproduce_and_differ():
-    one, same, other = (self_affine((32, 32), (UM, UM), seed=s, **AFFINE).heights for s in (1, 1, 2))
-    assert_array_equal(one, same)
-    assert np.abs(one - other).max() > 0.1 * UM
-
-
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        ({"rms": -1.0}, "rms: received -1.0"),
-        ({"rms": np.nan}, "rms: received nan"),
-        ({"hurst": 1.2}, "hurst: received 1.2"),
-        ({"shortest": 1.5 * UM}, "at least two samples, 2e-06 m"),
-        ({"longest": 3 * UM}, "longer than the shortest"),
-        ({"anisotropy": 0.0}, "anisotropy: received 0.0"),
-    ],
-)
-def test_self_affine_says_what_is_wrong(change, text):
-    with pytest.raises(InputError, match=text):
-        self_affine((32, 32), (UM, UM), seed=1, **{**AFFINE, **change})
-
-
-def test_self_affine_needs_a_shape_and_a_spacing():
-    with pytest.raises(InputError, match=r"shape: received \(1, 32\)"):
-        self_affine((1, 32), (UM, UM), seed=1, **AFFINE)
-    with pytest.raises(InputError, match="spacing"):
-        self_affine((32, 32), (UM, -UM), seed=1, **AFFINE)
-
-
-WAVELENGTHS = [0.1, 0.08, 0.063, 0.05, 0.04, 0.0315, 0.025, 0.02, 0.016, 0.0125, 0.01]
-LEVELS = np.linspace(6.0, -9.0, len(WAVELENGTHS))
-
-
-@pytest.mark.parametrize("points", [20000, 20001])
-def test_line_from_bands_has_their_levels(points):
-    line = from_bands(points, 1e-3, WAVELENGTHS, LEVELS, seed=4)
-    frequency, density = spectra.psd(line.heights, 1e-3, segment=4000)
-    centres, levels = spectra.band_levels(frequency, density, UM, low=1 / 0.1, high=1 / 0.01)
-    assert_allclose(1 / centres, WAVELENGTHS, rtol=0.025)
-    assert_allclose(levels, LEVELS, atol=0.6)
-    assert_allclose(10 * np.log10(line.heights.var() / UM**2), spectra.energy_sum(LEVELS), atol=1e-9)
-
-
-def test_periodogram_of_a_line_from_bands_is_exact():
-    line = from_bands(20000, 1e-3, WAVELENGTHS, LEVELS, seed=1)
-    density = 2 * np.abs(fft.rfft(line.heights)) ** 2 * 1e-3 / 20000
-    _, levels = spectra.band_levels(fft.rfftfreq(20000, 1e-3), density, UM, low=1 / 0.1, high=1 / 0.01)
-    assert_allclose(levels, LEVELS, atol=0.05)  # lines on the edges belong to two bands
-
-
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ((100, 1e-3, [0.1], [0.0]), "length of the line: received 0.1 m"),
-        ((1000, 1e-2, [0.02], [0.0]), "spacing: received 0.01 m"),
-        ((1000, 1e-3, [0.1, 0.1], [0.0, 0.0]), "distinct centres"),
-        ((1000, 1e-3, [0.09], [0.0]), "distinct centres"),
-        ((1000, 1e-3, [0.1, 0.08], [0.0]), "equal length"),
-        ((1000, 1e-3, [0.1], [np.nan]), "equal length"),
-        ((1000, 1e-3, [-0.1], [0.0]), "positive and finite"),
-        ((1, 1e-3, [0.1], [0.0]), "2 points or more"),
-    ],
-)
-def test_from_bands_says_what_is_wrong(arguments, text):
-    with pytest.raises(InputError, match=text):
-        from_bands(*arguments, seed=1)
 
 
 LOGNORMAL = 0.4  # shape parameter: skewness 1.32, kurtosis 6.26
@@ -156,7 +125,7 @@ def parent_maps(count, size=200):
     normal = fft.ifft2(fft.fft2(noise) * np.sqrt(parent_spectrum())).real
     heights = (np.exp(LOGNORMAL * normal) - np.exp(LOGNORMAL**2 / 2)) * UM
     corners = [(size * i, size * j) for i in range(6) for j in range(6)][:count]
-    return [HeightMap(heights[i : i + size, j : j + size], (UM, UM)) for i, j in corners]
+    return [HeightMap(heights[i : i + size, j : j + size], (UM, UM), "sheet.x3p") for i, j in corners]
 
 
 def averaged_bands(lines, segment, low, high):
@@ -174,7 +143,6 @@ def likeness():
 
 def test_likeness_has_the_height_distribution_of_the_maps(likeness):
     measured, path = np.concatenate([m.ravel() for m in likeness[0]]), likeness[1]
-    assert path.shape == (10, 20000, 40)
     assert_allclose(path.std(), measured.std(), rtol=0.02)
     assert_allclose(stats.skew(path, axis=None), stats.skew(measured), atol=0.1)
     kurtosis = [stats.kurtosis(z, axis=None, fisher=False) for z in (path, measured)]
@@ -183,24 +151,19 @@ def test_likeness_has_the_height_distribution_of_the_maps(likeness):
     assert measured.min() <= path.min() < path.max() <= measured.max()
 
 
-def test_likeness_has_the_spectrum_of_the_maps_in_both_directions(likeness):
+def test_likeness_has_the_spectrum_of_the_maps_in_both_directions_and_of_their_parent(likeness):
     measured, path = likeness
+    lines = np.concatenate(path, axis=1).T
     along = averaged_bands(np.concatenate([m.T for m in measured]), 200, 60 * UM, 3 * UM)
-    assert_allclose(averaged_bands(np.concatenate(path, axis=1).T, 200, 60 * UM, 3 * UM), along, atol=0.5)
+    assert_allclose(averaged_bands(lines, 200, 60 * UM, 3 * UM), along, atol=0.5)
     blocks = np.concatenate([m[:, k : k + 40] for m in measured for k in range(0, 200, 40)])
     across = averaged_bands(blocks, 40, 10 * UM, 3 * UM)
     assert_allclose(averaged_bands(np.concatenate(path), 40, 10 * UM, 3 * UM), across, atol=0.5)
-
-
-def test_likeness_has_the_spectrum_of_its_parent(likeness):
     variance = np.exp(LOGNORMAL**2) * (np.exp(LOGNORMAL**2) - 1) * UM**2
     density = 2 * UM * variance * fft.rfft(parent_correlation()[:, 0]).real
-    wavenumber = fft.rfftfreq(1200, UM)
     # levelling and window change what is longer than a quarter of a map, 50 µm
-    expected = spectra.band_levels(wavenumber, density, UM, low=1 / (50 * UM), high=1 / (3 * UM))[1]
-    assert_allclose(
-        averaged_bands(np.concatenate(likeness[1], axis=1).T, 1000, 50 * UM, 3 * UM), expected, atol=0.5
-    )
+    expected = spectra.band_levels(fft.rfftfreq(1200, UM), density, UM, low=2e4, high=1 / (3 * UM))[1]
+    assert_allclose(averaged_bands(lines, 1000, 50 * UM, 3 * UM), expected, atol=0.5)
 
 
 def steep_parent(exponent, size=2048, flat=16.0):
@@ -230,7 +193,7 @@ def bands_over(parent, path, pieces, low, high):
     return np.array(found)
 
 
-@pytest.mark.parametrize("exponent", [0.0, 2.0, 3.6, 4.4, 5.5])
+@pytest.mark.parametrize("exponent", [0.0, 3.6, 5.5])
 def test_likeness_has_the_spectrum_of_a_steep_parent(exponent):
     """Maps an eighth of the parent's longest wave: what is longer than they are must not leak into them.
 
@@ -248,10 +211,9 @@ def test_likeness_has_the_spectrum_of_a_steep_parent(exponent):
 
 def test_bow_of_a_sheet_does_not_become_roughness():
     """Sixteen waves of roughness on a bow twenty times as high: the roughness stays what it is."""
-    rng = np.random.default_rng(8)
     size = 128
     x = np.linspace(-1.0, 1.0, size)
-    rough = 0.05 * UM * rng.standard_normal((6, size, size))
+    rough = 0.05 * UM * np.random.default_rng(8).standard_normal((6, size, size))
     maps = [HeightMap(z + 1.0 * UM * x[:, None] ** 2, (UM, UM)) for z in rough]
     path = from_map(maps, (4096, 128), seed=1).heights
     white = np.full(2049, 2 * UM * (0.05 * UM) ** 2)
@@ -275,11 +237,6 @@ def test_likeness_of_a_measured_sheet_keeps_its_spectrum(name):
     assert abs(off.mean()) < 0.7
 
 
-def test_maps_of_a_few_points_have_no_spectrum():
-    with pytest.raises(InputError, match="maps: received 5 points along a side; allowed: at least 8"):
-        from_map(HeightMap(np.random.default_rng(0).standard_normal((5, 40)), (UM, UM)), (50, 50), seed=1)
-
-
 def test_narrow_strip_is_not_forced_to_close_across():
     strip = from_map(parent_maps(12), (10000, 8), seed=1).heights
     expected = parent_correlation()[0, 7]
@@ -293,28 +250,7 @@ def test_likeness_at_another_spacing_is_that_of_the_resampled_maps():
     resampled = [resample(level(m), 2.5 * UM).heights for m in maps]
     assert path.spacing == (2.5 * UM, 2.5 * UM)
     assert_allclose(path.heights.std(), np.std(resampled), rtol=0.03)
-
-
-def test_likeness_of_one_map_is_reproducible_and_says_where_it_comes_from():
-    one = HeightMap(parent_maps(1)[0].heights, (UM, UM), "sheet.x3p")
-    first, again, other = (from_map(one, (50, 30), seed=s) for s in (3, 3, 4))
-    assert_array_equal(first.heights, again.heights)
-    assert np.abs(first.heights - other.heights).max() > 0.1 * UM
-    assert first.source == "synthesised from sheet.x3p, seed 3"
-
-
-def test_from_map_says_what_is_wrong():
-    surface = parent_maps(1)[0]
-    holed = np.array(surface.heights)
-    holed[:2, 0] = np.nan
-    with pytest.raises(InputError, match=r"0\.01% missing points in a map"):
-        from_map(HeightMap(holed, surface.spacing), (50, 50), seed=1)
-    with pytest.raises(InputError, match="one spacing for all"):
-        from_map([surface, HeightMap(surface.heights, (2 * UM, UM))], (50, 50), seed=1)
-    with pytest.raises(InputError, match="maps: received none"):
-        from_map([], (50, 50), seed=1)
-    with pytest.raises(InputError, match="shape"):
-        from_map(surface, (1, 50), seed=1)
+    assert path.source == "synthesised from sheet.x3p, seed 2"
 
 
 def test_correlation_of_a_lognormal_translation_has_its_closed_form():
@@ -328,17 +264,101 @@ def test_correlation_of_a_lognormal_translation_has_its_closed_form():
     )
 
 
-@pytest.mark.parametrize("lay", [-25.0, 30.0, 90.0, 160.0])
-@pytest.mark.parametrize("strip", [self_affine, long_self_affine])
-def test_a_drawn_out_texture_lies_at_any_angle(strip, lay):
-    """Ridges lie where the mean square of the slope, a tensor, is least."""
-    made = strip(
-        (1600, 200), (1e-5, 1e-5), rms=1e-7, hurst=0.8, longest=2e-4, shortest=4e-5, anisotropy=4.0,
-        lay=np.deg2rad(lay), seed=3,
-    )  # fmt: skip
-    heights = made.rows(0, 1600)
-    assert np.std(heights) == pytest.approx(1e-7, rel=0.1)
-    gx, gy = np.gradient(heights)
-    steepest = 0.5 * np.arctan2(2 * np.mean(gx * gy), np.mean(gx**2) - np.mean(gy**2))
-    off = (np.rad2deg(steepest) + 90 - lay + 90) % 180 - 90
-    assert abs(off) < 3.0
+def texture(seed, points=192, longest=20 * UM):
+    band = {"longest": longest, "shortest": 4 * UM}
+    return self_affine((points, points), (UM, UM), seed=seed, rms=UM, hurst=0.8, **band)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda seed: self_affine((32, 32), (UM, UM), seed=seed, **AFFINE).heights,
+        lambda seed: from_map(texture(0, 64), (50, 30), seed=seed).heights,
+        lambda seed: homogeneity(texture(2), surrogates=19, seed=seed).expected,
+    ],
+)
+def test_seeds_reproduce_and_differ(make):
+    one, same, other = (make(seed) for seed in (1, 1, 2))
+    assert_array_equal(one, same)
+    assert np.abs(one - other).max() > 0.0
+
+
+def test_stationary_surfaces_are_rarely_called_inhomogeneous():
+    p_values = [homogeneity(texture(seed, 96, 10 * UM), surrogates=19).p_value for seed in range(24)]
+    # the p-value is uniform under the null hypothesis: mean 0.525, standard error 0.059
+    assert abs(np.mean(p_values) - 0.525) < 0.18
+    assert sum(p <= 0.05 for p in p_values) <= 5  # more than 5 of 24 has a probability of 0.1 %
+
+
+@pytest.mark.parametrize(
+    ("surface", "factor"),
+    [
+        (texture(1), np.where(np.arange(192) < 96, 1.0, 1.5)),
+        (texture(1, 400, 40 * UM), np.linspace(0.6, 1.4, 400)),  # tested on fewer points
+    ],
+)
+def test_a_rougher_half_or_a_trend_is_found(surface, factor):
+    assert homogeneity(surface).homogeneous
+    rough = HeightMap(surface.heights * factor, surface.spacing)
+    found = homogeneity(rough)
+    assert not found.homogeneous
+    assert found.p_value == 1 / 40
+    assert found.variation > 2 * found.expected
+    tiles = level(rough).heights.reshape(4, len(factor) // 4, 4, -1)
+    assert_allclose(found.tile_rms, np.sqrt(np.mean(tiles**2, axis=(1, 3))), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("failed", "maps", "more"),
+    [(0, 5, False), (1, 1, True), (1, 2, False), (2, 7, True), (1, 5, False), (2, 8, False), (3, 8, True)],
+)
+def test_more_maps_fail_than_chance_makes_fail(failed, maps, more):
+    assert more_than_chance([0.05] * failed + [0.5] * (maps - failed)) == more
+
+
+HOLED = np.array(texture(0).heights)
+HOLED[:2, 0] = np.nan
+OTHER = HeightMap(texture(0).heights, (2 * UM, UM))
+
+
+def affine(shape=(32, 32), spacing=(UM, UM), **changes):
+    return self_affine(shape, spacing, seed=1, **(AFFINE | changes))
+
+
+def continued(rows=3, how="refuse", heights=RAMP, **changes):
+    return extend(heights, rows, how, spacing=0.5, what="wheel line", **changes)
+
+
+@pytest.mark.parametrize(
+    ("made", "text"),
+    [
+        (lambda: continued(100), "length of the wheel line: received 2.5 m.* 50 m.*'mirror' or 'repeat'"),
+        (lambda: continued(4, start=2), r"received 2\.5 m; allowed: .* 2 m, from 1 m on"),
+        (lambda: continued(how="stretch"), "one of refuse, mirror, repeat"),
+        (lambda: continued(heights=[0.0, np.nan, 1.0]), "missing points"),
+        (lambda: continued(how="repeat", crossfade=3), "0 to 2, half the record"),
+        (lambda: affine(rms=-1.0), "rms: received -1.0"),
+        (lambda: affine(rms=np.nan), "rms: received nan"),
+        (lambda: affine(hurst=1.2), "hurst: received 1.2"),
+        (lambda: affine(shortest=1.5 * UM), "at least two samples, 2e-06 m"),
+        (lambda: affine(longest=3 * UM), "longer than the shortest"),
+        (lambda: affine(anisotropy=0.0), "anisotropy: received 0.0"),
+        (lambda: affine(shape=(1, 32)), r"shape: received \(1, 32\)"),
+        (lambda: affine(spacing=(UM, -UM)), "spacing"),
+        (lambda: affine(longest=10.0), r"longest: received 10 m at 1e-06 m, which take a map of 20000000 x"),
+        (lambda: affine(anisotropy=1e9), r"allowed: at most 134217728 points.*nearer to 1"),
+        (lambda: from_map(HeightMap(HOLED, UM), (50, 50), seed=1), r"0\.01% missing points in a map"),
+        (lambda: from_map([texture(0), OTHER], (50, 50), seed=1), "one spacing for all"),
+        (lambda: from_map([], (50, 50), seed=1), "maps: received none"),
+        (lambda: from_map(OTHER, (1, 50), seed=1), "shape"),
+        (lambda: from_map(texture(0, 5), (50, 50), seed=1), "5 points along a side; allowed: at least 8"),
+        *(
+            (lambda tiles=tiles: homogeneity(texture(0), tiles), "tiles: received")
+            for tiles in ((1, 1), (0, 4), (97, 1))
+        ),
+        (lambda: homogeneity(texture(0), surrogates=10), "at least 19"),
+    ],
+)
+def test_what_is_wrong_is_said(made, text):
+    with pytest.raises(InputError, match=text):
+        made()
