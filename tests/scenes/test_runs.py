@@ -1,0 +1,351 @@
+"""Runs of all scenes against each other, against the frequency domain, and against what must come out."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import asperity
+from asperity import Beam, HeightMap, ModalStructure, Profile, material
+from asperity.laws.layout import force
+from asperity.running import prepare_case
+from asperity.scenes.compute import compute
+from asperity.scenes.schema import (
+    ACCELERATION_LEVEL,
+    LINEAR_REFERENCE_LEVEL,
+    PASS_BY_MAXIMUM_LEVEL,
+    POINT_VELOCITY_LEVEL,
+    RADIATED_POWER_LEVEL,
+    SOUND_POWER_LEVEL_A,
+)
+from asperity.schema.spectra import FORCE_LEVEL
+from asperity.surfaces.synthesis import from_bands
+from small_cases import changed
+
+pytestmark = pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+
+
+def forces(tree, law=0):
+    return tree["rolling/contact_force"].values[law]
+
+
+def held(tree, entry, **at):
+    return tree[entry.path].sel(**at).values
+
+
+# --- presets are bodies over what they name
+
+ON_BEAM = {
+    "laws": ["hertz", "linear"], "start": "0.3 m", "duration": "30 ms", "settling": "10 ms",
+    "surface": {"spectrum": "iso3095", "level": "-40 dB"},
+    "contact": {"spacing": "20 um", "window": "0.6 mm"}, "numerics": {"highest_frequency": "2 kHz"},
+}  # fmt: skip
+SPEED = 30.0
+BANDS = 10.0 ** (np.arange(-20, -4) / 10.0)
+LINE = from_bands(40_000, 0.5e-3, BANDS, np.full(BANDS.size, -10.0), 3).heights
+ON_TRACK = {
+    "speed": SPEED, "start": 2.0, "duration": 0.3, "settling": 0.06, "laws": ["linear", "hertz"],
+    "track": {"name": "nordborg", "points": [4.0]},
+    "numerics": {"time_step": 0.5e-3 / SPEED, "highest_frequency": 2500},
+    "contact": {"spacing": 0.5e-3, "window": 20e-3},
+    "surface": {"line": Profile(LINE, 0.5e-3), "continuation": "mirror"},
+}  # fmt: skip
+WHEEL = {"radius": 0.46, "mass": 600, "load": 65e3, "transverse_radius": "inf"}
+BOGIE = WHEEL | {"type": "bogie", "distance": 2.5, "masses": [1500], "springs": [0.6e6], "dampers": [1e4]}
+
+
+def on_track(body):
+    return {"kind": "bodies", "over": "track", "body": body} | ON_TRACK
+
+
+@pytest.mark.parametrize(
+    ("named", "body", "entries"),
+    [
+        (
+            {"kind": "ball-on-beam", "ball": {"load": "30 N"}} | ON_BEAM,
+            {"kind": "bodies", "body": {"load": "30 N"}} | ON_BEAM,
+            [FORCE_LEVEL, ACCELERATION_LEVEL],
+        ),
+        (
+            {"kind": "wheel-on-rail", "wheel": WHEEL} | ON_TRACK,
+            on_track(WHEEL),
+            [
+                FORCE_LEVEL, RADIATED_POWER_LEVEL, PASS_BY_MAXIMUM_LEVEL, POINT_VELOCITY_LEVEL,
+                LINEAR_REFERENCE_LEVEL, SOUND_POWER_LEVEL_A,
+            ],
+        ),
+    ],
+    ids=["beam", "track"],
+)  # fmt: skip
+def test_what_a_preset_names_answers_as_any_body(runs, named, body, entries):
+    named, body = runs(named), runs(body)
+    np.testing.assert_allclose(forces(body), forces(named), rtol=1e-9, atol=3e-8)
+    for entry in entries:
+        np.testing.assert_allclose(held(body, entry), held(named, entry), atol=1e-6, equal_nan=True)
+
+
+def test_modes_of_a_structure_are_the_beam():
+    """Forty modes of the same beam at 1001 points: 1e-9 of the force in the same run."""
+    beam = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=40e3)
+    x, natural = np.linspace(0.0, 1.0, 1001), beam.natural_frequencies
+    modes = ModalStructure(x, natural[:40], beam.damping_ratios[:40], beam.shapes(x)[0][:, :40])
+    up_to = 0.5 * (natural[39] + natural[40])
+    shared = {"kind": "bodies", "body": {"load": "30 N", "positions": ["0 m", "0.2 m"]}}
+    ours, expected = (
+        forces(asperity.run(shared | ON_BEAM | own))
+        for own in ({"over": "structure", "structure": {"file": modes}}, {"beam": {"modes_up_to": up_to}})
+    )
+    np.testing.assert_allclose(ours, expected, atol=1e-9 * np.abs(expected).max(), rtol=0)
+
+
+# --- several contacts
+
+
+@pytest.fixture
+def body(runs):
+    return runs(on_track(WHEEL))
+
+
+@pytest.fixture
+def bogie(runs):
+    return runs(on_track(BOGIE))
+
+
+def test_coupled_wheels_follow_the_coupled_reference(bogie, body):
+    """Where waves between the wheels interfere, one wheel by itself is decibels off."""
+    fine = bogie["spectra/band"].values > 150.0
+    level = held(bogie, FORCE_LEVEL, law="linear")
+    off, alone = ((level - held(each, LINEAR_REFERENCE_LEVEL))[fine] for each in (bogie, body))
+    strongest = np.argmax(np.abs(alone))  # 800 Hz
+    assert abs(off[strongest]) < 0.3 < 2.0 < abs(alone[strongest])
+    assert np.sqrt(np.mean(off**2)) < 0.7 < 1.0 < np.sqrt(np.mean(alone**2))
+    np.testing.assert_allclose(bogie["pass_by/axle_time"], [0.0, 2.5 / SPEED])
+
+
+@pytest.mark.parametrize("law", ["linear", "hertz"])
+def test_two_wheels_radiate_what_their_forces_ask_for(bogie, body, law):
+    """In each band the power follows the sum of both mean squares."""
+    both = 10.0 ** (bogie["spectra/contact_force_level"].sel(law=law).values / 10.0)
+    np.testing.assert_allclose(
+        both.mean(axis=0), 10.0 ** (held(bogie, FORCE_LEVEL, law=law) / 10.0), rtol=1e-9
+    )
+    at = {"law": law, "radiator": "sleepers"}
+    power = held(bogie, RADIATED_POWER_LEVEL, **at) - held(body, RADIATED_POWER_LEVEL, **at)
+    change = 10.0 * np.log10(both.sum(axis=0)) - held(body, FORCE_LEVEL, law=law)
+    missed = np.abs(power - change)[3:]  # where the spectrum within a band differs
+    assert np.median(missed) < 0.2
+    assert missed.max() < 1.5
+
+
+def test_one_wheel_of_several_has_a_flat(bogie, runs):
+    """It strikes when its own place of the circumference comes down, and the other wheel hardly feels it."""
+    flat = {"flat_depth": 0.1e-3, "flat_position": 1.0, "flat_contacts": [2]}
+    struck = runs(on_track(BOGIE | flat))
+    change = (struck["rolling/contact_force"] - bogie["rolling/contact_force"]).sel(law="hertz")
+    change, time = np.abs(change.values), struck["rolling/time"].values
+    assert change[1].max() > 2.0 * change[0].max() > 0.0
+    assert time[np.argmax(change[1] > 0.1 * change[1].max())] == pytest.approx(1.0 / SPEED, abs=2e-3)
+
+
+def test_balls_in_a_row_have_tones_at_k_v_over_l_and_cancel_between_them():
+    """What four balls in a row do together: sin(4πfL/v)/sin(πfL/v), largest at k v/L, zero between."""
+    distance, speed = 10e-3, 2.0
+    body = {
+        "type": "carriage", "contacts": 4, "distance": distance, "radius": "3 mm", "load": "20 N",
+        "masses": ["0.5 kg"], "mass": "2 g", "inertia": "1 kg m^2",
+    }  # fmt: skip
+    guide = asperity.run(
+        asperity.Bodies(
+            over="plane", speed=speed, laws=["linear"], duration=2.0, settling=0.2, body=body,
+            surface={"spectrum": "iso3095", "level": "-70 dB"},
+            contact={"spacing": "40 um", "window": "0.4 mm"},
+            numerics={"highest_frequency": "2 kHz", "time_step": "10 us"},
+        )
+    )  # fmt: skip
+    spectra = guide["spectra"].to_dataset()
+    together = spectra["body_acceleration_psd"].sel(degree="carriage", law="linear")
+    frequency, level = together["frequency"].values, 10.0 * np.log10(together.values)
+
+    def mean(places):
+        near = np.abs(frequency[:, None] - np.array(places)).min(axis=1) < 1.0
+        return float(np.mean(level[near]))
+
+    assert mean([200.0, 400.0, 600.0]) - mean([250.0, 300.0, 350.0, 450.0, 500.0, 550.0]) > 20.0
+    assert list(spectra["passing_frequency"].values[:3]) == pytest.approx([200.0, 400.0, 600.0])
+    # over all frequencies in between, the factor of the row
+    phase = np.pi * frequency * distance / speed
+    row = np.abs(np.sin(4 * phase) / (4 * np.sin(phase)))
+    told = (row > 0.3) & (frequency > 120.0) & (frequency < 680.0)
+    flat = level[told] - 20.0 * np.log10(row[told])
+    trend = np.polynomial.Polynomial.fit(np.log(frequency[told]), flat, 2)
+    assert np.std(flat - trend(np.log(frequency[told]))) < 3.0
+    rolling = guide["rolling"].to_dataset().sel(law="linear")
+    assert rolling["static_load"].values == pytest.approx(np.full(4, 20.0))
+    assert rolling["contact_force"].sum("contact").values.mean() == pytest.approx(80.0, rel=1e-3)
+    assert float(rolling["energy_residual"]) < 1e-5
+
+
+# --- textures, from a case to the numbers that theory expects of them
+
+
+def rail(runs, **keys):
+    keys = {"surface": {"smooth": True}, "wheel": {"roughness": None}, "laws": ["linear"]} | keys
+    numerics = {"highest_frequency": "2 kHz"}
+    return runs(changed("wheel-on-rail", contact={"window": "20 mm"}, numerics=numerics, **keys))
+
+
+SINE = 5e-6 * np.sin(2 * np.pi * 1e-3 * np.arange(4000) / 80e-3)
+"""Heights 1 mm apart, m: the wheel meets a wave every 1.43 ms, 700 Hz."""
+
+
+@pytest.mark.parametrize(
+    "surface",
+    [
+        {"file": HeightMap(np.repeat(SINE[:, None], 24, axis=1), 1e-3)},
+        {
+            "line": Profile(SINE, 1e-3),
+            "accept_levels": True,
+        },  # but for its tone, it is smoother than rails are
+    ],
+    ids=["map", "line"],
+)
+def test_a_measured_sine_adds_a_tone(runs, surface):
+    """Texture is linear in a linear contact: what it adds to the smooth force has its frequency alone."""
+    tree = rail(runs, surface=surface)
+    added = forces(tree)[0] - forces(rail(runs))[0]
+    level = np.abs(np.fft.rfft(added * np.hanning(len(added))))
+    frequency = np.fft.rfftfreq(len(added), float(tree["rolling/time"][1]))
+    assert frequency[np.argmax(level)] == pytest.approx(56.0 / 80e-3, abs=20.0)
+    near = abs(tree["spectra/frequency"] - 700.0).argsort()[:7]
+    psd, reference = (
+        tree["spectra"][name].values[..., near] for name in ("force_psd", "linear_reference_psd")
+    )
+    # solved in the frequency domain, with the wheel at rest
+    assert abs(10 * np.log10(psd[0].sum() / reference.sum())) < 2.0
+
+
+def test_a_rail_of_a_given_rms(runs):
+    """No waves shorter than it says, and twice the rms is twice the force that it adds."""
+    waves = {"longest": "0.1 m", "shortest": "10 mm"}
+    smooth, single, double = (
+        rail(runs, surface=surface)
+        for surface in ({"smooth": True}, {"rms": 1e-6} | waves, {"rms": 2e-6} | waves)
+    )
+    line = single["surface/line"].values
+    assert line.std() == pytest.approx(1e-6, rel=0.35)
+    power = np.abs(np.fft.rfft((line - line.mean()) * np.hanning(len(line)))) ** 2
+    assert power[np.fft.rfftfreq(len(line), 1e-3) > 110.0].sum() < 1e-4 * power.sum()
+    added = forces(single) - forces(smooth)
+    assert added.std() > 100.0
+    np.testing.assert_allclose(forces(double) - forces(smooth), 2 * added, atol=1e-3 * added.std())
+
+
+FLAT = {"roughness": None, "flat_depth": "0.3 mm", "flat_position": "1 m"}
+
+
+def test_flat_strikes_every_law_where_it_lies(runs):
+    laws = ["areal", "shifted", "linear"]
+    quiet, struck = (rail(runs, laws=laws, **own) for own in ({}, {"wheel": FLAT}))
+    struck_force = struck["rolling/contact_force"].sel(contact=1)
+    assert np.all(struck_force.std("time") > 5 * quiet["rolling/contact_force"].sel(contact=1).std("time"))
+    assert np.all(struck_force.max("time") > 1.5 * 65e3)
+    hit = struck["rolling/position"][int(struck_force.sel(law="areal").argmax("time"))]
+    assert float(hit) == pytest.approx(1.0, abs=0.15)
+
+
+def statistics(found):
+    return json.loads(found.attrs["statistics"])
+
+
+def test_statistics_and_line_are_those_of_the_whole_path(monkeypatch):
+    """A flat 2 m along the path, beyond what is kept to be looked at from above."""
+    monkeypatch.setattr("asperity.scenes.groups.PATH_ROWS", 100)
+    found = rail(asperity.run, surface={"spectrum": "iso3095"}, wheel=FLAT)["surface"]
+    assert found["path_heights"].shape[0] == 100
+    assert found["line"].size == round(56 * 40e-3 / 1e-3) + 1
+    path = {s["symbol"]: s for s in statistics(found) if s["surface"] == "path"}
+    assert path["Sz"]["value"] > 0.29e-3
+    assert path["Sku"]["value"] > 20.0
+    assert path["Sq"]["bandwidth"].endswith("2.24 m")
+    assert float(found["path_height"].min()) < -0.27e-3  # about the mean
+    assert float(found["line"].min()) < -0.25e-3  # with the texture there
+    width = float(found["path_height"][1] - found["path_height"][0])
+    assert float(found["path_height_density"].sum()) * width == pytest.approx(1.0)
+
+
+def test_what_has_no_correlation_across_has_statistics_of_lines(runs):
+    """Interpolated between lines 5 mm apart, a strip has no correlation length of its own."""
+    lines = 10e-6 * np.random.default_rng(0).normal(size=(3, round(2 * np.pi * 460)))
+    wheel = {"roughness": None, "line": lines, "line_spacing": "1 mm", "line_distance": "5 mm"}
+    found = rail(runs, surface={"spectrum": "iso3095"}, wheel=wheel)["surface"]
+    assert found.attrs["across"] == "lines"
+    values = statistics(found)
+    assert {s["surface"] for s in values} == {"middle line of the path", "3 lines of the wheel, mean"}
+    mean = next(s for s in values if s["symbol"] == "Rq" and "mean" in s["surface"])
+    assert mean["value"] == pytest.approx(10e-6, rel=0.05)
+    uniform = {"spectrum": "iso3095", "lateral": "inf"}
+    corrugated = {"corrugation": "20 um", "corrugation_wavelength": "50 mm"}
+    for surface in (uniform, corrugated):
+        values += statistics(rail(runs, surface=surface)["surface"])
+    assert all(s["symbol"].startswith("R") for s in values)
+
+
+@pytest.mark.parametrize(("settling", "low", "high"), [("50 ms", 0.85, 1.15), ("0 s", 0.0, 0.6)])
+def test_a_record_is_stationary_after_a_run_in_and_starts_quiet_without(runs, settling, low, high):
+    """Rms of the force in the first third of the record, over twelve paths, in that of the last."""
+    case = {"kind": "ball-on-beam", "ball": {"load": "30 N"}} | ON_BEAM
+    case |= {"duration": "15 ms", "settling": settling}
+    rolled = [runs(case | {"seed": seed}) for seed in range(12)]
+    thirds = np.array_split(np.array([forces(tree)[0] - 30.0 for tree in rolled]), 3, axis=1)
+    assert low < thirds[0].std() / thirds[2].std() < high
+    told = {entry["name"]: entry["value"] for entry in json.loads(rolled[0]["scenario"].attrs["numerics"])}
+    expected = ", ".join(f"{part[0].std():.3g}" for part in thirds)
+    assert told["rms of the contact force in thirds of the record, hertz"] == f"{expected} N"
+
+
+# --- the stiffness of a linear contact
+
+
+def stiffness_of(tree):
+    """Slope of the force over the approach, with the texture that the contact meets held fixed."""
+    rolling = tree["rolling"].to_dataset().sel(law="linear", contact=1)
+    line, position = tree["surface/line"], rolling["position"].values
+    texture = np.interp(position - position[0], line["distance"].values, line.values)
+    columns = np.column_stack([rolling["relative_displacement"].values, texture, np.ones(texture.size)])
+    scale = columns.std(axis=0)
+    scale[-1] = 1.0
+    found, *_ = np.linalg.lstsq(columns / scale, rolling["contact_force"].values, rcond=None)
+    return float(found[0] / scale[0])
+
+
+@pytest.mark.parametrize("linearise", ["hertz", "rough", "secant", "smooth secant"])
+def test_a_linear_contact_has_the_stiffness_that_it_is_said_to(runs, linearise):
+    """dF/dr or F/r of the loading curve; of smooth bodies F/r = F^(1/3) K^(2/3), and dF/dr 3/2 of it."""
+    word, laws = linearise.split()[-1], ["areal", "linear"]
+    surface = {"rms": "0.2 um", "longest": "0.4 mm", "shortest": "60 um"}
+    if "smooth" in linearise:
+        surface, laws = {"spectrum": "iso3095", "level": "-40 dB"}, laws[1:]
+    tree = runs(changed("ball-on-beam", laws=laws, contact={"linearise": word}, surface=surface))
+    contact, found = tree["contact"], stiffness_of(tree)
+    load, constant = contact.attrs["working_load"], contact.attrs["hertz_constant"]
+    secant = load ** (1 / 3) * constant ** (2 / 3)
+    if linearise in ("hertz", "smooth secant"):
+        assert found == pytest.approx(secant * (1.5 if word == "hertz" else 1.0), rel=1e-3)
+        return
+    states, curve = contact["approach"].values, contact["force"].values
+    approach = np.interp(load, curve, states)
+    tangent = float(CubicSpline(states, curve)(approach, 1))
+    expected = tangent if word == "rough" else load / (approach + contact.attrs["datum"])
+    assert found == pytest.approx(expected, rel=0.03)
+    assert found < 0.96 * (1.5 * secant if word == "rough" else tangent)  # short asperities are soft
+
+
+def test_the_filtered_linear_contact_is_linear():
+    """The force grows with the approach by k alone, everywhere: the filter does not follow the state."""
+    case = changed("ball-on-beam", laws=["linear-filtered"], contact={"linearise": "hertz"})
+    law = compute(prepare_case(case), lambda *_: None).laws["linear-filtered"]
+    x = np.linspace(0.45, 0.46, 50)
+    near, far = (force(law, x, approach) for approach in (law.approach, law.approach + 1e-6))
+    np.testing.assert_allclose(far - near, law.stiffness * 1e-6, rtol=1e-9)
+    assert np.ptp(near) > 0.0
