@@ -8,8 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 import asperity
 from asperity import laws
 from asperity.reporting.chart import COLOURS
@@ -122,12 +120,3 @@ def test_nothing_but_the_laws_decides_by_their_names():
             if isinstance(node, ast.Compare):
                 compared = {part.value for part in ast.walk(node) if isinstance(part, ast.Constant)}
                 assert not own & compared, f"{module}:{node.lineno}"
-
-
-@pytest.mark.parametrize("name", laws.names())
-def test_a_law_says_what_it_is_in_one_sentence(name):
-    spec = laws.spec_of(name)
-    assert spec.meaning[0].isupper()
-    assert spec.meaning.endswith(".")
-    assert spec.name == name
-    assert spec.variants == ()

@@ -10,7 +10,7 @@ from asperity.structures.body import GRAVITY, Ball, Body, bogie, carriage, chain
 
 F = np.array([0.7, 4.0, 31.0, 250.0])
 S = 2j * np.pi * F
-BOGIE = (600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3)
+STEEL, BOGIE = material("steel"), (600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3)
 
 
 def two_masses(lower, upper, spring, damper):
@@ -26,11 +26,11 @@ def bar_on(places, pressing=(981.0, 0.0)):
 
 
 def test_a_ball_has_its_weight_or_a_given_load():
-    ball = Ball(0.025, material("steel"))
+    ball = Ball(0.025, STEEL)
     assert ball.mass == pytest.approx(0.5138, rel=1e-3)
     assert ball.static_load == pytest.approx(ball.mass * 9.80665, rel=1e-15)
-    assert Ball(0.025, material("steel"), load=30.0).static_load == 30.0
-    assert Ball(0.025, material("steel"), given_mass=2.0).weight == pytest.approx(2.0 * 9.80665)
+    assert Ball(0.025, STEEL, load=30.0).static_load == 30.0
+    assert Ball(0.025, STEEL, given_mass=2.0).weight == pytest.approx(2.0 * 9.80665)
 
 
 @pytest.mark.parametrize(
@@ -39,10 +39,9 @@ def test_a_ball_has_its_weight_or_a_given_load():
         (Body.rigid(600.0, 65e3), [65e3]),
         (bar_on([-1.0, 3.0]), [0.75 * 981.0, 0.25 * 981.0]),
         (bar_on([-3.0, -1.0, 1.0, 3.0]), [0.25 * 981.0] * 4),
-        (chain([2.0], [], []), [2.0 * GRAVITY]),
         (chain([600.0, 1500.0, 8e3], [1.2e6, 0.4e6], [1e4, 2e4], load=1e3), [10100.0 * GRAVITY + 1e3]),
-        (bogie(*BOGIE), [2100.0 * GRAVITY] * 2),
         (bogie(*BOGIE, load=2e3), [2100.0 * GRAVITY + 1e3] * 2),
+        (bogie(*BOGIE, car_body=(16e3, 0.5e6, 15e3), load=2e3), [10.1e3 * GRAVITY + 1e3] * 2),
         (carriage(2.0, 0.01, [0.0, 0.03, 0.06, 0.09], load=100.0), [0.5 * GRAVITY + 25.0] * 4),
     ],
 )
@@ -50,33 +49,24 @@ def test_contacts_carry_weights_and_load_as_levers_share_them(body, loads):
     assert body.static_loads == pytest.approx(loads)
 
 
-def test_a_chain_of_two_is_the_closed_form():
+def test_a_chain_and_a_rigid_carriage_are_the_closed_forms():
     body = chain([600.0, 4000.0], [1.2e6], [8e3])
     assert_allclose(body.receptance(F)[:, 0, 0], two_masses(600.0, 4000.0, 1.2e6, 8e3), rtol=1e-12)
-
-
-def test_the_modes_of_a_bogie_are_bounce_and_pitch():
-    """Both wheels alike lift half the frame, against one another its pitch: each a chain of two."""
-    body = bogie(*BOGIE)
-    point, transfer = body.receptance(F)[:, 0, 0], body.receptance(F)[:, 0, 1]
-    assert_allclose(point + transfer, two_masses(600.0, 1500.0, 1.2e6, 8e3), rtol=1e-10)
-    rolled = 1800.0 / (2.0 * 1.25**2)  # kg at each wheel
-    assert_allclose(point - transfer, two_masses(600.0, rolled, 1.2e6, 8e3), rtol=1e-10)
-    assert body.places.tolist() == [0.0, 2.5]
-
-
-def test_a_car_body_rests_on_the_frame():
-    body = bogie(*BOGIE, car_body=(16e3, 0.5e6, 15e3), load=2e3)
-    assert body.static_loads == pytest.approx(np.full(2, 10.1e3 * GRAVITY + 1e3))
-    point, transfer = body.receptance(F)[:, 0, 0], body.receptance(F)[:, 0, 1]
-    three = chain([600.0, 1500.0, 8e3], [1.2e6, 0.25e6], [8e3, 7.5e3])
-    assert_allclose(point + transfer, three.receptance(F)[:, 0, 0], rtol=1e-10)
-
-
-def test_a_rigid_carriage_turns_about_its_centre():
     levers = np.array([-0.045, -0.015, 0.015, 0.045])
     expected = (1.0 / 2.0 + np.outer(levers, levers) / 0.01) / S[:, None, None] ** 2
     assert_allclose(carriage(2.0, 0.01, levers + 0.045).receptance(F), expected, rtol=1e-12)
+
+
+def test_the_modes_of_a_bogie_are_bounce_and_pitch():
+    """Both wheels alike lift half of what is above, against one another its pitch: each a chain of masses."""
+    three = chain([600.0, 1500.0, 8e3], [1.2e6, 0.25e6], [8e3, 7.5e3]).receptance(F)[:, 0, 0]
+    rolled = 1800.0 / (2.0 * 1.25**2)  # kg at each wheel
+    for car_body, bounce in ((None, two_masses(600.0, 1500.0, 1.2e6, 8e3)), ((16e3, 0.5e6, 15e3), three)):
+        body = bogie(*BOGIE, car_body=car_body)
+        point, transfer = body.receptance(F)[:, 0, 0], body.receptance(F)[:, 0, 1]
+        assert_allclose(point + transfer, bounce, rtol=1e-10)
+        assert_allclose(point - transfer, two_masses(600.0, rolled, 1.2e6, 8e3), rtol=1e-10)
+        assert body.places.tolist() == [0.0, 2.5]
 
 
 def test_elements_carry_a_carriage_on_springs():
@@ -88,18 +78,16 @@ def test_elements_carry_a_carriage_on_springs():
     # all elements alike: a third of the carriage on each
     alike = body.receptance(F).sum(axis=2)[:, 1]
     assert_allclose(alike, two_masses(0.05, 2.0 / 3.0, 40e6, 100.0), rtol=1e-9)
-    stiff = carriage(2.0, 0.01, [0.0, 0.03, 0.08], element_mass=1e-9, upper_stiffness=1e11)
-    rigid = carriage(2.0, 0.01, [0.0, 0.03, 0.08])
-    assert_allclose(stiff.receptance(F[1:3]), rigid.receptance(F[1:3]), rtol=1e-5)
 
 
 def test_each_wheel_has_its_own_modes():
     modes, pair = ([400.0, 2000.0], [0.01, 0.002], [300.0, 100.0]), bogie(*BOGIE)
     ringing = pair.with_modes(*modes)
     added = ringing.receptance(F) - pair.receptance(F)
-    flexible = sum(
-        1.0 / m / ((w := 2 * np.pi * f) ** 2 + 2 * z * w * S + S**2) for f, z, m in zip(*modes, strict=True)
-    )
+    flexible = 0.0
+    for f, ratio, mass in zip(*modes, strict=True):
+        omega = 2 * np.pi * f
+        flexible = flexible + 1.0 / mass / (omega**2 + 2 * ratio * omega * S + S**2)
     assert_allclose(added[:, 1, 1], flexible, rtol=1e-6)
     assert np.abs(added[:, 0, 1]).max() < 1e-6 * np.abs(flexible).min()
     assert ringing.static_loads == pytest.approx(pair.static_loads)
@@ -108,9 +96,9 @@ def test_each_wheel_has_its_own_modes():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Ball(0.0, material("steel")), "ball radius"),
-        (lambda: Ball(0.025, material("steel"), load=-1.0), "ball load"),
-        (lambda: Ball(0.025, material("steel"), given_mass=0.0), "ball mass"),
+        (lambda: Ball(0.0, STEEL), "ball radius"),
+        (lambda: Ball(0.025, STEEL, load=-1.0), "ball load"),
+        (lambda: Ball(0.025, STEEL, given_mass=0.0), "ball mass"),
         (lambda: bar_on([1.0]), r"too few: it falls or tilts.*more contacts"),
         (lambda: bar_on([-1.0, 1.0], [981.0]), r"pressing of a body.*shape \(2,\)"),
         (lambda: Body.rigid(0.0, 1.0), "one without inertia; allowed: positive masses"),
