@@ -11,10 +11,12 @@ import pytest
 
 from browser import chromium
 
-# Both are set before asperity is imported. Kernels outlast a session: compiling them all takes minutes.
+# These are set before asperity is imported. Kernels outlast a session: compiling them all takes minutes.
 os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pytest_cache" / "kernels"))
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
 os.environ["ASPERITY_CACHE"] = _cache.name
+# workers share the cores: threads of linear algebra would wait for one another
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import asperity  # noqa: E402
 from asperity import sandbox  # noqa: E402
