@@ -82,7 +82,7 @@ def scanned(law: Any, run: Any) -> float:
     rows = law.heights[: (SCANNED - 1) * stride + len(law.body)]
     approach, planes = np.array([run.relative_displacement.mean()]), np.zeros(SCANNED)
     began = time.process_time()
-    block = space.at_positions(rows, law.body, planes, approach, stride, law.rtol)
+    block = space.solve_block(space.block(rows, law.body, planes, approach, stride, law.rtol))
     return (time.process_time() - began) / max(int(block.counts[0]), 1)
 
 

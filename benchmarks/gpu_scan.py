@@ -26,7 +26,7 @@ from asperity.contact import HalfSpace, Hertz
 from asperity.contact.batched import Device, gpu, processor
 from asperity.contact.scan import BLOCK, ScanJob, scan_forces
 from asperity.errors import InputError
-from asperity.kernels.convolution import convolve_padded, padded_length, padded_spectrum
+from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
@@ -107,7 +107,7 @@ def transform_time(cells: int, members: int, rounds: int, device: Device) -> flo
 
     def convolutions() -> None:
         for _ in range(repeats):
-            found = convolve_padded(field, spectrum, padded_length(n), xp)
+            found = convolve_padded(field, spectrum, xp)
         device.to_host(found[0, 0, 0])  # waits for the device
 
     return best(convolutions, rounds) / repeats / members

@@ -58,6 +58,22 @@ def test_long_tasks_stop_when_nobody_waits_for_them_any_more():
     assert len(begun) <= 4
 
 
+def test_results_come_in_order_few_are_held_and_errors_come_out():
+    begun = []
+
+    def task(i):
+        begun.append(i)
+        time.sleep(0.001 * (i % 3))
+        return 1 // (20 - i)
+
+    results = in_order(task, range(1000), workers=3)
+    assert [next(results) for _ in range(20)] == [1 // (20 - i) for i in range(20)]
+    assert len(begun) <= 20 + 2 * 3 + 1
+    with pytest.raises(ZeroDivisionError):
+        next(results)
+    assert len(begun) <= 21 + 2 * 3 + 1
+
+
 def test_contacts_of_a_scan_are_such_pieces(monkeypatch):
     """A block of 64 positions looks up every 16."""
     looks = []

@@ -1,23 +1,26 @@
 """Batches of contacts against contacts solved one by one; on a GPU too, where there is one."""
 
+import os
 import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from asperity.cli import main
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.batched import find_device, gpu, processor, solve_batched
+from asperity.contact.batched import choose_device, find_device, gpu, processor, solve_batched
+from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import ComputationError, InputError
-from asperity.kernels.convolution import convolve_padded, padded_length, padded_spectrum
+from asperity.kernels.batched import convolve_padded, padded_spectrum
+from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
-MODULUS = 115e9
-RADIUS = 25e-3
-LOAD = 10.0
+MODULUS, RADIUS = 115e9, 25e-3
 HERTZ = Hertz(MODULUS, RADIUS, RADIUS)
-APPROACH = HERTZ.approach(LOAD)
+APPROACH = HERTZ.approach(10.0)
 POSITIONS = 21
 
 
@@ -57,10 +60,17 @@ class StrictModule:
 
     MAKING = ("arange", "asarray", "ones", "zeros")
     USING = (
-        "abs", "ascontiguousarray", "clip", "concatenate", "maximum", "minimum", "nonzero", "sqrt", "where",
+        "abs",
+        "argsort",
+        "ascontiguousarray",
+        "clip",
+        "maximum",
+        "minimum",
+        "sqrt",
+        "where",
         "zeros_like",
-    )  # fmt: skip
-    int64 = np.int64
+    )
+    int64, inf = np.int64, np.inf
 
     def __init__(self, largest_batch=10**6):
         self.largest_batch = largest_batch
@@ -82,8 +92,7 @@ class StrictModule:
     def guarded(function):
         def call(*arguments, **options):
             OnDevice.check(arguments)
-            found = function(*arguments, **options)
-            return tuple(map(on_device, found)) if isinstance(found, tuple) else on_device(found)
+            return on_device(function(*arguments, **options))
 
         return call
 
@@ -102,106 +111,71 @@ def device(request):
     return strict_device()
 
 
-def problem(n, hardness=None, seed=1, share=0.35):
-    """A ball over a rough surface: half-space, gaps of all positions, and their maker."""
+def rolling(n, hardness=None, share=0.35, stride=3):
+    """A ball over a rough surface: the half-space, the surface, and the ball."""
     radius = HERTZ.semi_axes(APPROACH)[0]
     dx = 2 * radius / share / n
     x = (np.arange(n) - n // 2) * dx
-    body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
     heights = self_affine(
-        (n + 3 * POSITIONS, n), (dx, dx), rms=0.1 * APPROACH, hurst=0.8, longest=1.4 * radius,
-        shortest=max(0.36 * radius, 2.5 * dx), seed=seed,
+        (n + stride * (POSITIONS - 1), n), (dx, dx), rms=0.1 * APPROACH, hurst=0.8, longest=1.4 * radius,
+        shortest=max(0.36 * radius, 2.5 * dx), seed=1,
     ).heights  # fmt: skip
-    gaps = np.stack([body - heights[3 * m : 3 * m + n] for m in range(POSITIONS)])
-    return HalfSpace((n, n), (dx, dx), MODULUS, hardness), gaps
+    return HalfSpace((n, n), (dx, dx), MODULUS, hardness), heights, np.add.outer(x**2, x**2) / (2 * RADIUS)
 
 
-def batched(half_space, gaps, approaches, device, rtol=1e-11):
+def problem(*details):
+    """Its half-space and the gaps of all positions."""
+    half_space, heights, body = rolling(*details)
+    return half_space, np.stack([body - heights[3 * m : 3 * m + len(body)] for m in range(POSITIONS)])
+
+
+def batched(half_space, gaps, approaches, device):
     def some(first, last):
         return device.xp.asarray(gaps[first:last])
 
-    return solve_batched(half_space, some, len(gaps), np.asarray(approaches), rtol, device)
+    return solve_batched(half_space, some, len(gaps), np.asarray(approaches), 1e-11, device)
 
 
-@pytest.mark.parametrize("hardness", [None, 0.5e9])
-@pytest.mark.parametrize("n", [32, 64])
-def test_forces_agree_with_contacts_solved_one_by_one(device, n, hardness):
-    half_space, gaps = problem(n, hardness)
-    approaches = APPROACH * np.array([-0.4, -0.1, 0.0, 0.3, 1.0])
+@pytest.mark.parametrize(
+    ("n", "hardness", "share"), [(32, None, 0.35), (32, 0.5e9, 0.35), (64, None, 0.35), (32, None, 1.4)]
+)
+def test_contacts_agree_with_those_solved_one_by_one(device, n, hardness, share):
+    """From none, over those that graze while their neighbours do not, to deep ones; the last are cut off."""
+    half_space, gaps = problem(n, hardness, share)
+    touch = np.sort(gaps.min(axis=(1, 2)))
+    grazing = touch[POSITIONS // 2] + np.array([1e-15, 1e-12])
+    approaches = [touch[0] - 1e-9, *grazing, *(APPROACH * np.array([0.0, 0.3, 1.0]))]
     found = batched(half_space, gaps, approaches, device)
     assert found.converged.all()
+    assert not found.force[0].any()
+    assert not found.iterations[0].any()
+    assert 0 < np.count_nonzero(found.force[1]) < POSITIONS
     for m in range(0, POSITIONS, 4):
         for i, approach in enumerate(approaches):
             alone = half_space.solve(gaps[m], approach=float(approach), rtol=1e-11)
             assert found.force[i, m] == pytest.approx(alone.force, rel=1e-9, abs=0.0)
-            if hardness is not None and i == len(approaches) - 1:
-                assert alone.pressure.max() == hardness
-
-
-def test_grazing_contact(device):
-    """One position barely touches, its neighbours do not or do more: all agree with single contacts."""
-    half_space, gaps = problem(32)
-    touch = np.sort(gaps.min(axis=(1, 2)))[POSITIONS // 2]
-    approaches = touch + np.array([1e-15, 1e-12, 1e-10])
-    found = batched(half_space, gaps, approaches, device)
-    assert 0 < np.count_nonzero(found.force[0]) < POSITIONS
-    for m in range(POSITIONS):
-        for i, approach in enumerate(approaches):
-            alone = half_space.solve(gaps[m], approach=float(approach), rtol=1e-11).force
-            assert found.force[i, m] == pytest.approx(alone, rel=1e-9, abs=0.0)
-
-
-def test_smooth_ball_is_hertz(device):
-    half_space, gaps = problem(64)
-    x = np.arange(-32, 32) * half_space.spacing[0]
-    smooth = np.broadcast_to((x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS), gaps.shape)
-    found = batched(half_space, smooth, [0.5 * APPROACH, APPROACH], device)
-    np.testing.assert_allclose(found.force[1], LOAD, rtol=2e-3)
-    np.testing.assert_allclose(found.force[0], HERTZ.force(0.5 * APPROACH), rtol=4e-3)
-    assert np.all(found.edge_share == 0.0)
-
-
-def test_cut_off_contact_has_force_on_the_edge(device):
-    half_space, gaps = problem(32, share=1.4)
-    found = batched(half_space, gaps, [APPROACH], device)
-    for m in (0, 7, 20):
-        alone = half_space.solve(gaps[m], approach=APPROACH, rtol=1e-11)
-        assert alone.edge_share > 0.1
-        assert found.edge_share[0, m] == pytest.approx(alone.edge_share, rel=1e-8)
-
-
-def test_apart_there_is_nothing(device):
-    half_space, gaps = problem(32)
-    found = batched(half_space, gaps, [gaps.min() - 1e-9, gaps.min()], device)
-    assert not found.force.any()
-    assert not found.iterations.any()
-    assert found.converged.all()
+            assert found.edge_share[i, m] == pytest.approx(alone.edge_share, rel=1e-8)
+        assert (alone.edge_share > 0.1) == (share > 1.0)
+        assert hardness is None or alone.pressure.max() == hardness
 
 
 def test_batches_follow_the_memory_and_do_not_change_the_forces():
     half_space, gaps = problem(32)
-    approaches = APPROACH * np.array([0.0, 0.5, 1.0])
-    asked = []
+    asked, approaches = [], APPROACH * np.array([0.0, 0.5, 1.0])
 
     def some(first, last):
         asked.append(last - first)
         return gaps[first:last]
 
     whole = solve_batched(half_space, some, POSITIONS, approaches, 1e-11, processor())
-    assert set(asked) == {POSITIONS}
-    asked.clear()
     parts = solve_batched(half_space, some, POSITIONS, approaches, 1e-11, processor(memory=2**21))
-    assert max(asked[len(asked) // 2 :]) < POSITIONS / 2
+    assert asked[0] == POSITIONS
+    assert max(asked[1:]) < POSITIONS / 2
     np.testing.assert_allclose(parts.force, whole.force, rtol=1e-12)
-
-
-def test_batches_shrink_when_memory_runs_out():
-    half_space, gaps = problem(32)
-    whole = batched(half_space, gaps, [APPROACH], strict_device())
-    parts = batched(half_space, gaps, [APPROACH], strict_device(largest_batch=4))
-    np.testing.assert_allclose(parts.force, whole.force, rtol=1e-12)
+    shrunk = batched(half_space, gaps, approaches, strict_device(largest_batch=4))
+    np.testing.assert_allclose(shrunk.force, whole.force, rtol=1e-12)
     with pytest.raises(ComputationError, match=r"one contact of .* ran out of memory.*Try: a smaller window"):
-        batched(half_space, gaps, [APPROACH], strict_device(largest_batch=0))
+        batched(half_space, gaps, approaches, strict_device(largest_batch=0))
 
 
 def test_what_does_not_converge_is_told(monkeypatch):
@@ -212,45 +186,66 @@ def test_what_does_not_converge_is_told(monkeypatch):
     assert np.all(found.iterations == 5)
 
 
-def test_members_that_converge_early_stay_as_they_are():
-    """Position 0 has few cells in contact, the others many: the batch goes on without it."""
-    half_space, gaps = problem(32)
-    gaps = np.concatenate([gaps[:1] + 0.95 * APPROACH, np.tile(gaps, (2, 1, 1))])
-    found = batched(half_space, gaps, [APPROACH], strict_device())
-    assert found.iterations[0, 0] < found.iterations[0, 1:].min()
-    alone = half_space.solve(gaps[0], approach=APPROACH, rtol=1e-11).force
-    assert found.force[0, 0] == pytest.approx(alone, rel=1e-9)
-
-
-def test_batched_convolution_is_the_double_sum():
+def test_convolution_is_the_double_sum():
     rng = np.random.default_rng(0)
     table, field = rng.standard_normal((6, 5)), rng.standard_normal((3, 6, 5))
-    found = convolve_padded(field, padded_spectrum(table, 6, 5), padded_length(5), np)
+    found = convolve_padded(field, padded_spectrum(table, 6, 5), np)
     i, j = np.arange(6), np.arange(5)
     kernel = table[abs(i[:, None] - i)[:, None, :, None], abs(j[:, None] - j)[None, :, None, :]]
     np.testing.assert_allclose(found, np.einsum("ijkl,bkl->bij", kernel, field), atol=1e-12)
 
 
-def test_without_cupy_the_gpu_is_refused(monkeypatch):
-    monkeypatch.setitem(sys.modules, "cupy", None)
-    with pytest.raises(InputError, match=r"no CuPy .*pip install 'asperity\[gpu\]'") as caught:
+@pytest.mark.parametrize(("n", "share", "stride"), [(32, 0.35, 1), (32, 0.35, 3), (16, 1.4, 2)])
+def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(device, monkeypatch, n, share, stride):
+    """The window of 16 cells cuts the contact off; blocks of the device are not taken for the processor's."""
+    monkeypatch.setattr("asperity.contact.scan.BATCH", 8)
+    half_space, heights, body = rolling(n, None, share, stride)
+    planes = 0.1 * APPROACH * np.sin(np.arange(POSITIONS))
+    approaches = APPROACH * np.array([-0.2, 0.3, 1.0])
+    job = ScanJob(half_space, Rows(heights), body, approaches, stride, 1e-11, planes, device=None)
+    kept = {}
+    cache = SimpleNamespace(get=kept.get, put=kept.__setitem__)
+    alone = scan_forces(job, cache=cache)
+    for _ in range(2):
+        found = scan_forces(replace(job, device=device), cache=cache)
+        np.testing.assert_allclose(found.forces, alone.forces, rtol=1e-9)
+        assert found.counts._replace(iterations=0) == alone.counts._replace(iterations=0)
+        assert found.counts.iterations > 0
+        assert len(kept) == 1 + 3
+    assert bool(alone.counts.truncated) == (share > 1.0)
+
+
+def no_device():
+    raise RuntimeError("cudaErrorNoDevice: no CUDA-capable device is detected\nmore")
+
+
+@pytest.mark.parametrize(
+    ("cupy", "message"),
+    [
+        (None, r"no CuPy .*pip install 'asperity\[gpu\]'"),
+        (
+            SimpleNamespace(cuda=SimpleNamespace(runtime=SimpleNamespace(getDeviceCount=no_device))),
+            r"no usable CUDA device \(cudaErrorNoDevice: .* detected\); .*nvidia-smi",
+        ),
+    ],
+)
+def test_a_gpu_that_is_not_there_is_refused(monkeypatch, cupy, message):
+    monkeypatch.setitem(sys.modules, "cupy", cupy)
+    monkeypatch.setenv("ASPERITY_DEVICE", "cpu")
+    with pytest.raises(InputError, match=message):
         find_device("gpu")
-    assert caught.value.exit_code == 2
+    outcome = CliRunner().invoke(main, ["run", "case.toml", "--device", "gpu"])
+    assert outcome.exit_code == 2
+    assert 'device "gpu": received no' in outcome.output
+    assert os.environ["ASPERITY_DEVICE"] == "cpu"
 
 
-def test_without_a_device_the_gpu_is_refused(monkeypatch):
-    def count():
-        raise RuntimeError("cudaErrorNoDevice: no CUDA-capable device is detected\nmore")
-
-    fake = SimpleNamespace(cuda=SimpleNamespace(runtime=SimpleNamespace(getDeviceCount=count)))
-    monkeypatch.setitem(sys.modules, "cupy", fake)
-    with pytest.raises(
-        InputError, match=r"no usable CUDA device \(cudaErrorNoDevice: .* detected\); .*nvidia-smi"
-    ):
-        find_device("gpu")
-
-
-def test_the_processor_needs_no_batches_and_other_devices_are_unknown():
-    assert find_device("cpu") is None
-    with pytest.raises(InputError, match="'tpu'; allowed: 'cpu' or 'gpu'"):
-        find_device("tpu")
+def test_the_device_is_named_or_that_of_the_environment(monkeypatch):
+    monkeypatch.setenv("ASPERITY_DEVICE", "GPU")
+    with pytest.raises(InputError, match=r"\$ASPERITY_DEVICE: received 'GPU'; allowed: 'cpu' or 'gpu'"):
+        find_device()
+    with pytest.raises(InputError, match="device: received 'tpu'; allowed: 'cpu' or 'gpu'"):
+        HalfSpace((4, 4), 1.0, 1.0).scan(np.zeros((4, 4)), np.zeros((4, 4)), [0.0], device="tpu")
+    choose_device("cpu")
+    assert os.environ["ASPERITY_DEVICE"] == "cpu"
+    assert find_device() is None

@@ -1,45 +1,24 @@
-"""Hertz's closed forms against printed values and each other."""
+"""Smooth bodies: Hertz's closed forms, balls in grooves, and where the half-space ends."""
 
 import math
+import warnings
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from asperity.contact import Hertz
-from asperity.errors import InputError
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.hertz import FORCE_LOST, check_half_space, groove_gap, in_groove, relative_radius
+from asperity.errors import HalfSpaceWarning, InputError
 
-STEEL = 210e9 / (2 * (1 - 0.3**2))
-
-
-@pytest.mark.parametrize(
-    ("load", "approach", "a", "b", "tangent"),
-    [
-        (50e3, 65.6e-6, 5.68e-3, 4.28e-3, 1.143e9),
-        (65e3, 78.1e-6, 6.20e-3, 4.67e-3, 1.248e9),
-        (100e3, 104.1e-6, 7.16e-3, 5.39e-3, 1.441e9),
-    ],
-)
-def test_wheel_on_rail(load, approach, a, b, tangent):
-    # wheel R = 0.46 m in the rolling direction, rail head R = 0.30 m across it
-    hertz = Hertz(STEEL, 0.46, 0.30)
-    assert hertz.stiffness_constant == pytest.approx(9.413e10, rel=1e-4)
-    delta = hertz.approach(load)
-    assert delta == pytest.approx(approach, rel=1e-3)
-    assert hertz.semi_axes(delta) == pytest.approx((a, b), rel=1e-3)
-    assert hertz.tangent_stiffness(delta) == pytest.approx(tangent, rel=1e-3)
-
-
-def test_steel_ball_at_ten_newton():
-    hertz = Hertz(STEEL, 12.5e-3, 12.5e-3)
-    delta = hertz.approach(10.0)
-    assert delta == pytest.approx(0.697e-6, rel=1e-3)
-    assert hertz.tangent_stiffness(delta) == pytest.approx(21.5e6, rel=2e-3)
+STEEL = 115e9
+RADIUS, GROOVE = 6.35e-3, 0.52 * 12.7e-3  # ball and groove of a bearing 209
+INNER, OUTER = 26.15e-3, -38.85e-3  # its raceways: pitch radius 32.5 mm less and plus the ball's
 
 
 def test_sphere_is_exact():
-    hertz = Hertz(2.0, 3.0, 3.0)
-    delta = 0.01
+    hertz, delta = Hertz(2.0, 3.0, 3.0), 0.01
     a = math.sqrt(3.0 * delta)
     assert hertz.semi_axes(delta) == pytest.approx((a, a), rel=1e-12)
     assert hertz.force(delta) == pytest.approx(4 / 3 * 2.0 * math.sqrt(3.0) * delta**1.5, rel=1e-12)
@@ -48,29 +27,87 @@ def test_sphere_is_exact():
 
 
 @given(st.floats(0.02, 0.999999), st.floats(1e-6, 1e-3))
-def test_turning_the_bodies_swaps_the_axes(ratio, delta):
+def test_turning_the_bodies_swaps_the_axes_and_approach_inverts_force(ratio, delta):
     along, across = Hertz(1e11, 1.0, ratio), Hertz(1e11, ratio, 1.0)
     assert along.force(delta) == pytest.approx(across.force(delta), rel=1e-12)
     assert along.semi_axes(delta) == pytest.approx(across.semi_axes(delta)[::-1], rel=1e-12)
     assert along.semi_axes(delta)[0] > along.semi_axes(delta)[1]
+    assert along.approach(along.force(delta)) == pytest.approx(delta, rel=1e-12)
+    assert along.force(-delta) == along.peak_pressure(-delta) == 0.0
 
 
-@given(st.floats(0.02, 0.999))
-def test_apart_is_free_and_approach_inverts_force(ratio):
-    hertz = Hertz(1e11, 1.0, ratio)
-    assert hertz.force(-1e-6) == 0.0
-    assert hertz.approach(hertz.force(2e-5)) == pytest.approx(2e-5, rel=1e-12)
-    assert hertz.peak_pressure(-1.0) == 0.0
+@pytest.mark.parametrize("e", [0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5])
+def test_near_circular_is_continuous(e):
+    """K_H ∝ (Rx Ry)^(1/4) to first order in the ellipticity."""
+    assert Hertz(1.0, 1.0, 1.0 - e).stiffness_constant == pytest.approx(4 / 3 * (1 - e) ** 0.25, rel=1e-9)
 
 
-def test_near_circular_is_continuous():
-    values = [Hertz(1.0, 1.0, 1.0 - e).stiffness_constant for e in (0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)]
-    # K_H ∝ (Rx Ry)^(1/4) to first order in the ellipticity
-    for e, value in zip((0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5), values, strict=True):
-        assert value == pytest.approx(4 / 3 * (1 - e) ** 0.25, rel=1e-9)
+def test_signs_of_curvatures():
+    assert relative_radius(2.0) == relative_radius(2.0, math.inf) == 2.0
+    assert relative_radius(2.0, 2.0) == 1.0
+    assert relative_radius(2.0, -4.0) == pytest.approx(4.0)
+    flat, inner, outer = (in_groove(STEEL, RADIUS, GROOVE, r) for r in (math.inf, INNER, OUTER))
+    assert 1.0 / inner.radius_x == pytest.approx(1.0 / RADIUS + 1.0 / INNER)
+    assert 1.0 / outer.radius_x == pytest.approx(1.0 / RADIUS + 1.0 / OUTER)
+    assert inner.radius_y == flat.radius_y == outer.radius_y
+    assert 1.0 / flat.radius_y == pytest.approx(1.0 / RADIUS - 1.0 / GROOVE)
 
 
-@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf])
-def test_bad_radius(bad):
-    with pytest.raises(InputError, match="radius_y: received"):
-        Hertz(1e11, 1.0, bad)
+def test_the_gap_of_circles_is_the_parabola_near_its_middle():
+    contact = in_groove(STEEL, RADIUS, GROOVE)
+    for angle, share in ((0.1, 1e-3), (1.0 / 3.0, 1.1e-2), (0.6, 4e-2)):
+        s = angle * GROOVE
+        assert groove_gap(s, RADIUS, GROOVE) == pytest.approx(s**2 / (2.0 * contact.radius_y), rel=share)
+    # from coordinates of the two circles: the ball touches the bottom, the normal of the groove at 40°
+    normal, middle = np.array([np.sin(0.7), -np.cos(0.7)]), np.array([0.0, -(GROOVE - RADIUS)])
+    t = normal @ middle + np.sqrt((normal @ middle) ** 2 - middle @ middle + RADIUS**2)
+    np.testing.assert_allclose(groove_gap([0.7 * GROOVE], RADIUS, GROOVE), GROOVE - t, rtol=1e-9)
+
+
+@pytest.mark.parametrize("load", [500.0, 5000.0])
+def test_what_the_plane_adds_in_a_groove(load):
+    """Overlap δ cos θ − gap and load p cos θ against the plane: the estimate that warnings state."""
+    contact = in_groove(STEEL, RADIUS, GROOVE, INNER)
+    approach = contact.approach(load)
+    along, across = contact.semi_axes(approach)
+    spacing = along / 8
+    x, y = (spacing * np.arange(-round(9.2 * a / along), round(9.2 * a / along) + 1) for a in (along, across))
+    rolling, turned = x[:, None] ** 2 / (2.0 * contact.radius_x), np.cos(y / GROOVE)
+    half_space = HalfSpace((len(x), len(y)), spacing, STEEL)
+    flat = half_space.solve(rolling + y**2 / (2.0 * contact.radius_y), approach=approach).force
+    bent = rolling + groove_gap(y, RADIUS, GROOVE) + approach * (1.0 - turned)
+    carried = (half_space.solve(bent, approach=approach).pressure * turned).sum() * spacing**2
+    assert flat / carried - 1.0 == pytest.approx(FORCE_LOST * (across / GROOVE) ** 2, rel=0.1)
+
+
+GROOVED = {"groove_radius": GROOVE, "raceway_radius": INNER, "cause": "3 kN"}
+
+
+@pytest.mark.parametrize(
+    ("along", "across", "keywords", "kind", "message"),
+    [
+        (0.02, 0.29, GROOVED | {"groove_width": 6e-3}, None, ""),
+        (0.09, 0.09 * RADIUS / GROOVE, {}, None, ""),
+        (0.02, 0.4, GROOVED, HalfSpaceWarning, r"3 kN the contact fills 0.4 rad.*too large by about 5.1 %"),
+        (0.02, 0.61, GROOVED, InputError, r"fills 0.61 rad of the groove .*; allowed: at most 0.6"),
+        (
+            0.02, 0.3, GROOVED | {"groove_width": 3e-3}, InputError,
+            r"width of the groove: received 3 mm, and a contact of 3.962 mm",
+        ),
+        (0.2, 0.2, GROOVED, HalfSpaceWarning, r"a semi-axis of 0.2 R along the path, above 0.1 R"),
+        (0.01, 0.4 * RADIUS / GROOVE, {}, InputError, r"0.4 R across the path; allowed: at most R/3"),
+        (
+            0.02, 0.2, {"groove_radius": RADIUS / 0.99}, HalfSpaceWarning,
+            r"The radius of the ball is 1 % below that of the groove",
+        ),
+    ],
+)  # fmt: skip
+def test_where_the_half_space_ends(along, across, keywords, kind, message):
+    axes = along * RADIUS, across * GROOVE
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        if kind is None:
+            check_half_space(axes, RADIUS, **keywords)
+        else:
+            with pytest.raises(kind, match=message):
+                check_half_space(axes, RADIUS, **keywords)

@@ -11,21 +11,16 @@ X = (np.arange(N) - N // 2) * DX
 BALL = (X[:, None] ** 2 + X**2) / (2 * RADIUS)
 
 
-def rough(rms, seed=0):
-    found = np.random.default_rng(seed).standard_normal((N + 20, N))
-    found = np.apply_along_axis(np.convolve, 0, found, np.hanning(7), mode="same")
-    return rms * found / found.std()
-
-
 @pytest.mark.parametrize("hardness", [None, 1.5e9])
-@pytest.mark.parametrize("rms", [0.0, 0.05e-6, 0.3e-6])
-@pytest.mark.parametrize("yielding", [1e-3, 0.1, 1.0, 30.0])
+@pytest.mark.parametrize("rms", [0.0, 0.3e-6])
+@pytest.mark.parametrize("yielding", [1e-3, 1.0, 30.0])
 def test_what_the_bodies_yield_and_the_contact_agree(yielding, rms, hardness):
     """Pressure within its bounds, no overlap but at the hardness, no gap under pressure: at δ − C F."""
-    space, heights = HalfSpace((N, N), DX, MODULUS, hardness), rough(rms)
-    contact = ContactInPlace(space, BALL, RTOL)
-    stiffness = space.solve(BALL - heights[:N], load=3.0).stiffness
-    free, compliance = 0.6e-6, yielding / stiffness
+    rough = np.random.default_rng(0).standard_normal((N + 20, N))
+    rough = np.apply_along_axis(np.convolve, 0, rough, np.hanning(7), mode="same")
+    space, heights = HalfSpace((N, N), DX, MODULUS, hardness), rms * rough / rough.std()
+    contact, free = ContactInPlace(space, BALL, RTOL), 0.6e-6
+    compliance = yielding / space.solve(BALL - heights[:N], load=3.0).stiffness
     for row in range(0, 20, 5):  # from nothing, and from what stands there
         found = contact.solve(heights[row : row + N], free, compliance)
         assert found.converged
@@ -41,13 +36,8 @@ def test_what_the_bodies_yield_and_the_contact_agree(yielding, rms, hardness):
         assert open_by[p < space.pressure_cap].min() >= -limit
         assert open_by[p > 0.0].max() <= limit
         contact.start_again()
-
-
-def test_no_contact_has_no_pressure():
-    contact = ContactInPlace(HalfSpace((N, N), DX, MODULUS), BALL, RTOL)
-    assert contact.solve(np.zeros((N, N)), 0.5e-6, 1e-9).force > 0.0
-    found = contact.solve(np.zeros((N, N)), -0.1e-6, 1e-9)
-    assert (found.force, found.approach, found.converged) == (0.0, -0.1e-6, True)
+    found = contact.solve(heights[:N], -2e-6, compliance)
+    assert (found.force, found.approach, found.converged) == (0.0, -2e-6, True)
     assert not contact.pressure.any()
 
 

@@ -1,4 +1,4 @@
-"""Scans in batches on a GPU: the array module, and the iteration on it."""
+"""Scans in batches on a GPU: the device, its memory, and the contacts that share it."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import Array, shown
-from asperity.contact.halfspace import MAX_ITERATIONS, HalfSpace
+from asperity.arguments import Array, require, shown
+from asperity.contact.halfspace import MAX_ITERATIONS, HalfSpace, edge_share
 from asperity.errors import ComputationError, InputError
-from asperity.kernels.batched_cg import first_guess, solve_batch
-from asperity.kernels.convolution import padded_length, padded_spectrum
+from asperity.kernels import batched
 
 DEVICES = ("cpu", "gpu")
 """What `device` may be."""
@@ -52,16 +51,10 @@ def gpu() -> Device:
         # compiles a kernel and plans a transform: what is missing shows here, not in the middle of a run
         float(cupy.fft.irfft(cupy.fft.rfft(cupy.ones(4)))[0])
         name = cupy.cuda.runtime.getDeviceProperties(cupy.cuda.Device().id)["name"].decode()
-    except (
-        Exception
-    ) as error:  # whatever driver, runtime, compiler and loader raise: there is no usable device
-        reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+    except Exception as error:  # whatever driver, runtime, compiler and loader raise
+        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
         remedy = "Check the driver with nvidia-smi and the CUDA libraries, or compute on the device cpu."
         raise InputError('device "gpu"', f"no usable CUDA device ({reason})", allowed, remedy) from None
-    return _cuda_device(cupy, f"{name} ({count} found), CuPy {cupy.__version__}")
-
-
-def _cuda_device(cupy: Any, name: str) -> Device:
     pool = cupy.get_default_memory_pool()
 
     def free_memory() -> int:
@@ -72,7 +65,8 @@ def _cuda_device(cupy: Any, name: str) -> Device:
         pool.free_all_blocks()
 
     exhausted = (cupy.cuda.memory.OutOfMemoryError, cupy.cuda.cufft.CuFFTError)
-    return Device(name, cupy, free_memory, cupy.asnumpy, release, exhausted)
+    words = f"{name} ({count} found), CuPy {cupy.__version__}"
+    return Device(words, cupy, free_memory, cupy.asnumpy, release, exhausted)
 
 
 def find_device(name: str | None = None) -> Device | None:
@@ -82,8 +76,8 @@ def find_device(name: str | None = None) -> Device | None:
     """
     what = "device" if name is not None else f"${CHOSEN}"
     name = (os.environ.get(CHOSEN) or "cpu") if name is None else name
-    if not isinstance(name, str) or name not in DEVICES:
-        raise InputError(what, shown(name), " or ".join(map(repr, DEVICES)))
+    known = isinstance(name, str) and name in DEVICES
+    require(known, what, shown(name), " or ".join(map(repr, DEVICES)))
     return gpu() if name == "gpu" else None
 
 
@@ -100,6 +94,10 @@ MEMORY_SHARE = 0.6
 """Share of the free memory that a batch may take."""
 LARGEST_TRANSFORM = 2**30
 """Points of one batch of transforms: the index of a point must fit into 31 bits."""
+PADDED = 4
+"""Points of a transform, in cells: twice as many along and across."""
+FIELDS = 17 + 8 * PADDED
+"""Numbers a cell at once: gap, pressure, some fifteen fields; padded fields, spectra and work areas."""
 SMALLEST_BOX = 8
 """Cells along a box, at least: smaller transforms take no less time."""
 
@@ -114,15 +112,6 @@ class SolvedContacts:
     edge_share: Array  # share of the force on the window's outermost cells
 
 
-@dataclass(frozen=True, eq=False)
-class _Boxes:
-    """Bounding boxes of the overlaps: one size per approach, an origin for each position."""
-
-    sizes: NDArray[np.int64]  # (k, 2)
-    origins: NDArray[np.int64]  # (k, n, 2)
-    touching: NDArray[np.bool_]  # (k, n)
-
-
 def solve_batched(
     half_space: HalfSpace,
     gaps: Callable[[int, int], DeviceArray],
@@ -134,47 +123,21 @@ def solve_batched(
     """Solve many contacts at increasing approaches (k,), m, each from the pressure at the approach before.
 
     ``gaps(first, last)`` gives the gaps at zero approach of these of the `count` positions, on the device, m,
-    shape (last − first, nx, ny); `rtol` is as in `HalfSpace.solve`. A `ComputationError` comes if a single
-    contact does not fit into the device's memory.
-
-    All positions share the size of the box they are solved on, the largest of them; as nothing outside of
-    an overlap can carry pressure, the solution does not depend on it, nor on how many fit into a batch.
+    shape (last − first, nx, ny); `rtol` is as in `HalfSpace.solve`. As many are solved at once as fit, fewer
+    if memory runs out all the same; a `ComputationError` comes if a single contact does not fit.
     """
-    boxes = _bounding_boxes(half_space.shape, gaps, count, approaches, device)
-    k = len(approaches)
-    found = SolvedContacts(
-        np.zeros((k, count)), np.zeros((k, count), np.int64), np.ones((k, count), bool), np.zeros((k, count))
-    )
-
-    def solve_some(first: int, last: int) -> None:
-        _solve_batch(half_space, gaps(first, last), approaches, boxes, (first, last), rtol, device, found)
-
-    cells, points = half_space.shape[0] * half_space.shape[1], _padded_points(boxes.sizes[-1])
-    box_cells = int(boxes.sizes[-1].prod())
-    # the window's gap and pressure; some fifteen fields on the box; padded fields, spectra and work areas
-    _in_batches(solve_some, count, 8 * (2 * cells + 15 * box_cells + 8 * points), points, device)
-    return found
-
-
-def _padded_points(size: NDArray[np.int64]) -> int:
-    return padded_length(int(size[0])) * padded_length(int(size[1]))
-
-
-def _in_batches(
-    task: Callable[[int, int], None], count: int, bytes_each: int, points_each: int, device: Device
-) -> None:
-    """Do a task for all positions, as many at once as fit; fewer, if memory runs out all the same."""
-    size = max(1, int(MEMORY_SHARE * device.free_memory()) // bytes_each)
-    size = min(count, size, max(1, LARGEST_TRANSFORM // points_each))
-    first = 0
+    found = SolvedContacts(*(np.zeros((len(approaches), count), kind) for kind in (float, int, bool, float)))
+    cells = half_space.shape[0] * half_space.shape[1]
+    size = min(int(MEMORY_SHARE * device.free_memory()) // (8 * FIELDS), LARGEST_TRANSFORM // PADDED) // cells
+    first, size = 0, min(count, max(1, size))
     while first < count:
         last = min(first + size, count)
         try:
-            task(first, last)
+            _solve_some(half_space, gaps(first, last), approaches, rtol, device, found, slice(first, last))
         except device.exhausted as error:
             if size == 1:
                 raise ComputationError(
-                    f"one contact of {bytes_each / 2**20:.0f} MiB on {device.name} ran out of memory",
+                    f"one contact of {8 * FIELDS * cells / 2**20:.0f} MiB on {device.name} ran out of memory",
                     "a smaller window, a coarser grid or the device cpu",
                 ) from error
         else:
@@ -183,81 +146,49 @@ def _in_batches(
         # outside of the handler, whose traceback keeps the arrays of the failed batch
         device.release()
         size = (size + 1) // 2
+    return found
 
 
-def _bounding_boxes(
-    shape: tuple[int, int],
-    gaps: Callable[[int, int], DeviceArray],
-    count: int,
-    approaches: Array,
-    device: Device,
-) -> _Boxes:
-    """Bounding boxes of the overlaps of all positions, moved into the window."""
-    k = len(approaches)
-    low, high = np.zeros((k, count, 2), np.int64), np.zeros((k, count, 2), np.int64)
-    touching = np.zeros((k, count), bool)
-
-    def measure(first: int, last: int) -> None:
-        gap = gaps(first, last)
-        for i, approach in enumerate(approaches):
-            overlapping = gap < float(approach)
-            for axis in (0, 1):
-                reached = overlapping.any(axis=2 - axis)
-                low[i, first:last, axis] = device.to_host(reached.argmax(axis=1))
-                high[i, first:last, axis] = shape[axis] - device.to_host(reached[:, ::-1].argmax(axis=1))
-                touching[i, first:last] = device.to_host(reached.any(axis=1))
-
-    _in_batches(measure, count, 32 * shape[0] * shape[1], shape[0] * shape[1], device)
-    extent = np.where(touching[..., None], high - low, 1)
-    sizes = np.maximum(extent.max(axis=1), np.minimum(shape, SMALLEST_BOX))
-    origins = np.minimum(np.where(touching[..., None], low, 0), np.array(shape) - sizes[:, None])
-    return _Boxes(sizes, origins, touching)
-
-
-def _solve_batch(
+def _solve_some(
     half_space: HalfSpace,
     gap: DeviceArray,
     approaches: Array,
-    boxes: _Boxes,
-    span: tuple[int, int],
     rtol: float,
     device: Device,
     found: SolvedContacts,
+    positions: slice,
 ) -> None:
-    """Solve positions first … last at all approaches, and write what was found."""
-    xp, cap, taps = device.xp, half_space.pressure_cap, tuple(half_space.influence.taps.tolist())
-    pressure, softest = xp.zeros_like(gap), half_space.influence.softest
-    for i, approach in enumerate(approaches):
-        members = np.flatnonzero(boxes.touching[i, span[0] : span[1]])
-        if not len(members):
-            continue
-        nx, ny = (int(n) for n in boxes.sizes[i])
-        rows, columns = _box_cells(boxes.origins[i, span[0] + members], nx, ny, xp)
-        cells = (xp.asarray(members)[:, None, None], rows, columns)
-        overlap = float(approach) - gap[cells]
-        largest = overlap.max(axis=(1, 2))
-        p = pressure[cells]
-        spectrum, my = xp.asarray(padded_spectrum(half_space.influence.table, nx, ny)), padded_length(ny)
+    """Solve contacts at all approaches, on boxes as large as the largest overlap, and write what was found.
+
+    Nothing outside of an overlap can carry pressure, so that no solution depends on the size of the box.
+    """
+    xp, influence = device.xp, half_space.influence
+    pressure, taps = xp.zeros_like(gap), tuple(influence.taps.tolist())
+    for i, approach in enumerate(approaches.tolist()):
+        overlapping = gap < approach
+        rows, columns = (_cells(overlapping.any(axis=axis), xp) for axis in (2, 1))
+        box = (xp.arange(len(gap))[:, None, None], rows[:, :, None], columns[:, None, :])
+        overlap, p = approach - gap[box], pressure[box]
+        spectrum = batched.padded_spectrum(influence.table, *p.shape[1:])
+        task = batched.Task(
+            xp.asarray(spectrum), taps, half_space.pressure_cap, influence.softest, MAX_ITERATIONS
+        )
         fresh = ~p.any(axis=(1, 2))
         if bool(fresh.any()):
-            guess = first_guess(overlap, spectrum, my, cap, xp)
-            p = xp.where(fresh[:, None, None], guess, p)
-        iterations, worst = solve_batch(
-            overlap, spectrum, my, taps, p, cap, softest, rtol * largest, MAX_ITERATIONS, xp
-        )
-        pressure[cells] = p
-        at = span[0] + members
-        force = p.sum(axis=(1, 2))
-        on_edge = (rows == 0) | (rows == gap.shape[1] - 1) | (columns == 0) | (columns == gap.shape[2] - 1)
-        edge = (p * on_edge).sum(axis=(1, 2)) / xp.where(force > 0.0, force, 1.0)
-        found.force[i, at] = device.to_host(force) * half_space.cell_area
-        found.iterations[i, at] = device.to_host(iterations)
-        found.converged[i, at] = device.to_host(worst <= rtol * largest)
-        found.edge_share[i, at] = device.to_host(edge)
+            p = xp.where(fresh[:, None, None], batched.first_guess(overlap, task, xp), p)
+        tolerance = rtol * xp.maximum(overlap.max(axis=(1, 2)), 0.0)
+        iterations, worst = batched.solve_batch(overlap, p, tolerance, task, xp)
+        pressure[box] = p
+        found.force[i, positions] = device.to_host(p.sum(axis=(1, 2))) * half_space.cell_area
+        found.iterations[i, positions] = device.to_host(iterations)
+        found.converged[i, positions] = device.to_host(worst <= tolerance)
+        found.edge_share[i, positions] = device.to_host(edge_share(pressure))
 
 
-def _box_cells(origins: NDArray[np.int64], nx: int, ny: int, xp: Any) -> tuple[DeviceArray, DeviceArray]:
-    """Rows (b, nx, 1) and columns (b, 1, ny) of the window's cells in each box."""
-    corner = xp.asarray(origins)
-    rows = corner[:, 0, None, None] + xp.arange(nx)[None, :, None]
-    return rows, corner[:, 1, None, None] + xp.arange(ny)[None, None, :]
+def _cells(reached: DeviceArray, xp: Any) -> DeviceArray:
+    """Cells (b, size) along a side of the window: from the first reached (b, n) on, as many as any takes."""
+    n = reached.shape[1]
+    first, end = reached.argmax(axis=1), n - reached[:, ::-1].argmax(axis=1)
+    longest = int(xp.where(reached.any(axis=1), end - first, 0).max())
+    size = min(n, max(longest, SMALLEST_BOX))
+    return xp.minimum(first, n - size)[:, None] + xp.arange(size)

@@ -6,14 +6,15 @@ import math
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, real, real_array, two, two_lengths, whole
-from asperity.contact.fixed_set import displaced, unit_indentation
-from asperity.errors import InputError, Outcome, UnconvergedWarning
+from asperity import arguments
+from asperity.arguments import Array, real, require
+from asperity.errors import Outcome, UnconvergedWarning
+from asperity.kernels.batched import convolve_padded, padded_spectrum, unit_indentation
 from asperity.kernels.contact import REACH, room
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.influence import Influence, influence, influence_table, prepared
@@ -23,6 +24,7 @@ from asperity.kernels.scanning import Block, solve_positions
 from asperity.progress import Progress
 from asperity.store import Cache
 from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.strip import Rows
 from asperity.threads import refuse_to_go_on
 
 if TYPE_CHECKING:
@@ -113,10 +115,16 @@ class Contact:
     @property
     def edge_share(self) -> float:
         """Share of the force that acts on the window's outermost cells: above zero, some may be cut off."""
-        p = self.pressure
-        last_row, last_column = max(1, p.shape[0] - 1), max(1, p.shape[1] - 1)
-        edge = float(p[::last_row].sum()) + float(p[1:-1, ::last_column].sum())
-        return edge / float(p.sum()) if edge > 0.0 else 0.0
+        return float(edge_share(self.pressure))
+
+
+def edge_share(pressure: Any) -> Any:
+    """Share of the force of pressures (..., nx, ny) that acts on the window's outermost cells."""
+    nx, ny = pressure.shape[-2:]
+    edge = pressure[..., :: max(1, nx - 1), :].sum(axis=(-2, -1))
+    edge += pressure[..., 1:-1, :: max(1, ny - 1)].sum(axis=(-2, -1))
+    total = pressure.sum(axis=(-2, -1))
+    return edge / (total + (total == 0.0))
 
 
 class HalfSpace:
@@ -158,10 +166,10 @@ class HalfSpace:
         hardness: float | None = None,
     ) -> None:
         allowed = "two positive whole numbers (nx, ny)"
-        sides = two("half-space shape", shape, allowed)
-        nx, ny = (whole("half-space shape", n, allowed, at_least=1) for n in sides)
+        sides = arguments.two("half-space shape", shape, allowed)
+        nx, ny = (arguments.whole("half-space shape", n, allowed, at_least=1) for n in sides)
         self.shape = (nx, ny)
-        self.spacing = two_lengths("half-space spacing", spacing)
+        self.spacing = arguments.two_lengths("half-space spacing", spacing)
         remedy = "Steel on steel has 115e9."
         self.modulus = real("contact modulus", modulus, "a positive number, Pa", above=0.0, remedy=remedy)
         allowed = "a positive number, Pa, or None"
@@ -170,8 +178,13 @@ class HalfSpace:
         dx, dy = self.spacing
         scale = math.pi * self.modulus
         table = influence_table(reach_x, reach_y, dx, dy) / scale
-        self.influence: Influence = influence(table, _unit_taps(dy / dx) * (scale / dx))
-        self._single: Influence | None = None
+        taps = _unit_taps(dy / dx) * (scale / dx)
+        self._known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
+
+    @property
+    def influence(self) -> Influence:
+        """Influence of pressure on displacement, in double precision."""
+        return self._known[np.float64]
 
     @property
     def cell_area(self) -> float:
@@ -191,7 +204,8 @@ class HalfSpace:
         ndarray, shape (nx, ny)
             Displacement, m.
         """
-        return displaced(self.influence.table, self._field("pressure", pressure))
+        spectrum = padded_spectrum(self.influence.table, *self.shape)
+        return np.asarray(convolve_padded(self._field("pressure", pressure)[None], spectrum, np)[0])
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
@@ -254,14 +268,14 @@ class HalfSpace:
             For input that has no meaning.
         """
         g = self._field("gap", gap)
-        if (approach is None) == (load is None):
-            given = "both" if approach is not None else "neither"
-            raise InputError("approach and load", given, "exactly one of them", "Give one of the two.")
-        rtol = real("rtol", rtol, "a number between 0 and 1, as 1e-6", above=0.0, at_most=BELOW_ONE)
+        given = "both" if approach is not None else "neither"
+        one = (approach is None) != (load is None)
+        require(one, "approach and load", given, "exactly one of them", "Give one of the two.")
+        rtol = _tolerance(rtol)
         p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self.pressure_cap)
         if approach is not None:
             approach = real("approach", approach, "a finite length, m")
-            contact = self.at_approach(g, approach, p, rtol)
+            contact = self._contact(g, approach, p, rtol)
         else:
             contact = self.at_load(g, self.checked_load(load), p, rtol)
         if not contact.converged:
@@ -328,11 +342,27 @@ class HalfSpace:
         >>> forces.sel(approach=0.2e-6).values.round(2)  # a crest is under the ball at the third position
         array([1.03, 1.44, 1.75, 1.44])
         """
-        from asperity.contact.public_scan import scan_surface
+        from asperity.contact import batched, scan
 
-        return scan_surface(
-            self, surface, body, approaches, stride, rtol, force_accuracy, workers, cache, progress, device
+        one, remedy = rtol is None or force_accuracy is None, "Give one of the two, or neither."
+        require(one, "rtol and force_accuracy", "both", "one of them", remedy)
+        key, tolerance = ("rtol", 1e-6) if rtol is None else ("rtol", _tolerance(rtol))
+        if force_accuracy is not None:
+            key, tolerance = "force_accuracy", scan.rtol_for(force_accuracy)
+        heights = scan.heights_on(self, surface, "surface of the scan")
+        job = scan.ScanJob(
+            self,
+            Rows(heights - heights.mean()),
+            arguments.real_array("body of the scan", body, "an array (nx, ny) of lengths in m"),
+            arguments.real_array("approaches of the scan", approaches, "increasing lengths in m"),
+            stride,
+            tolerance,
+            device=batched.find_device(device),
         )
+        scan.check_settings(workers, cache, progress)
+        found = scan.scan_forces(job, cache=cache, workers=workers, progress=progress)
+        scan.warn_of_flaws(found.counts, "the scan", key, job.remedy if found.counts.truncated else "")
+        return scan.labelled(job, found)
 
     def run_in(
         self,
@@ -392,9 +422,27 @@ class HalfSpace:
         >>> f"crests {(rough - smoother.heights).max() * 1e9:.0f} nm lower"
         'crests 23 nm lower'
         """
-        from asperity.contact.running_in import run_in_surface
+        from asperity.contact import running_in, scan
 
-        return run_in_surface(self, surface, body, load, passes, stride, tolerance, workers, cache, progress)
+        allowed, remedy = "a pressure at which asperities flow", "An elastic surface keeps no mark."
+        require(self.hardness is not None, "hardness of the half-space", "None", allowed, remedy)
+        heights = scan.heights_on(self, surface, "surface to be run in")
+        shape = self._field("body that runs in", body)
+        scan.check_window("running-in", self.shape, heights.shape)
+        scan.check_settings(workers, cache, progress)
+        load, most = self.checked_load(load), max(self.shape[0] - 1, 1)
+        allowed = f"a whole number from 1 to {most}"
+        step = arguments.whole("stride of running-in", stride, allowed, at_least=1, at_most=most)
+        if tolerance is None:
+            tolerance = running_in.tolerance_of(self, shape, load)
+        tolerance = real("tolerance of running-in", tolerance, "a length above zero, m", above=0.0)
+        job = running_in.RunningIn(self, shape, load, arguments.passes_of(passes), tolerance, step)
+        found = running_in.run_in(heights, job, cache=cache, workers=workers, progress=progress)
+        running_in.warn_of_running_in(found, job, "rtol", "Enlarge the window.")
+        number = f"{len(found.largest)} pass" + ("es" if len(found.largest) > 1 else "")
+        words = f"run in by {number} under {load:.3g} N, {100 * found.yielded_share:.3g} % yielded"
+        origin = f"{surface.source}; " if isinstance(surface, HeightMap) and surface.source else ""
+        return HeightMap(found.heights, self.spacing, origin + words)
 
     @property
     def pressure_cap(self) -> float:
@@ -405,87 +453,32 @@ class HalfSpace:
         """Check that a load, N, is one that the window carries."""
         load = real("load", load, "a force ≥ 0, N", at_least=0.0)
         largest = self.pressure_cap * self.cell_area * self.shape[0] * self.shape[1]
-        if load >= largest:
-            raise InputError(
-                "load",
-                f"{load:.4g} N",
-                f"less than hardness × window area = {largest:.4g} N",
-                "Enlarge the window, raise the hardness or lower the load.",
-            )
+        allowed = f"less than hardness × window area = {largest:.4g} N"
+        remedy = "Enlarge the window, raise the hardness or lower the load."
+        require(load < largest, "load", f"{load:.4g} N", allowed, remedy)
         return load
 
     def _field(self, name: str, values: ArrayLike) -> Array:
-        a = _array(real_array(name, values, f"an array of the half-space's shape {self.shape}"))
-        if a.shape != self.shape:
-            raise InputError(f"{name} shape", a.shape, f"the half-space's shape {self.shape}")
-        if not np.isfinite(a).all():
-            bad = int(a.size - np.isfinite(a).sum())
-            raise InputError(
-                name,
-                f"{bad} of {a.size} values NaN or infinite",
-                "finite numbers",
-                "Fill missing points first.",
-            )
-        return a
+        allowed = f"finite numbers, an array of the half-space's shape {self.shape}"
+        return _array(arguments.finite_array(name, values, allowed, shape=self.shape))
 
-    def _prepare(self, nx: int, ny: int, single: bool = False) -> None:
-        """Prepare the convolution on a box: few do for a path, as few lengths transform fast.
-
-        Threads share what is prepared: at worst one overwrites what another has, which then comes again.
-        """
-        known = prepared(self._known(single), nx, ny)
-        if single:
-            self._single = known
-        else:
-            self.influence = known
-
-    def _known(self, single: bool) -> Influence:
-        if not single:
-            return self.influence
-        self._single = self._single or influence(self.influence.table, self.influence.taps, np.float32)
-        return self._single
-
-    def at_approach(self, gap: Array, approach: float, start: Array | None, rtol: float) -> Contact:
-        """Solve at a prescribed approach as `solve` does, unchecked and silent: look at `converged`."""
-        return self._single_contact(gap, approach, start, rtol)
-
-    def _single_contact(
+    def _contact(
         self, gap: Array, approach: float, start: Array | None, rtol: float, total: float = -1.0
     ) -> Contact:
-        flat, here = np.zeros(self.shape), np.zeros(1)
-        block = self.at_positions(flat, gap, here, np.array([approach]), 0, rtol, start, load=total)
-        pressure, iterations = block.pressures[0, 0], int(block.counts[1])
-        outcome = Outcome.CONVERGED if block.counts[0] else Outcome.NO_CONTACT
-        if block.counts[2]:
+        """Solve one contact, unchecked and silent; the sum of the pressure, Pa, is negative if not given."""
+        block = self.block(np.zeros(self.shape), gap, np.zeros(1), np.array([approach]), 0, rtol, load=total)
+        if start is not None:
+            block.pressures[1, 0], block.solved[0] = start, 1
+        self.solve_block(block)
+        pressure, (solved, iterations, unconverged, _) = block.pressures[0, 0], block.counts.tolist()
+        outcome = Outcome.CONVERGED if solved else Outcome.NO_CONTACT
+        if unconverged:
             outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.STALLED
         return Contact(
             pressure, float(block.totals[0, 0]) * self.cell_area, approach + float(block.levels[0, 0]),
             int(np.count_nonzero(pressure)) * self.cell_area, iterations, float(block.residuals[0, 0]),
             outcome, self, gap,
         )  # fmt: skip
-
-    def at_positions(
-        self,
-        rows: Array,
-        body: Array,
-        planes: Array,
-        approaches: Array,
-        stride: int,
-        rtol: float,
-        start: Array | None = None,
-        single: bool = False,
-        load: float = -1.0,
-    ) -> Block:
-        """Solve at positions of a body on a surface, unchecked and silent; arguments as in `scanning.Block`.
-
-        `start` (nx, ny), Pa, is the pressure at the first position and approach to start from. In single
-        precision the iteration is half again as fast, down to a tolerance of about 1e-6.
-        """
-        block = self.block(rows, body, planes, approaches, stride, rtol, single, load)
-        if start is not None:
-            block.pressures[1, 0], block.solved[0] = start, 1
-        self.solve_block(block, single)
-        return block
 
     def block(
         self,
@@ -498,25 +491,34 @@ class HalfSpace:
         single: bool = False,
         load: float = -1.0,
     ) -> Block:
-        """Lay out contacts to be solved, with nothing known of them; arguments as in `scanning.Block`."""
+        """Lay out contacts to be solved, with nothing known of them; arguments as in `scanning.Block`.
+
+        In single precision the iteration is half again as fast, down to a tolerance of about 1e-6.
+        """
         rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
         k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
+        known = self._known[np.float32 if single else np.float64]
         return Block(
             rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
-            room(self._known(single), *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
+            room(known, *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
             np.zeros(size), np.zeros(4, dtype=np.int64),
         )  # fmt: skip
 
-    def solve_block(self, block: Block, single: bool = False) -> None:
-        """Solve the contacts of a block, each from what is known of those before."""
-        position, level, count = 0, 0, len(block.planes)
+    def solve_block(self, block: Block) -> Block:
+        """Solve the contacts of a block, each from what is known of those before; unchecked and silent.
+
+        Threads share the convolutions that are prepared: at worst one overwrites what another has prepared,
+        which then comes again.
+        """
+        position, level, count, precision = 0, 0, len(block.planes), block.room.outer.dtype.type
         while position < count:
             refuse_to_go_on()
-            end = min(position + AT_ONCE, count)
-            position, level, nx, ny = solve_positions(self._known(single), block, position, level, end)
+            end, known = min(position + AT_ONCE, count), self._known[precision]
+            position, level, nx, ny = solve_positions(known, block, position, level, end)
             if position < end:
-                self._prepare(nx, ny, single)
+                self._known[precision] = prepared(self._known[precision], nx, ny)
+        return block
 
     def at_load(self, gap: Array, load: float, start: Array | None, rtol: float) -> Contact:
         """Solve at a given load as `solve` does, unchecked and silent: look at `converged`.
@@ -525,12 +527,12 @@ class HalfSpace:
         """
         lowest = float(gap.min())
         if load == 0.0:
-            return self.at_approach(gap, lowest, None, rtol)
+            return self._contact(gap, lowest, None, rtol)
         estimate = foundation_approach(gap, load, self.modulus, self.cell_area, self.pressure_cap)
         iterations = 0
         while True:
             reach = lowest + REACH * (estimate - lowest)
-            contact = self._single_contact(gap, reach, start, rtol, load / self.cell_area)
+            contact = self._contact(gap, reach, start, rtol, load / self.cell_area)
             iterations += contact.iterations
             if contact.approach <= reach:
                 return replace(contact, iterations=iterations)
@@ -541,6 +543,10 @@ class HalfSpace:
 def _unit_taps(ratio: float) -> Array:
     """Preconditioning stencil of cells 1 × ratio, π E* being one."""
     return inverse_stencil(influence_table(32, 32, 1.0, ratio))
+
+
+def _tolerance(rtol: float) -> float:
+    return real("rtol", rtol, "a number between 0 and 1, as 1e-6", above=0.0, at_most=BELOW_ONE)
 
 
 def _array(values: ArrayLike) -> Array:

@@ -1,4 +1,4 @@
-"""How tightly a contact is solved, by what its force is for."""
+"""A body moved along a surface: what is asked of the scan, its blocks on threads or a device, its flaws."""
 
 from __future__ import annotations
 
@@ -12,18 +12,22 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, finite_array, real, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
-from asperity.errors import Grade, InputError, TruncatedContactWarning, UnconvergedWarning, percent
+from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress
 from asperity.store import PATIENCE, Cache, claimed, content_key, made
+from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import in_order, thread_count
 
 if TYPE_CHECKING:
+    import xarray
+
     from asperity.contact.halfspace import HalfSpace
 
 FORCE_ACCURACY = 1e-4
@@ -51,9 +55,8 @@ def rtol_for(force_accuracy: float) -> float:
     heavy loads, the largest error found is twice the relative residual
     (``benchmarks/force_accuracy.py``).
     """
-    if not 0.0 < force_accuracy <= 0.1:
-        raise InputError("force_accuracy", force_accuracy, "a number above 0, at most 0.1", "Try 1e-4.")
-    return force_accuracy / SAFETY
+    allowed = "a number above 0, at most 0.1, as 1e-4"
+    return real("force_accuracy", force_accuracy, allowed, above=0.0, at_most=0.1) / SAFETY
 
 
 class Counts(NamedTuple):
@@ -70,35 +73,37 @@ def total(counts: Iterable[Counts]) -> Counts:
     return Counts(*(sum(column) for column in zip(*counts, strict=True)))
 
 
-def warn_of_flaws(counts: Counts, what: str, tolerance: str, remedy: str = "Enlarge the window.") -> None:
+def warn_of_flaws(
+    counts: Counts,
+    what: str,
+    tolerance: str,
+    remedy: str = "Enlarge the window.",
+    consequence: str = "its force too small",
+) -> None:
     """Warn of contact solutions that did not converge or were cut off, graded by their share.
 
     They were made for `what`, as ``"the scan"``; `tolerance` is the key or argument that says how tightly
-    they are solved, `remedy` what to do about contacts that are cut off.
+    they are solved, `remedy` what to do about contacts that are cut off, and `consequence` what becomes of
+    them.
     """
     solved, _, unconverged, truncated = counts
     if unconverged:
         share = unconverged / max(solved, 1)
-        warnings.warn(
-            UnconvergedWarning(
-                f"{unconverged} of {solved} contact solutions of {what} ({percent(share)}) missed their "
-                f"tolerance; their forces are approximate. Try a larger {tolerance}, and check the surface "
-                "for outliers.",
-                Grade.of_share(share),
-            ),
-            stacklevel=4,
+        message = (
+            f"{unconverged} of {solved} contact solutions of {what} ({percent(share)}) missed their "
+            f"tolerance; their forces are approximate. Try a larger {tolerance}, and check the surface for "
+            "outliers."
         )
+        warnings.warn(UnconvergedWarning(message, Grade.of_share(share)), stacklevel=4)
     if truncated:
         share = truncated / max(solved, 1)
-        warnings.warn(
-            TruncatedContactWarning(
-                f"in {truncated} of {solved} contact solutions of {what} ({percent(share)}) more than "
-                f"{100 * TRUNCATED:.0f} % of the force acts on the window's edge: the contact is cut off and "
-                f"its force too small{_MEANING[Grade.of_share(share)]}. {remedy}",
-                Grade.of_share(share),
-            ),
-            stacklevel=4,
+        grade = Grade.of_share(share)
+        message = (
+            f"in {truncated} of {solved} contact solutions of {what} ({percent(share)}) more than "
+            f"{100 * TRUNCATED:.0f} % of the force acts on the window's edge: the contact is cut off and "
+            f"{consequence}{_MEANING[grade]}. {remedy}"
         )
+        warnings.warn(TruncatedContactWarning(message, grade), stacklevel=4)
 
 
 _MEANING = {
@@ -118,6 +123,44 @@ def window_for(body: Array, spacing: tuple[float, float], overlap: float) -> flo
     edges = min(body[0, middle[1]], body[-1, middle[1]]), min(body[middle[0], 0], body[middle[0], -1])
     grown = [np.sqrt(max(0.5 * overlap / edge, 0.0)) if edge > 0.0 else 1.0 for edge in edges]
     return 1.1 * float(max(n * d * g for n, d, g in zip(body.shape, spacing, grown, strict=True)))
+
+
+def heights_on(half_space: HalfSpace, surface: ArrayLike | HeightMap, what: str) -> Array:
+    """Heights of a surface, complete and on the grid of a half-space, m; `what` names it in messages."""
+    require(not isinstance(surface, Profile), what, "a line of heights", "a map of heights")
+    if isinstance(surface, HeightMap):
+        received, own = (f"{dx:.6g} × {dy:.6g} m" for dx, dy in (surface.spacing, half_space.spacing))
+        require(
+            np.allclose(surface.spacing, half_space.spacing, rtol=1e-9, atol=0.0),
+            what,
+            f"a height map with points {received} apart",
+            f"{own} apart, as in the half-space",
+            "Resample the map, or choose the half-space's spacing after it.",
+        )
+        surface = surface.heights
+    allowed = "a height map, or an array (n, ny) of lengths in m, without missing points"
+    return finite_array(what, surface, allowed, shape=(None, None))
+
+
+def check_window(what: str, cells: tuple[int, ...], surface: tuple[int, ...]) -> None:
+    """Refuse a window whose cells do not fit on those of a surface."""
+    require(
+        surface[1] == cells[1] and surface[0] >= cells[0],
+        f"window of {what}",
+        f"{cells[0]} × {cells[1]} cells on a surface of {surface[0]} × {surface[1]} cells",
+        "a window as wide as the surface and not longer",
+        "Choose a smaller window or provide a larger map.",
+    )
+
+
+def check_settings(workers: object, cache: object, progress: object) -> None:
+    """Refuse what is no number of threads, no cache, or no progress."""
+    if workers is not None:
+        whole("workers", workers, "a number of threads, 1 or more, or None", at_least=1)
+    keeps = cache is None or (hasattr(cache, "get") and hasattr(cache, "put"))
+    require(keeps, "cache", shown(cache), "an object with get and put, as Store(), or None")
+    tells = progress is None or callable(progress)
+    require(tells, "progress", shown(progress), "a callable (done, total, message), or None")
 
 
 F = TypeVar("F")
@@ -150,29 +193,16 @@ class ScanJob:
     """Where contacts are solved in batches; None for the processor, which solves them one by one."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "body", np.ascontiguousarray(self.body, dtype=np.float64))
-        object.__setattr__(self, "approaches", np.atleast_1d(np.asarray(self.approaches, dtype=np.float64)))
-        self._check()
-
-    def _check(self) -> None:
-        (n, width), cells, approaches = self.surface.shape, self.half_space.shape, self.approaches
-        if self.body.shape != cells or not np.isfinite(self.body).all():
-            allowed = f"a finite array of the half-space's shape {cells}"
-            received = (
-                f"shape {self.body.shape}" if self.body.shape != cells else "values that are not finite"
-            )
-            raise InputError("body of the scan", received, allowed)
-        if width != cells[1] or n < cells[0]:
-            raise InputError(
-                "window of the scan",
-                f"{cells[0]} × {cells[1]} cells on a surface of {n} × {width} cells",
-                "a window as wide as the surface and not longer",
-                "Choose a smaller window or provide a larger map.",
-            )
-        if approaches.size == 0 or not np.isfinite(approaches).all() or np.any(np.diff(approaches) <= 0):
-            raise InputError("approaches of the scan", approaches.tolist(), "finite, increasing lengths in m")
-        if self.stride < 1:
-            raise InputError("stride of the scan", self.stride, "a whole number ≥ 1")
+        cells, (n, width) = self.half_space.shape, self.surface.shape
+        allowed = f"a finite array of the half-space's shape {cells}"
+        body = finite_array("body of the scan", self.body, allowed, shape=cells)
+        check_window("the scan", cells, (n, width))
+        what, allowed = "approaches of the scan", "finite, increasing lengths in m"
+        approaches = np.atleast_1d(finite_array(what, self.approaches, allowed, rising=True))
+        require(approaches.size, what, "none", allowed)
+        whole("stride of the scan", self.stride, "a whole number ≥ 1", at_least=1)
+        object.__setattr__(self, "body", body)
+        object.__setattr__(self, "approaches", approaches)
 
     @property
     def positions(self) -> int:
@@ -227,22 +257,23 @@ class ScanJob:
         parameters += ["batched"] if self.device else ["single"] if self.single else []
         return content_key("scan", rows, self.body, self.approaches, planes, parameters)
 
-    def solve(self, rows: Array, planes: Array) -> tuple[Array, NDArray[np.int64]]:
-        """Forces of a block from a cold start, N, shape (k, positions), and its `Counts`."""
-        space = self.half_space
+    def solve(self, rows: Array, planes: Array) -> dict[str, NDArray[Any]]:
+        """Forces of a block from a cold start, N, (k, positions), and its `Counts`, as a cache keeps them."""
+        space, stride = self.half_space, self.stride
         if self.device is not None:
             return self._solve_batched(rows, planes, self.device)
-        block = space.at_positions(
-            rows, self.body, planes, self.approaches, self.stride, self.rtol, single=self.single
-        )
-        return block.totals * space.cell_area, block.counts
+        block = space.block(rows, self.body, planes, self.approaches, stride, self.rtol, self.single)
+        space.solve_block(block)
+        return {"forces": block.totals * space.cell_area, "counts": block.counts}
 
-    def solved(self, rows: Array, planes: Array) -> dict[str, NDArray[Any]]:
-        """Forces and counts of a block, as a cache keeps them."""
-        forces, counts = self.solve(rows, planes)
-        return {"forces": forces, "counts": counts}
+    @property
+    def remedy(self) -> str:
+        """What to do about contacts that are cut off."""
+        overlap = self.approaches[-1] - float(first_touch(self.surface, self.body, self.stride).min())
+        side = window_for(self.body, self.half_space.spacing, overlap)
+        return f"A window of {side * 1e3:.3g} mm holds them."
 
-    def _solve_batched(self, rows: Array, planes: Array, device: Device) -> tuple[Array, NDArray[np.int64]]:
+    def _solve_batched(self, rows: Array, planes: Array, device: Device) -> dict[str, NDArray[Any]]:
         """All positions of a block at once, approach by approach."""
         xp = device.xp
         heights, shape, plane = xp.asarray(rows), xp.asarray(self.body), xp.asarray(planes)
@@ -255,7 +286,7 @@ class ScanJob:
         found = solve_batched(self.half_space, gaps, len(planes), self.approaches, self.rtol, device)
         flaws = (~found.converged).sum(), (found.edge_share > TRUNCATED).sum()
         counts = [np.count_nonzero(found.force), found.iterations.sum(), *flaws]
-        return found.force, np.array(counts, dtype=np.int64)
+        return {"forces": found.force, "counts": np.array(counts, dtype=np.int64)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,14 +332,14 @@ def solved_blocks(
             assert cache is not None
             with claimed(cache, key) as free:
                 if free and cache.get(key) is None:
-                    cache.put(key, other.solved(rows, planes))
+                    cache.put(key, other.solve(rows, planes))
                     return
         time.sleep(PATIENCE)
 
     def block(start: int) -> SolvedBlock:
         rows, planes = job.under(start)
         key = "" if cache is None else job.key(rows, planes)
-        solve = partial(job.solved, rows, planes)
+        solve = partial(job.solve, rows, planes)
         kept = solve() if cache is None else made(cache, key, solve, help_along)
         return SolvedBlock(key, kept["forces"], Counts(*kept["counts"].tolist()))
 
@@ -351,7 +382,7 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
     for done in range(0, len(starts), TOUCHED):
         block = starts[done : done + TOUCHED]
         lines = np.ascontiguousarray(strip.rows(block[0], block[-1] + nx).T)
-        highest = _sliding_maximum(lines.max(axis=0), nx)[::stride]
+        highest = sliding_window_view(lines.max(axis=0), nx)[::stride].max(axis=1)
         nearest, gap = np.full(len(block), np.inf), np.empty(len(block))
         for tried, (height, offset, line) in enumerate(cells):  # a cell over all positions at once
             if tried % CELLS == 0 and (np.subtract(height, highest, out=gap) >= nearest).all():
@@ -362,11 +393,24 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
     return result
 
 
-def _sliding_maximum(values: Array, length: int) -> Array:
-    """Largest of so many values from each on, (n − length + 1,), of values (n,)."""
-    reach = 1
-    while reach < length:
-        step = min(reach, length - reach)
-        values = np.maximum(values[:-step], values[step:])
-        reach += step
-    return values
+def labelled(job: ScanJob, scanned: ScannedForces[Array]) -> xarray.DataArray:
+    """Forces as `HalfSpace.scan` returns them."""
+    import xarray
+
+    position = np.arange(job.positions) * job.stride * job.half_space.spacing[0]
+    along = {"units": "m", "long_name": "offset of the window along x"}
+    into = {"units": "m", "long_name": "approach from the mean plane"}
+    _, iterations, unconverged, truncated = scanned.counts
+    return xarray.DataArray(
+        scanned.forces,
+        dims=("approach", "position"),
+        coords={"approach": ("approach", job.approaches, into), "position": ("position", position, along)},
+        name="force",
+        attrs={
+            "units": "N",
+            "long_name": "quasi-static contact force",
+            "iterations": iterations,
+            "unconverged": unconverged,
+            "truncated": truncated,
+        },
+    )

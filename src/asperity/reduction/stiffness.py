@@ -286,7 +286,7 @@ def stiffness_ensemble(
     cell = half_space.cell_area
 
     def load(sample: Array) -> tuple[Array, Array, Counts]:
-        block = half_space.at_positions(sample, body, np.zeros(1), approaches, 1, rtol)
+        block = half_space.solve_block(half_space.block(sample, body, np.zeros(1), approaches, 1, rtol))
         forces = cell * block.totals[:, 0]
         tangents = [
             half_space.tangent_stiffness(pressure, TANGENT) if force > 0.0 else 0.0
