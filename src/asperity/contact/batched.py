@@ -170,7 +170,7 @@ def _solve_some(
         box = (xp.arange(len(gap))[:, None, None], rows[:, :, None], columns[:, None, :])
         overlap, p = approach - gap[box], pressure[box]
         spectrum = batched.padded_spectrum(influence.table, *p.shape[1:])
-        task = batched.Task(
+        task = batched.BatchTask(
             xp.asarray(spectrum), taps, half_space.pressure_cap, influence.softest, MAX_ITERATIONS
         )
         fresh = ~p.any(axis=(1, 2))

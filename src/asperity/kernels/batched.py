@@ -87,7 +87,7 @@ class _Members(NamedTuple):
     active: Array
 
 
-class Task(NamedTuple):
+class BatchTask(NamedTuple):
     """What is asked of all contacts of a batch: 0 ≤ p ≤ hardness ⟂ K p − overlap."""
 
     spectrum: Array  # of K on the box of the contacts, from `padded_spectrum`, m/Pa
@@ -97,7 +97,7 @@ class Task(NamedTuple):
     max_iterations: int
 
 
-def first_guess(overlap: Array, task: Task, xp: Any) -> Array:
+def first_guess(overlap: Array, task: BatchTask, xp: Any) -> Array:
     """Pressures of Hertzian form over the deeper half of each overlap, scaled to least energy.
 
     Overlaps (b, nx, ny), m; pressures within the bounds, Pa, zero where nothing overlaps.
@@ -109,7 +109,7 @@ def first_guess(overlap: Array, task: Task, xp: Any) -> Array:
 
 
 def solve_batch(
-    overlap: Array, pressure: Array, tolerance: Array, task: Task, xp: Any
+    overlap: Array, pressure: Array, tolerance: Array, task: BatchTask, xp: Any
 ) -> tuple[Array, Array]:
     """Solve a task for many overlaps (b, nx, ny), m, from pressures, Pa, which are overwritten.
 
@@ -149,7 +149,7 @@ def _record(members: _Members, pressure: Array, iterations: Array) -> None:
     iterations[members.index] = members.iterations
 
 
-def _iterate(m: _Members, task: Task, xp: Any) -> _Members:
+def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
     """One iteration of every active member."""
     hardness, count = task.hardness, m.iterations + m.active
 
