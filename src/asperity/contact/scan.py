@@ -15,7 +15,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, finite_array, real, require, shown, whole
+from asperity.arguments import Array, finite_array, real, real_array, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
@@ -138,8 +138,12 @@ def heights_on(half_space: HalfSpace, surface: ArrayLike | HeightMap, what: str)
             "Resample the map, or choose the half-space's spacing after it.",
         )
         surface = surface.heights
-    allowed = "a height map, or an array (n, ny) of lengths in m, without missing points"
-    return finite_array(what, surface, allowed, shape=(None, None))
+    allowed = "a height map, or an array (n, ny) of finite lengths in m"
+    heights = real_array(what, surface, allowed)
+    missing = heights.size - int(np.isfinite(heights).sum())
+    received = f"{missing} of {heights.size} points without a height"
+    require(not missing, what, received, allowed, "Fill missing points.")
+    return finite_array(what, heights, allowed, shape=(None, None))
 
 
 def check_window(what: str, cells: tuple[int, ...], surface: tuple[int, ...]) -> None:
