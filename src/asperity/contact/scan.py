@@ -202,7 +202,7 @@ class ScanJob:
         body = finite_array("body of the scan", self.body, allowed, shape=cells)
         check_window("the scan", cells, (n, width))
         what, allowed = "approaches of the scan", "finite, increasing lengths in m"
-        approaches = np.atleast_1d(finite_array(what, self.approaches, allowed, rising=True))
+        approaches = finite_array(what, np.atleast_1d(self.approaches), allowed, rising=True)
         require(approaches.size, what, "none", allowed)
         whole("stride of the scan", self.stride, "a whole number ≥ 1", at_least=1)
         object.__setattr__(self, "body", body)
