@@ -5,8 +5,6 @@ import warnings
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from asperity import errors
@@ -24,10 +22,6 @@ from asperity.structures.wheel import Wheel
 
 pytestmark = pytest.mark.filterwarnings("ignore:.* modes are narrower")  # of tables without noise
 
-POLES = np.array([-20.0, -5.0 + 300.0j, -40.0 + 2000.0j, -10.0 + 2100.0j])
-RESIDUES = np.array([[3.0, 1.0 - 2.0j, 4.0j, 0.5], [1.0, 0.2j, -3.0, 2.0 + 1.0j]])
-LINES = 2j * np.pi * np.geomspace(1.0, 1000.0, 300)
-
 
 def response(s, poles, residues):
     both = zip(poles, residues, strict=True)
@@ -35,41 +29,35 @@ def response(s, poles, residues):
 
 
 def test_poles_and_residues_of_a_rational_function_are_found():
-    values = [response(LINES, POLES, r) for r in RESIDUES]
-    fit = vector_fit(LINES, values, np.array([-1.0 + 100j, -5.0 + 1000j, -10.0 + 3000j, -100.0]))
-    order, known = np.argsort(np.abs(fit.poles)), np.argsort(np.abs(POLES))
+    poles = np.array([-20.0, -5.0 + 300.0j, -40.0 + 2000.0j, -10.0 + 2100.0j])
+    residues = np.array([[3.0, 1.0 - 2.0j, 4.0j, 0.5], [1.0, 0.2j, -3.0, 2.0 + 1.0j]])
+    lines = 2j * np.pi * np.geomspace(1.0, 1000.0, 300)
+    start = np.array([-1.0 + 100j, -5.0 + 1000j, -10.0 + 3000j, -100.0])
+    fit = vector_fit(lines, [response(lines, poles, r) for r in residues], start)
+    order = np.argsort(np.abs(fit.poles))
     assert fit.error < 1e-9
-    assert_allclose(fit.poles[order], POLES[known], rtol=1e-7)
-    assert_allclose(fit.residues[:, order], RESIDUES[:, known], rtol=1e-6, atol=1e-6)
+    assert_allclose(fit.poles[order], poles, rtol=1e-7)
+    assert_allclose(fit.residues[:, order], residues, rtol=1e-6, atol=1e-6)
+
+
+CIRCLE = np.exp(1j * np.linspace(0.01, 3.0, 200))
 
 
 def test_on_the_unit_circle_a_discrete_response_is_found():
     poles, residues = np.exp([-0.01, -0.002 + 0.3j, -0.05 + 1.2j]), [0.5, 1.0 - 1.0j, 0.3j]
-    z = np.exp(1j * np.linspace(0.01, 3.0, 200))
-    fit = vector_fit(z, response(z, poles, residues), 0.95 * np.exp([0.1j, 1.0j, 0.0]), radius=1.0)
+    start = 0.95 * np.exp([0.1j, 1.0j, 0.0])
+    fit = vector_fit(CIRCLE, response(CIRCLE, poles, residues), start, radius=1.0)
     assert fit.error < 1e-9
     assert_allclose(np.sort_complex(fit.poles), np.sort_complex(poles), rtol=1e-7)
 
 
 def test_all_poles_are_stable_even_for_noise():
-    random = np.random.default_rng(3)
-    noise = random.normal(size=(3, 200)) + 1j * random.normal(size=(3, 200))
-    fit = vector_fit(1j * np.linspace(1.0, 100.0, 200), noise, -1.0 + 1j * np.linspace(2, 90, 10))
+    noise = np.random.default_rng(3).normal(size=(2, 3, 200)).T @ [1.0, 1j]
+    fit = vector_fit(1j * np.linspace(1.0, 100.0, 200), noise.T, -1.0 + 1j * np.linspace(2, 90, 10))
     assert (fit.poles.real < 0.0).all()
-    z = np.exp(1j * np.linspace(0.01, 3.0, 200))
     for radius in (1.0, 0.9):
-        fit = vector_fit(z, noise, 0.8 * np.exp(1j * np.linspace(0.1, 3, 10)), radius=radius)
+        fit = vector_fit(CIRCLE, noise.T, 0.8 * np.exp(1j * np.linspace(0.1, 3, 10)), radius=radius)
         assert (np.abs(fit.poles) < radius).all()
-
-
-def test_weights_move_the_error_to_where_they_are_small():
-    values, low = response(LINES, POLES, RESIDUES[0]), np.abs(LINES) < 1000.0
-    error = []
-    for weights in (np.where(low, 1e3, 1.0), np.where(low, 1.0, 1e3)):
-        fit = vector_fit(LINES, values, np.array([-1.0 + 200j, -5.0 + 1500j]), weights=weights)
-        error.append(np.abs(response(LINES, fit.poles, fit.residues[0]) - values))
-    assert error[0][low].max() < error[1][low].max()
-    assert error[1][~low].max() < error[0][~low].max()
 
 
 MASS, LOAD = 600.0, 65e3
@@ -88,61 +76,32 @@ def test_a_wheel_is_the_sum_of_its_modes_and_its_mass():
     expected = (1 / dynamic).sum(axis=0) - 1 / (MASS * omega**2)
     assert_allclose(WHEEL.receptance(f), expected, rtol=1e-9)
     assert_allclose(WHEEL.body.receptance(f)[:, 0, 0], expected, rtol=1e-9)
-    assert_allclose(Wheel(MASS, LOAD).receptance(1000.0), -1.0 / (MASS * (2000.0 * np.pi) ** 2))
-
-
-def test_a_tread_on_a_hub_is_a_wheel_with_one_mode():
-    """Masses m₁ on m₂ with spring and damper between; inverse of their matrix of motion."""
-    tread, hub, spring, damper = 150.0, 450.0, 4e9, 2e4
-    omega = np.sqrt(spring * (1 / tread + 1 / hub))
-    ratio = damper * (1 / tread + 1 / hub) / (2.0 * omega)
-    wheel = Wheel(tread + hub, LOAD, [omega / (2 * np.pi)], [ratio], [tread * (tread + hub) / hub])
-    f, coupling = np.geomspace(10.0, 5e3, 60), np.array([[1.0, -1.0], [-1.0, 1.0]])
-    w = 2.0 * np.pi * f[:, None, None]
-    exact = np.linalg.inv(coupling * (spring + 1j * w * damper) - w**2 * np.diag([tread, hub]))[:, 0, 0]
-    assert_allclose(wheel.receptance(f), exact, rtol=1e-9)
-
-
-@settings(max_examples=20)
-@given(
-    st.lists(
-        st.tuples(st.floats(100.0, 6e3), st.floats(1e-4, 0.5), st.floats(10.0, 1e4)), min_size=1, max_size=6
-    )
-)
-def test_any_modal_wheel_takes_energy(modes):
-    alpha = Wheel(MASS, LOAD, *zip(*modes, strict=True)).receptance(np.geomspace(0.2, 3e3, 200))
-    assert (alpha.imag <= 1e-12 * np.abs(alpha)).all()
 
 
 def test_a_fit_gives_back_the_modes_of_a_wheel():
-    wheel = Wheel.from_receptance(MASS, LOAD, F, OF_WHEEL)
-    assert wheel.fit_error < 1e-3
+    wheel, body = Wheel.from_receptance(MASS, LOAD, F, OF_WHEEL), fit_body(MASS, LOAD, F, OF_WHEEL)
+    assert wheel.fit_error == body.fit_error < 1e-3
     assert_allclose(wheel.natural_frequencies, FREQUENCIES, rtol=1e-6)
     assert_allclose(wheel.damping_ratios, RATIOS, rtol=1e-3)
     assert_allclose(wheel.modal_masses, MASSES, rtol=1e-3)
+    assert_allclose(body.receptance(F)[:, 0, 0], OF_WHEEL, rtol=1e-3)
+    assert body.static_loads == pytest.approx([LOAD])
     rigid = Wheel.from_receptance(MASS, LOAD, F, Wheel(MASS, LOAD).receptance(F))
     assert rigid.natural_frequencies.size == 0
     assert rigid.fit_error < 1e-9
-    body = fit_body(MASS, LOAD, F, OF_WHEEL)
-    assert_allclose(body.receptance(F)[:, 0, 0], OF_WHEEL, rtol=1e-3)
-    assert body.static_loads == pytest.approx([LOAD])
-    assert body.fit_error < 0.01
 
 
 def test_a_fit_up_to_a_frequency_keeps_what_lies_below():
     below = F <= 2400.0  # nonsense above
-    wheel = Wheel.from_receptance(
-        MASS, LOAD, F, OF_WHEEL * np.where(below, 1.0, 10.0), highest_frequency=2400.0
-    )
-    level = 20 * np.log10(np.abs(wheel.receptance(F[below]) / OF_WHEEL[below]))
-    assert np.abs(level).max() < 0.1
+    given = np.where(below, 1.0, 10.0) * OF_WHEEL
+    wheel = Wheel.from_receptance(MASS, LOAD, F, given, highest_frequency=2400.0)
+    assert_allclose(np.abs(wheel.receptance(F[below]) / OF_WHEEL[below]), 1.0, atol=0.011)  # 0.1 dB
     assert_allclose(wheel.natural_frequencies[:3], FREQUENCIES[:3], rtol=1e-4)
 
 
 def test_a_fit_to_noise_finds_the_modes_and_takes_energy():
     """2 % of noise in amplitude is 0.17 dB; the fit cannot be nearer, and must not be much farther."""
-    rng = np.random.default_rng(1)
-    noise = 0.02 * (rng.standard_normal(F.size) + 1j * rng.standard_normal(F.size))
+    noise = 0.02 * np.random.default_rng(1).standard_normal((2, F.size)).T @ [1.0, 1j]
     wheel = Wheel.from_receptance(MASS, LOAD, F, OF_WHEEL * (1.0 + noise))
     assert 0.15 < wheel.fit_error < 0.2
     assert np.abs(wheel.natural_frequencies / FREQUENCIES[:, None] - 1.0).min(axis=1).max() < 1e-4
@@ -179,25 +138,19 @@ def force_levels(structure):
 
 
 @pytest.fixture(scope="module")
-def levels():
-    return force_levels(BEAM)
-
-
-@pytest.fixture(scope="module")
 def short():
     return measured()
 
 
 @pytest.mark.parametrize(("noise", "largest"), [(0.0, 0.1), (0.01, 0.5)])
-def test_a_beam_by_its_receptances_has_the_force_of_the_beam(levels, noise, largest):
+def test_a_beam_by_its_receptances_has_the_force_of_the_beam(noise, largest):
     f = np.arange(20.0, 8000.0, 20.0)
     found = fit_structure(X, FORCES, f, measured(noise, f=f))
     assert found.fit_error < 0.5
     own = BEAM.natural_frequencies[BEAM.natural_frequencies < f[-1]]
     assert_allclose(found.frequencies[: own.size], own, rtol=2e-3 if noise else 1e-5)
-    ratios = found.damping[1 : own.size - 1]
-    assert_allclose(ratios, 0.015, rtol=0.1 if noise else 0.02)
-    assert_allclose(force_levels(found), levels, rtol=0.0, atol=largest)
+    assert_allclose(found.damping[1 : own.size - 1], 0.015, rtol=0.1 if noise else 0.02)
+    assert_allclose(force_levels(found), force_levels(BEAM), rtol=0.0, atol=largest)
 
 
 def test_a_fit_takes_energy_at_every_frequency():
@@ -215,9 +168,9 @@ def test_what_nothing_holds_has_its_rigid_motion():
     free = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=6e3, **options)
     f = np.arange(10.0, 1500.0, 5.0)
     found = fit_structure(X, FORCES, f, measured(0.0, free, f), mass=free.mass, inertia=free.mass / 12.0)
-    assert found.natural_frequencies[:2].tolist() == [0.0, 0.0]
     bending = free.natural_frequencies[2:][free.natural_frequencies[2:] < f[-1]]
-    assert_allclose(found.natural_frequencies[2 : 2 + bending.size], bending, rtol=1e-4)
+    expected = [0.0, 0.0, *bending]
+    assert_allclose(found.natural_frequencies[: len(expected)], expected, rtol=1e-4)
     below = f[f < 1000.0]
     for x in (0.31, 0.57):
         error = 20.0 * np.log10(np.abs(found.receptance(below, x, x) / free.receptance(below, x, x)))
@@ -227,13 +180,12 @@ def test_what_nothing_holds_has_its_rigid_motion():
 
 def test_a_body_on_two_contacts_by_its_receptances():
     """A carriage with one mode that moves its ends alike, and one that moves them against one another."""
-    rigid = carriage(3.0, 0.02, [0.0, 0.1], load=200.0)
-    f = np.arange(20.0, 3000.0, 2.0)
+    f, load = np.arange(20.0, 3000.0, 2.0), 3.0 * 9.80665 + 200.0
     shapes = np.array([[0.6, 0.5], [0.6, -0.5]])
     omega, own = 2 * np.pi * f[:, None], 2 * np.pi * np.array([700.0, 1900.0])
     answers = 1.0 / (own**2 - omega**2 + 2j * 0.01 * own * omega)
-    values = rigid.receptance(f) + np.einsum("nr,ir,jr->nij", answers, shapes, shapes)
-    load = 3.0 * 9.80665 + 200.0
+    values = carriage(3.0, 0.02, [0.0, 0.1], load=200.0).receptance(f)
+    values = values + np.einsum("nr,ir,jr->nij", answers, shapes, shapes)
     body = fit_body(3.0, load, f, values, places=[0.0, 0.1], inertia=0.02)
     assert_allclose(body.receptance(f), values, rtol=1e-4, atol=1e-6 * np.abs(values).min())
     assert body.static_loads == pytest.approx([0.5 * load] * 2)
@@ -241,19 +193,17 @@ def test_a_body_on_two_contacts_by_its_receptances():
         fit_body(3.0, load, f, values, places=[0.0, 0.1])
 
 
-def test_receptances_are_gathered_from_lines(short):
-    values = short[:12]
-    places = np.meshgrid(SHORT[:12], X, FORCES, indexing="ij")
+def test_receptances_are_gathered_from_lines_in_any_order(short):
+    values, places = short[:12], np.meshgrid(SHORT[:12], X, FORCES, indexing="ij")
     rows = np.stack([each.ravel() for each in (*places, values.real, values.imag)], axis=1)
     rows = np.random.default_rng(0).permutation(rows)
     for found, expected in zip(receptances_in(rows, ""), (X, FORCES, SHORT[:12], values), strict=True):
         assert_allclose(found, expected)
-    with pytest.raises(
-        InputError, match=r"table.csv: received 2915 lines; allowed: 2916: one for each of 12"
-    ):
-        receptances_in(rows[1:], "table.csv")
-    with pytest.raises(InputError, match=r"lines; allowed: .*one for each of"):  # one twice, and one missing
-        receptances_in(np.concatenate([rows[1:], rows[-1:]]), "table.csv")
+    for wrong in (rows[1:], np.concatenate([rows[1:], rows[-1:]])):  # one missing, and another twice
+        with pytest.raises(
+            InputError, match=r"t.csv: received 291\d lines; allowed: 2916: one for each of 12"
+        ):
+            receptances_in(wrong, "t.csv")
 
 
 def test_a_disordered_table_takes_no_more_memory_than_its_lines():
@@ -267,10 +217,9 @@ def test_a_disordered_table_takes_no_more_memory_than_its_lines():
 
 
 def test_doubtful_fits_and_energy_that_is_made_are_warned_of(short):
-    bent = short * np.where(SHORT < 200.0, 1.0, 1.3)[:, None, None]
+    bent, wrong = short * np.where(SHORT < 200.0, 1.0, 1.3)[:, None, None], short.copy()
     with pytest.warns(UnconvergedWarning, match=r"\d modes meet the given receptance to \d.\d dB only, more"):
         fit_structure(X, FORCES, SHORT, bent)
-    wrong = short.copy()
     wrong[60:70, 10, 0] = -np.abs(wrong[60:70, 10, 0]) * np.exp(-0.3j)
     said = r"creates energy at 5.1 % of its frequencies, most at 1\d\d Hz"
     with pytest.warns(errors.EnergyWarning, match=said) as seen:
@@ -279,6 +228,10 @@ def test_doubtful_fits_and_energy_that_is_made_are_warned_of(short):
     with warnings.catch_warnings():
         warnings.simplefilter("error", errors.EnergyWarning)
         fit_structure(X, FORCES, SHORT, short)
+
+
+SLOW = np.arange(20.0, 60.0, 2.0)
+ONE = 1.0 / (80.0**2 - SLOW**2 + 0.8j * SLOW)
 
 
 def test_lines_too_wide_for_a_mode_are_said_with_those_that_hold_it():
@@ -291,10 +244,6 @@ def test_lines_too_wide_for_a_mode_are_said_with_those_that_hold_it():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warn_of_wide_lines(np.arange(20.0, 60.0, 0.2), *mode)
-
-
-SLOW = np.arange(20.0, 60.0, 2.0)
-ONE = 1.0 / (80.0**2 - SLOW**2 + 0.8j * SLOW)
 
 
 def changed(name, change):
@@ -311,8 +260,8 @@ def slow(values, frequency=SLOW):
     return lambda _: fit_structure([0.0, 0.3, 1.0], [0.3], frequency, np.repeat(values[:, None], 3, axis=1))
 
 
-def wheel(frequency, receptance, mass=MASS, **options):
-    return lambda _: Wheel.from_receptance(mass, LOAD, frequency, receptance, **options)
+def wheel(change=1.0, frequency=F[:600], receptance=OF_WHEEL[:600], mass=MASS, **options):
+    return lambda _: Wheel.from_receptance(mass, LOAD, frequency, change * receptance, **options)
 
 
 def modes(*lists, mass=MASS, load=LOAD):
@@ -338,17 +287,14 @@ CHANCE = np.random.default_rng(0).uniform(0.01, 1.0, SHORT.size)[:, None, None]
         (slow(ONE, 1e-300 * SLOW), "at 2e-299 to 5.8e-299 Hz; allowed: .* from 1e-06 to 1e.20 Hz"),
         (slow(np.full(SLOW.size, -1j)), "values that 1 modes meet to .* dB only"),
         # without a mode left, scipy's non-negative least squares ended the process
-        (wheel(SLOW, -1e-3 * np.exp(1e-3j) + 0 * SLOW, 1e9), r"modes on a mass of 1e\+09 kg meet to .* dB"),
-        (wheel(F, 1e3 * OF_WHEEL), r"dB only.*Check the mass, the unit m/N"),
-        (wheel(F, 1e-3 * OF_WHEEL), r"dB only.*Check the mass, the unit m/N"),
-        (wheel(F, OF_WHEEL.conj()), r"receptance of the wheel: .* mostly positive.*Conjugate"),
-        (wheel(F, OF_WHEEL[1:]), r"shapes \(2491,\) and \(2490,\); allowed: n frequencies, .*one value"),
-        (wheel(F[::-1], OF_WHEEL), "frequencies in disorder"),
-        (wheel(F - 20.0, OF_WHEEL), "frequencies in disorder"),
-        (wheel(F, OF_WHEEL * np.nan), "not finite"),
-        (wheel(F, 0.0 * OF_WHEEL), "nothing but zeros at a frequency"),
-        (wheel(F[:5], OF_WHEEL[:5]), "5 frequencies; allowed: at least 10"),
-        (wheel(F, OF_WHEEL, highest_frequency=30.0), "6 frequencies up to 30 Hz; allowed: at least 10"),
+        (wheel(np.exp(1e-3j), SLOW, -1e-3 + 0 * SLOW, 1e9), r"modes on a mass of 1e\+09 kg meet to .* dB"),
+        (wheel(1e3), r"dB only.*Check the mass, the unit m/N"),
+        (wheel(1e-3), r"dB only.*Check the mass, the unit m/N"),
+        (wheel(receptance=OF_WHEEL.conj()[:600]), r"receptance of the wheel: .* mostly positive.*Conjugate"),
+        (wheel(receptance=OF_WHEEL[1:600]), r"shapes \(600,\) and \(599,\); allowed: n frequencies, .*one"),
+        (wheel(frequency=F[:600] - 20.0), "frequencies in disorder"),
+        (wheel(frequency=F[:5], receptance=OF_WHEEL[:5]), "5 frequencies; allowed: at least 10"),
+        (wheel(highest_frequency=30.0), "6 frequencies up to 30 Hz; allowed: at least 10"),
         (modes(mass=0.0), "wheel mass"),
         (modes(load=np.inf), "wheel load"),
         (modes([100.0, 200.0], [0.01], [10.0, 10.0]), "damping ratios of the .*1 numbers; allowed: 2"),
@@ -358,7 +304,7 @@ CHANCE = np.random.default_rng(0).uniform(0.01, 1.0, SHORT.size)[:, None, None]
         (modes([100.0], [0.01], [np.inf]), "modal masses"),
         (lambda _: WHEEL.receptance([0.0, 1.0]), "no static receptance"),
     ],
-)  # fmt: skip
+)
 def test_records_and_modes_that_are_none_are_refused(short, call, message):
     with pytest.raises(InputError, match=message):
         call(short)
