@@ -38,24 +38,6 @@ def test_band_of_corrugation_lies_about_its_wavelength():
     assert_allclose(amplitude.heights.std(), 10 * UM / np.sqrt(2), rtol=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [
-        ({"rms": UM, "amplitude": UM}, "size of the corrugation: received both"),
-        ({"amplitude": None}, "size of the corrugation: received neither"),
-        ({"amplitude": -UM}, "zero or more"),
-        ({"amplitude": np.nan}, "zero or more"),
-        ({"wavelength": 1.5 * MM}, "at least two samples, 0.002 m"),
-        ({"wavelength": 2.1 * MM, "bandwidth": 1.0}, "at least two samples"),
-        ({"bandwidth": -1.0}, "bandwidth of the corrugation: received -1.0"),
-        ({"bandwidth": 0.01}, "resolves the band"),
-    ],
-)
-def test_corrugation_says_what_is_wrong(change, text):
-    with pytest.raises(InputError, match=text):
-        corrugation(**{"n": 1001, "spacing": MM, "wavelength": 0.033, "amplitude": UM, **change})
-
-
 def test_fresh_flat_is_the_chord_of_the_wheel():
     length = flat_length(DEPTH, RADIUS)
     assert_allclose(length, 2 * np.sqrt(RADIUS**2 - (RADIUS - DEPTH) ** 2), rtol=1e-3)
@@ -78,51 +60,22 @@ def test_centre_over_a_fresh_flat_turns_about_its_ends():
     assert_allclose(slope[200] - slope[199], length / RADIUS, rtol=0.03)  # the kink is the impact
 
 
-@pytest.mark.parametrize("shape", ["fresh", "worn"])
-def test_trajectory_is_the_wheel_rolled_over_the_flat(shape):
-    x = np.arange(-1250, 1251) * 0.02 * MM
-    rolled = roll_over(Profile(flat_geometry(x, DEPTH, RADIUS, shape), 0.02 * MM), RADIUS).heights
-    assert_allclose(flat_trajectory(x, DEPTH, RADIUS, shape), rolled, atol=0.3 * UM)
-
-
-def test_worn_flat_is_rounded_and_shallower_to_the_wheel():
-    length = flat_length(DEPTH, RADIUS)
-    geometry = flat_geometry(X, DEPTH, RADIUS, "worn")
-    assert_allclose(geometry[200], -DEPTH)
-    assert_allclose(
-        flat_geometry([length / 2, length / 4], DEPTH, RADIUS, "worn"), [0, -DEPTH / 2], atol=1e-12
-    )
-    centre = flat_trajectory(X, DEPTH, RADIUS, "worn")
-    assert (centre >= geometry - 1e-9).all()
-    assert -DEPTH < centre.min() < -0.3 * DEPTH
-
-
-def test_worn_flat_may_be_longer_than_its_chord():
+def test_worn_flat_is_a_rounded_one_over_its_chord_or_longer():
     """z = −d/2 (1 + cos 2πx/l): from l = π √(2 R d) on the wheel's curvature nowhere turns."""
-    length = 1.2 * np.pi * np.sqrt(2 * RADIUS * DEPTH)
-    x = np.arange(-2500, 2501) * 0.02 * MM
-    geometry = flat_geometry(x, DEPTH, RADIUS, "worn", length)
-    assert_allclose(geometry[2500], -DEPTH)
-    assert np.ptp(x[geometry < 0]) == pytest.approx(length, abs=0.1 * MM)
-    centre = flat_trajectory(x, DEPTH, RADIUS, "worn", length)
-    assert_allclose(centre.min(), -DEPTH, rtol=1e-3)
-    assert_allclose(centre, roll_over(Profile(geometry, 0.02 * MM), RADIUS).heights, atol=0.3 * UM)
-    for shape, wrong in (("fresh", length), ("worn", 0.9 * flat_length(DEPTH, RADIUS)), ("worn", np.nan)):
-        for function in (flat_geometry, flat_trajectory):
-            with pytest.raises(InputError, match="length of the wheel flat"):
-                function(x, DEPTH, RADIUS, shape, wrong)
+    chord, longer = flat_length(DEPTH, RADIUS), 1.2 * np.pi * np.sqrt(2 * RADIUS * DEPTH)
+    for length in (None, longer):
+        at = np.array([0, 0.25, 0.5, 0.6]) * (length or chord)
+        heights = flat_geometry(at, DEPTH, RADIUS, "worn", length)
+        assert_allclose(heights, [-DEPTH, -DEPTH / 2, 0, 0], atol=1e-12)
+    assert -DEPTH < flat_trajectory(X, DEPTH, RADIUS, "worn").min() < -0.3 * DEPTH
+    assert_allclose(flat_trajectory(X, DEPTH, RADIUS, "worn", longer).min(), -DEPTH, rtol=1e-3)
 
 
-@pytest.mark.parametrize("depth", [0.0, -MM, np.nan, 0.1])
-def test_depth_of_a_flat_is_checked(depth):
-    with pytest.raises(InputError, match="depth of the wheel flat"):
-        flat_geometry(X, depth, RADIUS)
-
-
-def test_unknown_shape_of_a_flat():
-    for function in (flat_geometry, flat_trajectory):
-        with pytest.raises(InputError, match="'fresh' or 'worn'"):
-            function(X, DEPTH, RADIUS, "square")
+@pytest.mark.parametrize(("shape", "length"), [("fresh", None), ("worn", None), ("worn", 0.07)])
+def test_trajectory_is_the_wheel_rolled_over_the_flat(shape, length):
+    x = np.arange(-2000, 2001) * 0.02 * MM
+    rolled = roll_over(Profile(flat_geometry(x, DEPTH, RADIUS, shape, length), 0.02 * MM), RADIUS).heights
+    assert_allclose(flat_trajectory(x, DEPTH, RADIUS, shape, length), rolled, atol=0.3 * UM)
 
 
 def test_dipped_joint_has_its_depth_angle_and_length():
@@ -136,9 +89,36 @@ def test_dipped_joint_has_its_depth_angle_and_length():
     assert_allclose(dip, dip[::-1], atol=1e-15)
 
 
+def corrugated(**changes):
+    return corrugation(1001, MM, **{"wavelength": 0.033, "amplitude": UM, **changes})
+
+
+def flat(depth=DEPTH, shape="fresh", length=None, function=flat_geometry):
+    return function(X, depth, RADIUS, shape, length)
+
+
 @pytest.mark.parametrize(
-    ("depth", "length", "text"), [(0.0, 1.0, "depth"), (0.1, 1.0, "depth"), (MM, -1.0, "length")]
+    ("made", "text"),
+    [
+        (lambda: corrugated(rms=UM), "size of the corrugation: received both"),
+        (lambda: corrugated(amplitude=None), "size of the corrugation: received neither"),
+        (lambda: corrugated(amplitude=-UM), "zero or more"),
+        (lambda: corrugated(amplitude=np.nan), "zero or more"),
+        (lambda: corrugated(wavelength=1.5 * MM), "at least two samples, 0.002 m"),
+        (lambda: corrugated(wavelength=2.1 * MM, bandwidth=1.0), "at least two samples"),
+        (lambda: corrugated(bandwidth=-1.0), "bandwidth of the corrugation: received -1.0"),
+        (lambda: corrugated(bandwidth=0.01), "resolves the band"),
+        *((lambda depth=depth: flat(depth), "depth of the wheel flat") for depth in (0.0, -MM, np.nan, 0.1)),
+        (lambda: flat(shape="square"), "'fresh' or 'worn'"),
+        (lambda: flat(shape="square", function=flat_trajectory), "'fresh' or 'worn'"),
+        (lambda: flat(length=0.1), "length of the wheel flat"),
+        (lambda: flat(length=0.03, shape="worn", function=flat_trajectory), "length of the wheel flat"),
+        (lambda: flat(length=np.nan, shape="worn"), "length of the wheel flat"),
+        (lambda: dipped_joint(X, 0.0, 1.0), "depth of the dipped joint"),
+        (lambda: dipped_joint(X, 0.1, 1.0), "depth of the dipped joint"),
+        (lambda: dipped_joint(X, MM, -1.0), "length of the dipped joint"),
+    ],
 )
-def test_dipped_joint_says_what_is_wrong(depth, length, text):
-    with pytest.raises(InputError, match=f"{text} of the dipped joint"):
-        dipped_joint(X, depth, length)
+def test_what_is_wrong_is_said(made, text):
+    with pytest.raises(InputError, match=text):
+        made()
