@@ -33,7 +33,6 @@ from asperity.reporting.chart import (
 from asperity.reporting.page import PageFigure, page_template
 from asperity.reporting.panels import band_axis, doubtful_boxes, frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.payload import chart_script, chart_style, charts_json, digest_of
-from asperity.reporting.tables import Cell, ReportTable
 
 AREAL = {"label": "areal", "law": "areal", "colour": BLUE, "width": 2.2}
 LINEAR = {"label": "linear", "law": "linear", "colour": VERMILLION, "dashes": (3.0, 1.5)}
@@ -151,9 +150,9 @@ CHARTS = {
 def text_of_page():
     """A page with all charts, allowed to do what a report may."""
     figure = page_template("blocks.html.jinja").module.figure
-    table = ReportTable("", "Numbers", ["x [m]"], [[Cell("4711", "number")]])
+    columns = {"x [m]": np.array([4711.0])}
     figures = (
-        figure(PageFigure(name, f"Figure of {name}", "", chart, [table], ""))
+        figure(PageFigure(name, f"Figure of {name}", "", chart, "", columns))
         for name, chart in CHARTS.items()
     )
     look = page_template("look.css.jinja").render(

@@ -13,8 +13,8 @@ from report_tree import report_tree
 
 import asperity
 from asperity.reporting.comparison import MAIN, NamedRun, compared, working_filter
-from asperity.reporting.comparison_page import listed_keys, summary
-from asperity.scenes.comparing import names_of
+from asperity.reporting.comparison_page import summary
+from asperity.scenes.comparing import compared_runs, names_of
 from asperity.schema import contact
 from asperity.spectra import a_weighted_total, a_weighting
 
@@ -41,14 +41,14 @@ def louder(tree, level):
 
 
 def test_a_run_does_not_differ_from_itself(first):
-    table = asperity.compare(first, first, names=["a", "b"])
+    found = compared_runs([first, first], ["a", "b"])
+    table = found.table
     for name in table.data_vars:
         found = table[name].values
         if name.endswith("_difference"):
             assert (found[np.isfinite(found)] == 0.0).all()
     assert json.loads(table.attrs["cases"]) == []
-    runs = [NamedRun("a", first), NamedRun("b", first)]
-    assert summary(runs, table, {"force_level": "force"}).startswith("The cases are the same. b against a, ")
+    assert summary(found).startswith("The cases are the same. b against a, ")
 
 
 def test_six_decibels_in_all_bands_are_six_decibels_a(first):
@@ -143,9 +143,9 @@ def test_keys_that_differ_are_listed_and_no_others(first):
 def test_of_different_kinds_the_keys_of_both_are_told(first):
     ball = with_parameters(first, kind="ball", speed="1 m/s", radius="5 mm")
     wheel = with_parameters(first, kind="wheel", speed="2 m/s", load="60 kN")
-    table = asperity.compare(ball, wheel)
-    assert [item["key"] for item in json.loads(table.attrs["cases"])] == ["kind", "speed", "radius", "load"]
-    assert [item["key"] for item in listed_keys(table)] == ["kind", "speed"]
+    found = compared_runs([ball, wheel])
+    assert [item["key"] for item in found.keys] == ["kind", "speed", "radius", "load"]
+    assert [item["key"] for item in found.telling_keys] == ["kind", "speed"]
 
 
 def test_different_main_laws_are_compared_as_such(first):
@@ -250,7 +250,7 @@ def test_missing_groups_leave_a_page(first, tmp_path):
 
 def test_a_weighting_of_a_comparison_is_that_of_the_standard(first):
     """The total is the sum over bands of level and weighting, computed here with plain numpy."""
-    table = compared([NamedRun("a", first), NamedRun("b", first)], [])
+    table = compared([NamedRun("a", first), NamedRun("b", first)], []).table
     assert "force_level_a" not in table
     table = asperity.compare(first, first)
     level, band = table["force_level"][0, 0].values, table["band"].values

@@ -20,9 +20,7 @@ from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
 from asperity.reporting.data import read_entries
 from asperity.reporting.page import PageFigure, figures_page
-from asperity.reporting.payload import number_cell
 from asperity.reporting.study_figures import TextureBands, optimised_chart
-from asperity.reporting.tables import ReportTable
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
@@ -155,9 +153,9 @@ def _page(found: Optimised, bands: TextureBands, *, report: bool) -> str:
         "Above, the texture before and after, and what it was allowed to be; below, what is heard of it."
     )
     titles, rows = _table(bands, found.measure.units)
-    numbers = ReportTable("", "Numbers", titles, [[number_cell(each) for each in row] for row in rows])
+    columns = dict(zip(titles, np.transpose(rows), strict=True))
     name = "Texture and response in bands"
-    figure = PageFigure("bands", name, caption, chart, [numbers], FILES["table"])
+    figure = PageFigure("bands", name, caption, chart, FILES["table"], columns)
     offered = {"texture (CSV)": "texture", "case": "case", "trials (CSV)": "trials"}
     links = {words: FILES[what] for words, what in offered.items()}
     if report:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -11,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from asperity.files import amount, discard, left_overs, refuse_unwritable, together
-from asperity.reporting.comparison import compared
-from asperity.reporting.comparison_page import listed_keys, summary
+from asperity.reporting.comparison_page import summary
 from asperity.reporting.data import signed
 from asperity.reporting.figure import chosen_figures, write_figures
 from asperity.reporting.sound import TABLE, listen
@@ -71,26 +69,21 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
     """Compare runs into a page and a table, and say in short what differs."""
     folder = target.parent if target.suffix.lower() == ".html" else target
     refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
-    runs = comparing.named_runs(paths)
-    entries = comparing.compared_levels(runs)
-    table = compared(runs, entries, laws)
-    levels = comparing.shown_levels(table, entries)
-    names = [run.name for run in runs]
-    keys = [
-        [item["key"], *("–" if v is None else str(v) for v in item["values"])] for item in listed_keys(table)
-    ]
+    found = comparing.compared_runs(paths, laws=laws)
+    table, names = found.table, found.names
+    keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.telling_keys]
     if keys:
         say_table("Keys that differ", ["key", *names], keys, width=120)
-    changes = np.stack([table[f"{name}_a_difference"].values for name in levels], axis=-1)  # run, law, level
+    changes = np.stack([table[f"{name}_a_difference"].values for name in found.levels], axis=-1)
     rows = [
         [names[r], str(law), *map(signed, changes[r, k])]
         for r in range(1, len(names))
         for k, law in enumerate(table["law"].values)
         if np.isfinite(changes[r, k]).any()
     ]
-    say_table(f"A-weighted, less {names[0]}, in dB", ["run", "law", *levels.values()], rows, width=120)
-    say(sentence := summary(runs, table, levels))
-    page, numbers = comparing.write_comparison(runs, table, levels, target)
+    say_table(f"A-weighted, less {names[0]}, in dB", ["run", "law", *found.levels.values()], rows, width=120)
+    say(sentence := summary(found))
+    page, numbers = comparing.write_comparison(found, target)
     files = {"page": page, "table": numbers}
     say_files(files)
     columns = {
@@ -100,15 +93,15 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
         "a_weighted_difference": "_a_difference",
     }
     return {
-        "runs": [{"name": run.name, "path": path.resolve()} for run, path in zip(runs, paths, strict=True)],
+        "runs": [{"name": name, "path": path.resolve()} for name, path in zip(names, paths, strict=True)],
         "summary": sentence,
-        "cases": json.loads(table.attrs["cases"]),
+        "cases": found.keys,
         "laws": table["law"].values,
         "bands": table["band"].values if "band" in table else [],
         "levels": {
             name: {"meaning": title, "units": table[name].attrs["units"]}
             | {column: table[f"{name}{ending}"].values for column, ending in columns.items()}
-            for name, title in levels.items()
+            for name, title in found.levels.items()
         },
         "files": files,
     }

@@ -18,7 +18,6 @@ from asperity.progress import progress_bar
 from asperity.reporting import study_figures
 from asperity.reporting.data import read_entries
 from asperity.reporting.page import PageFigure, figures_page
-from asperity.reporting.payload import chart_tables
 from asperity.results import attributes_of, save
 from asperity.studies import table as tables
 from asperity.studies.definition import Study, separated, study_of
@@ -199,11 +198,11 @@ def _figures(
         if drawn.sizes.get(key, 0) > 1:
             chart = study_figures.key_chart(drawn, scatter, key, looks, names)
             caption = study_figures.key_caption(drawn, scatter, key)
-            figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart, chart_tables(chart)))
+            figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart))
     if band is not None:
         chart = study_figures.ensemble_chart(band, looks)
         words = "Contact force over the seeds", str(band.attrs["meaning"])
-        figures.append(PageFigure("ensemble", *words, chart, chart_tables(chart), BAND))
+        figures.append(PageFigure("ensemble", *words, chart, BAND))
     return figures
 
 

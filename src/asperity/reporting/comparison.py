@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ from asperity.errors import InputError
 from asperity.reporting import data
 from asperity.reporting.chart import Numbers
 from asperity.results import variable
-from asperity.schema import Entry, contact, provenance, rolling, spectra
+from asperity.schema import Attribute, Entry, contact, provenance, rolling, spectra
 from asperity.spectra import a_weighted_total
 
 POINTS_PER_DECADE = 40
@@ -25,7 +25,25 @@ NO_VALUE = "the run does not have it"
 DEVIATION = "level_deviation"
 MAIN = "main law"
 """Stands for the first law of each run where those differ."""
+OF_FORCE: Mapping[str, tuple[str, Entry, Callable[[Any], Any]]] = {
+    "mean_force": ("mean contact force", rolling.CONTACT_FORCE, np.nanmean),
+    "rms_force": ("rms of the contact force about its mean", rolling.CONTACT_FORCE, np.nanstd),
+    "peak_force": ("largest contact force", rolling.CONTACT_FORCE, np.nanmax),
+    **{
+        entry.name: (entry.long_name, entry, float)
+        for entry in (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS)
+    },
+}
+"""Numbers of each law: what they are, what they are taken from, and how."""
+OF_CONTACT = (
+    contact.WORKING_LOAD,
+    contact.WORKING_APPROACH,
+    contact.WORKING_STIFFNESS,
+    contact.CONTACT_AREA_RATIO,
+)
+"""Attributes of the reduced contact that are compared."""
 Variables = dict[str, xarray.Variable]
+Curve = tuple[Numbers, Numbers]
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,13 +59,48 @@ class NamedRun:
         return data.laws(self.tree, rolling.CONTACT_FORCE)
 
 
-def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence[str] = ()) -> xarray.Dataset:
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Runs, the first of them the reference, and what was compared."""
+
+    runs: Sequence[NamedRun]
+    table: xarray.Dataset
+    levels: Mapping[str, str]  # that a page shows: their names, and what they are
+
+    @property
+    def names(self) -> list[str]:
+        """What the runs are called."""
+        return [run.name for run in self.runs]
+
+    @property
+    def laws(self) -> list[str]:
+        """Laws that are compared, the main one first."""
+        return [str(law) for law in self.table["law"].values]
+
+    @property
+    def keys(self) -> list[dict[str, Any]]:
+        """Keys that differ: key, note, and the value in each run, None where it has none."""
+        found: list[dict[str, Any]] = json.loads(self.table.attrs["cases"])
+        return found
+
+    @property
+    def of_kinds(self) -> bool:
+        """Whether the cases are of different kinds."""
+        return any(item["key"] == provenance.KIND.name for item in self.keys)
+
+    @property
+    def telling_keys(self) -> list[dict[str, Any]]:
+        """Keys that differ; of different kinds only those that all have, for the others say little."""
+        return [item for item in self.keys if not self.of_kinds or None not in item["values"]]
+
+
+def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence[str] = ()) -> Comparison:
     """Lay quantities of runs side by side, with their differences to the first run.
 
     Of all their laws, or of those chosen alone.
 
     Levels are those of the schema that have laws and bands. Of several places on a body the energy mean is
-    taken; of several sources each is a level of its own.
+    taken; of several sources each is a level of its own, and the last of them, their sum, is shown.
     """
     every = list(dict.fromkeys(law for run in runs for law in run.laws))
     for law in chosen:
@@ -60,14 +113,19 @@ def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence
         "run": variable("run", np.array([run.name for run in runs]), "1", "run, the first the reference"),
         "law": variable("law", np.array(laws), "1", "contact law"),
     }
-    found |= _levels(runs, laws, levels) | _by_law(runs, laws) | _by_run(runs)
+    found |= _levels(runs, laws, levels) | _of_laws(runs, laws) | _of_contacts(runs)
     found |= _stiffness(runs) | _filters(runs)
-    attrs = {"cases": json.dumps(differing_keys(runs), ensure_ascii=False)}
-    return xarray.Dataset(found, attrs=attrs)
+    attrs = {"cases": json.dumps(_differing_keys(runs), ensure_ascii=False)}
+    table = xarray.Dataset(found, attrs=attrs)
+    own = {
+        entry: [n for n in found if f"{n}_a" in found and (n == entry.name or n.startswith(f"{entry.name}_"))]
+        for entry in levels
+    }
+    told = {each[-1]: found[each[-1]].attrs["long_name"] for each in own.values() if each}
+    return Comparison(runs, table, {n: str(what).partition(", energy mean")[0] for n, what in told.items()})
 
 
-def differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
-    """Keys of the cases whose values differ: key, note, and the value in each run, None where it has none."""
+def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
     held = [{str(i.get("key")): i for i in data.json_list(r.tree, provenance.PARAMETERS)} for r in runs]
     found = []
     for key in dict.fromkeys(key for items in held for key in items):
@@ -78,7 +136,7 @@ def differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
     return found
 
 
-def _beside(
+def _by_law(
     runs: Sequence[NamedRun], laws: Sequence[str], held: Sequence[DataArray | None], **places: Any
 ) -> Numbers:
     """Numbers of runs by the laws of the comparison, and at common places; NaN where a run lacks them."""
@@ -93,7 +151,7 @@ def _beside(
 def _variable(dims: Sequence[str], numbers: Numbers, units: str, meaning: str) -> xarray.Variable:
     finite = np.where(np.isfinite(numbers), numbers, np.nan)
     told = {} if np.isfinite(finite).all() else {"missing": NO_VALUE}
-    return variable(tuple(dims), finite, units, meaning, **told)
+    return variable(("run", *dims), finite, units, meaning, **told)
 
 
 def _with_difference(
@@ -118,18 +176,16 @@ def _levels(runs: Sequence[NamedRun], laws: Sequence[str], entries: Sequence[Ent
     for entry in entries:
         for r, run in enumerate(runs):
             for name, meaning, level in _pieces(run.tree, entry):
-                pieces.setdefault((name, meaning, entry.units), [None] * len(runs))[r] = level
-    every = {
-        int(p) for held in pieces.values() for level in held if level is not None for p in level["place"]
-    }
-    if not every:
+                pieces.setdefault((name, entry.units, meaning), [None] * len(runs))[r] = level
+    every = (level for held in pieces.values() for level in held if level is not None)
+    places = sorted({int(place) for level in every for place in level["place"]})
+    if not places:
         return {}
-    places = sorted(every)
     band = np.array([10.0 ** (place / 10.0) for place in places])
     found = {"band": variable("band", band, "Hz", spectra.BAND.long_name)}
-    for (name, meaning, units), held in pieces.items():
-        numbers = _beside(runs, laws, held, place=places)
-        found |= _with_difference(name, ("run", "law", "band"), numbers, units, meaning)
+    for (name, units, meaning), held in pieces.items():
+        numbers = _by_law(runs, laws, held, place=places)
+        found |= _with_difference(name, ("law", "band"), numbers, units, meaning)
         found |= _weighted(name, numbers, band, units, meaning)
     deviation = [
         _placed(data.variable_of(run.tree, spectra.LEVEL_DEVIATION)).reindex(place=places).values
@@ -138,7 +194,7 @@ def _levels(runs: Sequence[NamedRun], laws: Sequence[str], entries: Sequence[Ent
         for run in runs
     ]
     meaning = "standard deviation of a level by the chance of one record"
-    return found | {DEVIATION: _variable(("run", "band"), np.array(deviation), "dB", meaning)}
+    return found | {DEVIATION: _variable(("band",), np.array(deviation), "dB", meaning)}
 
 
 def _placed(found: DataArray) -> DataArray:
@@ -159,9 +215,8 @@ def _pieces(tree: DataTree, entry: Entry) -> Iterator[tuple[str, str, DataArray]
             yield f"{entry.name}_{word}", f"{entry.long_name}, {word}", found.sel({dim: word})
         return
     if others:
-        power = 10.0 ** (found / 10.0)
         with np.errstate(divide="ignore"):
-            mean = power.mean(others).transpose("law", "place")
+            mean = (10.0 ** (found / 10.0)).mean(others).transpose("law", "place")
             found = mean.copy(data=10.0 * np.log10(mean.values))
     yield entry.name, entry.long_name + (", energy mean of the places" if others else ""), found
 
@@ -170,105 +225,89 @@ def _weighted(name: str, level: Numbers, band: Numbers, units: str, meaning: str
     """A-weighted totals, and their differences over the bands that a run shares with the first."""
     shared = np.isfinite(level) & np.isfinite(level[:1])
     own, first = (a_weighted_total(np.where(shared, each, np.nan), band) for each in (level, level[:1]))
-    what, dims = f"A-weighted {meaning}", ("run", "law")
-    total = (a_weighted_total(level, band), units.replace("dB", "dB(A)"), f"{what}, all bands of the run")
-    less = (own - first, "dB", f"{what}, less that of the first run, over the bands of both")
-    return {f"{name}_a": _variable(dims, *total), f"{name}_a_difference": _variable(dims, *less)}
+    what, total = f"A-weighted {meaning}", a_weighted_total(level, band)
+    told = f"{what}, less that of the first run, over the bands of both"
+    return {
+        f"{name}_a": _variable(
+            ("law",), total, units.replace("dB", "dB(A)"), f"{what}, all bands of the run"
+        ),
+        f"{name}_a_difference": _variable(("law",), own - first, "dB", told),
+    }
 
 
 # --- numbers by law and by run
 
 
-def _by_law(runs: Sequence[NamedRun], laws: Sequence[str]) -> Variables:
+def _of_laws(runs: Sequence[NamedRun], laws: Sequence[str]) -> Variables:
     """Mean, rms and peak of the force, and the loss of contact."""
-    force = rolling.CONTACT_FORCE
-    wanted: list[tuple[str, str, Entry, Callable[[Any], Any]]] = [
-        ("mean_force", "mean contact force", force, np.nanmean),
-        ("rms_force", "rms of the contact force about its mean", force, np.nanstd),
-        ("peak_force", "largest contact force", force, np.nanmax),
-    ]
-    for entry in (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS):
-        wanted.append((entry.name, entry.long_name, entry, float))
-    found = {}
-    for name, meaning, entry, reduce in wanted:
-        held = [
-            DataArray([float(reduce(data.of_law(run.tree, entry, law))) for law in names], {"law": names})
-            if names
-            else None
-            for run in runs
-            for names in [data.laws(run.tree, entry)]
-        ]
-        found[name] = _variable(("run", "law"), _beside(runs, laws, held), entry.units, meaning)
-    return found
+
+    def numbers(run: NamedRun, entry: Entry, reduce: Callable[[Any], Any]) -> DataArray | None:
+        names = data.laws(run.tree, entry)
+        found = [float(reduce(data.of_law(run.tree, entry, law))) for law in names]
+        return DataArray(found, {"law": names}) if names else None
+
+    return {
+        name: _variable(
+            ("law",),
+            _by_law(runs, laws, [numbers(run, entry, reduce) for run in runs]),
+            entry.units,
+            meaning,
+        )
+        for name, (meaning, entry, reduce) in OF_FORCE.items()
+    }
 
 
-OF_CONTACT = (
-    contact.WORKING_LOAD,
-    contact.WORKING_APPROACH,
-    contact.WORKING_STIFFNESS,
-    contact.CONTACT_AREA_RATIO,
-)
-"""Attributes of the reduced contact that are compared."""
-
-
-def _by_run(runs: Sequence[NamedRun]) -> Variables:
+def _of_contacts(runs: Sequence[NamedRun]) -> Variables:
     """Numbers of the contact under the load; of the stiffness also 20 lg of the ratio."""
-    found: Variables = {}
-    for entry in OF_CONTACT:
-        held = [data.number(run.tree, entry) for run in runs]
-        numbers = np.array([np.nan if value is None else value for value in held])
-        found[entry.name] = _variable(("run",), numbers, entry.units, entry.meaning)
-    name, entry = f"{contact.WORKING_STIFFNESS.name}_difference", contact.WORKING_STIFFNESS
-    both = _with_difference(entry.name, ("run",), found[entry.name].values, "", entry.meaning, ratio=True)
-    return found | {name: both[name]}
+
+    def held(of: Attribute) -> Numbers:
+        return np.array([np.nan if (n := data.number(r.tree, of)) is None else n for r in runs])
+
+    found = {of.name: _variable((), held(of), of.units, of.meaning) for of in OF_CONTACT}
+    of, name = contact.WORKING_STIFFNESS, f"{contact.WORKING_STIFFNESS.name}_difference"
+    return found | {name: _with_difference(of.name, (), held(of), "", of.meaning, ratio=True)[name]}
 
 
 # --- the contact over approach and wavenumber
-
-Curve = tuple[Numbers, Numbers]
 
 
 def _between(x: Numbers, curves: Sequence[Curve | None]) -> Numbers:
     """Curves of all runs at common places (runs, n), straight between their own and NaN beyond."""
     nothing = np.full(len(x), np.nan)
-    drawn = (
-        nothing if c is None or not len(c[0]) else np.interp(x, *c, left=np.nan, right=np.nan) for c in curves
-    )
-    return np.stack(list(drawn))
+    return np.stack([nothing if c is None else np.interp(x, *c, left=np.nan, right=np.nan) for c in curves])
 
 
 def _stiffness(runs: Sequence[NamedRun]) -> Variables:
     """k_c of all runs at the approaches of all."""
-    held: list[Curve | None] = []
-    for run in runs:
-        curve = None
+    held: list[Curve | None] = [None] * len(runs)
+    for r, run in enumerate(runs):
         if data.present(run.tree, contact.APPROACH, contact.STIFFNESS):
             x, y = data.values(run.tree, contact.APPROACH), data.values(run.tree, contact.STIFFNESS)
-            curve = x[np.isfinite(y)], y[np.isfinite(y)]
-        held.append(curve)
-    every = [curve[0] for curve in held if curve is not None and len(curve[0])]
+            held[r] = x[np.isfinite(y)], y[np.isfinite(y)]
+    every = [curve[0] for curve in held if curve is not None]
     if not every:
         return {}
     approach = np.unique(np.concatenate(every))
     axis = variable("approach", approach, "m", contact.APPROACH.long_name)
-    meaning, dims = "contact stiffness F/r, mean of the samples", ("run", "approach")
-    numbers, units = _between(approach, held), contact.STIFFNESS.units
-    return {"approach": axis, **_with_difference("stiffness", dims, numbers, units, meaning, ratio=True)}
+    meaning, units = "contact stiffness F/r, mean of the samples", contact.STIFFNESS.units
+    numbers = _between(approach, held)
+    return {"approach": axis} | _with_difference(
+        "stiffness", ("approach",), numbers, units, meaning, ratio=True
+    )
 
 
 def _filters(runs: Sequence[NamedRun]) -> Variables:
     """Magnitude of the contact filter of all runs at the working approach, in dB."""
     held = [working_filter(run.tree) for run in runs]
-    every = [curve[0] for curve in held if curve is not None and len(curve[0])]
-    if not every:
+    every = np.concatenate([np.zeros(0), *(curve[0] for curve in held if curve is not None)])
+    if not every.size:
         return {}
-    ends = min(k[0] for k in every), max(k[-1] for k in every)
-    low, high = (np.log10(edge) * POINTS_PER_DECADE for edge in ends)
+    low, high = (np.log10(edge) * POINTS_PER_DECADE for edge in (every.min(), every.max()))
     wavenumber = 10.0 ** (np.arange(np.ceil(low - 1e-9), np.floor(high + 1e-9) + 1) / POINTS_PER_DECADE)
     axis = variable("wavenumber", wavenumber, "1/m", contact.WAVENUMBER.long_name)
     level = _between(np.log(wavenumber), [None if c is None else (np.log(c[0]), c[1]) for c in held])
     meaning = "magnitude of the fitted contact filter at the working approach"
-    return {"wavenumber": axis, **_with_difference("filter", ("run", "wavenumber"), level, "dB", meaning)}
+    return {"wavenumber": axis} | _with_difference("filter", ("wavenumber",), level, "dB", meaning)
 
 
 def working_filter(tree: DataTree) -> Curve | None:
@@ -285,4 +324,4 @@ def working_filter(tree: DataTree) -> Curve | None:
     approach = data.values(tree, contact.APPROACH)[states]
     at = np.array([np.interp(working, approach, column) for column in magnitude[states].T])
     kept = np.isfinite(at) & (at > 0.0) & (wavenumber > 0.0)
-    return wavenumber[kept], 20.0 * np.log10(at[kept])
+    return (wavenumber[kept], 20.0 * np.log10(at[kept])) if kept.any() else None

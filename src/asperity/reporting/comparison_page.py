@@ -2,60 +2,41 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import xarray
 
 from asperity import __version__
-from asperity.reporting import data, panels, tables
-from asperity.reporting.chart import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    Axis,
-    Boxes,
-    Chart,
-    Flags,
-    Line,
-    Mark,
-    Numbers,
-    Panel,
-)
-from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, NamedRun
+from asperity.reporting import chart, data, panels, tables
+from asperity.reporting.chart import INK, MUTED, Axis, Chart, Flags, Line, Numbers, Panel
+from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, Comparison
 from asperity.reporting.page import PageFigure, PageSection, whole_page
-from asperity.reporting.payload import chart_tables
-from asperity.reporting.tables import ReportTable, number_cells, text_cells
+from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
 from asperity.spectra import nominal_frequency
 
-KIND = "kind"
-"""Key that names the kind of a case."""
 SURE = 2.0
 """Standard deviation of a difference by chance, dB, from which a band says little."""
+OF_RUN = (provenance.VERDICT, provenance.ASPERITY_VERSION, provenance.CREATED)
 
 
-def table_rows(runs: Sequence[NamedRun], table: xarray.Dataset) -> tuple[list[str], list[list[object]]]:
+def table_rows(of: Comparison) -> tuple[list[str], list[list[object]]]:
     """Heading and rows of everything that is compared: a column for each run and each difference."""
-    names = [run.name for run in runs]
+    names, blank = of.names, [""] * len(of.runs)
     heading = ["what", "quantity", "law", "at", "unit", *names]
     heading += ["unit of the difference", *(f"{name} - {names[0]}" for name in names[1:])]
-    blank = [""] * len(runs)
     rows: list[list[object]] = []
-    for item in json.loads(table.attrs["cases"]):
+    for item in of.keys:
         written = ["" if value is None else str(value) for value in item["values"]]
         rows.append(["case", item["key"], "", "", "", *written, *blank])
-    for attribute in (provenance.VERDICT, provenance.ASPERITY_VERSION, provenance.CREATED):
-        told = [str(data.stated(run.tree, attribute) or "") for run in runs]
+    for attribute in OF_RUN:
+        told = [str(data.stated(run.tree, attribute) or "") for run in of.runs]
         rows.append(["run", attribute.name, "", "", "", *told, *blank])
-    for name in map(str, table.data_vars):
+    for name in map(str, of.table.data_vars):
         if not name.endswith("_difference"):
-            rows += _rows_of(table, name)
+            rows += _rows_of(of.table, name)
     return heading, rows
 
 
@@ -79,41 +60,33 @@ def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
         yield [kind, name, law, where, units, *found.tolist(), *last]
 
 
-def listed_keys(table: xarray.Dataset) -> list[dict[str, Any]]:
-    """Keys that differ; of cases of different kinds only those that all have, for the others say little."""
-    items: list[dict[str, Any]] = json.loads(table.attrs["cases"])
-    mixed = any(item["key"] == KIND for item in items)
-    return [item for item in items if not mixed or None not in item["values"]]
-
-
-def summary(runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str]) -> str:
+def summary(of: Comparison) -> str:
     """Say in a few sentences how the runs after the first differ from it, by their first law.
 
-    Of the levels, by name with what they are, the first and the last: the force, and what it makes.
+    Of the levels the first and the last: the force, and what it makes.
     """
-    names = list(dict.fromkeys([*list(levels)[:1], *list(levels)[-1:]]))
-    keys = [str(item["key"]) for item in listed_keys(table)]
+    shown = dict.fromkeys([*list(of.levels)[:1], *list(of.levels)[-1:]])
+    keys = [str(item["key"]) for item in of.telling_keys]
     more = f" and {len(keys) - 4} more" if len(keys) > 4 else ""
     sentences = [f"The cases differ in {', '.join(keys[:4])}{more}" if keys else "The cases are the same"]
-    law = str(table["law"].values[0]) if table.sizes["law"] else ""
-    for r, run in enumerate(runs[1:], 1):
-        told = [each for name in names if (each := _level_words(table, name, levels[name], r))]
+    for r, name in enumerate(of.names[1:], 1):
+        told = [words for level in shown if (words := _level_words(of, level, r))]
         if told:
-            sentences.append(f"{run.name} against {runs[0].name}, {law}: {'; '.join(told)}")
+            sentences.append(f"{name} against {of.names[0]}, {of.laws[0]}: {'; '.join(told)}")
     return ". ".join(sentences) + "."
 
 
-def _level_words(table: xarray.Dataset, name: str, title: str, run: int) -> str:
+def _level_words(of: Comparison, name: str, run: int) -> str:
     """Range of the differences of a level over the bands that say something, and dB(A)."""
-    difference = table[f"{name}_difference"][run, 0].values
-    told = np.isfinite(difference) & _sure(table, run)
-    weighted = float(table[f"{name}_a_difference"][run, 0])
-    if not told.any():
+    change, title = of.table[f"{name}_difference"][run, 0].values, of.levels[name]
+    weighted = float(of.table[f"{name}_a_difference"][run, 0])
+    told = np.flatnonzero(np.isfinite(change) & _sure(of.table, run))
+    if not told.size:
         return f"{title} {data.signed(weighted)} dB(A)" if np.isfinite(weighted) else ""
-    band, change = table["band"].values[told], difference[told]
+    band = of.table["band"].values
     ends = [
         f"{data.signed(change[i])} dB ({nominal_frequency(float(band[i]))})"
-        for i in (int(change.argmin()), int(change.argmax()))
+        for i in (told[change[told].argmin()], told[change[told].argmax()])
     ]
     return f"{title} {' to '.join(ends)}, {data.signed(weighted)} dB(A)"
 
@@ -134,72 +107,78 @@ def _sure(table: xarray.Dataset, run: int) -> Flags:
 
 # --- figures
 
-RUN_COLOURS = (INK, VERMILLION, BLUE, GREEN, "#a8458f", "#96700a", "#2a93c4", "#6f7a85")
+RUN_COLOURS = (INK, chart.VERMILLION, chart.BLUE, chart.GREEN, "#a8458f", "#96700a", "#2a93c4", "#6f7a85")
 RUN_DASHES = ((), (5, 1.5), (2, 1), (6, 1.5, 1, 1.5))
 MOST_RUNS = len(RUN_COLOURS)
 """That can be told apart."""
 
 
-def _of_run(table: xarray.Dataset, number: int, x: Numbers, y: Numbers, marker: str = "o") -> Line:
+def _of_run(of: Comparison, number: int, x: Numbers, y: Numbers, marker: str = "o") -> Line:
     """A line of a run by its number, from 0."""
-    name, dashes = str(table["run"].values[number]), RUN_DASHES[number % len(RUN_DASHES)]
-    return Line(x, y, name, RUN_COLOURS[number], dashes, 1.6, marker)
+    dashes = RUN_DASHES[number % len(RUN_DASHES)]
+    return Line(x, y, of.names[number], RUN_COLOURS[number], dashes, 1.6, marker)
 
 
-def _levels_chart(table: xarray.Dataset, name: str, looks: Mapping[str, Mapping[str, Any]]) -> Chart:
+def _levels_chart(of: Comparison, name: str) -> Chart:
     """A level of all runs by their first law, and the differences to the first run.
 
-    Of two runs the differences of all laws are drawn, in their `looks`; of more runs those of the first law.
+    Of two runs the differences of all laws are drawn, in their looks; of more runs those of the first law.
     """
-    level, difference = table[name].values, table[f"{name}_difference"].values
-    band, laws, runs = table["band"].values, list(map(str, table["law"].values)), table.sizes["run"]
-    above = [_of_run(table, r, band, level[r, 0]) for r in range(runs)]
-    below: list[Mark] = [panels.zero(colour=INK, width=0.8)]
-    if runs == 2:
-        deviation = _chance(table, 1)
-        known = np.isfinite(deviation)
+    level, difference = of.table[name].values, of.table[f"{name}_difference"].values
+    band, runs, (main, *_) = of.table["band"].values, range(len(of.runs)), of.laws
+    above = tuple(_of_run(of, r, band, level[r, 0]) for r in runs)
+    below: list[chart.Mark] = [panels.zero(colour=INK, width=0.8)]
+    if len(runs) == 2:
+        known = np.isfinite(by := _chance(of.table, 1))
         if known.any():
-            at, by = band[known], deviation[known]
-            edges = at / panels.EDGE, at * panels.EDGE, -by, by
-            below.append(Boxes(*edges, label="± 1 s by chance", colour=MUTED, opacity=0.18))
-        for law, change in zip(laws, difference[1], strict=True):
+            edges = band[known] / panels.EDGE, band[known] * panels.EDGE, -by[known], by[known]
+            below.append(chart.Boxes(*edges, label="± 1 s by chance", colour=MUTED, opacity=0.18))
+        looks = {law: data.law_style(of.runs[0].tree, law, main) for law in of.runs[0].laws}
+        for law, change in zip(of.laws, difference[1], strict=True):
             if np.isfinite(change).any():
                 below.append(Line(band, change, law, **looks.get(law, {"colour": MUTED})))
     else:
-        below += [_of_run(table, r, band, difference[r, 0]) for r in range(1, runs)]
+        below += [_of_run(of, r, band, difference[r, 0]) for r in runs[1:]]
     bands = panels.band_axis(band[np.isfinite(level).any(axis=(0, 1))])
-    label = f"level of {laws[0]} / {data.written_units(table[name].attrs['units'])}"
-    over = Axis(f"over {table['run'].values[0]} / dB")
+    label = f"level of {main} / {data.written_units(of.table[name].attrs['units'])}"
+    over = Axis(f"over {of.names[0]} / dB")
     heights = panels.levels_axis(label, [level[:, 0]])
-    return Chart(
-        (Panel(bands, heights, tuple(above), height=3.2), Panel(bands, over, tuple(below), height=2.8))
-    )
+    return Chart((Panel(bands, heights, above, height=3.2), Panel(bands, over, tuple(below), height=2.8)))
 
 
-def _stiffness(table: xarray.Dataset) -> Panel:
+def _levels_caption(of: Comparison, name: str) -> str:
+    law, (first, *others) = of.laws[0], of.names
+    below, shaded = f"the differences of {law} to {first}", ""
+    if len(others) == 1:
+        below = f"the differences of all laws, {others[0]} less {first}"
+        shaded = (
+            " Shaded: what two records differ by through chance alone, one standard deviation of the "
+            "difference; runs over the same texture differ by less."
+        )
+    return f"Above, {of.table[name].attrs['long_name']}, of {law} in all runs; below, {below}.{shaded}"
+
+
+def _stiffness(of: Comparison) -> Panel:
     """Stiffness of all runs over the approach."""
-    approach, stiffness = table["approach"].values * 1e6, table["stiffness"].values
+    approach, stiffness = of.table["approach"].values * 1e6, of.table["stiffness"].values
     unit, symbol = (1e9, "GN/m") if np.nanmax(stiffness) > 2e9 else (1e6, "MN/m")
-    working = table[contact.WORKING_APPROACH.name].values * 1e6
+    working = of.table[contact.WORKING_APPROACH.name].values * 1e6
     lines = []
     for r, found in enumerate(stiffness):
         kept = np.isfinite(found)
         if kept.any():
-            line = _of_run(table, r, approach[kept], found[kept] / unit, marker="")
-            at = working[r : r + 1]
+            line, at = _of_run(of, r, approach[kept], found[kept] / unit, marker=""), working[r : r + 1]
             point = Line(at, np.interp(at, line.x, line.y), colour=line.colour, width=0, marker="o")
             lines += [line, point]
-    along, up = Axis("approach / µm"), Axis(f"contact stiffness k_c / ({symbol})", low=0.0)
-    return Panel(along, up, tuple(lines), height=3.9)
+    up = Axis(f"contact stiffness k_c / ({symbol})", low=0.0)
+    return Panel(Axis("approach / µm"), up, tuple(lines), height=3.9)
 
 
-def _filters(table: xarray.Dataset) -> Panel:
+def _filters(of: Comparison) -> Panel:
     """Filters of all runs at the working approach."""
-    wavenumber, level = table["wavenumber"].values, table["filter"].values
+    wavenumber, level = of.table["wavenumber"].values, of.table["filter"].values
     known = np.isfinite(level)
-    lines = [
-        _of_run(table, r, wavenumber, level[r], marker="") for r in np.flatnonzero(known.any(axis=1)).tolist()
-    ]
+    lines = [_of_run(of, r, wavenumber, each, "") for r, each in enumerate(level) if known[r].any()]
     kept = wavenumber[known.any(axis=0)]
     up = Axis("contact filter |H| / dB", max(float(np.nanmin(level)) - 2.0, -40.0), 3.0)
     return Panel(panels.wavenumber_axis(kept[0], kept[-1]), up, tuple(lines), height=3.9)
@@ -208,80 +187,52 @@ def _filters(table: xarray.Dataset) -> Panel:
 # --- the page
 
 
-def comparison_page(
-    runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str], file: str
-) -> str:
-    """The whole page as one self-contained HTML text.
-
-    Runs and their table from `asperity.reporting.comparison.compared`; titles of its levels by name; name of
-    the CSV file beside the page.
-    """
-    colours = {name: dark for run in reversed(runs) for name, dark in data.law_colours(run.tree).items()}
-    citations = [text for run in runs for text in data.json_attribute(run.tree, provenance.CITATIONS, [])]
-    drawn = compared_sections(runs, table, levels)
-    blocks = [block for section in drawn for block in section.blocks]
+def comparison_page(of: Comparison, file: str) -> str:
+    """The whole page as one self-contained HTML text; `file` is the name of the CSV file beside it."""
+    trees = [run.tree for run in of.runs]
+    citations = [str(text) for tree in trees for text in data.json_attribute(tree, provenance.CITATIONS, [])]
+    sections = compared_sections(of)
     return whole_page(
         "comparison.html.jinja",
-        blocks,
-        colours,
-        title=f"Comparison of {' and '.join(run.name for run in runs)}",
-        summary=summary(runs, table, levels),
-        first=runs[0].name,
+        [block for section in sections for block in section.blocks],
+        {name: dark for tree in reversed(trees) for name, dark in data.law_colours(tree).items()},
+        title=f"Comparison of {' and '.join(of.names)}",
+        summary=summary(of),
+        first=of.names[0],
         version=__version__,
         file=file,
-        sections=drawn,
-        provenance=_provenance_table(runs),
-        citations=list(dict.fromkeys(map(str, citations))),
+        sections=sections,
+        provenance=_provenance_table(of),
+        citations=list(dict.fromkeys(citations)),
     )
 
 
-def compared_sections(
-    runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str]
-) -> list[PageSection]:
+def compared_sections(of: Comparison) -> list[PageSection]:
     """Chapters of the page: cases, verdicts, force, each level, contact."""
-
-    def figure(name: str, title: str, caption: str, chart: Chart) -> PageFigure:
-        return PageFigure(name, title, caption, chart, chart_tables(chart))
-
     found = [
-        PageSection("case", "What differs in the cases", [_case_table(runs, table)]),
-        PageSection("verdicts", "What each run says", [], list(_verdicts(runs))),
-        PageSection("force", "Contact force and its loss", [_numbers_table(table)]),
+        PageSection("case", "What differs in the cases", [_case_table(of)]),
+        PageSection("verdicts", "What each run says", [], list(_verdicts(of))),
+        PageSection("force", "Contact force and its loss", [_numbers_table(of.table)]),
     ]
-    main = str(table["law"].values[0]) if table.sizes["law"] else ""
-    looks = {law: data.law_style(runs[0].tree, law, main) for law in runs[0].laws}
-    for name, title in levels.items():
-        drawn = figure(
-            name, title.capitalize(), _levels_caption(table, name), _levels_chart(table, name, looks)
+    for name, title in ((name, title.capitalize()) for name, title in of.levels.items()):
+        drawn = PageFigure(name, title, _levels_caption(of, name), _levels_chart(of, name))
+        found.append(PageSection(f"levels-{name}", title, [drawn, _difference_table(of, name)]))
+    blocks: list[PageFigure | ReportTable] = [_contact_table(of.table)]
+    held = (("stiffness", _stiffness), ("filter", _filters))
+    if shown := [draw(of) for name, draw in held if name in of.table]:
+        caption = (
+            "Contact stiffness k_c = F/r over the approach of the surfaces, mean of the samples, a ring at "
+            "the working approach; magnitude of the contact filter at the working approach of each run, as "
+            "fitted."
         )
-        blocks: list[PageFigure | ReportTable] = [drawn, _difference_table(table, name, title)]
-        found.append(PageSection(f"levels-{name}", title.capitalize(), blocks))
-    shown = [draw(table) for held, draw in (("stiffness", _stiffness), ("filter", _filters)) if held in table]
-    beside = [replace(panel, beside=True, share=1.15) for panel in shown[1:]]
-    caption = (
-        "Contact stiffness k_c = F/r over the approach of the surfaces, mean of the samples, a ring at the "
-        "working approach; magnitude of the contact filter at the working approach of each run, as fitted."
-    )
-    last = Chart((*shown[:1], *beside))
-    figures = [figure("stiffness_and_filter", "Stiffness and filter", caption, last)] if shown else []
-    return [*found, PageSection("contact", "Contact", [*figures, _contact_table(table)])]
+        last = Chart((*shown[:1], *(replace(panel, beside=True, share=1.15) for panel in shown[1:])))
+        blocks.insert(0, PageFigure("stiffness_and_filter", "Stiffness and filter", caption, last))
+    return [*found, PageSection("contact", "Contact", blocks)]
 
 
-def _levels_caption(table: xarray.Dataset, name: str) -> str:
-    runs, law, shaded = list(map(str, table["run"].values)), table["law"].values[0], ""
-    below = f"the differences of {law} to {runs[0]}"
-    if len(runs) == 2:
-        below = f"the differences of all laws, {runs[1]} less {runs[0]}"
-        shaded = (
-            " Shaded: what two records differ by through chance alone, one standard deviation of the "
-            "difference; runs over the same texture differ by less."
-        )
-    return f"Above, {table[name].attrs['long_name']}, of {law} in all runs; below, {below}.{shaded}"
-
-
-def _verdicts(runs: Sequence[NamedRun]) -> Iterator[tuple[str, str, str]]:
+def _verdicts(of: Comparison) -> Iterator[tuple[str, str, str]]:
     """Verdict of each run, and its warnings."""
-    for run in runs:
+    for run in of.runs:
         yield run.name, str(data.stated(run.tree, provenance.VERDICT) or "no verdict was stored"), ""
         for warning in data.json_list(run.tree, provenance.WARNINGS):
             grade = str(warning.get("grade", "warning"))
@@ -292,19 +243,15 @@ def _verdicts(runs: Sequence[NamedRun]) -> Iterator[tuple[str, str, str]]:
 # --- tables
 
 
-def _case_table(runs: Sequence[NamedRun], table: xarray.Dataset) -> ReportTable:
+def _case_table(of: Comparison) -> ReportTable:
     """Keys whose values differ."""
-    items = listed_keys(table)
-    rows = [
-        text_cells(
-            [item["key"], *("–" if value is None else value for value in item["values"]), item["note"]]
-        )
-        for item in items
-    ]
+    items = of.telling_keys
+    written = [["–" if value is None else value for value in item["values"]] for item in items]
+    rows = [text_cells([i["key"], *values, i["note"]]) for i, values in zip(items, written, strict=True)]
     note = "All other keys have the same values." if items else "All keys have the same values in all runs."
-    if any(item["key"] == KIND for item in items):
+    if of.of_kinds:
         note = "Keys that one kind of case has alone are not listed; the table beside this page has them."
-    return ReportTable("keys", "Keys that differ", ["key", *(r.name for r in runs), "what it is"], rows, note)
+    return ReportTable("keys", "Keys that differ", ["key", *of.names, "what it is"], rows, note)
 
 
 _FORCE: dict[str, tuple[str, str | tables.Writer]] = {
@@ -321,70 +268,65 @@ def _numbers_table(table: xarray.Dataset) -> ReportTable:
     """Numbers of the force, a row for each law and run."""
     found = {name: table[name].values.T for name in _FORCE}
     shown = np.isfinite(list(found.values())).any(axis=0)
-    laws, runs = (
-        table[key].values[places] for key, places in zip(("law", "run"), np.nonzero(shown), strict=True)
-    )
-    columns = {"law": text_cells(laws, "name"), "run": text_cells(runs, "name")}
-    columns |= {head: number_cells(found[name][shown], write) for name, (head, write) in _FORCE.items()}
+    law, run = np.nonzero(shown)
+    columns = {
+        "law": text_cells(table["law"].values[law], "name"),
+        "run": text_cells(table["run"].values[run], "name"),
+        **{head: number_cells(found[name][shown], write) for name, (head, write) in _FORCE.items()},
+    }
     return tables.table("numbers", "By law and run", columns)
 
 
-def _difference_table(table: xarray.Dataset, name: str, title: str) -> ReportTable:
+def _difference_table(of: Comparison, name: str) -> ReportTable:
     """Differences to the first run in each band, and of the A-weighted totals."""
+    table, (first, *others) = of.table, of.names
     difference, weighted = table[f"{name}_difference"].values, table[f"{name}_a_difference"].values
-    runs, laws = (list(map(str, table[key].values)) for key in ("run", "law"))
     kept = np.isfinite(difference[1:]).any(axis=(0, 1))
     bands = number_cells(table["band"].values[kept], data.nominal_band)
-    head, columns = ["band / Hz"], [[*bands, *text_cells(["dB(A)"], "total")]]
+    columns: dict[str, list[Cell]] = {"band / Hz": [*bands, *text_cells(["dB(A)"], "total")]}
     for r, k in np.argwhere(np.isfinite(difference).any(axis=2)).tolist():
         if r > 0:
-            head.append(laws[k] if len(runs) == 2 else f"{runs[r]}: {laws[k]}")
+            head = of.laws[k] if len(others) == 1 else f"{of.names[r]}: {of.laws[k]}"
             cells = tables.change_cells(difference[r, k, kept], ~_sure(table, r)[kept])
-            columns.append([*cells, *number_cells(weighted[r, k : k + 1], data.signed, "number total")])
-    over = f"{runs[1]} less {runs[0]}" if len(runs) == 2 else f"less {runs[0]}"
+            columns[head] = [*cells, *number_cells(weighted[r, k : k + 1], data.signed, "number total")]
+    over = f"{others[0]} less {first}" if len(others) == 1 else f"less {first}"
     note = (
         "Shaded: more than 1 dB, more than 3 dB. In brackets: bands in which records of this "
         "length differ by 2 dB or more through chance alone. Last row: A-weighted, over the bands of both."
     )
-    title, rows = f"{title.capitalize()}, {over}, in dB", [list(row) for row in zip(*columns, strict=True)]
-    return ReportTable(f"{name}_difference", title, head, rows, note)
+    title = f"{of.levels[name].capitalize()}, {over}, in dB"
+    return tables.table(f"{name}_difference", title, columns, note)
 
 
 def _contact_table(table: xarray.Dataset) -> ReportTable:
     """Load, approach, stiffness and real contact of each run."""
     load, approach, stiffness, area = (table[entry.name].values for entry in OF_CONTACT)
-    change = table["working_stiffness_difference"].values[1:]
+    ratio = [f"{data.signed(each)} dB" for each in table["working_stiffness_difference"].values[1:]]
     columns = {
         "run": text_cells(table["run"].values),
         "load": number_cells(load, "N"),
         "approach under it": number_cells(approach, "m"),
         "stiffness dF/dr": number_cells(stiffness, "N/m"),
-        "20 lg of its ratio to the first": text_cells(
-            ["–", *(f"{data.signed(each)} dB" for each in change)], "number"
-        ),
+        "20 lg of its ratio to the first": text_cells(["–", *ratio], "number"),
         "real over smooth contact area": number_cells(area, data.in_percent),
     }
     return tables.table("working_point", "Under the load", columns)
 
 
-def _provenance_table(runs: Sequence[NamedRun]) -> ReportTable:
+_PROVENANCE = {
+    "what was rolled": provenance.TITLE,
+    "kind": provenance.KIND,
+    "asperity": provenance.ASPERITY_VERSION,
+    "made": provenance.CREATED,
+    "seed": provenance.SEED,
+}
+
+
+def _provenance_table(of: Comparison) -> ReportTable:
     """Where the runs come from."""
-    told = {
-        "what was rolled": provenance.TITLE,
-        "kind": provenance.KIND,
-        "asperity": provenance.ASPERITY_VERSION,
-        "made": provenance.CREATED,
-    }
-    seeds = [data.stated(run.tree, provenance.SEED) for run in runs]
-    columns = {
-        "run": text_cells(run.name for run in runs),
-        **{
-            head: text_cells(data.moment(data.stated(run.tree, each)) for run in runs)
-            for head, each in told.items()
-        },
-        "seed": text_cells("" if seed is None else seed for seed in seeds),
-    }
-    mixed = len({run.laws[0] for run in runs if run.laws}) > 1
-    return tables.table(
-        "runs", "Runs", columns, f"“{MAIN}” stands for the first law of each run." if mixed else ""
-    )
+    columns = {"run": text_cells(of.names)}
+    for head, attribute in _PROVENANCE.items():
+        told = (data.stated(run.tree, attribute) for run in of.runs)
+        columns[head] = text_cells(data.moment("" if each is None else each) for each in told)
+    note = f"“{MAIN}” stands for the first law of each run." if of.laws[:1] == [MAIN] else ""
+    return tables.table("runs", "Runs", columns, note)

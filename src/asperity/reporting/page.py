@@ -16,7 +16,7 @@ from xarray import DataTree
 from asperity import __version__
 from asperity.printable import printable
 from asperity.reporting import data, headline, payload
-from asperity.reporting.chart import Chart, Line, colour_variables
+from asperity.reporting.chart import Chart, Line, Numbers, colour_variables
 from asperity.reporting.figure import Chapter, Figure, Lines
 from asperity.reporting.tables import ReportTable
 from asperity.reporting.uncertainty import setting_names
@@ -33,8 +33,13 @@ class PageFigure:
     title: str
     caption: str
     chart: Chart
-    numbers: list[ReportTable] = field(default_factory=list)  # shown where no script runs
     file: str = ""  # with its numbers, beside the page
+    columns: Mapping[str, Numbers] = field(default_factory=dict)  # of that file
+
+    @property
+    def numbers(self) -> list[ReportTable]:
+        """Tables that are shown where no script runs."""
+        return [payload.numbers_table(self.columns)] if self.columns else payload.chart_tables(self.chart)
 
 
 @dataclass(frozen=True)
@@ -125,8 +130,8 @@ def drawable_figures(tree: DataTree, chapters: Sequence[Chapter]) -> list[Figure
 
 def page_figure(tree: DataTree, figure: Figure, lines: Lines) -> PageFigure:
     """A figure of the page, from numbers that were collected."""
-    told, numbers = (figure.name, figure.title, figure.said(tree)), payload.numbers_table(lines.columns)
-    return PageFigure(*told, figure.chart(tree, lines), [numbers], f"{figure.name}.csv")
+    told = figure.name, figure.title, figure.said(tree), figure.chart(tree, lines)
+    return PageFigure(*told, f"{figure.name}.csv", lines.columns)
 
 
 def _sections(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import xarray
@@ -13,16 +13,12 @@ from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.printable import printable
-from asperity.reporting.comparison import NamedRun, compared
+from asperity.reporting.comparison import Comparison, NamedRun, compared
 from asperity.reporting.comparison_page import MOST_RUNS, comparison_page, table_rows
 from asperity.results import read_result
 from asperity.scenes.schema import KEPT
-from asperity.schema import Entry
 from asperity.schema.spectra import FORCE_LEVEL
 from asperity.text_files import csv_text
-
-TABLE = "comparison.csv"
-LEVEL = "dB re"
 
 
 def compare(
@@ -77,25 +73,28 @@ def compare(
     >>> table["force_level_difference"].dims
     ('run', 'law', 'band')
     """
-    runs = named_runs(results, names)
-    entries = compared_levels(runs)
-    table = compared(runs, entries, laws)
+    found = compared_runs(results, names, laws)
     if path is not None:
-        write_comparison(runs, table, shown_levels(table, entries), path)
-    return table
+        write_comparison(found, path)
+    return found.table
 
 
-def named_runs(
-    results: Sequence[DataTree | str | os.PathLike[str]], names: Sequence[str] | None = None
-) -> list[NamedRun]:
-    """Read runs, and name them so that they can be told apart."""
+def compared_runs(
+    results: Sequence[DataTree | str | os.PathLike[str]],
+    names: Sequence[str] | None = None,
+    laws: Sequence[str] = (),
+) -> Comparison:
+    """Read runs, name them so that they can be told apart, and compare all levels over bands."""
     allowed = f"two to {MOST_RUNS} runs"
     if not 2 <= len(results) <= MOST_RUNS:
         raise InputError("runs to compare", len(results), allowed, "Give a run.nc or its folder for each.")
-    found = names_of(results) if names is None else [str(name) for name in names]
-    if len(found) != len(results) or len(set(found)) != len(found):
-        raise InputError("names", shown(list(found)), "one name for each run, each once")
-    return [NamedRun(printable(name), _tree(result)) for name, result in zip(found, results, strict=True)]
+    called = names_of(results) if names is None else [str(name) for name in names]
+    if len(called) != len(results) or len(set(called)) != len(called):
+        raise InputError("names", shown(list(called)), "one name for each run, each once")
+    runs = [NamedRun(printable(name), _tree(result)) for name, result in zip(called, results, strict=True)]
+    held = {name for run in runs for group in run.tree.children.values() for name in group.data_vars}
+    levels = (e for e in KEPT if e.units.startswith("dB re") and e.dims[-1].endswith("band"))
+    return compared(runs, [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)], laws)
 
 
 def _tree(result: object) -> DataTree:
@@ -121,41 +120,13 @@ def _place(result: object, number: int) -> tuple[str, ...]:
     return path.parent.parts if path.name == "run.nc" else (*path.parent.parts, path.stem or "run")
 
 
-def compared_levels(runs: Sequence[NamedRun]) -> list[Entry]:
-    """Levels over bands that any of the runs has."""
-    held = {name for run in runs for group in run.tree.children.values() for name in group.data_vars}
-    levels = (e for e in KEPT if e.units.startswith(LEVEL) and e.dims[-1].endswith("band"))
-    return [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)]
-
-
-def write_comparison(
-    runs: Sequence[NamedRun],
-    table: xarray.Dataset,
-    levels: Mapping[str, str],
-    path: str | os.PathLike[str],
-) -> tuple[Path, Path]:
-    """Write page and table of a comparison, with levels from `shown_levels`; return where they are."""
+def write_comparison(of: Comparison, path: str | os.PathLike[str]) -> tuple[Path, Path]:
+    """Write page and table of a comparison; return where they are."""
     target = file_path("comparison", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
         target /= "comparison.html"
     rows = target.with_suffix(".csv")
-    page = comparison_page(runs, table, levels, rows.name)
     with together(target.parent, last=target.name) as new:
-        for file, text in ((rows, csv_text(*table_rows(runs, table))), (target, page)):
+        for file, text in ((rows, csv_text(*table_rows(of))), (target, comparison_page(of, rows.name))):
             write_bytes(new / file.name, text.encode("utf-8", errors="backslashreplace"))
     return target, rows
-
-
-def shown_levels(table: xarray.Dataset, entries: Sequence[Entry]) -> dict[str, str]:
-    """Levels that the page shows, by name, with what they are; of several sources the last, their sum."""
-    found = {}
-    for entry in entries:
-        names = [name for name in table.data_vars if _is_level(str(name), entry.name, table)]
-        if names:
-            title = str(table[names[-1]].attrs["long_name"])
-            found[str(names[-1])] = title.partition(", energy mean")[0]
-    return found
-
-
-def _is_level(name: str, entry: str, table: xarray.Dataset) -> bool:
-    return f"{name}_a_difference" in table and (name == entry or name.startswith(f"{entry}_"))

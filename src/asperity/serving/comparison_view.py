@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from asperity.reporting.comparison import compared
 from asperity.reporting.comparison_page import compared_sections, summary
-from asperity.scenes.comparing import compare, compared_levels, named_runs, shown_levels
+from asperity.scenes import comparing
 from asperity.serving.blocks import told_blocks
 
 
@@ -25,15 +24,12 @@ def numbered_names(names: Sequence[str]) -> list[str]:
 
 def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
     """A sentence, and what the page of the comparison shows below it."""
-    runs = named_runs(paths, numbered_names(names))
-    entries = compared_levels(runs)
-    table = compared(runs, entries)
-    levels = shown_levels(table, entries)
-    blocks = [block for section in compared_sections(runs, table, levels) for block in section.blocks]
-    return {"summary": summary(runs, table, levels), **told_blocks(blocks)}
+    found = comparing.compared_runs(paths, numbered_names(names))
+    blocks = [block for section in compared_sections(found) for block in section.blocks]
+    return {"summary": summary(found), **told_blocks(blocks)}
 
 
 def write_beside(paths: list[str], names: list[str], folder: str) -> dict[str, Any]:
     """Write the page of a comparison, with its table, into a folder."""
-    compare(*paths, names=numbered_names(names), path=folder)
+    comparing.compare(*paths, names=numbered_names(names), path=folder)
     return {}
