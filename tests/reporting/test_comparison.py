@@ -14,7 +14,7 @@ from report_tree import report_tree
 import asperity
 from asperity.reporting.comparison import MAIN, NamedRun, compared, working_filter
 from asperity.reporting.comparison_page import summary
-from asperity.scenes.comparing import compared_runs, names_of
+from asperity.scenes.comparing import comparison_of, names_of
 from asperity.schema import contact
 from asperity.spectra import a_weighted_total, a_weighting
 
@@ -41,7 +41,7 @@ def louder(tree, level):
 
 
 def test_a_run_does_not_differ_from_itself(first):
-    found = compared_runs([first, first], ["a", "b"])
+    found = comparison_of([first, first], ["a", "b"])
     table = found.table
     for name in table.data_vars:
         found = table[name].values
@@ -143,7 +143,7 @@ def test_keys_that_differ_are_listed_and_no_others(first):
 def test_of_different_kinds_the_keys_of_both_are_told(first):
     ball = with_parameters(first, kind="ball", speed="1 m/s", radius="5 mm")
     wheel = with_parameters(first, kind="wheel", speed="2 m/s", load="60 kN")
-    found = compared_runs([ball, wheel])
+    found = comparison_of([ball, wheel])
     assert [item["key"] for item in found.keys] == ["kind", "speed", "radius", "load"]
     assert [item["key"] for item in found.telling_keys] == ["kind", "speed"]
 

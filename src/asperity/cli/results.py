@@ -69,7 +69,7 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
     """Compare runs into a page and a table, and say in short what differs."""
     folder = target.parent if target.suffix.lower() == ".html" else target
     refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
-    found = comparing.compared_runs(paths, laws=laws)
+    found = comparing.comparison_of(paths, laws=laws)
     table, names = found.table, found.names
     keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.telling_keys]
     if keys:

@@ -73,13 +73,13 @@ def compare(
     >>> table["force_level_difference"].dims
     ('run', 'law', 'band')
     """
-    found = compared_runs(results, names, laws)
+    found = comparison_of(results, names, laws)
     if path is not None:
         write_comparison(found, path)
     return found.table
 
 
-def compared_runs(
+def comparison_of(
     results: Sequence[DataTree | str | os.PathLike[str]],
     names: Sequence[str] | None = None,
     laws: Sequence[str] = (),

@@ -24,7 +24,7 @@ def numbered_names(names: Sequence[str]) -> list[str]:
 
 def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
     """A sentence, and what the page of the comparison shows below it."""
-    found = comparing.compared_runs(paths, numbered_names(names))
+    found = comparing.comparison_of(paths, numbered_names(names))
     blocks = [block for section in compared_sections(found) for block in section.blocks]
     return {"summary": summary(found), **told_blocks(blocks)}
 
