@@ -60,7 +60,7 @@ class NamedRun:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class ComparedRuns:
     """Runs, the first of them the reference, and what was compared."""
 
     runs: Sequence[NamedRun]
@@ -94,7 +94,7 @@ class Comparison:
         return [item for item in self.keys if not self.of_kinds or None not in item["values"]]
 
 
-def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence[str] = ()) -> Comparison:
+def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence[str] = ()) -> ComparedRuns:
     """Lay quantities of runs side by side, with their differences to the first run.
 
     Of all their laws, or of those chosen alone.
@@ -122,7 +122,7 @@ def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence
         for entry in levels
     }
     told = {each[-1]: found[each[-1]].attrs["long_name"] for each in own.values() if each}
-    return Comparison(runs, table, {n: str(what).partition(", energy mean")[0] for n, what in told.items()})
+    return ComparedRuns(runs, table, {n: str(what).partition(", energy mean")[0] for n, what in told.items()})
 
 
 def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:

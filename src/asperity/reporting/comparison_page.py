@@ -11,7 +11,7 @@ import xarray
 from asperity import __version__
 from asperity.reporting import chart, data, panels, tables
 from asperity.reporting.chart import INK, MUTED, Axis, Chart, Flags, Line, Numbers, Panel
-from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, Comparison
+from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, ComparedRuns
 from asperity.reporting.page import PageFigure, PageSection, whole_page
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
@@ -22,7 +22,7 @@ SURE = 2.0
 OF_RUN = (provenance.VERDICT, provenance.ASPERITY_VERSION, provenance.CREATED)
 
 
-def table_rows(of: Comparison) -> tuple[list[str], list[list[object]]]:
+def table_rows(of: ComparedRuns) -> tuple[list[str], list[list[object]]]:
     """Heading and rows of everything that is compared: a column for each run and each difference."""
     names, blank = of.names, [""] * len(of.runs)
     heading = ["what", "quantity", "law", "at", "unit", *names]
@@ -60,7 +60,7 @@ def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
         yield [kind, name, law, where, units, *found.tolist(), *last]
 
 
-def summary(of: Comparison) -> str:
+def summary(of: ComparedRuns) -> str:
     """Say in a few sentences how the runs after the first differ from it, by their first law.
 
     Of the levels the first and the last: the force, and what it makes.
@@ -76,7 +76,7 @@ def summary(of: Comparison) -> str:
     return ". ".join(sentences) + "."
 
 
-def _level_words(of: Comparison, name: str, run: int) -> str:
+def _level_words(of: ComparedRuns, name: str, run: int) -> str:
     """Range of the differences of a level over the bands that say something, and dB(A)."""
     change, title = of.table[f"{name}_difference"][run, 0].values, of.levels[name]
     weighted = float(of.table[f"{name}_a_difference"][run, 0])
@@ -113,13 +113,13 @@ MOST_RUNS = len(RUN_COLOURS)
 """That can be told apart."""
 
 
-def _of_run(of: Comparison, number: int, x: Numbers, y: Numbers, marker: str = "o") -> Line:
+def _of_run(of: ComparedRuns, number: int, x: Numbers, y: Numbers, marker: str = "o") -> Line:
     """A line of a run by its number, from 0."""
     dashes = RUN_DASHES[number % len(RUN_DASHES)]
     return Line(x, y, of.names[number], RUN_COLOURS[number], dashes, 1.6, marker)
 
 
-def _levels_chart(of: Comparison, name: str) -> Chart:
+def _levels_chart(of: ComparedRuns, name: str) -> Chart:
     """A level of all runs by their first law, and the differences to the first run.
 
     Of two runs the differences of all laws are drawn, in their looks; of more runs those of the first law.
@@ -146,7 +146,7 @@ def _levels_chart(of: Comparison, name: str) -> Chart:
     return Chart((Panel(bands, heights, above, height=3.2), Panel(bands, over, tuple(below), height=2.8)))
 
 
-def _levels_caption(of: Comparison, name: str) -> str:
+def _levels_caption(of: ComparedRuns, name: str) -> str:
     law, (first, *others) = of.laws[0], of.names
     below, shaded = f"the differences of {law} to {first}", ""
     if len(others) == 1:
@@ -158,7 +158,7 @@ def _levels_caption(of: Comparison, name: str) -> str:
     return f"Above, {of.table[name].attrs['long_name']}, of {law} in all runs; below, {below}.{shaded}"
 
 
-def _stiffness(of: Comparison) -> Panel:
+def _stiffness(of: ComparedRuns) -> Panel:
     """Stiffness of all runs over the approach."""
     approach, stiffness = of.table["approach"].values * 1e6, of.table["stiffness"].values
     unit, symbol = (1e9, "GN/m") if np.nanmax(stiffness) > 2e9 else (1e6, "MN/m")
@@ -174,7 +174,7 @@ def _stiffness(of: Comparison) -> Panel:
     return Panel(Axis("approach / µm"), up, tuple(lines), height=3.9)
 
 
-def _filters(of: Comparison) -> Panel:
+def _filters(of: ComparedRuns) -> Panel:
     """Filters of all runs at the working approach."""
     wavenumber, level = of.table["wavenumber"].values, of.table["filter"].values
     known = np.isfinite(level)
@@ -187,7 +187,7 @@ def _filters(of: Comparison) -> Panel:
 # --- the page
 
 
-def comparison_page(of: Comparison, file: str) -> str:
+def comparison_page(of: ComparedRuns, file: str) -> str:
     """The whole page as one self-contained HTML text; `file` is the name of the CSV file beside it."""
     trees = [run.tree for run in of.runs]
     citations = [str(text) for tree in trees for text in data.json_attribute(tree, provenance.CITATIONS, [])]
@@ -207,7 +207,7 @@ def comparison_page(of: Comparison, file: str) -> str:
     )
 
 
-def compared_sections(of: Comparison) -> list[PageSection]:
+def compared_sections(of: ComparedRuns) -> list[PageSection]:
     """Chapters of the page: cases, verdicts, force, each level, contact."""
     found = [
         PageSection("case", "What differs in the cases", [_case_table(of)]),
@@ -230,7 +230,7 @@ def compared_sections(of: Comparison) -> list[PageSection]:
     return [*found, PageSection("contact", "Contact", blocks)]
 
 
-def _verdicts(of: Comparison) -> Iterator[tuple[str, str, str]]:
+def _verdicts(of: ComparedRuns) -> Iterator[tuple[str, str, str]]:
     """Verdict of each run, and its warnings."""
     for run in of.runs:
         yield run.name, str(data.stated(run.tree, provenance.VERDICT) or "no verdict was stored"), ""
@@ -243,7 +243,7 @@ def _verdicts(of: Comparison) -> Iterator[tuple[str, str, str]]:
 # --- tables
 
 
-def _case_table(of: Comparison) -> ReportTable:
+def _case_table(of: ComparedRuns) -> ReportTable:
     """Keys whose values differ."""
     items = of.telling_keys
     written = [["–" if value is None else value for value in item["values"]] for item in items]
@@ -277,7 +277,7 @@ def _numbers_table(table: xarray.Dataset) -> ReportTable:
     return tables.table("numbers", "By law and run", columns)
 
 
-def _difference_table(of: Comparison, name: str) -> ReportTable:
+def _difference_table(of: ComparedRuns, name: str) -> ReportTable:
     """Differences to the first run in each band, and of the A-weighted totals."""
     table, (first, *others) = of.table, of.names
     difference, weighted = table[f"{name}_difference"].values, table[f"{name}_a_difference"].values
@@ -322,7 +322,7 @@ _PROVENANCE = {
 }
 
 
-def _provenance_table(of: Comparison) -> ReportTable:
+def _provenance_table(of: ComparedRuns) -> ReportTable:
     """Where the runs come from."""
     columns = {"run": text_cells(of.names)}
     for head, attribute in _PROVENANCE.items():

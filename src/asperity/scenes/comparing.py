@@ -13,7 +13,7 @@ from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.printable import printable
-from asperity.reporting.comparison import Comparison, NamedRun, compared
+from asperity.reporting.comparison import ComparedRuns, NamedRun, compared
 from asperity.reporting.comparison_page import MOST_RUNS, comparison_page, table_rows
 from asperity.results import read_result
 from asperity.scenes.schema import KEPT
@@ -83,7 +83,7 @@ def comparison_of(
     results: Sequence[DataTree | str | os.PathLike[str]],
     names: Sequence[str] | None = None,
     laws: Sequence[str] = (),
-) -> Comparison:
+) -> ComparedRuns:
     """Read runs, name them so that they can be told apart, and compare all levels over bands."""
     allowed = f"two to {MOST_RUNS} runs"
     if not 2 <= len(results) <= MOST_RUNS:
@@ -120,7 +120,7 @@ def _place(result: object, number: int) -> tuple[str, ...]:
     return path.parent.parts if path.name == "run.nc" else (*path.parent.parts, path.stem or "run")
 
 
-def write_comparison(of: Comparison, path: str | os.PathLike[str]) -> tuple[Path, Path]:
+def write_comparison(of: ComparedRuns, path: str | os.PathLike[str]) -> tuple[Path, Path]:
     """Write page and table of a comparison; return where they are."""
     target = file_path("comparison", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
