@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import base64
 import csv
+import hashlib
+import re
 from html.parser import HTMLParser
 
 import numpy as np
+
+from asperity.reporting.payload import chart_script
 
 HOSTILE = '"><script>alert(1)</script><img src=x onerror=alert(2)> & {{ 7*7 }} $\\frac$'
 
@@ -41,6 +46,34 @@ class Reader(HTMLParser):
 
     def all(self, name):
         return [attrs[name] for _, attrs in self.tags if name in attrs]
+
+    @property
+    def shown(self):
+        return "".join(self.text).replace("\u00a0", " ")
+
+
+def own_scripts(page):
+    """Scripts of a page: its data and what its policy allows, no other; it loads nothing, and is whole."""
+    reader = Reader(page)
+    assert not reader.open
+    assert not {"img", "link", "iframe", "object", "base"} & {tag for tag, _ in reader.tags}
+    assert not reader.all("onerror")
+    places = reader.all("src") + reader.all("href") + reader.all("xlink:href")
+    names = reader.all("id")
+    assert len(names) == len(set(names))
+    for target in places + re.findall(r"url\(([^)]*)\)", page):
+        assert re.fullmatch(r"[a-z_]+\.csv", target) or target.removeprefix("#") in names, target
+    assert "@import" not in page
+    scripts = [attrs for tag, attrs in reader.tags if tag == "script"]
+    assert scripts[0] == {"type": "application/json", "id": "charts"}
+    assert not any(scripts[1:])
+    digests = [base64.b64encode(hashlib.sha256(s.encode()).digest()).decode() for s in reader.scripts[1:]]
+    allowed = " ".join(f"'sha256-{digest}'" for digest in digests)
+    (policy,) = [a["content"] for t, a in reader.tags if t == "meta" and "http-equiv" in a]
+    assert "default-src 'none'" in policy
+    assert f"script-src {allowed};" in policy
+    assert reader.scripts[1] == chart_script()
+    return reader.scripts
 
 
 def read_csv(path):
