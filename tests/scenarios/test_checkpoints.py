@@ -1,5 +1,7 @@
-"""What is kept of a law that is solved in every step is found again by the same case, and by no other."""
+"""What outlives a computation: what `direct` found, for the same case and no other, and the results alone."""
 
+import gc
+import weakref
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,44 +9,68 @@ import pytest
 
 from asperity.case.cases import as_case
 from asperity.case.content import content
-from asperity.scenes.compute import TOLD_OF, checkpoint_of
-from small_cases import CASES
+from asperity.running import prepare_case, run
+from asperity.scenarios.laws import LawMaterials
+from asperity.scenes import compute
+from small_cases import BALL, CASES, WHEEL
 
 DIRECT = SimpleNamespace(name="direct")
 FLAT = np.zeros((4, 3))
 PATH = SimpleNamespace(rows=lambda first, last: FLAT[first:last], shape=FLAT.shape)
+TEXTURES = SimpleNamespace(path=PATH, surface=PATH)
 
 
-def name(monkeypatch, values):
-    """Name of what is kept of a case, by all that it says, on the same path."""
-    monkeypatch.setattr("asperity.scenes.compute.content", lambda *_: dict(values))
-    prepared = SimpleNamespace(case=None, textures=SimpleNamespace(path=PATH, surface=PATH))
-    return checkpoint_of(DIRECT, prepared, None).key
+def name(case):
+    """Name of what is kept of a case, on the same path."""
+    return compute.checkpoint_of(DIRECT, SimpleNamespace(case=case, textures=TEXTURES), None).key
 
 
 @pytest.mark.parametrize("kind", CASES)
 def test_every_key_of_a_case_but_its_laws_names_another_checkpoint(monkeypatch, kind):
     """Whichever keys there will be: a ball's rolled on with the grid of an earlier case."""
     case = content(as_case(CASES[kind]))
-    names = {name(monkeypatch, case), name(monkeypatch, case | {"laws": ["direct"]})}
+    monkeypatch.setattr("asperity.scenes.compute.content", lambda values, *_: dict(values))
+    told_of = [case | {key: "other"} for key in case.keys() & set(compute.TOLD_OF)]
+    names = {name(each) for each in (case, case | {"laws": ["direct"]}, *told_of)}
     assert len(names) == 1
-    told_of = [case | {key: "other"} for key in case.keys() & set(TOLD_OF)]
-    assert {name(monkeypatch, each) for each in told_of} == names
-    changed = [case | {key: "other"} for key in case.keys() - set(TOLD_OF)]
-    for section in (key for key in case if isinstance(case[key], dict) and key not in TOLD_OF):
+    changed = [case | {key: "other"} for key in case.keys() - set(compute.TOLD_OF)]
+    for section in (key for key in case if isinstance(case[key], dict) and key not in compute.TOLD_OF):
         changed += [case | {section: case[section] | {key: "other"}} for key in case[section]]
-    found = [name(monkeypatch, each) for each in changed]
+    found = [name(each) for each in changed]
     assert len(found) > 40
     assert len({*names, *found}) == len(found) + 1
 
 
-def test_a_ball_that_rolls_directly_on_another_grid_starts_anew(tmp_path, monkeypatch):
+def test_a_ball_that_rolls_directly_on_another_grid_starts_anew(own_cache):
     """Though its path be the same: a measured one may have the same heights on two grids."""
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
-    case = as_case(CASES["ball-on-beam"])
-    textures = SimpleNamespace(path=PATH, surface=PATH)
-    keys = {
-        checkpoint_of(DIRECT, SimpleNamespace(case=each, textures=textures), None).key
-        for each in (case, case.with_(**{"contact.spacing": "10 um"}), case.with_(laws=("direct",)))
-    }
-    assert len(keys) == 2
+    case = as_case(BALL)
+    others = (case.with_(**{"contact.spacing": "10 um"}), case.with_(laws=("direct",)))
+    assert len({name(each) for each in (case, *others)}) == 2
+
+
+def recorded(monkeypatch, owner, name):
+    """References to all that a function returns."""
+    made, original = [], getattr(owner, name)
+
+    def call(*arguments, **keywords):
+        result = original(*arguments, **keywords)
+        made.append(weakref.ref(result))
+        return result
+
+    monkeypatch.setattr(owner, name, call)
+    return made
+
+
+@pytest.mark.usefixtures("cache_of_module")
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+@pytest.mark.parametrize("case", [BALL, WHEEL])
+def test_laws_textures_and_state_functions_do_not_outlive_what_they_were_for(monkeypatch, case):
+    laws, states = recorded(monkeypatch, LawMaterials, "build"), recorded(monkeypatch, compute, "reduce")
+    computed = compute.compute(prepare_case(as_case(case)), lambda *_: None)
+    gc.collect()
+    assert set(computed.runs) == set(case["laws"])
+    assert [law() for law in laws] == [None] * len(case["laws"])
+    del computed
+    assert "force_level" in run(case)["spectra"]
+    gc.collect()
+    assert [state() for state in states] == [None] * 2

@@ -12,24 +12,16 @@ from asperity.kernels import scanning
 from asperity.scenarios import compiling
 
 
-def test_how_far_it_is_is_told():
-    told = []
-    compiling.compile_kernels(lambda *report: told.append(report))
-    assert told[0] == (0, 2, "compiled functions")
-    assert told[-1] == (2, 2, "compiled functions")
-
-
 @pytest.fixture
 def started(monkeypatch):
     """Second processes, which do nothing until they are killed; none is needed for what is on disk."""
-    found = []
+    found, popen = [], subprocess.Popen
 
-    def popen(command, **options):
-        found.append(subprocess_popen([command[0], "-c", "input()"], **options))
+    def idle(command, **options):
+        found.append(popen([command[0], "-c", "input()"], **options))
         return found[-1]
 
-    subprocess_popen = subprocess.Popen
-    monkeypatch.setattr(compiling.subprocess, "Popen", popen)
+    monkeypatch.setattr(compiling.subprocess, "Popen", idle)
     monkeypatch.setattr(compiling, "processors", lambda: 2)
     monkeypatch.setattr(compiling, "is_kept", lambda function: False)
     return found
@@ -41,32 +33,27 @@ def test_a_second_process_runs_while_it_is_needed_and_is_waited_for(started, mon
         assert process.poll() is None
     assert process.poll() is not None
     monkeypatch.setattr(compiling, "PATIENCE", 0.01)
-    compiling.compile_kernels(lambda *_: None)  # not for ever
+    told = []
+    compiling.compile_kernels(lambda *report: told.append(report))  # not for ever
     assert started[1].poll() is not None
-
-
-def test_it_ends_with_the_work_that_is_stopped(started):
+    assert [told[0], told[-1]] == [(done, 2, "compiled functions") for done in (0, 2)]
     with pytest.raises(KeyboardInterrupt), compiling._contact_compiled_beside():
         raise KeyboardInterrupt
-    assert started[0].poll() is not None
+    assert started[2].poll() is not None
 
 
-def test_on_one_processor_and_with_kernels_on_disk_there_is_none(started, monkeypatch):
-    monkeypatch.setattr(compiling, "processors", lambda: 1)
-    with compiling._contact_compiled_beside():
-        assert not started
-    monkeypatch.setattr(compiling, "processors", lambda: 2)
-    monkeypatch.setattr(compiling, "is_kept", lambda function: function == compiling.CONTACT)
-    with compiling._contact_compiled_beside():
-        assert not started
-
-
-def test_without_an_interpreter_to_start_the_work_goes_on(monkeypatch):
-    monkeypatch.setattr(compiling, "is_kept", lambda function: False)
-    monkeypatch.setattr(compiling, "processors", lambda: 2)
-    monkeypatch.setattr(compiling.sys, "executable", "")
-    with compiling._contact_compiled_beside():
-        pass
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("processors", lambda: 1),
+        ("is_kept", lambda function: function == compiling.CONTACT),
+        ("sys.executable", ""),
+    ],
+)
+def test_there_is_none_where_it_is_of_no_use_or_cannot_be_started(started, monkeypatch, name, value):
+    monkeypatch.setattr(f"asperity.scenarios.compiling.{name}", value)
+    with compiling._contact_compiled_beside() as other:
+        assert other is None
 
 
 def test_the_second_process_is_told_what_exists():

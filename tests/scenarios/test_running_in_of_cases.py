@@ -1,7 +1,5 @@
 """Running-in as a key of a case: samples, path and line are lowered, and all else is of what is left."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -14,7 +12,6 @@ from asperity.reporting.texture_figures import RUNNING_IN
 from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
 from asperity.schema import contact
-from asperity.store import Store
 from asperity.studies.member import kept
 from asperity.studies.table import USUAL
 from asperity.surfaces.synthesis import self_affine
@@ -46,188 +43,165 @@ RAIL = {
 }  # fmt: skip
 
 
-def prepared_of(case):
-    return prepare_case(as_case(case))
-
-
 def ball(**contact):
     return BALL | {"contact": BALL["contact"] | contact}
 
 
-@pytest.fixture(scope="module")
-def untouched():
-    return asperity.run(ball())
+def run_in_of(case, cache=None):
+    prepared = prepare_case(as_case(case))
+    return prepared, run_in_case(prepared.case, prepared.textures, prepared.shape, cache, lambda *_: None)
 
 
-@pytest.fixture(scope="module")
-def run_in():
-    return asperity.run(ball(running_in="shakedown"))
+@pytest.fixture
+def untouched(runs):
+    return runs(ball())
 
 
-class TestBallOnBeam:
-    def test_the_line_is_nowhere_raised_and_crests_are_lowered(self, untouched, run_in):
-        surface = run_in["surface"]
-        lowering = (surface["line_untouched"] - surface["line"]).values
-        assert lowering.min() == 0.0
-        assert lowering.max() > 5e-9
-        high = surface["line_untouched"] > surface["line_untouched"].quantile(0.8)
-        assert lowering[high].mean() > 3 * lowering[~high].mean()
-        np.testing.assert_array_equal(surface["line_untouched"], untouched["surface/line"])
-
-    def test_passes_end_in_shakedown_and_the_surface_is_smoother(self, run_in):
-        contact = run_in["contact"]
-        lowered = contact["running_in_lowering"].values
-        assert contact.attrs["shaken_down"] == 1
-        assert len(lowered) > 2
-        assert lowered[0] > 20 * lowered[-1]
-        assert 0.02 < contact.attrs["yielded_share"] < 0.9
-        before, after = (contact.sel(condition=name) for name in ("before", "after"))
-        for name in ("track_rms", "track_slope"):
-            assert float(after[name]) < float(before[name])
-        assert float(after["track_area_ratio"]) > float(before["track_area_ratio"])
-        assert "samples and path run in by" in run_in["surface"].attrs["source"]
-
-    def test_stiffness_and_forces_are_of_what_is_left(self, untouched, run_in):
-        """Without its crests the surface touches later and closes over a shorter way."""
-        first = [float(tree["contact/approach"][0]) for tree in (untouched, run_in)]
-        assert first[1] > first[0]
-        for law in ("table", "shifted"):
-            forces = [tree["rolling/contact_force"].sel(law=law).values for tree in (untouched, run_in)]
-            assert np.abs(forces[1] - forces[0]).max() > 0.01 * forces[0].mean()
-
-    def test_untouched_surfaces_have_none_of_it(self, untouched):
-        assert "line_untouched" not in untouched["surface"]
-        assert "condition" not in untouched["contact"]
-        assert "yielded_share" not in untouched["contact"].attrs
-
-    def test_the_report_says_before_and_after(self, untouched, run_in):
-        condition, passes = condition_table(run_in), passes_table(run_in)
-        assert [row[0].text for row in condition.rows][:2] == [
-            "rms height on the track, as wide as the nominal patch",
-            "rms slope on the track",
-        ]
-        assert condition.rows[0][3].text.startswith("−")
-        assert "of the area that carried pressure has yielded" in condition.note
-        assert len(passes.rows) == run_in["contact"].sizes["running_in_pass"]
-        assert "the next is elastic" in passes.note
-        assert RUNNING_IN.drawable(run_in)
-        assert [line.label for line in RUNNING_IN.laid_out(run_in).panels[0].marks] == [
-            "before running-in",
-            "after",
-        ]
-        assert list(RUNNING_IN.collect(run_in).columns) == [
-            "distance [m]", "before running-in [m]", "after running-in [m]",
-        ]  # fmt: skip
-        assert "Lowered by" in RUNNING_IN.said(run_in)
-        assert not RUNNING_IN.drawable(untouched)
-        assert condition_table(untouched) is None
-        assert passes_table(untouched) is None
-
-    def test_a_study_keeps_what_running_in_changed(self, untouched, run_in):
-        """Sq of the track and k_c, before and after, what yielded and how deep; unasked they are shown."""
-        table, contact = kept(run_in), run_in["contact"]
-        for name in ("track_rms", "track_stiffness"):
-            np.testing.assert_array_equal(table[name], contact[name])
-        assert table["running_in_lowering"] == contact["running_in_lowering"].values.max() > 0.0
-        assert table["yielded_share"] == contact.attrs["yielded_share"] > 0.0
-        assert table["working_stiffness"] == contact.attrs["working_stiffness"]
-        shown = {"track_rms", "track_stiffness", "running_in_lowering", "yielded_share"}
-        assert shown <= set(USUAL)
-        assert not shown & set(kept(untouched))
-
-    def test_another_pass_is_elastic(self):
-        """The surface that a case was run in to, run in again, is lowered by no more than the tolerance."""
-        prepared = prepared_of(ball(running_in="shakedown"))
-        shape, case = prepared.shape, prepared.case
-        found = run_in_case(case, prepared.textures, shape, None, lambda *_: None)
-        again = run_in_case(case, found.textures, shape, None, lambda *_: None)
-        assert len(again.entries[contact.RUNNING_IN_LOWERING]) == 1
-        assert again.entries[contact.RUNNING_IN_LOWERING][0] <= 1e-3 * shape.hertz.approach(shape.load) * 1.01
-        assert again.facts[contact.YIELDED_SHARE] == 0.0
-        assert found.facts[contact.YIELDED_SHARE] > 0.02
-
-    def test_direct_does_not_take_up_what_another_surface_left(self):
-        """Kept solutions of `direct` are known by the passes before them, too."""
-        short = {"duration": "3 ms", "settling": "0.2 ms", "laws": ["direct"]}
-        forces = [
-            asperity.run(ball(**keys) | short)["rolling/contact_force"].values
-            for keys in ({}, {"running_in": 1})
-        ]
-        assert np.abs(forces[1] - forces[0]).max() > 1e-3 * forces[0].mean()
-
-    def test_measured_maps_are_run_in_along_their_strips(self):
-        surface = self_affine(
-            (160, 60), (15e-6, 15e-6), rms=0.2e-6, hurst=0.8, longest=0.3e-3, shortest=60e-6, seed=3
-        )
-        prepared = prepared_of(ball(running_in=1) | {"surface": {"file": surface}})
-        found = run_in_case(prepared.case, prepared.textures, prepared.shape, None, lambda *_: None)
-        assert all(map_.shape[1] == prepared.shape.body.shape[1] for map_ in found.textures.maps)
-        assert found.textures.widest_window == prepared.textures.widest_window
-        assert found.entries[contact.RUNNING_IN_LOWERING][0] > 5e-9
-
-    def test_a_line_of_the_path_stays_as_it_is(self):
-        keys = ball(running_in=1) | {"laws": ["shifted"]}
-        keys["surface"] = keys["surface"] | {"spectrum": "iso3095", "level": "-40 dB"}
-        tree = asperity.run(keys)
-        assert (
-            tree["surface"]
-            .attrs["source"]
-            .endswith("samples run in by 1 pass under 20 N, line of the path as given")
-        )
-        np.testing.assert_array_equal(tree["surface/line"], tree["surface/line_untouched"])
+@pytest.fixture
+def run_in(runs):
+    return runs(ball(running_in="shakedown"))
 
 
-@pytest.fixture(scope="module")
-def tree():
-    return asperity.run(RAIL)
+def test_the_line_is_nowhere_raised_and_crests_are_lowered(untouched, run_in):
+    surface = run_in["surface"]
+    lowering = (surface["line_untouched"] - surface["line"]).values
+    assert lowering.min() == 0.0
+    assert lowering.max() > 5e-9
+    high = surface["line_untouched"] > surface["line_untouched"].quantile(0.8)
+    assert lowering[high].mean() > 3 * lowering[~high].mean()
+    np.testing.assert_array_equal(surface["line_untouched"], untouched["surface/line"])
+    assert "samples and path run in by" in surface.attrs["source"]
 
 
-class TestWheelOnRail:
-    def test_the_rail_takes_the_lowering(self, tree):
-        lowering = (tree["surface/line_untouched"] - tree["surface/line"]).values
-        assert lowering.min() >= 0.0
-        assert lowering.max() > 50e-9
-        assert tree["contact"].sizes["running_in_pass"] == 1
-        prepared = prepared_of(RAIL)
-        found = run_in_case(prepared.case, prepared.textures, prepared.shape, Store(), lambda *_: None)
-        parts, line = found.textures.parts, found.textures.line
-        np.testing.assert_allclose(parts["rail"] + parts["wheel"], line, atol=1e-15)
-        np.testing.assert_array_equal(parts["wheel"], prepared.textures.parts["wheel"])
-
-    def test_what_still_yields_is_said(self, tree):
-        assert tree["contact"].attrs["shaken_down"] == 0
-        assert "still lowered places" in passes_table(tree).note
+def test_passes_end_in_shakedown_and_the_surface_is_smoother(run_in):
+    contact = run_in["contact"]
+    lowered = contact["running_in_lowering"].values
+    assert contact.attrs["shaken_down"] == 1
+    assert len(lowered) > 2
+    assert lowered[0] > 20 * lowered[-1]
+    assert 0.02 < contact.attrs["yielded_share"] < 0.9
+    before, after = (contact.sel(condition=name) for name in ("before", "after"))
+    for name, sign in (("track_rms", -1), ("track_slope", -1), ("track_area_ratio", 1)):
+        assert sign * float(after[name] - before[name]) > 0.0
 
 
-class TestMessages:
-    @pytest.mark.parametrize("passes", [0, 101, 1.5, True, "often", [1]])
-    def test_what_is_no_number_of_passes(self, passes):
-        allowed = r'a whole number at least 1 and at most 100, or "shakedown"'
-        with pytest.raises(CaseError, match=allowed):
-            prepared_of(ball(running_in=passes))
+def test_stiffness_and_forces_are_of_what_is_left(untouched, run_in):
+    """Without its crests the surface touches later and closes over a shorter way."""
+    assert float(run_in["contact/approach"][0]) > float(untouched["contact/approach"][0])
+    for law in ("table", "shifted"):
+        forces = [tree["rolling/contact_force"].sel(law=law).values for tree in (untouched, run_in)]
+        assert np.abs(forces[1] - forces[0]).max() > 0.01 * forces[0].mean()
 
-    def test_a_misspelt_word_is_guessed(self):
-        with pytest.raises(CaseError, match='Did you mean "shakedown"'):
-            prepared_of(ball(running_in="shake-down"))
 
-    def test_only_with_hardness(self):
-        contact = {name: value for name, value in BALL["contact"].items() if name != "hardness"}
-        with pytest.raises(CaseError, match=r"contact.running_in.*only together with hardness"):
-            prepared_of(BALL | {"contact": contact | {"running_in": 2}})
+def test_the_report_says_before_and_after_and_nothing_of_untouched_surfaces(untouched, run_in):
+    condition, passes = condition_table(run_in), passes_table(run_in)
+    assert condition.rows[0][0].text == "rms height on the track, as wide as the nominal patch"
+    assert condition.rows[0][3].text.startswith("−")
+    assert "of the area that carried pressure has yielded" in condition.note
+    assert len(passes.rows) == run_in["contact"].sizes["running_in_pass"]
+    assert "the next is elastic" in passes.note
+    marks = RUNNING_IN.laid_out(run_in).panels[0].marks
+    assert [line.label for line in marks] == ["before running-in", "after"]
+    columns = ["distance [m]", "before running-in [m]", "after running-in [m]"]
+    assert list(RUNNING_IN.collect(run_in).columns) == columns
+    assert "Lowered by" in RUNNING_IN.said(run_in)
+    assert not RUNNING_IN.drawable(untouched)
+    assert condition_table(untouched) is passes_table(untouched) is None
+    assert "line_untouched" not in untouched["surface"]
+    assert "yielded_share" not in untouched["contact"].attrs
 
-    def test_only_with_a_texture(self):
-        smooth = ball(running_in=1) | {"laws": ["hertz"], "surface": {"spectrum": "iso3095"}}
-        with pytest.raises(InputError, match=r"contact\.running_in"):
-            prepared_of(smooth)
 
-    def test_the_plan_says_how_often(self, tmp_path, capsys):
-        case = asperity.BallOnBeam(**{k: v for k, v in ball(running_in=3).items() if k != "kind"})
-        path = tmp_path / "case.toml"
-        path.write_text(case.to_toml(), encoding="utf-8")
-        with pytest.raises(SystemExit) as ended:
-            main(["check", str(path)])
-        assert not ended.value.code
-        told = " ".join(capsys.readouterr().out.replace("│", " ").split())
-        assert "running in" in told
-        assert "3 passes over" in told
-        assert json.dumps("0.6 GPa")[1:-1] in told
+def test_a_study_keeps_what_running_in_changed(untouched, run_in):
+    """Sq of the track and k_c, before and after, what yielded and how deep; unasked they are shown."""
+    table, contact = kept(run_in), run_in["contact"]
+    for name in ("track_rms", "track_stiffness"):
+        np.testing.assert_array_equal(table[name], contact[name])
+    assert table["running_in_lowering"] == contact["running_in_lowering"].values.max() > 0.0
+    assert table["yielded_share"] == contact.attrs["yielded_share"] > 0.0
+    assert table["working_stiffness"] == contact.attrs["working_stiffness"]
+    shown = {"track_rms", "track_stiffness", "running_in_lowering", "yielded_share"}
+    assert shown <= set(USUAL)
+    assert not shown & set(kept(untouched))
+
+
+def test_another_pass_is_elastic():
+    """The surface that a case was run in to, run in again, is lowered by no more than the tolerance."""
+    prepared, found = run_in_of(ball(running_in="shakedown"))
+    shape = prepared.shape
+    again = run_in_case(prepared.case, found.textures, shape, None, lambda *_: None)
+    (lowered,) = again.entries[contact.RUNNING_IN_LOWERING]
+    assert lowered <= 1e-3 * shape.hertz.approach(shape.load) * 1.01
+    assert again.facts[contact.YIELDED_SHARE] == 0.0
+    assert found.facts[contact.YIELDED_SHARE] > 0.02
+
+
+def test_direct_does_not_take_up_what_another_surface_left(own_cache):
+    """Kept solutions of `direct` are known by the passes before them, too."""
+    short = {"duration": "3 ms", "settling": "0.2 ms", "laws": ["direct"]}
+    forces = [
+        asperity.run(ball(**keys) | short)["rolling/contact_force"].values for keys in ({}, {"running_in": 1})
+    ]
+    assert np.abs(forces[1] - forces[0]).max() > 1e-3 * forces[0].mean()
+
+
+def test_measured_maps_are_run_in_along_their_strips():
+    band = {"longest": 0.3e-3, "shortest": 60e-6}
+    surface = self_affine((160, 60), (15e-6, 15e-6), rms=0.2e-6, hurst=0.8, seed=3, **band)
+    prepared, found = run_in_of(ball(running_in=1) | {"surface": {"file": surface}})
+    assert all(map_.shape[1] == prepared.shape.body.shape[1] for map_ in found.textures.maps)
+    assert found.textures.widest_window == prepared.textures.widest_window
+    assert found.entries[contact.RUNNING_IN_LOWERING][0] > 5e-9
+
+
+def test_a_line_of_the_path_stays_as_it_is():
+    keys = ball(running_in=1) | {"laws": ["shifted"]}
+    prepared, found = run_in_of(
+        keys | {"surface": BALL["surface"] | {"spectrum": "iso3095", "level": "-40 dB"}}
+    )
+    told = "samples run in by 1 pass under 20 N, line of the path as given"
+    assert found.textures.origin.endswith(told)
+    np.testing.assert_array_equal(found.textures.line, prepared.textures.line)
+
+
+def test_the_rail_takes_the_lowering_and_what_still_yields_is_said(runs):
+    tree = runs(RAIL)
+    lowering = (tree["surface/line_untouched"] - tree["surface/line"]).values
+    assert lowering.min() >= 0.0
+    assert lowering.max() > 50e-9
+    assert (tree["contact"].sizes["running_in_pass"], tree["contact"].attrs["shaken_down"]) == (1, 0)
+    assert "still lowered places" in passes_table(tree).note
+    prepared, found = run_in_of(RAIL)
+    parts, line = found.textures.parts, found.textures.line
+    np.testing.assert_allclose(parts["rail"] + parts["wheel"], line, atol=1e-15)
+    np.testing.assert_array_equal(parts["wheel"], prepared.textures.parts["wheel"])
+
+
+NUMBER = r'a whole number at least 1 and at most 100, or "shakedown"'
+SOFT = {name: value for name, value in BALL["contact"].items() if name != "hardness"}
+
+
+@pytest.mark.parametrize(
+    ("case", "message"),
+    [
+        *((ball(running_in=passes), NUMBER) for passes in (0, 101, 1.5, True, "often", [1])),
+        (ball(running_in="shake-down"), 'Did you mean "shakedown"'),
+        (BALL | {"contact": SOFT | {"running_in": 2}}, r"contact.running_in.*only together with hardness"),
+        (
+            ball(running_in=1) | {"laws": ["hertz"], "surface": {"spectrum": "iso3095"}},
+            r"contact\.running_in.*only together with a surface that asperities are known of",
+        ),
+    ],
+)
+def test_what_cannot_run_in_is_refused(case, message):
+    with pytest.raises((CaseError, InputError), match=message):
+        prepare_case(as_case(case))
+
+
+def test_the_plan_says_how_often(tmp_path, capsys):
+    path = tmp_path / "case.toml"
+    path.write_text(as_case(ball(running_in=3)).to_toml(), encoding="utf-8")
+    with pytest.raises(SystemExit) as ended:
+        main(["check", str(path)])
+    assert not ended.value.code
+    told = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert all(part in told for part in ("running in", "3 passes over", "0.6 GPa"))

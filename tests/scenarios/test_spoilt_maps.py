@@ -8,9 +8,9 @@ import pytest
 from asperity import HeightMap
 from asperity.case.cases import as_case
 from asperity.contact.scan import first_touch
-from asperity.reduction.stiffness import patches, stiffness_ensemble
-from asperity.reduction.texture import punch_weights
+from asperity.reduction.stiffness import stiffness_ensemble
 from asperity.running import prepare_case
+from asperity.scenarios.reducing import samples_of
 from asperity.surfaces.synthesis import self_affine
 
 pytestmark = pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")  # of what is filled
@@ -33,60 +33,48 @@ def spoilt(surface, side, seed=3):
 
 def loaded(surface, approaches=None, load="10 N", spacing="4 um", window="0.4 mm", lightest=LIGHTEST, **keys):
     """Approaches, force F and k_c = F/r of the samples that a case takes from a map, in states with load."""
-    case = as_case(
-        {
-            "kind": "ball-on-beam",
-            "laws": ["shifted"],
-            "duration": "1 ms",
-            "start": "0.45 m",
-            "settling": "1 ms",
-            "surface": {"file": surface} | keys,
-            "ball": {"load": load},
-            "contact": {"spacing": spacing, "window": window, "samples": 6, "sample_length": "1 mm"},
-        }
-    )
-    prepared = prepare_case(case)
-    shape, maps = prepared.shape, [each.heights for each in prepared.textures.maps]
-    samples = patches(maps, shape.body.shape, 6, punch_weights(shape.spacing, shape.semi_axes))
-    half_space = shape.half_space(None)
-    chosen = approaches is None
+    case = {
+        "kind": "ball-on-beam", "laws": ["shifted"], "duration": "1 ms", "start": "0.45 m",
+        "settling": "1 ms", "surface": {"file": surface} | keys, "ball": {"load": load},
+        "contact": {"spacing": spacing, "window": window, "samples": 6, "sample_length": "1 mm"},
+    }  # fmt: skip
+    prepared = prepare_case(as_case(case))
+    shape = prepared.shape
+    samples = samples_of(prepared.case, shape, prepared.textures.maps, shape.semi_axes)
+    half_space, chosen = shape.half_space(None), approaches is None
+    touch = min(float(first_touch(s, shape.body).min()) for s in samples)
     if chosen:
         pressed = [half_space.solve(shape.body - s, load=shape.load) for s in samples]
         working = np.mean([contact.approach for contact in pressed])
-        touch = min(float(first_touch(s, shape.body).min()) for s in samples)
         approaches = touch + (working - touch) * np.linspace(0.3, 1.4, 8)
     found = stiffness_ensemble(samples, half_space, shape.body, approaches, 0.0)
-    datum = -min(float(first_touch(s, shape.body).min()) for s in samples)
     kept = found.mean_force > (lightest * shape.load if chosen else 0.0)
     assert np.count_nonzero(kept) >= 5
-    return approaches[kept], found.mean_force[kept], (found.mean_force / (approaches + datum))[kept]
+    return approaches[kept], found.mean_force[kept], (found.mean_force / (approaches - touch))[kept]
 
 
 @pytest.fixture(scope="module")
-def texture():
+def clean():
     band = {"longest": 0.4e-3, "shortest": 16e-6}
-    return self_affine((300, 300), (4e-6, 4e-6), rms=0.2e-6, hurst=0.8, seed=1, **band)
+    texture = self_affine((300, 300), (4e-6, 4e-6), rms=0.2e-6, hurst=0.8, seed=1, **band)
+    return texture, *loaded(texture)
 
 
-def test_points_that_dropped_out(texture):
-    approaches, _, clean = loaded(texture)
+def test_points_that_dropped_out_are_mended_and_without_the_detector_spikes_carry_the_ball(clean):
+    texture, approaches, force, stiffness = clean
     _, _, mended = loaded(spoilt(texture, 1), approaches, spikes=True, fill=True)
-    np.testing.assert_allclose(mended, clean, rtol=0.02)
+    np.testing.assert_allclose(mended, stiffness, rtol=0.02)
+    # so much do they matter: filled points alone leave spikes on which the ball stands
+    _, wrong, _ = loaded(spoilt(texture, 1), approaches, fill=True)
+    assert np.abs(wrong / force - 1.0).max() > 0.1
 
 
 @pytest.mark.parametrize("side", [3, 5])
-def test_holes(texture, side):
+def test_holes(clean, side):
     """Holes may take the highest peak, from which r counts; the force at an approach hardly needs it."""
-    approaches, clean, _ = loaded(texture)
+    texture, approaches, force, _ = clean
     _, mended, _ = loaded(spoilt(texture, side), approaches, spikes=True, fill=True)
-    np.testing.assert_allclose(mended[1:], clean[1:], rtol=0.02)
-
-
-def test_without_the_detector_spikes_carry_the_ball(texture):
-    """So much do they matter: filled points alone leave spikes on which the ball stands."""
-    approaches, clean, _ = loaded(texture)
-    _, wrong, _ = loaded(spoilt(texture, 1), approaches, fill=True)
-    assert np.abs(wrong / clean - 1.0).max() > 0.1
+    np.testing.assert_allclose(mended[1:], force[1:], rtol=0.02)
 
 
 @pytest.mark.parametrize(("name", "lightest"), [("polished", LIGHTEST), ("bb20", 0.05)])
