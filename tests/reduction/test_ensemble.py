@@ -1,48 +1,51 @@
-"""k_c(r) from samples on one common datum."""
+"""k_c(r) from samples on one common datum, and the real contact of rough bodies."""
 
 import numpy as np
 import pytest
+from scipy.special import erf
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.scan import first_touch
+from asperity.contact.scan import FORCE_ACCURACY, ScanJob, first_touch, rtol_for, scan_forces
 from asperity.errors import InputError
-from asperity.reduction.stiffness import StiffnessEnsemble, patches, stiffness_ensemble, weighted_mean
+from asperity.reduction import stiffness
 from asperity.reduction.texture import punch_weights
+from asperity.surfaces.statistics import rms_slope
+from asperity.surfaces.strip import Rows
+from asperity.surfaces.synthesis import self_affine
 
 DX, MODULUS, RADIUS, N = 5e-6, 115e9, 10e-3, 51
-APPROACHES = np.linspace(-0.2e-6, 0.4e-6, 7)
+HERTZ, APPROACHES = Hertz(MODULUS, RADIUS, RADIUS), np.linspace(-0.2e-6, 0.4e-6, 7)
 
 
-def body():
-    x = (np.arange(N) - N // 2) * DX
-    return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
+def body(cells=N, spacing=DX, radius=RADIUS):
+    x = (np.arange(cells) - cells // 2) * spacing
+    return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
 
 
 def loaded(samples):
     datum = -min(first_touch(s, body()).min() for s in samples)
-    return stiffness_ensemble(samples, HalfSpace((N, N), DX, MODULUS), body(), APPROACHES, max(datum, 0.0))
+    space = HalfSpace((N, N), DX, MODULUS)
+    return stiffness.stiffness_ensemble(samples, space, body(), APPROACHES, max(datum, 0.0))
 
 
 def test_smooth_samples_give_hertz():
     ensemble = loaded([np.zeros((N, N))] * 2)
-    hertz = Hertz(MODULUS, RADIUS, RADIUS)
-    expected = [hertz.force(d) for d in APPROACHES]
+    expected = [HERTZ.force(d) for d in APPROACHES]
     np.testing.assert_allclose(ensemble.mean_force, expected, rtol=5e-3, atol=1e-9)
     assert ensemble.force_spread.max() == 0.0
 
 
 def test_rough_stiffness_is_below_hertz_deep_in_and_starts_before_it():
     rng = np.random.default_rng(0)
-    samples = [0.1e-6 * rng.standard_normal((N, N)) for _ in range(4)]
-    ensemble = loaded(samples)
-    hertz = Hertz(MODULUS, RADIUS, RADIUS)
+    ensemble = loaded([0.1e-6 * rng.standard_normal((N, N)) for _ in range(4)])
     assert ensemble.datum > 0.0
     assert np.all(ensemble.forces[:, APPROACHES + ensemble.datum <= 0.0] == 0.0)
-    assert ensemble.mean_force[2] > hertz.force(APPROACHES[2])  # mean planes just meeting
-    deep = -1
-    state = ensemble.states[deep]
-    assert ensemble.curve.secant(APPROACHES[deep], ensemble.datum) < hertz.force(state) / state
-    assert ensemble.curve.force(APPROACHES[deep]) == pytest.approx(ensemble.mean_force[deep], rel=1e-12)
+    assert ensemble.mean_force[2] > HERTZ.force(APPROACHES[2])  # mean planes just meeting
+    state, deep = ensemble.states[-1], APPROACHES[-1]
+    assert ensemble.curve.secant(deep, ensemble.datum) < HERTZ.force(state) / state
+    assert ensemble.curve.force(deep) == pytest.approx(ensemble.mean_force[-1], rel=1e-12)
+    # of N samples
+    np.testing.assert_allclose(ensemble.force_spread, ensemble.forces.std(axis=0) * np.sqrt(4 / 3))
 
 
 def test_stiffness_of_a_light_state_does_not_depend_on_the_grid_of_states():
@@ -57,29 +60,71 @@ def test_stiffness_of_a_light_state_does_not_depend_on_the_grid_of_states():
     exact = (by_step[1] - by_step[0]) / (2 * step)
     for count in (3, 7, 17):
         states = np.linspace(light, 0.4e-6, count)
-        curve = stiffness_ensemble(samples, half_space, body(), states, 0.0).curve
+        curve = stiffness.stiffness_ensemble(samples, half_space, body(), states, 0.0).curve
         assert curve.stiffness(light) == pytest.approx(exact, rel=0.01)
 
 
 def test_patches_have_their_patch_mean_removed_and_cover_the_maps():
-    x = np.arange(120.0)
+    x, weights = np.arange(120.0), punch_weights((1.0, 1.0), (10.0, 10.0))
     maps = [np.add.outer(x, 0.1 * x) + 7.0, np.add.outer(x, 0.1 * x)]
-    weights = punch_weights((1.0, 1.0), (10.0, 10.0))
-    cut = patches(maps, (N, N), 5, weights)
-    assert len(cut) == 5
-    for sample in cut:
-        assert sample.shape == (N, N)
-        assert weighted_mean(sample, weights) == pytest.approx(0.0, abs=1e-9)
-    assert len(patches(maps, (N, N), 1, weights)) == 2  # at least one from each map
-
-
-def test_small_map_is_refused():
+    for asked, expected in ((5, 5), (1, 2)):  # at least one from each map
+        cut = stiffness.patches(maps, (N, N), asked, weights)
+        assert [sample.shape for sample in cut] == [(N, N)] * expected
+        assert [stiffness.weighted_mean(s, weights) for s in cut] == pytest.approx([0.0] * expected, abs=1e-9)
     with pytest.raises(InputError, match="window of the contact: received 51 × 51 cells"):
-        patches([np.zeros((60, 50))], (N, N), 1, punch_weights((1.0, 1.0), (5.0, 5.0)))
+        stiffness.patches([np.zeros((60, 50))], (N, N), 1, weights)
 
 
-def test_the_spread_of_forces_is_that_of_a_sample_of_them():
-    """Of forces 1, 2 and 6 N: mean 3 N, squares 4 + 1 + 9 over N − 1."""
-    forces = np.array([[1.0, 10.0], [2.0, 10.0], [6.0, 10.0]])
-    ensemble = StiffnessEnsemble(np.array([0.0, 1e-6]), forces, np.ones((3, 2)), 0.0, 2)
-    np.testing.assert_allclose(ensemble.force_spread, [np.sqrt(7.0), 0.0], atol=1e-15)
+@pytest.mark.parametrize("accuracy", [1e-2, FORCE_ACCURACY])
+@pytest.mark.parametrize(("rms", "hardness"), [(0.0, None), (0.1, None), (1.5, None), (0.5, 2e9)])
+def test_forces_are_as_accurate_as_asked_for(accuracy, rms, hardness):
+    """Against a residual ten thousand times smaller, to thrice the working approach; rms in approaches."""
+    approach = HERTZ.approach(10.0)
+    a = HERTZ.semi_axes(approach)[0]
+    dx = 2 * a / (0.35 * N)
+    waves = {"hurst": 0.8, "longest": 1.4 * a, "shortest": 2 * dx}
+    heights = self_affine((N + 11, N), (dx, dx), rms=rms * approach, **waves, seed=1).heights
+    half_space, approaches = HalfSpace((N, N), dx, MODULUS, hardness), np.array([-rms, 0.1, 0.3, 1.0, 3.0])
+    found, tight = (
+        scan_forces(ScanJob(half_space, Rows(heights), body(N, dx), approach * approaches, rtol=rtol)).forces
+        for rtol in (rtol_for(accuracy), 1e-4 * rtol_for(accuracy))
+    )
+    touching = tight > 0.0
+    assert touching[-1].all()
+    assert np.all(found[~touching] == 0.0)
+    assert np.abs(found[touching] / tight[touching] - 1.0).max() <= accuracy
+
+
+def test_cells_that_touch_alone():
+    pressure = np.zeros((6, 6))
+    assert stiffness.isolated_share(pressure) == 0.0
+    pressure[0, 0] = pressure[3, 3] = pressure[3, 4] = 1.0
+    pressure[5, 0] = 2.0
+    assert stiffness.isolated_share(pressure) == pytest.approx(3 / 5)
+    pressure[4, 1] = 5.0  # neighbours across a corner do not count
+    assert stiffness.isolated_share(pressure) == pytest.approx(8 / 10)
+    assert stiffness.isolated_share(np.ones((4, 4))) == 0.0
+
+
+@pytest.mark.parametrize("hurst", [0.5, 0.9])
+@pytest.mark.parametrize("steepness", [0.4, 1.0, 4.0])
+def test_the_real_contact_area_is_that_of_persson(hurst, steepness):
+    """Contacts of a ball; steepness is E* Sdq over Hertz's peak pressure.
+
+    Persson's share of contact under a pressure p, erf(√π κ p/(2 E* Sdq)), averaged over Hertz's pressure:
+    B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840; κ = 2.0: S. Hyun et al., Phys. Rev. E 70 (2004)
+    026117 (not seen).
+    """
+    radius, load, spacing, cells = 25e-3, 30.0, 8e-6, 65
+    hertz = Hertz(MODULUS, radius, radius)
+    peak = hertz.peak_pressure(hertz.approach(load))
+    waves = {"longest": 0.2e-3, "shortest": 32e-6, "seed": 3}
+    texture = self_affine((4 * cells, cells), (spacing, spacing), rms=1e-7, hurst=hurst, **waves)
+    slope = steepness * peak / MODULUS
+    pieces = np.split(texture.heights * slope / rms_slope(texture), 4)
+    half_space, ball = HalfSpace((cells, cells), spacing, MODULUS), body(cells, spacing, radius)
+    smooth = half_space.solve(ball, load=load).area
+    rough = [half_space.solve(ball - (piece - piece.mean()), load=load).area for piece in pieces]
+    pressure = peak * np.sqrt(1 - (np.arange(1000) + 0.5) / 1000)  # at places of equal areas
+    share = erf(0.5 * np.sqrt(np.pi) * 2.0 * pressure / (MODULUS * slope)).mean()
+    assert np.mean(rough) / smooth == pytest.approx(share, abs=0.05)

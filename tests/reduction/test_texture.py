@@ -1,0 +1,87 @@
+"""Textures by state: areal ones against their closed form, lines along a path, convolution by pieces."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from asperity.errors import InputError
+from asperity.reduction.texture import LongConvolution, StateTexture, areal_texture, punch_weights
+
+
+@pytest.mark.parametrize("axes", [(40e-6, 40e-6), (60e-6, 25e-6), (3e-6, 90e-6), (1e-6, 1e-6)])
+def test_weights_sum_to_one_and_are_symmetric(axes):
+    w = punch_weights((5e-6, 4e-6), axes)
+    assert w.sum() == pytest.approx(1.0, rel=1e-12)
+    assert_allclose(w, w[::-1, ::-1], rtol=1e-9, atol=1e-15)
+    assert w.min() >= 0.0
+    assert w.shape[0] * 5e-6 >= 2 * axes[0]
+
+
+def test_weight_grows_towards_the_edge_like_a_punch():
+    w = punch_weights((1.0, 1.0), (50.0, 50.0))
+    along = w[w.shape[0] // 2 :, w.shape[1] // 2][[0, 40]] * 2 * np.pi * 50.0 * 50.0
+    assert_allclose(along, [1.0, 1.0 / np.sqrt(1.0 - 0.8**2)], rtol=1e-2)
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.5, 1.2])
+@pytest.mark.parametrize("q", [0.0, 1.0, 2.0, 3.0, 4.0, 5.0])
+def test_plane_wave_is_scaled_by_sin_q_over_q(q, direction):
+    dx, dy, a, b = 2e-6, 2e-6, 60e-6, 40e-6
+    kx, ky = q * np.cos(direction) / a, q * np.sin(direction) / b
+    x, y = np.arange(801) * dx, (np.arange(61) - 30) * dy
+    wave = np.cos(kx * x[:, None] + ky * y[None, :])
+    texture = areal_texture(wave, (dx, dy), [0.0, 1e-6], [(a, b), (0.5 * a, 0.5 * b)])
+    inner = slice(100, -100)
+    for heights, qs in zip(texture.heights, (q, 0.5 * q), strict=True):
+        expected = -np.sinc(qs / np.pi) * np.cos(kx * x)  # heights enter h with a minus
+        assert_allclose(heights[inner], expected[inner], atol=4e-3)
+
+
+@pytest.mark.parametrize(("length", "piece"), [(500, 64), (500, 500), (41, 7), (40, 16384)])
+def test_convolution_by_pieces_is_that_of_the_whole(length, piece):
+    random = np.random.default_rng(3)
+    rows, weights = random.normal(size=(3, length)), random.normal(size=(2, 3, 40))
+    expected = [
+        sum(np.convolve(row, weight, mode="valid") for row, weight in zip(rows, each, strict=True))
+        for each in weights
+    ]
+    assert_allclose(LongConvolution(weights, piece).of(rows), expected, atol=1e-12)
+
+
+def test_texture_interpolates_a_sine_to_fourth_order():
+    errors = []
+    for points in (100, 200):
+        x = np.linspace(0.0, 1e-3, points + 1)
+        heights = 1e-6 * np.stack([np.sin(2 * np.pi * x / 1e-4), np.cos(2 * np.pi * x / 1e-4)])
+        texture = StateTexture(heights, [0.0, 1e-6], 0.0, x[1])
+        where = np.linspace(2e-4, 8e-4, 777)
+        errors.append(np.abs(texture.at(where)[:, 1] - 1e-6 * np.cos(2 * np.pi * where / 1e-4)).max())
+    assert 3.7 < np.log2(errors[0] / errors[1]) < 4.4
+
+
+def test_unfiltered_texture_has_one_state_and_is_known_on_its_path_alone():
+    texture = StateTexture.unfiltered([0.0, 1.0, 2.0, 3.0], spacing=0.5, start=10.0)
+    assert_allclose(texture.at([10.0, 10.75, 11.5])[:, 0], [0.0, 1.5, 3.0], atol=1e-12)
+    for beyond in (9.9, 11.6):
+        with pytest.raises(InputError, match=r"10 to 11.5, where the state texture is known.*longer texture"):
+            texture.at([10.0, beyond])
+
+
+def strip(rows, columns, *axes):
+    areal_texture(np.zeros((rows, columns)), (1.0, 1.0), [0.0], [axes])
+
+
+@pytest.mark.parametrize(
+    ("make", "arguments", "message"),
+    [
+        (StateTexture, (np.zeros((2, 8)), [0.0], 0.0, 1e-6), r"\(2, 8\) values for 1 states"),
+        (StateTexture, (np.zeros((2, 8)), [1e-6, 0.0], 0.0, 1e-6), "strictly increasing"),
+        (StateTexture, (np.full((1, 8), np.nan), [0.0], 0.0, 1e-6), "missing points"),
+        (StateTexture, (np.zeros((1, 8)), [0.0], 0.0, 0.0), r"spacing of the state texture \(m\)"),
+        (strip, (50, 40, 5.0, 5.0), "an odd number"),
+        (strip, (50, 9, 5.0, 5.0), "widest patch, 10 m.*Enlarge contact.window"),
+    ],
+)
+def test_messages(make, arguments, message):
+    with pytest.raises(InputError, match=message):
+        make(*arguments)
