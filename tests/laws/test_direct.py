@@ -12,7 +12,7 @@ from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import areal_texture
-from asperity.rolling.rest import STEPPED_TOLERANCE, at_rest
+from asperity.rolling.assembly import STEPPED_TOLERANCE, at_rest
 from asperity.structures.body import Body
 from asperity.surfaces.strip import Rows
 

@@ -16,7 +16,7 @@ from asperity.laws.layout import _straight_to_touch, force, on_curve
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.rest import at_rest
+from asperity.rolling.assembly import at_rest
 from asperity.structures.body import Body
 
 K = 2.4e10  # N/m^1.5, a steel ball of 25 mm on steel

@@ -6,9 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity.errors import ComputationError
-from asperity.rolling.ground import ground_of
-from asperity.rolling.outcome import free_motion, refuse_missed_load
-from asperity.rolling.path import Path
+from asperity.rolling.ground import Path, ground_of
+from asperity.rolling.roll import free_motion, refuse_missed_load
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.body import Body
 

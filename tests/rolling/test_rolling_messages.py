@@ -11,7 +11,7 @@ from asperity.kernels import stepping
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.rest import at_rest
+from asperity.rolling.assembly import at_rest
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body

@@ -13,10 +13,9 @@ from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflec
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling import stability
+from asperity.rolling import steps
 from asperity.rolling.assembly import alternating, system_of
-from asperity.rolling.ground import ground_of
-from asperity.rolling.path import Path
+from asperity.rolling.ground import Path, ground_of
 from asperity.rolling.roll import roll_bodies
 from asperity.rolling.steps import alternating_of_modes, modal_coefficients, resolved_step
 from asperity.structures.beam import Beam
@@ -87,7 +86,7 @@ def test_no_flight_of_a_ball_grows(mass, stiffness, time_step, flight):
 def test_an_impact_on_a_rigid_contact_returns_its_energy():
     """Softened by h²/3m, wherever in a step it begins: leapfrog on a rigid wall, two steps long."""
     h, mass, speed = 1e-4, 0.2, 3.0
-    softer = stability.ELASTIC * h**2 / (12 * mass)
+    softer = steps.ELASTIC * h**2 / (12 * mass)
     for share in np.linspace(0.02, 0.98, 25):
         place, velocity, force = -(1.0 - share) * speed * h, speed, 0.0
         for _ in range(6):
@@ -173,7 +172,7 @@ def test_modes_too_fast_for_the_step_answer_statically():
 def test_a_contact_is_softened_for_impacts_or_to_be_stable(compliances, stiffness, damping, softer, told):
     arrays = (np.array([value]) for value in (*compliances, *stiffness, damping, 1e11))
     with pytest.warns(CoarseSamplingWarning, match=told) if told else nullcontext():
-        assert stability.softening(*arrays, 1e-5)[0] == pytest.approx(softer)
+        assert steps.softening(*arrays, 1e-5)[0] == pytest.approx(softer)
 
 
 def test_softened_contact_has_the_frequency_of_newmark():
@@ -184,7 +183,7 @@ def test_softened_contact_has_the_frequency_of_newmark():
         run = ringing(mass, Linear(LOAD, stiffness, 0.0, bump(1e-3 * h, 0.3, 1e-3 / stiffness)), h, heavy)
     free = run.contact_force[STEPS // 8 :] - LOAD
     turned = np.arccos(np.clip((free[2:] + free[:-2]) @ free[1:-1] / (2 * free[1:-1] @ free[1:-1]), -1, 1))
-    squared, beta = stiffness / mass * h**2, 1 / 6 + stability.STABLE / 12
+    squared, beta = stiffness / mass * h**2, 1 / 6 + steps.STABLE / 12
     assert turned == pytest.approx(np.arccos(1 - 0.5 * squared / (1 + beta * squared)), rel=1e-3)
 
 

@@ -22,7 +22,7 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.outcome import contact_losses
+from asperity.rolling.roll import contact_losses
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
 from one_contact import roll_ball

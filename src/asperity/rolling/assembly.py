@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from asperity.arguments import Array
-from asperity.errors import InputError
-from asperity.kernels.stepping import System
-from asperity.laws.base import Law
-from asperity.rolling import stability
-from asperity.rolling.ground import Ground, ground_of
-from asperity.rolling.path import Path
-from asperity.rolling.rest import Rest, start_at_rest
+from asperity.errors import ComputationError, InputError
+from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.kernels.rail import preload_channels
+from asperity.kernels.stepping import POWERS, Motion, System
+from asperity.laws.base import Law, SteppedLaw
+from asperity.rolling import steps
+from asperity.rolling.ground import Ground, Path, ground_of
 from asperity.rolling.stepper import Stepper
-from asperity.rolling.steps import alternating_of_modes, body_step, padded, resolved_step
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
@@ -41,12 +44,12 @@ def assemble(
     rest, motion = start_at_rest(ground, bodies, system, prepared)
     own = alternating(system)
     limits = _limits(ground, system, bodies, ground.alternating + own, rest, highest_frequency)
-    stability.warn_if_coarse(path.time_step, limits)
-    values = [stability.largest_values(*each) for each in zip(prepared, rest.stiffness.tolist(), strict=True)]
+    steps.warn_if_coarse(path.time_step, limits)
+    values = [steps.largest_values(*each) for each in zip(prepared, rest.stiffness.tolist(), strict=True)]
     stiffest, impacts, forces = np.array(values).T
     damping, largest = np.array([law.damping for law in laws]), RUNAWAY * max(*rest.force, *forces)
     least, thrown = ground.alternating + own, ground.thrown + own
-    softer = stability.softening(least, thrown, stiffest, impacts, damping, rest.stiffness, path.time_step)
+    softer = steps.softening(least, thrown, stiffest, impacts, damping, rest.stiffness, path.time_step)
     if softer.any():
         system = system._replace(softening=softer)
         rest, motion = start_at_rest(ground, bodies, system, prepared)
@@ -74,15 +77,15 @@ def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
     if not mean > 0.0:
         raise InputError("loads of the bodies (N)", "none that presses", "forces that press them down")
     of = np.repeat(np.arange(b), [len(body.places) for body in bodies])
-    frequencies = padded([2.0 * np.pi * body.natural_frequencies for body in bodies])
+    frequencies = steps.padded([2.0 * np.pi * body.natural_frequencies for body in bodies])
     natural = np.concatenate([ground.natural, frequencies.ravel()])
-    damping_ratios = padded([body.damping_ratios for body in bodies])
+    damping_ratios = steps.padded([body.damping_ratios for body in bodies])
     ratios = np.concatenate([ground.ratios, damping_ratios.ravel()])
-    coefficients = resolved_step(natural, ratios, h)
-    shapes = padded([row for body in bodies for row in body.shapes])
-    rows = padded([row for body in bodies for row in body.contacts])
-    step = padded([body_step(body, h) for body in bodies])  # (b, 2, d, 4, d)
-    constant = np.einsum("bxijk,bk->bxi", step[..., 2:, :], padded([body.pressing for body in bodies]))
+    coefficients = steps.resolved_step(natural, ratios, h)
+    shapes = steps.padded([row for body in bodies for row in body.shapes])
+    rows = steps.padded([row for body in bodies for row in body.contacts])
+    step = steps.padded([steps.body_step(body, h) for body in bodies])  # (b, 2, d, 4, d)
+    constant = np.einsum("bxijk,bk->bxi", step[..., 2:, :], steps.padded([body.pressing for body in bodies]))
     before, now = np.einsum("nxijk,nk->jnxi", step[of][..., 2:, :], rows).reshape(2, n, -1)
     answers = coefficients[3, len(ground.natural) :].reshape(b, -1)[of]
     return System(
@@ -92,7 +95,7 @@ def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
         sensors=ground.sensors,
         core_step=step[..., :2, :].reshape(b, now.shape[1], now.shape[1]),
         core_pressed=-constant.reshape(b, -1),
-        core_damping=padded([body.damping for body in bodies]),
+        core_damping=steps.padded([body.damping for body in bodies]),
         body=of,
         core_shapes=rows,
         core_before=before,
@@ -112,7 +115,8 @@ def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
 def alternating(system: System) -> Array:
     """Least alternating compliance of the body at each contact (n,), m/N: of all its contacts at once."""
     found, (d, f) = np.zeros(len(system.body)), (system.core_shapes.shape[1], system.shapes.shape[1])
-    modes = alternating_of_modes(system.coefficients)[len(system.stiffness) - f * len(system.core_step) :]
+    first = len(system.stiffness) - f * len(system.core_step)  # of the modes of bodies
+    modes = steps.alternating_of_modes(system.coefficients)[first:]
     for b, step in enumerate(system.core_step):
         at = np.flatnonzero(system.body == b)
         core = np.linalg.solve(np.eye(2 * d) + step, (system.core_now - system.core_before)[at].T)[:d]
@@ -129,17 +133,176 @@ def _limits(
     least: Array,
     rest: Rest,
     highest_frequency: float | None,
-) -> Iterator[stability.Limit]:
+) -> Iterator[steps.Limit]:
     """What the time step must resolve, with the least alternating compliances at the contacts, m/N."""
     if ground.bay:
         on_bay = np.sqrt(float(rest.stiffness.max()) / ground.bay) / (2.0 * np.pi)
         yield "the contact resonance on a bay of rail", on_bay, 5.0
     else:
         direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
-        resonances = stability.contact_resonance(rest.stiffness, direct, least, system.time_step)
+        resonances = steps.contact_resonance(rest.stiffness, direct, least, system.time_step)
         yield "the contact resonance", float(resonances.max()), 10.0
     yield ground.limit
     natural = np.concatenate([body.natural_frequencies for body in bodies])
     asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
     yield "the highest mode of a body", float(asked.max(initial=0.0)), 4.0
     yield "the highest frequency asked for", highest_frequency or 0.0, 5.0 if ground.bay else 10.0
+
+
+Evaluation = Callable[[float], tuple[float, float]]
+FIRST_MOVE = 1e-6  # m, of the contacts; doubled until they are at rest
+LARGEST_MOVE = 1.0  # m
+ITERATIONS = 200
+TOLERANCE, STEPPED_TOLERANCE = 1e-9, 1e-5
+"""Of the forces at rest, relative to the loads; contacts of stepped laws are themselves solved to one."""
+PRELOAD = 2.0
+"""Kernel lengths for which the load has rolled before the path."""
+LOADINGS = 20
+"""Times, at most, that a rail is loaded anew for bodies that share their load over several contacts."""
+ON_SUPPORT = 1e-9
+"""Distance to a support that counts as none, m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """Bodies at rest on n contacts."""
+
+    displacement: Array  # y of all bodies (d,), one after another, upwards
+    force: Array  # (n,), N
+    approach: Array  # (n,), as the laws see it, m
+    stiffness: Array  # (n,), of the contacts, N/m
+
+
+def at_rest(
+    bodies: Sequence[Body],
+    displaced: Array,
+    compliance: Array,
+    laws: Sequence[Evaluation],
+    relative: float = TOLERANCE,
+) -> Rest:
+    """Where bodies rest on laws, which give force, N, and stiffness, N/m, of an approach, m.
+
+    What is rolled over is displaced by u (n,), m, whatever the forces, and all that yields by a compliance
+    Q Qᵀ (n, n), m/N, of structure and of the bodies' modes. With y of the bodies and c of what yields the
+    approaches are δ = −(u + A y + Q c). At rest K y + p = Aᵀ F and c = Qᵀ F, which is where ½ yᵀKy + pᵀy +
+    ½ c² plus the energy of the contacts is least: steps of Newton's, halved until they go down. The forces
+    are exact to `relative` of the loads. A `ComputationError` says that nothing is at rest.
+    """
+    square, vectors = np.linalg.eigh(compliance)
+    n, coordinates = len(displaced), sum(len(body.mass) for body in bodies)
+    shapes = np.hstack([block_diag(*(body.contacts for body in bodies)), vectors * np.sqrt(square.clip(0.0))])
+    matrix = block_diag(*(body.stiffness for body in bodies), np.eye(n))
+    pressing = np.concatenate([*(body.pressing for body in bodies), np.zeros(n)])
+    loads = np.concatenate([body.static_loads for body in bodies])
+    scale, most = np.maximum(loads, loads.clip(0.0).mean()), FIRST_MOVE
+
+    def state(x: Array) -> tuple[Array, Array, Array, Array]:
+        """Approaches, forces, stiffnesses, and the gradient of the energy."""
+        approach = -(displaced + shapes @ x)
+        force, stiffness = np.array([law(float(at)) for law, at in zip(laws, approach, strict=True)]).T
+        return approach, force, stiffness, matrix @ x + pressing - shapes.T @ force
+
+    x = np.zeros(len(pressing))
+    approach, force, stiffness, gradient = state(x)
+    for _ in range(ITERATIONS):
+        firm = np.maximum(stiffness, scale / LARGEST_MOVE)
+        move = -np.linalg.solve(matrix + (shapes.T * firm) @ shapes, gradient)
+        closer = -shapes @ move
+        rounding = 1e-15 * (np.abs(displaced) + np.abs(shapes) @ np.abs(x))
+        if np.all(np.abs(firm * closer) <= relative * scale + firm * rounding):
+            x = x + move
+            return Rest(x[:coordinates], force + firm * closer, approach + closer, stiffness)
+        move *= min(1.0, most / float(np.abs(closer).max()))
+        most, slope = min(2.0 * most, LARGEST_MOVE), float(gradient @ move)
+        for _ in range(60):
+            approach, force, stiffness, gradient = state(x + move)
+            if float(gradient @ move) <= 0.5 * abs(slope):
+                break
+            move, slope = 0.5 * move, 0.5 * slope
+        x = x + move
+    raise ComputationError(
+        f"the bodies do not come to rest on their contacts ({n}) at the start of the path: under loads of "
+        f"{_some(loads)} N the last forces are {_some(force)} N, at approaches of {_some(approach)} m",
+        "smaller loads, or contact.approaches that reach higher forces",
+    )
+
+
+def _some(values: Array) -> str:
+    return ", ".join(f"{value:.4g}" for value in values[:8])
+
+
+def evaluated(law: Prepared | SteppedLaw, approach: float) -> tuple[float, float]:
+    """Force, N, and stiffness, N/m, of a law at the start, for an approach, m."""
+    if not isinstance(law, Prepared):
+        return law.evaluate(0, approach)
+    force, stiffness, _ = evaluate_all(law, np.array([approach]), 0)
+    return float(force[0]), float(stiffness[0])
+
+
+def start_at_rest(
+    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
+) -> tuple[Rest, Motion]:
+    """Bodies at rest at the start of their paths, and the state that goes on from there.
+
+    Modes and contacts move as under constant loads that have long rolled. Displacements of modes are the
+    static ones: what is left to ring is less by (k v/ω)² than that of a mode of wavenumber k. A force on a
+    support has just come onto a structure at rest; so are modes that nothing holds.
+    """
+    n, (s, f) = len(system.loads), (len(ground.natural), system.shapes.shape[1])
+    flexible = np.zeros((n, len(bodies), f))
+    flexible[np.arange(n), system.body] = system.shapes
+    shapes = np.hstack([ground.shapes, flexible.reshape(n, -1)])
+    held = system.stiffness > 0.0
+    softness = np.divide(1.0, system.stiffness, out=np.zeros(len(held)), where=held)
+    compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
+    laws = [partial(evaluated, law) for law in prepared]
+    relative = TOLERANCE if all(isinstance(law, Prepared) for law in prepared) else STEPPED_TOLERANCE
+    force, displaced, rates = np.concatenate([body.static_loads for body in bodies]), np.zeros(n), np.zeros(n)
+    motion = at_zero(system)
+    for _ in range(LOADINGS if ground.memory else 1):
+        if ground.memory:
+            motion = at_zero(system)
+            rail, rates = _rolled_up(system, motion, force, int(PRELOAD * ground.memory))
+            displaced = rail - ground.yields @ force
+        rest = at_rest(bodies, displaced, compliance, laws, relative)
+        change, force = np.abs(rest.force - force).max(), rest.force
+        if change <= relative * np.abs(force).max():
+            break
+    largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.slopes))
+    moving = force * (largest > ON_SUPPORT * steepest)
+    motion.push[:] = force @ shapes
+    motion.displacement[:] = motion.push * softness
+    motion.velocity[:s] = system.speed * (moving @ ground.slopes) * softness[:s]
+    rates = rates + ground.shapes @ motion.velocity[:s]
+    rates += system.speed * (ground.slopes @ motion.displacement[:s])
+    d, first = system.core_shapes.shape[1], 0
+    for index, body in enumerate(bodies):
+        own, count = rates[system.body == index], len(body.mass)
+        motion.core[index, :count] = rest.displacement[first : first + count]
+        motion.core[index, d : d + count] = np.linalg.lstsq(body.contacts, -own, rcond=None)[0]
+        first += count
+    motion.force[:] = motion.trial[:] = motion.elastic[:] = force
+    motion.approach[:] = rest.approach
+    return rest, motion
+
+
+def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:
+    """Let constant forces roll on a rail; its displacements under the contacts, m, and their rates, m/s."""
+    before, channels = np.zeros(len(force)), system.channels
+    preload_channels(channels, motion, force, steps, before)
+    rates = (motion.rail_ahead - before) / system.time_step
+    np.add.at(motion.rail_ahead, channels.receiver, motion.rail_now * force[channels.source])
+    return motion.rail_ahead.copy(), rates
+
+
+def at_zero(system: System) -> Motion:
+    """A state of all zeros."""
+    m, n, p = len(system.stiffness), len(system.loads), len(system.channels.source)
+    shapes: dict[str, Any] = dict.fromkeys(("displacement", "velocity", "push", "ahead"), m)
+    shapes |= dict.fromkeys(("elastic", "rail_ahead", "trial", "compliance", "rate", "climb"), n)
+    shapes |= dict.fromkeys(("core", "core_ahead"), system.core_pressed.shape)
+    shapes |= {"force": (2, n), "approach": (2, n), "power": POWERS, "ledger": 6, "rail_now": p}
+    shapes |= {"rail": (p, system.channels.decay.shape[1])}
+    shapes |= {"ring": (n, system.channels.scattered.shape[2] if p else 0)}
+    arrays = {name: np.zeros(shape) for name, shape in shapes.items()}
+    return Motion(**arrays, counts=np.zeros(3, dtype=np.int64))

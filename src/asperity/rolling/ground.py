@@ -1,22 +1,63 @@
-"""What bodies roll over, as their contacts need it: the modes of a structure, a rigid plane, or a rail."""
+"""Paths of contacts, and what they roll over: the modes of a structure, a rigid plane, or a rail."""
 
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, positive, real
 from asperity.errors import InputError, LargeDeflectionWarning
 from asperity.kernels.rail import Channels
-from asperity.rolling.path import Path
-from asperity.rolling.stability import Limit
-from asperity.rolling.steps import alternating_of_modes, padded, resolved_step
+from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_bay
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Positions of contacts that move at constant speed."""
+
+    positions: NDArray[np.float64]  # (c, n), at every time step of run-in and record, m
+    speed: float  # m/s
+    time_step: float  # s
+    settled: int = 0  # steps of the run-in; the record starts behind them
+
+    @classmethod
+    def laid(cls, start: float, speed: float, time_step: float, duration: float, settling: float) -> Path:
+        """Lay out one contact: a run-in of `settling`, s, and from `start`, m, a record of `duration`, s."""
+        for what, value in (("speed (m/s)", speed), ("duration (s)", duration), ("time step (s)", time_step)):
+            positive(what, value)
+        real("settling (s)", settling, "zero or a finite positive number", at_least=0.0)
+        steps, settled = (int(np.floor(time / time_step * (1.0 + 1e-12))) for time in (duration, settling))
+        if steps < 1:
+            raise InputError("duration (s)", duration, f"at least one time step of {time_step:.6g} s")
+        positions = np.asarray(start + speed * time_step * np.arange(-settled, steps + 1))
+        return cls(positions[None], speed, time_step, settled)
+
+    def ahead(self, offsets: ArrayLike) -> Path:
+        """Contacts that run ahead of the first one of this path by some distances (c,), m."""
+        return replace(self, positions=self.positions[0] + np.asarray(offsets)[:, None])
+
+    @property
+    def total(self) -> int:
+        """Time steps of run-in and record."""
+        return self.positions.shape[1] - 1
+
+    @property
+    def starts(self) -> NDArray[np.float64]:
+        """Positions of the contacts at step zero (c,), m."""
+        return self.positions[:, 0]
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Times of the record, s, from zero."""
+        return np.asarray(self.time_step * np.arange(self.total + 1 - self.settled))
+
 
 PLACES = 256
 """Positions at which mode shapes are looked at."""
@@ -111,10 +152,8 @@ def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     limit = "the passing of sleepers v/L", kernel.speed / kernel.spacing, 20.0
     yields = np.asarray((vectors * squares.clip(0.0)) @ vectors.T)
     bay = kernel.track.mass_per_length * kernel.spacing
-    at_sensors = np.zeros((0, 0))
-    return Ground(
-        none, none, modes, modes, at_sensors, channels, softest, least, 0.0, limit, yields, bay, taps
-    )
+    of_modes = none, none, modes, modes, np.zeros((0, 0))
+    return Ground(*of_modes, channels, softest, least, 0.0, limit, yields, bay, taps)
 
 
 def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
@@ -129,10 +168,7 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
                 tables += [] if known else [found]
                 pairs.append((source, receiver, known[0] if known else len(tables) - 1))
     source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
-    none, weights = (
-        np.zeros(0),
-        [(each.kernel if isinstance(each, RailPoles) else each).weights for each in tables],
-    )
+    none, weights = np.zeros(0), [each.kernel.weights for each in tables]
     laid = [
         (each.poles, over_the_bay(each.residues), np.zeros((1, 1)))
         if isinstance(each, RailPoles)

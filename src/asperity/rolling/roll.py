@@ -1,7 +1,11 @@
-"""Bodies roll over a structure on any number of contacts, and what is kept of it."""
+"""Bodies roll over a structure on any number of contacts, and what is kept of it.
+
+How a run went is told: contact lost, load carried, steps not converged, laws continued beyond their data.
+"""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,14 +13,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import Array
-from asperity.errors import Outcome
+from asperity.errors import (
+    ComputationError,
+    ExtrapolationWarning,
+    Grade,
+    Outcome,
+    UnconvergedWarning,
+    percent,
+)
 from asperity.kernels import stepping
-from asperity.laws.base import Law
+from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.laws.base import Law, SteppedLaw
 from asperity.progress import Progress
-from asperity.rolling import outcome
 from asperity.rolling.assembly import assemble
-from asperity.rolling.ground import warn_if_bent
-from asperity.rolling.path import Path
+from asperity.rolling.ground import Path, warn_if_bent
 from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -64,7 +74,7 @@ class RolledBodies:
     degrees_of_freedom: tuple[Array, ...]  # of each body (d, n), m or rad, positive upwards
     acceleration: Array  # (sensors, n), of what is rolled over, m/s², positive downwards
     in_contact: NDArray[np.bool_]  # (c, n), whether the surfaces touch
-    contact_loss: tuple[list[outcome.ContactLoss], ...]  # flights at each contact
+    contact_loss: tuple[list[ContactLoss], ...]  # flights at each contact
     energy: Ledger  # where the work of the loads went, in run-in and run
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
@@ -93,7 +103,7 @@ def roll_bodies(
     advanced exactly for contact forces that are linear over a step; the forces at the end of each step solve
     all contact laws at once, each to 1e-10 of itself plus its load (laws that Python steps: 1e-6), to second
     order in the time step. The time of a step grows linearly with the number of contacts. A step that is too
-    long to be stable is kept so by softened contacts, with a warning (`asperity.rolling.stability`).
+    long to be stable is kept so by softened contacts, with a warning (`asperity.rolling.steps`).
 
     Parameters
     ----------
@@ -152,8 +162,8 @@ def _rolled(stepper: Stepper, energies: tuple[float, float, float]) -> RolledBod
     path, record, system, counts = stepper.path, stepper.record, stepper.system, stepper.motion.counts
     kept, softened = slice(path.settled, None), system.softening[:, None] * record.contact_force
     seen = record.relative_displacement - softened
-    apart = np.array(list(map(outcome.flying, stepper.prepared, record.contact_force, seen)))
-    outcome.warn_of_steps([law.name for law in stepper.laws], stepper.prepared, counts, seen)
+    apart = np.array(list(map(flying, stepper.prepared, record.contact_force, seen)))
+    warn_of_steps([law.name for law in stepper.laws], stepper.prepared, counts, seen)
     _refuse_missed_loads(stepper, apart)
     apart = apart[:, kept]
     records = {name: value[..., kept] for name, value in record._asdict().items()}
@@ -167,7 +177,7 @@ def _rolled(stepper: Stepper, energies: tuple[float, float, float]) -> RolledBod
         history_start=path.starts,
         degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
         in_contact=~apart,
-        contact_loss=tuple(outcome.contact_losses(each, path.time_step) for each in apart),
+        contact_loss=tuple(contact_losses(each, path.time_step) for each in apart),
         energy=_ledger(stepper, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),
@@ -184,11 +194,11 @@ def _refuse_missed_loads(stepper: Stepper, apart: NDArray[np.bool_]) -> None:
     sunk = stepper.softest * sum(float(np.abs(body.static_loads).sum()) for body in stepper.bodies)
     for k, body in enumerate(stepper.bodies):
         own = of == k
-        if (free := outcome.free_motion(body)) is not None:
+        if (free := free_motion(body)) is not None:
             shape, mass, load = free
             name, reach = stepper.laws[int(np.argmax(own))].name, sunk + max(np.compress(own, touched))
             force = shape @ record.contact_force[own]
-            outcome.refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
+            refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
 
 
 def _ledger(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
@@ -205,3 +215,129 @@ def _ledger(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
         "slope of the structure": ledger[stepping.SLOPE_WORK],
     }
     return Ledger(shares, ledger[stepping.CONTACT_DAMPING], ledger[stepping.THROUGHPUT])
+
+
+@dataclass(frozen=True)
+class ContactLoss:
+    """One flight."""
+
+    start: float  # time of the first sample out of contact, s
+    duration: float  # samples out of contact times the time step, s
+
+
+def contact_losses(flying: NDArray[np.bool_], time_step: float) -> list[ContactLoss]:
+    """Flights in a record, in order of time; `flying` (n,) says whether bodies are apart; time step in s."""
+    edges = np.diff(np.concatenate([[False], np.asarray(flying, dtype=bool), [False]]).astype(np.int8))
+    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    return [
+        ContactLoss(float(start * time_step), float((end - start) * time_step))
+        for start, end in zip(starts, ends, strict=True)
+    ]
+
+
+def flying(prepared: Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:
+    """Whether the bodies are apart at each step, by force, N, and approach, m, (n,) each.
+
+    Never for a contact that can pull.
+    """
+    if isinstance(prepared, Prepared):
+        if prepared.bilateral:
+            return np.zeros(force.shape, dtype=bool)
+        if prepared.damped_in_flight:
+            force = evaluate_all(prepared, approach, 0)[0]
+    return np.asarray(force <= 0.0)
+
+
+LEAST = 100
+"""Time steps of which anything is said."""
+ERRORS = 5.0
+"""Standard errors that a mean force may miss the load by."""
+FAR = 10.0
+"""How far, in what bodies and texture allow, a mass that misses its load has to be driven away."""
+
+
+def free_motion(body: Body) -> tuple[Array, float, float] | None:
+    """How a body that nothing but its contacts holds is driven by its load; None if springs hold it.
+
+    Displacements of its contacts (c,), the largest one; its mass in this motion, kg, and its load, N.
+    """
+    held = np.vstack([each / (np.abs(each).max() or 1.0) for each in (body.stiffness, body.damping)])
+    _, size, rows = np.linalg.svd(held, full_matrices=False)
+    loose = rows[size < 1e-9]
+    motion = loose.T @ (loose @ body.pressing)
+    at_contacts = body.contacts @ motion
+    largest = float(np.abs(at_contacts).max(initial=0.0))
+    if not largest > 1e-9 * float(np.linalg.norm(body.pressing)):
+        return None
+    motion = motion / largest
+    return at_contacts / largest, float(motion @ body.mass @ motion), float(motion @ body.pressing)
+
+
+def refuse_missed_load(
+    name: str, force: Array, load: float, mass: float, reach: float, time_step: float, settled: int = 0
+) -> None:
+    """Refuse a run whose mean contact force misses the load by more than its standard error.
+
+    Force (n,) of run-in and run, and load, N, on a mass, kg, that nothing else holds; `reach` is how far
+    deflection and texture displace it, m. The mean of F − P over a time T is the change of momentum over T,
+    exactly. Where motion is bounded, that is the difference of two moments, so that √2 σ/T is its standard
+    error, σ being the standard deviation of the momentum about its trend; a mass that falls has no other
+    trend. Within a part of a slow swing it looks alike, but then the mass stays within reach. A mean of more
+    than twice the load is more than rest and gravity account for. A record, from step `settled` on, in which
+    nothing touches says nothing, however short it is.
+    """
+    if not force[settled:].any():
+        raise ComputationError(
+            f"{name}: nothing touches in all of the record: the contact force is 0 N, the load {load:.4g} N",
+            "a longer record, and look for what throws the bodies apart, as springs that are too soft",
+        )
+    driven = 0.5 * (force[1:] + force[:-1]) - load  # over each step
+    if driven.size < LEAST:
+        return
+    missed, time = float(driven.mean()), driven.size * time_step
+    error = np.sqrt(2.0) * float(np.std(np.cumsum(driven - missed))) / driven.size
+    away = 0.5 * abs(missed) / mass * time**2
+    if away > FAR * reach and (abs(missed) > ERRORS * error or missed > load):
+        raise ComputationError(
+            f"{name}: the mean contact force of {load + missed:.4g} N misses the load of {load:.4g} N by "
+            f"more than bounded motion can, whose standard error is {error:.2g} N: in {time:.3g} s that "
+            f"drives what rolls {away:.2g} m away",
+            "what a warning asks for, if there is one; else look for what gives off energy or is not held: "
+            'masses, springs and damping; for a track also numerics.kernel = "scatter"',
+        )
+
+
+def warn_of_steps(
+    names: Sequence[str],
+    prepared: Sequence[Prepared | SteppedLaw],
+    counts: NDArray[np.int64],
+    approach: Array,
+) -> None:
+    """Warn of forces that missed the tolerance, and of laws that were continued beyond their data.
+
+    Laws by their names; counts are of steps done, not converged, and evaluations; the approach (n, steps), m,
+    is that which the laws saw. Contacts under laws of one name count together.
+    """
+    if counts[1]:
+        share = float(counts[1]) / max(int(counts[0]), 1)
+        missed = (
+            f"{', '.join(dict.fromkeys(names))}: {counts[1]} of {max(int(counts[0]), 1)} time steps "
+            f"({percent(share)}) missed the tolerance on the contact force: their force is uncertain; take a "
+            "smaller numerics.time_step"
+        )
+        warnings.warn(UnconvergedWarning(missed, Grade.of_share(share)), stacklevel=5)
+    beyond = dict.fromkeys(names, 0)
+    for name, law, seen in zip(names, prepared, approach, strict=True):
+        if isinstance(law, Prepared):
+            beyond[name] += int(evaluate_all(law, seen, 0)[2])
+        else:
+            law.warn_of_flaws()
+    for name, count in beyond.items():
+        steps = names.count(name) * approach.shape[1]
+        if count:
+            message = (
+                f"{name}: the contact was closer than its largest computed state in {count} of {steps} time "
+                f"steps ({percent(count / steps)}): the force there is a continuation; let "
+                "contact.approaches reach higher"
+            )
+            warnings.warn(ExtrapolationWarning(message, Grade.of_share(count / steps)), stacklevel=5)

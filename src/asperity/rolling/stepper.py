@@ -15,7 +15,7 @@ from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
 from asperity.laws.base import Law, SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling.path import Path
+from asperity.rolling.ground import Path
 from asperity.rolling.steps import padded
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -151,10 +151,8 @@ class Stepper:
         if isinstance(law, Prepared):
             in_flight = law.damped_in_flight
             return solve(evaluate, law, step, free, load, guess, damping, in_flight, stepping.FORCE_TOLERANCE)
-        if settles(law):
-            settled = _settled(law, step, free, damping)
-            if settled is not None:
-                return *settled, 1, stepping.FOUND
+        if settles(law) and (settled := _settled(law, step, free, damping)) is not None:
+            return *settled, 1, stepping.FOUND
         return solve(_evaluate, law, step, free, load, guess, damping, False, STEPPED_TOLERANCE)
 
     def _ran_away(self) -> ComputationError:
@@ -191,11 +189,8 @@ class Stepper:
             kept = arrays.get(name, np.zeros(0))
             last = kept.shape[-1] if name.startswith("record.") else value.shape[-1]
             if kept.shape != (*value.shape[:-1], last) or last > value.shape[-1]:
-                what, remedy = (
-                    "a run with other modes, sensors or duration",
-                    "Clear what was kept, and roll anew.",
-                )
-                raise InputError("checkpoint", what, "this run", remedy)
+                received = "a run with other modes, sensors or duration"
+                raise InputError("checkpoint", received, "this run", "Clear what was kept, and roll anew.")
             value[..., :last] = kept
         for k, law in self.stepped.items():
             own = f"law.{k}."
