@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from asperity.arguments import Array, not_negative, require
-from asperity.laws import base, spec
+from asperity.laws import spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -203,7 +203,7 @@ class DirectOnPath:
 LAW = spec.LawSpec(
     "direct",
     "The three-dimensional contact, solved in every time step: the reference.",
-    base.from_materials(Direct),
+    spec.from_materials(Direct),
     {spec.Need.SURFACE},
     solved_every_step=True,
     role=spec.Role.REFERENCE,

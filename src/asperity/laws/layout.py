@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from asperity.arguments import Array, not_negative
 from asperity.kernels.piecewise import continued_to_touch, monotone_slopes, zero_crossing
 from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
-from asperity.laws.base import Law
+from asperity.laws.spec import Law
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import PIECE, ForceTable
 from asperity.reduction.texture import StateTexture

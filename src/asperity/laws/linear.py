@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from asperity.kernels.pointforce import Prepared
-    from asperity.laws.materials import Materials
+    from asperity.laws.spec import Materials
     from asperity.reduction.texture import StateTexture
 
 

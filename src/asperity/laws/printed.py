@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from asperity.arguments import real
-from asperity.laws import base, spec
+from asperity.laws import spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -71,7 +71,7 @@ UNFILTERED = spec.Variant(
 LAW = spec.LawSpec(
     "printed",
     "The thesis as printed: states from the mean plane, secant stiffness times the filtered line texture.",
-    base.from_materials(Printed, texture="line"),
+    spec.from_materials(Printed, texture="line"),
     {spec.Need.SAMPLES, spec.Need.DATUM, spec.Need.FILTER},
     normalise="low-wavenumber",
     look=spec.Look("#a8458f", (0, (6, 1.5, 1.5, 1.5)), "^"),

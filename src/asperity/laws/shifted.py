@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.laws import base, spec
+from asperity.laws import spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -53,7 +53,7 @@ UNFILTERED = spec.Variant(
 LAW = spec.LawSpec(
     "shifted",
     "The state functions, shifted by the filtered line texture: follows slow bumps.",
-    base.from_materials(Shifted, texture="line", plane="line_at_load"),
+    spec.from_materials(Shifted, texture="line", plane="line_at_load"),
     {spec.Need.SAMPLES, spec.Need.FILTER},
     look=spec.Look("#c8500a", (0, (6, 1.5)), "s"),
     variants=(UNFILTERED,),

@@ -1,12 +1,15 @@
-"""What is known of a contact law before it is built: data, without compiled code."""
+"""What a contact law is: protocols, what is known of it before it is built, and what it is built from.
+
+Nothing here imports compiled code.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeGuard, runtime_checkable
 
 from asperity.arguments import require, shown
 from asperity.errors import InputError
@@ -14,8 +17,13 @@ from asperity.parameters import Key
 from asperity.schema import spectra
 
 if TYPE_CHECKING:
-    from asperity.laws.base import Law
-    from asperity.laws.materials import Materials
+    from numpy.typing import ArrayLike, NDArray
+
+    from asperity.arguments import Array
+    from asperity.kernels.pointforce import Prepared
+    from asperity.reduction.stiffness import ForceCurve
+    from asperity.reduction.table import ForceTable
+    from asperity.reduction.texture import StateTexture
 
 Dashes = Literal["-"] | tuple[float, tuple[float, ...]]
 
@@ -243,3 +251,163 @@ def _checked(what: str, needs: object) -> frozenset[Need]:
     except (TypeError, ValueError):
         raise InputError(what, shown(needs), f"a set of {words}") from None
     return found | {Need.SAMPLES} if found & {Need.DATUM, Need.AREAL, Need.SCAN} else found
+
+
+@dataclass(frozen=True, eq=False)
+class Materials:
+    """Materials of one law of a case, each made when it is first asked for.
+
+    Textures are positive *away* from contact, as functions of the position of the contact, m. A material
+    that a law does not say it needs (`asperity.laws.Need`) is refused.
+    """
+
+    law: LawSpec
+    damping: float  # contact damping, N s/m
+    load: float  # working load, N
+    hertz_constant: float  # K of F = K s^1.5 between the smooth bodies, N/m^1.5
+    modulus: float  # contact modulus E*, Pa
+    working_point: tuple[
+        float, float
+    ]  # approach, m, and stiffness, N/m, of the linear contact under the load
+    start: float  # position of the first row of `heights`, m
+    body: Array  # (nx, ny), smooth body on the contact grid, m, zero at its lowest point
+    spacing: tuple[float, float]  # steps of the contact grid, (dx, dy), m
+    hardness: float | None  # pressure that the softer body bears, Pa; None if it stays elastic
+    rtol: float  # tolerance of a contact solution, as in `HalfSpace.solve`
+    parameters: Mapping[str, Any]  # values of the law's own keys in the case, by name
+    made_by: Mapping[str, Callable[[], Any]]  # what makes all others, by name
+    _made: dict[str, Any] = field(default_factory=dict)
+
+    def _take(self, material: str, *needs: Need) -> Any:
+        """Make a material, or refuse it: what is planned and checked follows the needs of a law."""
+        if needs and not self.law.needs & set(needs):
+            wanted = " or ".join(f'"{need}"' for need in needs)
+            allowed = f"materials that it needs; this one goes with {wanted}"
+            raise InputError(f"materials of law {self.name}", material, allowed)
+        if material not in self._made:
+            self._made[material] = self.made_by[material]()
+        return self._made[material]
+
+    @property
+    def name(self) -> str:
+        """Name of the law in the case, which the built law bears."""
+        return self.law.name
+
+    @property
+    def line(self) -> StateTexture:
+        """Line texture of the path: through the contact filter where the law needs it (FILTER), else bare."""
+        return self._take("line")
+
+    def line_on(self, curve: ForceCurve) -> StateTexture:
+        """The line texture with its states where a curve, as that of smooth bodies, carries their forces."""
+        if "curve" not in self.made_by or Need.FILTER not in self.law.needs:
+            return self.line
+        return replace(self.line, approaches=curve.inverse(self._take("curve").force(self.line.approaches)))
+
+    @property
+    def line_at_load(self) -> StateTexture:
+        """The line texture of one state, that under the working load."""
+        return self.line.held_at(
+            float(self._take("curve").inverse(self.load)) if "curve" in self.made_by else 0.0
+        )
+
+    @property
+    def curve(self) -> ForceCurve:
+        """Force over approach, mean of the samples (SAMPLES)."""
+        return self._take("curve", Need.SAMPLES)
+
+    @property
+    def datum(self) -> float:
+        """d₀ of the state r = approach + d₀, m (DATUM)."""
+        return self._take("datum", Need.DATUM)
+
+    @property
+    def areal(self) -> StateTexture:
+        """Heights averaged by the flat-punch pressure on the patch of each state (AREAL)."""
+        return self._take("areal", Need.AREAL)
+
+    @property
+    def plane(self) -> StateTexture:
+        """Plane that the nominal patch feels under the working load (AREAL, SCAN or SURFACE)."""
+        return self._take("plane", Need.AREAL, Need.SCAN, Need.SURFACE)
+
+    @property
+    def table(self) -> ForceTable:
+        """Scanned force of the path, N; its approaches count from `plane` (SCAN)."""
+        return self._take("table", Need.SCAN)
+
+    @property
+    def heights(self) -> Array:
+        """Heights of the path with its defects, m, peaks positive, shape (rows, ny) (SURFACE)."""
+        return self._take("heights", Need.SURFACE)
+
+
+@runtime_checkable
+class SteppedLaw(Protocol):
+    """A law on a path that is evaluated from Python, one solution of the contact at a time."""
+
+    def evaluate(self, step: int, approach: float) -> tuple[float, float]:
+        """Elastic force, N, and dF/d(approach), N/m, at a step of the path."""
+
+    def accept(self, step: int) -> None:
+        """Keep the last evaluation of this step as the start of the next."""
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """What `restore` needs to go on from here exactly."""
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from a saved state."""
+
+    def warn_of_flaws(self) -> None:
+        """Warn of evaluations that went wrong on the way."""
+
+
+class SettlingLaw(SteppedLaw, Protocol):
+    """A stepped law that finds its force together with what the bodies yield to it."""
+
+    def settle(self, step: int, approach: float, compliance: float) -> float:
+        """Elastic force F, N, at `approach` − `compliance` F: approach without force, m, compliance, m/N."""
+
+
+def settles(law: object) -> TypeGuard[SettlingLaw]:
+    """Whether a law is a `SettlingLaw`; asked in every step, where `isinstance` would take half as long."""
+    return hasattr(law, "settle")
+
+
+@runtime_checkable
+class Law(Protocol):
+    """A contact law: contact force from approach, approach rate and position on the path."""
+
+    @property
+    def name(self) -> str:
+        """Name in the registry and in results."""
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+
+    def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
+        """Lay the law out on the positions (n,) of the contact, m."""
+
+
+def from_materials(law: Callable[..., Law], **materials: str) -> Callable[[Materials], Law]:
+    """Builder of a law: its fields are the materials of the same names, or of those that are named.
+
+    Parameters
+    ----------
+    law : type
+        A frozen dataclass, as `Shifted`.
+    **materials : str
+        Of fields that are called otherwise, as ``texture="line"``: their materials.
+
+    Returns
+    -------
+    callable
+        What `LawSpec` takes as its ``build``.
+    """
+
+    def build(of_case: Materials) -> Law:
+        named = {each.name: materials.get(each.name, each.name) for each in fields(law)}  # type: ignore[arg-type]
+        return law(**{field: getattr(of_case, material) for field, material in named.items()})
+
+    return build

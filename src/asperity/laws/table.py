@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.laws import base, spec
+from asperity.laws import spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -47,7 +47,7 @@ class Table:
 LAW = spec.LawSpec(
     "table",
     "The scanned three-dimensional contact force, looked up.",
-    base.from_materials(Table),
+    spec.from_materials(Table),
     {spec.Need.SAMPLES, spec.Need.SCAN},
     role=spec.Role.STAND_IN,
     look=spec.Look("#00805c", (0, (10, 1.5, 4, 1.5)), "D"),

@@ -15,7 +15,7 @@ from asperity.errors import ComputationError, InputError
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.rail import preload_channels
 from asperity.kernels.stepping import POWERS, Motion, System
-from asperity.laws.base import Law, SteppedLaw
+from asperity.laws.spec import Law, SteppedLaw
 from asperity.rolling import steps
 from asperity.rolling.ground import Ground, Path, ground_of
 from asperity.rolling.stepper import Stepper

@@ -23,7 +23,7 @@ from asperity.errors import (
 )
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate_all
-from asperity.laws.base import Law, SteppedLaw
+from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
 from asperity.rolling.assembly import assemble
 from asperity.rolling.ground import Path, warn_if_bent

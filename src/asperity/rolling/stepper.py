@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
-from asperity.laws.base import Law, SettlingLaw, SteppedLaw, settles
+from asperity.laws.spec import Law, SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.rolling.ground import Path
 from asperity.rolling.steps import padded

@@ -32,7 +32,7 @@ from scipy.linalg import block_diag, eigh
 from asperity.arguments import Array
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.pointforce import Prepared, evaluate_all
-from asperity.laws.base import SteppedLaw
+from asperity.laws.spec import SteppedLaw
 from asperity.structures.body import Body
 
 TAYLOR_RADIUS, TAYLOR_TERMS = 0.5, 14  # remainder below 1e-16
