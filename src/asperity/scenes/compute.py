@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity import __version__
+from asperity.arguments import Array
 from asperity.case.content import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
@@ -32,11 +33,10 @@ from asperity.scenarios.textures import Textures, other_contacts, recorded_time
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
-from asperity.structures.moving_kernel import MovingKernel, moving_kernel
-from asperity.structures.rail_poles import RailBetween, RailPoles, poles_or_kernel, rail_between
+from asperity.structures.moving_kernel import moving_kernel
+from asperity.structures.rail_poles import RailBetween, poles_or_kernel, rail_between
 from asperity.structures.track import Track
 
-Array = NDArray[np.float64]
 FORMAT = 2
 """Of a state of motion that is kept: raise it where one is laid out anew."""
 TOLD_OF = ("laws", "noise")
@@ -50,9 +50,7 @@ class Computed:
     case: Case
     scene: Scene
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
-    materials: (
-        LawMaterials  # of the first contact: textures, geometry, state functions; without what laws made
-    )
+    materials: LawMaterials  # of the first contact: textures, geometry, state functions
     runs: dict[str, RolledBodies]  # time histories, by law
     scan: ScannedForces[Any] | None  # of the path
     running_in: RunInCase | None  # what passes before did to the textures; None where there were none
@@ -88,11 +86,6 @@ class Computed:
         return working_point(self.case.contact, self.shape, self.reduction)[1]
 
     @property
-    def highest(self) -> float:
-        """Highest frequency of the spectra, Hz."""
-        return float(self.case.numerics.highest_frequency)
-
-    @property
     def first(self) -> RolledBodies:
         """The run by the main law."""
         return next(iter(self.runs.values()))
@@ -104,16 +97,10 @@ class Computed:
         return self.scene.over
 
     @property
-    def rail(self) -> RailPoles | MovingKernel:
-        """How the rail under one contact was carried on in time."""
+    def rail(self) -> RailBetween:
+        """How the rail of a track was carried on in time."""
         assert isinstance(self.over, RailBetween)
-        return self.over.direct
-
-    @property
-    def kernel(self) -> MovingKernel:
-        """Response of the rail under a moving contact."""
-        assert isinstance(self.over, RailBetween)
-        return self.over.kernel
+        return self.over
 
     def stacked(self, name: str) -> Array:
         """Stack one record of all runs, (laws, contacts or sensors, ...), by the name of its attribute."""
@@ -138,11 +125,14 @@ class Computed:
     @cached_property
     def shown(self) -> NDArray[np.bool_]:
         """Which lines a result holds: up to the edge of the one-third octave of the highest frequency."""
-        return np.asarray((self.frequency > 0.0) & (self.frequency <= 1.13 * self.highest))
+        return np.asarray(
+            (self.frequency > 0.0) & (self.frequency <= 1.13 * self.case.numerics.highest_frequency)
+        )
 
     def levels(self, density: Array, reference: float = 1.0) -> Array:
         """One-third-octave levels (..., b), dB, of PSDs on all lines."""
-        return band_levels(self.frequency, density, reference, high=self.highest)[1]
+        highest = self.case.numerics.highest_frequency
+        return band_levels(self.frequency, density, reference, high=highest)[1]
 
     @cached_property
     def force_psd(self) -> Array:
@@ -157,7 +147,8 @@ class Computed:
     @cached_property
     def band(self) -> Array:
         """Centres of the one-third octaves (b,), Hz."""
-        return band_levels(self.frequency, self.force_psd, high=self.highest)[0]
+        highest = self.case.numerics.highest_frequency
+        return band_levels(self.frequency, self.force_psd, high=highest)[0]
 
 
 SEGMENT = (0.025, 0.2)
@@ -186,7 +177,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
 
     compile_kernels(progress)  # not before the files are known to be right
     book("compiled functions")
-    over = in_time(scene, case, store, progress)
+    over = _in_time(scene, case, store, progress)
     book("what is rolled over")
     which, others = other_contacts(case, scene.loads)
     duration = recorded_time(case, textures)
@@ -221,15 +212,14 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         book(f"law {name}")
     scan = first.scan if Need.SCAN in needs_of(case.laws) else None
     computed = Computed(case, scene, over, unused, runs, scan, ran, seconds)
-    if scene.points:
-        computed = replace(computed, points=_passed(computed, progress))
-        book("passed points")
+    if not scene.points:
+        return computed
+    computed = replace(computed, points=_passed(computed, progress))
+    book("passed points")
     return computed
 
 
-def in_time(
-    scene: Scene, case: Case, store: Store, progress: Progress | None = None
-) -> Modal | RailBetween | None:
+def _in_time(scene: Scene, case: Case, store: Store, progress: Progress) -> Modal | RailBetween | None:
     """What is rolled over, as it is carried on in time: a track by its moving kernels."""
     if not isinstance(scene.over, Track):
         return scene.over
@@ -238,13 +228,14 @@ def in_time(
     return rail_between(rail, scene.offsets, cache=store, progress=progress)
 
 
-def _passed(computed: Computed, progress: Progress) -> tuple[NDArray[np.float64], ...]:
+def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     """Displacement, m, and velocity, m/s, of the rail at its points (laws, p, n), under all contacts."""
-    runs = list(computed.runs.values())
-    forces, settled = np.stack([run.history for run in runs]), runs[0].history.shape[1] - len(runs[0].time)
+    forces, origins = computed.stacked("history"), computed.first.history_start
+    settled = forces.shape[-1] - len(computed.first.time)
+    kernel, points = computed.rail.kernel, computed.scene.points
     parts = [
-        passed_points(computed.kernel, forces[:, k], float(origin), computed.scene.points, settled, progress)
-        for k, origin in enumerate(runs[0].history_start)
+        passed_points(kernel, forces[:, k], float(origin), points, settled, progress)
+        for k, origin in enumerate(origins)
     ]
     return tuple(np.sum(each, axis=0) for each in zip(*parts, strict=True))
 
@@ -256,10 +247,7 @@ def checkpoint_of(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint 
     """
     if prepared.textures.path is None or not spec_of(law.name).solved_every_step:
         return None
-    case = content(prepared.case, file_digest)
-    case = {name: held for name, held in case.items() if name not in TOLD_OF}
+    case = {n: held for n, held in content(prepared.case, file_digest).items() if n not in TOLD_OF}
     surface = prepared.textures.surface
-    rows = surface.rows(0, surface.shape[0])
-    return Checkpoint(
-        store, content_key(law.name, FORMAT, __version__, rows, json.dumps(case, sort_keys=True))
-    )
+    rows, told = surface.rows(0, surface.shape[0]), json.dumps(case, sort_keys=True)
+    return Checkpoint(store, content_key(law.name, FORMAT, __version__, rows, told))

@@ -170,7 +170,7 @@ def _numerics(
 def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
     over = computed.over
     if isinstance(over, RailBetween):
-        weights, lag = computed.kernel.weights, computed.kernel.lag
+        weights, lag = computed.rail.kernel.weights, computed.rail.kernel.lag
         yield "start positions of the moving kernel", f"{weights.shape[0]} in a bay"
         yield "length of the moving kernel", f"{lag[-1]:.3g} s, {weights.shape[1]} steps"
         if isinstance(over.direct, RailPoles):
@@ -245,7 +245,9 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
     laid_out |= sureness(computed) | level_differences(list(computed.runs), level) | _bodies(computed)
     if forces.shape[1] > 1:
         laid_out[schema.SUM_PSD] = computed.psd(forces.sum(axis=1))[..., shown]
-        tones = passing_frequencies(scene.offsets, computed.case.speed, computed.highest)
+        tones = passing_frequencies(
+            scene.offsets, computed.case.speed, computed.case.numerics.highest_frequency
+        )
         laid_out |= {schema.PASSING_FREQUENCY: tones} if tones.size else {}
     if scene.sensors:
         density = computed.psd(computed.stacked("acceleration"))

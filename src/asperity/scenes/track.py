@@ -179,8 +179,9 @@ def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
 
     None of it depends on what has rolled.
     """
-    track, kernel, rail, load = computed.track, computed.kernel, computed.rail, computed.shape.load
-    frequency = np.geomspace(LOWEST_FREQUENCY, computed.highest, FREQUENCIES)
+    track, rail, load = computed.track, computed.rail, computed.shape.load
+    kernel = rail.kernel
+    frequency = np.geomspace(LOWEST_FREQUENCY, computed.case.numerics.highest_frequency, FREQUENCIES)
     half = 0.5 * track.sleeper_spacing
     midspan, support = track.receptance(frequency, [half, 0.0], [half, 0.0])
     positions, taps = kernel.weights.shape
@@ -207,9 +208,9 @@ def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
         schema.STATIC_DEFLECTION_IN_TIME: kernel.track.static_deflection(load, half),
         schema.KERNEL_METHOD: "scatter",
     }
-    if isinstance(rail, RailPoles):
-        facts |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.fit_error}
-        facts |= {schema.KERNEL_POLES: rail.count}
+    if isinstance(rail.direct, RailPoles):
+        facts |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.direct.fit_error}
+        facts |= {schema.KERNEL_POLES: rail.direct.count}
     return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
 
 
@@ -264,7 +265,9 @@ def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest:
 
 def error_of_losses(computed: Computed) -> LossFactorError:
     """Error of the contact force in bands, for the contact stiffness at the load."""
-    return loss_factor_error(computed.track, computed.scene.first, computed.stiffness, computed.highest)
+    return loss_factor_error(
+        computed.track, computed.scene.first, computed.stiffness, computed.case.numerics.highest_frequency
+    )
 
 
 def warn_of_loss_factors(error: LossFactorError) -> None:
