@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import Array
 from asperity.case.tables import read_mode_shapes, read_ratios
 from asperity.errors import Finding, Grade, MissingSourceWarning
 from asperity.laws import Role, in_role
@@ -27,7 +27,6 @@ from asperity.structures.track import Track, decay_rate
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
-Array = NDArray[np.float64]
 Table = tuple[ArrayLike, ArrayLike]
 """Band centres and levels in dB, each (n,)."""
 
@@ -55,36 +54,43 @@ def wheel_label(case: Any) -> str:
 
 def findings_of_labels(case: Any) -> list[Finding]:
     """Hold track and wheel of a case to those of which CNOSSOS-EU knows the sound power."""
+    pads, wheel, track = track_label(case), wheel_label(case), case.track.model()
+    stiffness, mass, diameter = track.pad_stiffness, track.sleeper_mass, 2.0 * case.rolling.radius
+    least, most = cnossos.PAD_CLASSES[pads]
+    apart = abs(math.log(diameter / (1e-3 * float(wheel.split()[0]))))
+    vibration = "take the sound power from the vibration."
+    rows = (  # whether it is another one, quantity, value, limit and remedy
+        (
+            not least <= stiffness <= most,
+            ("dynamic stiffness of the rail pads", f"{stiffness / 1e6:.4g} MN/m"),
+            f'{least / 1e6:g} to {most / 1e6:g} MN/m, those of the class "{pads}"',
+            _relabelled("track_pad", pads, cnossos.nearest_pad_class(stiffness), f"such pads; {vibration}"),
+        ),
+        (
+            not MONO_BLOCK[0] <= mass <= MONO_BLOCK[1],
+            ("mass of half a sleeper", f"{mass:.4g} kg"),
+            f"{MONO_BLOCK[0]:g} to {MONO_BLOCK[1]:g} kg, those of one block of concrete",
+            f"Its tables here are those of mono-block sleepers; {vibration}",
+        ),
+        (
+            apart > math.log1p(CLOSE_DIAMETER),
+            ("diameter of the wheel", f"{1e3 * diameter:.4g} mm"),
+            f"within 15 % of {wheel}",
+            _relabelled("wheel_transfer", wheel, cnossos.nearest_wheel_transfer(diameter), "such a wheel."),
+        ),
+    )
     meaning = "CNOSSOS-EU's sound power is that of another track or wheel."
     return [
         Finding(f"{quantity}, for CNOSSOS-EU", value, limit, Grade.WARNING, meaning, remedy)
-        for quantity, value, limit, remedy in _strangers(case)
+        for other, (quantity, value), limit, remedy in rows
+        if other
     ]
 
 
-def _strangers(case: Any) -> Iterator[tuple[str, str, str, str]]:
-    """What of track and wheel CNOSSOS-EU does not mean: quantity, value, limit and remedy."""
-    label, track = track_label(case), case.track.model()
-    stiffness, mass = track.pad_stiffness, track.sleeper_mass
-    least, most = cnossos.PAD_CLASSES[label]
-    if not least <= stiffness <= most:
-        limit = f'{least / 1e6:g} to {most / 1e6:g} MN/m, those of the class "{label}"'
-        none = "It has no class for such pads; take the sound power from the vibration."
-        remedy = _relabelled("track_pad", label, cnossos.nearest_pad_class(stiffness), none)
-        yield "dynamic stiffness of the rail pads", f"{stiffness / 1e6:.4g} MN/m", limit, remedy
-    if not MONO_BLOCK[0] <= mass <= MONO_BLOCK[1]:
-        limit = f"{MONO_BLOCK[0]:g} to {MONO_BLOCK[1]:g} kg, those of one block of concrete"
-        remedy = "Its tables here are those of mono-block sleepers; take the sound power from the vibration."
-        yield "mass of half a sleeper", f"{mass:.4g} kg", limit, remedy
-    label, diameter = wheel_label(case), 2.0 * case.rolling.radius
-    if abs(math.log(diameter / (1e-3 * float(label.split()[0])))) > math.log1p(CLOSE_DIAMETER):
-        fitting, none = cnossos.nearest_wheel_transfer(diameter), "It has no class for such a wheel."
-        remedy = _relabelled("wheel_transfer", label, fitting, none)
-        yield "diameter of the wheel", f"{1e3 * diameter:.4g} mm", f"within 15 % of {label}", remedy
-
-
 def _relabelled(key: str, label: str, fitting: str, none: str) -> str:
-    return none if fitting == label else f'Set noise.{key} = "{fitting}", or leave it out.'
+    if fitting == label:
+        return f"It has no class for {none}"
+    return f'Set noise.{key} = "{fitting}", or leave it out.'
 
 
 def rolling_sound_power(
@@ -112,27 +118,29 @@ def rolling_sound_power(
     numbers, track = _bands(track_transfer)
     _, wheel = _bands(wheel_transfer)
     rough = [_bands(table) for table in (rail_roughness, wheel_roughness) if table is not None]
-    first, last = min(n[0] for n, _ in rough), max(n[-1] for n, _ in rough)
-    energy = np.zeros(last - first + 1)
+    wavelength = np.arange(min(n[0] for n, _ in rough), max(n[-1] for n, _ in rough) + 1)
+    energy = np.zeros(len(wavelength))
     for at, level in rough:
-        energy[at - first] += 10.0 ** (level / 10.0)
-    effective = 10.0 * np.log10(np.where(energy > 0.0, energy, np.nan))
+        energy[at - wavelength[0]] += 10.0 ** (level / 10.0)
     if contact_filter is not None:
         at, gain = _bands(contact_filter)
-        effective += gain[first - at[0] : last - at[0] + 1]
+        energy *= 10.0 ** (gain[wavelength - at[0]] / 10.0)
+    energy[energy == 0.0] = np.nan
     place = np.round(10.0 * np.log10(speed) - numbers, 9)  # 10 lg λ
-    wavelength = np.arange(first, last + 1)
-    shared = np.interp(place, wavelength, 10.0 ** (effective / 10.0), left=np.nan, right=np.nan)
-    roughness = 10.0 * np.log10(shared) + 10.0 * np.log10(axles)
-    levels = np.stack([roughness + track, roughness + wheel])
+    shared = axles * np.interp(place, wavelength, energy, left=np.nan, right=np.nan)
+    levels = 10.0 * np.log10(shared) + np.stack([track, wheel])
     return 10.0 ** (numbers / 10.0), np.vstack([levels, energy_sum(levels, axis=0)])
 
 
 def _bands(table: Table) -> tuple[NDArray[np.int64], Array]:
     """Numbers n of the bands 10^(n/10), rising, nearest to nominal or exact centres, and their levels."""
-    numbers, levels = np.rint(10.0 * np.log10(table[0])).astype(np.int64), np.asarray(table[1], dtype=float)
+    numbers, levels = _numbers(table[0]), np.asarray(table[1], dtype=float)
     order = np.argsort(numbers)
     return numbers[order], levels[order]
+
+
+def _numbers(centres: ArrayLike) -> NDArray[np.int64]:
+    return np.rint(10.0 * np.log10(centres)).astype(np.int64)
 
 
 def noise(computed: Computed) -> dict[Entry, Any]:
@@ -151,11 +159,8 @@ def noise(computed: Computed) -> dict[Entry, Any]:
     centres, linear = _linear(computed, None)
     _, filtered = _linear(computed, cnossos.contact_filter(contact_filter))
     changes = computed.force_levels - computed.force_levels[laws.index(bare)]
-    change = changes[:, 0]
-    if changes.shape[1] > 1:
-        change = 10.0 * np.log10(np.mean(10.0 ** (changes / 10.0), axis=1))
-    numbers, _ = _bands((computed.band, computed.band))
-    at = np.searchsorted(numbers, _bands((centres, centres))[0])
+    change = 10.0 * np.log10(np.mean(10.0 ** (changes / 10.0), axis=1))
+    at = np.searchsorted(_numbers(computed.band), _numbers(centres))
     levels = linear + np.where(np.isfinite(change), change, 0.0)[:, None, at]
     power, standard = schema.SOUND_POWER_LEVEL, schema.CNOSSOS_SOUND_POWER_LEVEL_A
     of_standard = a_weighted_total(filtered, centres)
@@ -221,27 +226,23 @@ def radiating_wheel(case: Any) -> RadiatingWheel | None:
 
 def silent_wheel(case: Any) -> str:
     """Say why the sound of a wheel is not computed; nothing where it is."""
-    if case.rolling.modes is None:
-        if case.rolling.receptance is None:
-            return "the wheel is rigid"
-        return "the wheel's receptance does not say how its disc and tread move"
-    if radiating_wheel(case) is None:
+    if radiating_wheel(case) is not None:
+        return ""
+    if case.rolling.modes is not None:
         return f"the table {case.ROLLING}.modes does not say how the modes move disc and tread"
-    return ""
+    if case.rolling.receptance is not None:
+        return "the wheel's receptance does not say how its disc and tread move"
+    return "the wheel is rigid"
 
 
 def warn_of_silence(case: Any) -> None:
     """Note that the sound power from vibration lacks the wheel's part, where it does."""
     if reason := silent_wheel(case):
-        warnings.warn(
-            MissingSourceWarning(
-                f"the sound power from vibration is that of rail and sleepers alone: {reason}. Above about "
-                f"2 kHz the wheel is the loudest. Give {case.ROLLING}.modes, with how they move the "
-                "wheel.",
-                Grade.NOTE,
-            ),
-            stacklevel=2,
+        message = (
+            f"the sound power from vibration is that of rail and sleepers alone: {reason}. Above about 2 kHz "
+            f"the wheel is the loudest. Give {case.ROLLING}.modes, with how they move the wheel."
         )
+        warnings.warn(MissingSourceWarning(message, Grade.NOTE), stacklevel=2)
 
 
 def radiation(computed: Computed) -> dict[Entry, Any]:
@@ -251,9 +252,8 @@ def radiation(computed: Computed) -> dict[Entry, Any]:
     holds what is known: without a wheel that says how its modes move it, rail and sleepers.
     """
     case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
-    power = np.maximum(
-        band_energies(computed.frequency, _radiated(computed), band / HALF_BAND, band * HALF_BAND), 0.0
-    )
+    edges = band / HALF_BAND, band * HALF_BAND
+    power = np.maximum(band_energies(computed.frequency, _radiated(computed), *edges), 0.0)
     power = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
     if silent != "computed":
         power[:, 2] = np.nan
