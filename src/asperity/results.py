@@ -5,8 +5,7 @@ from __future__ import annotations
 import io
 import math
 import os
-import zlib
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra")
-TRIED = 4096  # numbers of a part on which compression is tried
-WORTHWHILE = 0.75  # largest size, relative to that as they are, of numbers that are worth compressing
+PACKED = {"fletcher32": True, "zlib": True, "complevel": 1, "shuffle": True}
+"""How numbers are written: with a checksum, and compressed."""
 LARGEST_FILE = 16 * 2**30  # bytes
 MOST_UNPACKED = 100  # times its size that the numbers of a file may take, in memory
 SMALL = 2**26  # bytes that any file may take
@@ -43,22 +42,6 @@ def variable(
     import xarray
 
     return xarray.Variable(dims, values, {"units": units, "long_name": long_name, **attrs})
-
-
-def checked(tree: xarray.DataTree) -> xarray.DataTree:
-    """Return `tree` itself, once every variable and coordinate in it has units and a long name.
-
-    A `ValueError` is a fault of the program, not of its input.
-    """
-    bare: list[Hashable] = [
-        f"{node.path}/{name}".replace("//", "/")
-        for node in tree.subtree
-        for name, values in node.to_dataset(inherit=False).variables.items()
-        if not {"units", "long_name"} <= values.attrs.keys()
-    ]
-    if bare:
-        raise ValueError(f"results without units or long_name: {', '.join(map(str, bare))}")
-    return tree
 
 
 def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
@@ -82,34 +65,18 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     >>> asperity.save(asperity.run(case), "runs/first/run.nc").name
     'run.nc'
     """
-    checked(tree)
+    nodes = {node.path: node.to_dataset(inherit=False).variables for node in tree.subtree}
+    all_of = [(f"{path}/{name}", values) for path, held in nodes.items() for name, values in held.items()]
+    bare = [path for path, values in all_of if not {"units", "long_name"} <= values.attrs.keys()]
+    if bare:  # a fault of the program
+        raise ValueError(f"results without units or long_name: {', '.join(bare)}".replace("//", "/"))
     encoding = {
-        node.path: {
-            name: _encoding(values.values)
-            for name, values in node.to_dataset(inherit=False).variables.items()
-            if values.dtype.kind in "iuf" and values.ndim
-        }
-        for node in tree.subtree
+        path: {name: PACKED for name, values in held.items() if values.dtype.kind in "iuf" and values.ndim}
+        for path, held in nodes.items()
     }
     image = io.BytesIO()  # HDF5 itself ends the process where a disk is full
     _storable(tree).to_netcdf(image, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
     return write_bytes(path, image.getbuffer(), sealed=True)
-
-
-def _encoding(values: NDArray[Any]) -> dict[str, Any]:
-    """Say how numbers (...) are written: compressed where that saves much, always with a checksum.
-
-    The last digits of what was computed look random, and to compress them takes longer than to write them.
-    What can be saved is tried on three parts of the numbers, a byte of all after the other, as HDF5 shuffles.
-    """
-    import numpy as np
-
-    numbers = values.reshape(-1)
-    starts = {max(0, share * (numbers.size - TRIED) // 2) for share in range(3)}
-    tried = np.concatenate([numbers[start : start + TRIED] for start in starts])
-    shuffled = tried.view(np.uint8).reshape(-1, tried.itemsize).T.tobytes()
-    pays = len(zlib.compress(shuffled, 1)) < WORTHWHILE * len(shuffled)
-    return {"fletcher32": True} | ({"zlib": True, "complevel": 1, "shuffle": True} if pays else {})
 
 
 def _storable(tree: xarray.DataTree) -> xarray.DataTree:

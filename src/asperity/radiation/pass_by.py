@@ -297,8 +297,5 @@ def _measured(time: Array, whole: Array, passed: tuple[float, float]) -> tuple[f
 
 def _integral(time: Array, squared: Array, start: float, end: float) -> Array:
     """Integral of what is linear between its samples, (s,)."""
-    within = (time > start) & (time < end)
-    nodes = np.concatenate([[start], time[within], [end]])
-    ends = np.stack([[np.interp(at, time, one) for at in (start, end)] for one in squared])
-    values = np.concatenate([ends[:, :1], squared[:, within], ends[:, 1:]], axis=1)
-    return np.asarray(np.trapezoid(values, nodes, axis=1))
+    nodes = np.concatenate([[start], time[(time > start) & (time < end)], [end]])
+    return np.trapezoid([np.interp(nodes, time, one) for one in squared], nodes, axis=1)

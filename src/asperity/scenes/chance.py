@@ -12,8 +12,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array, Complex
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, spectra
 from asperity.spectra import (
@@ -29,8 +29,6 @@ LINES = 4096
 """Frequencies in a band: they resolve loss factors down to 10⁻⁴."""
 PLACES = 8
 """Places along the record at which the linear contact is looked at."""
-
-Array = NDArray[np.float64]
 
 
 def values_seen(signal: Array, step: float, centres: Array) -> Array:
@@ -53,7 +51,7 @@ def values_seen(signal: Array, step: float, centres: Array) -> Array:
 
 
 def chance_and_start(
-    transfer: Callable[[Array], NDArray[np.complex128]], centres: Array, settled: float, record: float
+    transfer: Callable[[Array], Complex], centres: Array, settled: float, record: float
 ) -> tuple[Array, Array]:
     """Independent values that bands hold (b,), and the share of their mean square that is not built up (b,).
 
@@ -83,7 +81,7 @@ def sureness(computed: Computed) -> dict[Entry, Any]:
 
     By the first contact: others of one path hold much the same.
     """
-    case, run, band, laid_out = computed.case, computed.first, computed.band, dict[Entry, Any]()
+    case, run, band = computed.case, computed.first, computed.band
     time = averaging_time(len(run.time), case.time_step, segment=computed.segment)
     seen = values_seen(run.contact_force[0], case.time_step, band)
     record, (begin, end) = float(run.time[-1]), run.positions[0, [0, -1]]
@@ -92,7 +90,7 @@ def sureness(computed: Computed) -> dict[Entry, Any]:
     product = band_product(band, time)
     held, start = chance_and_start(transfer, band, case.settled_time, record)
     values = np.minimum(product * seen, held * time / record)
-    return laid_out | {
+    return {
         spectra.START_SHARE: spectra.START_SHARE.variable(start, most=MOST_START),
         spectra.BAND_TIME_PRODUCT: spectra.BAND_TIME_PRODUCT.variable(product, least=LEAST_PRODUCT),
         spectra.LEVEL_DEVIATION: level_deviation(values),

@@ -12,6 +12,7 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import Finding, InhomogeneousWarning, ShortRecordWarning
 from asperity.reduction.filter import punch_filter, punch_taps, response
 from asperity.scenarios.geometry import Geometry
@@ -33,7 +34,6 @@ from asperity.surfaces.statistics import (
     survey_strip,
 )
 
-Array = NDArray[np.float64]
 PATH_ROWS = 2000
 """Rows of a path, at most, that are kept to be looked at from above."""
 FEWEST_POINTS = 16

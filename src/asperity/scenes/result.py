@@ -17,7 +17,6 @@ from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning, warn_of_findings
 from asperity.progress import Progress
 from asperity.reference import cnossos
-from asperity.results import checked
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenes import noise, schema, track, validity
@@ -54,22 +53,13 @@ def computed_result(
     *,
     brief: bool = False,
 ) -> xarray.DataTree:
-    """Compute a case and lay out its result, in brief without what only its report shows.
-
-    Warnings of laying out may be added to `caught`.
-    """
-    return layout(compute(prepared, progress), caught, brief=brief)
-
-
-def layout(
-    computed: Computed, caught: list[warnings.WarningMessage], *, brief: bool = False
-) -> xarray.DataTree:
-    """Lay out what was computed: surface, contact, rolling and spectra; of a track itself and the pass-by.
+    """Compute a case and lay its result out: surface, contact, rolling and spectra; a track and its pass-by.
 
     With units and provenance. `caught` are the warnings met on the way; those of laying out may still be
     added to it. In brief without what only a report shows: what the path is like, and the choice of a law
     where nothing depends on it.
     """
+    computed = compute(prepared, progress)
     case, scene, over_frequency = computed.case, computed.scene, spectra_group(computed)
     choice, population = validity.choice_of(computed, brief=brief), answers(computed)
     found, own = validity.findings(computed, population, choice), dict[str, xarray.Dataset]()
@@ -117,7 +107,7 @@ def layout(
             provenance.WARNINGS: as_json(_collected(caught)),
         }
     )
-    return checked(tree)
+    return tree
 
 
 def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:

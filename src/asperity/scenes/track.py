@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from asperity.arguments import Array
 from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
@@ -33,8 +34,6 @@ from asperity.structures.rail_poles import RailPoles
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
-
-Array = NDArray[np.float64]
 
 
 def track_spectra(computed: Computed) -> dict[Entry, Any]:
