@@ -21,7 +21,7 @@ from asperity.reference import cnossos
 from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, Line, Panel
 from asperity.reporting.figure import write_chart
 from asperity.reporting.panels import frequency_axis
-from asperity.scenarios.linear_force import force_transfer
+from asperity.scenarios.scene import force_transfer
 from asperity.scenes.noise import rolling_sound_power
 from asperity.spectra import a_weighted_total, nominal
 

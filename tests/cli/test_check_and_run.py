@@ -16,7 +16,7 @@ from asperity.cli.planning import plan
 from asperity.cli.running import earlier_result, name_of_run
 from asperity.results import read_result
 from asperity.running import prepare_case
-from asperity.scenarios.expecting import expect
+from asperity.scenarios.preparing import expect
 from asperity.store import Store
 from command_line import CASE, RAIL, SMALL, call, words_of
 
@@ -276,7 +276,7 @@ def test_a_path_of_ten_metres_is_planned_announced_and_refused_where_no_disk_hol
     said = call("run", "long.toml", "-o", "out", code=3).stderr
     assert f"Scan of the path: {planned[1]} positions" in said
     assert "if interrupted or killed, it goes on after its last finished block" in said
-    monkeypatch.setattr("asperity.scenarios.expecting.free_space", lambda path: 2**20)
+    monkeypatch.setattr("asperity.scenarios.preparing.free_space", lambda path: 2**20)
     message = call("run", "long.toml", "-o", "out", code=2).stderr
     assert "disk of the cache: received 1 MiB free" in message
     assert "ASPERITY_CACHE" in message

@@ -11,7 +11,7 @@ import numpy as np
 from ledger import Check
 
 from asperity.reference import cnossos
-from asperity.scenarios.linear_force import force_transfer
+from asperity.scenarios.scene import force_transfer
 from asperity.scenes.noise import rolling_sound_power
 from asperity.spectra import a_weighted_total
 from asperity.structures.track import Track

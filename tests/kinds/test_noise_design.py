@@ -9,7 +9,7 @@ import pytest
 
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.reference import cnossos
-from asperity.scenarios.linear_force import force_transfer, linear_force_psd
+from asperity.scenarios.scene import force_transfer, linear_force_psd
 from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
 from asperity.structures.track import Track, decay_rate
 from asperity.structures.wheel import Wheel

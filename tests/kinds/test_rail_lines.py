@@ -9,7 +9,7 @@ from asperity.case.cases import parse_case
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.running import prepare_case
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.linear_force import force_transfer
+from asperity.scenarios.scene import force_transfer
 from asperity.scenarios.textures import textures_of
 from asperity.scenes.compute import compute
 from like_measured import either, wheel_lines, where_measured

@@ -15,9 +15,9 @@ from asperity.cli.planning import plan
 from asperity.reference.law_accuracy import Place, law_map, mapped_points
 from asperity.running import prepare_case
 from asperity.scenarios import law_choice
-from asperity.scenarios.expecting import Work
 from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.law_choice import ExpectedError, choose, expected_error, place_of
+from asperity.scenarios.preparing import Work
 from asperity.scenarios.scene import scene_of
 from asperity.scenes.validity import doubted_by_area
 from asperity.surfaces.heightmap import HeightMap, Profile

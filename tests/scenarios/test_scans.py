@@ -11,8 +11,8 @@ from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.laws.layout import force
 from asperity.running import prepare_case
 from asperity.scenarios import laws, reducing
-from asperity.scenarios.expecting import expect, scan_sizes, try_contacts
 from asperity.scenarios.geometry import geometry_of
+from asperity.scenarios.preparing import expect, scan_sizes, try_contacts
 from asperity.scenes.compute import compute
 from asperity.store import Store
 from one_contact import first_contact

@@ -14,7 +14,7 @@ from asperity.contact import HalfSpace
 from asperity.contact.scan import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.running import prepare_case
-from asperity.scenarios.expecting import Work, try_contacts
+from asperity.scenarios.preparing import Work, try_contacts
 from asperity.scenes.validity import SLOPE
 from asperity.surfaces.levelling import band_limit
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError, LossFactorWarning
-from asperity.scenarios.linear_force import force_transfer, linear_force_psd, mean_square_transfer
+from asperity.scenarios.scene import force_transfer, linear_force_psd, mean_square_transfer
 from asperity.scenes import track as of_tracks
 from asperity.scenes.track import linear_reference, loss_factor_error, warn_of_loss_factors
 from asperity.spectra import nominal_frequency, psd

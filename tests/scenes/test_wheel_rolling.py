@@ -8,7 +8,7 @@ from asperity.laws import HertzLaw, Linear
 from asperity.radiation.passing import passed_points
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
-from asperity.scenarios.linear_force import linear_force_psd
+from asperity.scenarios.scene import linear_force_psd
 from asperity.spectra import band_levels, psd
 from asperity.structures.moving_kernel import HatResponse, moving_kernel
 from asperity.structures.track import Track

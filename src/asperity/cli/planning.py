@@ -19,9 +19,8 @@ from asperity.terminal import say, say_table
 from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
-    from asperity.scenarios.expecting import Work
     from asperity.scenarios.law_choice import LawChoice
-    from asperity.scenarios.preparing import PreparedCase
+    from asperity.scenarios.preparing import PreparedCase, Work
 
 Rows = list[tuple[str, str]]
 """Names, and values with their units."""
@@ -62,7 +61,7 @@ def _kept_plan(case: Case, source: str, *, converge: bool) -> dict[str, Any]:
 
 def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]:
     """What will be computed from a case, with convergence if it is asked for: rows, seconds and warnings."""
-    from asperity.scenarios.expecting import expect
+    from asperity.scenarios.preparing import expect
     from asperity.scenes.validity import foreseen
 
     with progress_bar() as progress:
@@ -85,7 +84,7 @@ def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]
 
 
 def plan(prepared: PreparedCase, work: Work) -> Rows:
-    """List what will be computed and how much work it is, from `asperity.scenarios.expecting.expect`."""
+    """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
     from asperity.scenarios.reducing import STATES
     from asperity.scenes.plan import planned_rows
 

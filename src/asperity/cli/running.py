@@ -24,8 +24,7 @@ from asperity.terminal import detail, remark, say, say_files
 if TYPE_CHECKING:
     from xarray import DataTree
 
-    from asperity.scenarios.expecting import ScanSize
-    from asperity.scenarios.preparing import PreparedCase
+    from asperity.scenarios.preparing import PreparedCase, ScanSize
 
 RESULT, PAGE = "run.nc", "report.html"
 READING = "reading and laying out the case"
@@ -177,7 +176,7 @@ def described_scan(scan: ScanSize) -> str:
 
 def announce_scan(prepared: PreparedCase) -> None:
     """Before a long scan of a path starts, say how long it is."""
-    from asperity.scenarios.expecting import scan_sizes
+    from asperity.scenarios.preparing import scan_sizes
 
     scan = scan_sizes(prepared.case, prepared.shape, prepared.textures).get("path")
     if scan is not None and scan.solutions >= ANNOUNCED:

@@ -22,8 +22,8 @@ from asperity.errors import CaseError, InputError
 from asperity.optimising.allocation import Limits
 from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
 from asperity.running import prepare_case
-from asperity.scenarios.measure import A_WEIGHTED, MEASURE_NAMES
 from asperity.scenarios.records import spectrum_levels
+from asperity.scenes.plan import A_WEIGHTED, MEASURE_NAMES
 from asperity.spectra import HALF_BAND, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile

@@ -22,8 +22,7 @@ from asperity.optimising.definition import Assignment, Bands, assignment_of, ban
 from asperity.optimising.searching import Trial, search
 from asperity.progress import Progress, shown_progress
 from asperity.running import prepare_case, run
-from asperity.scenarios.measure import Measure, line_frequencies
-from asperity.scenes.plan import measures_of
+from asperity.scenes.plan import Measure, line_frequencies, measures_of
 from asperity.scenes.result import computed_result
 from asperity.spectra import band_energies
 from asperity.store import Store, content_key

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
 from asperity.contact import HalfSpace, Hertz
@@ -36,7 +36,7 @@ class Geometry:
     """The gap of two smooth bodies on the contact grid, and their closed-form contact."""
 
     # (nx, ny), gap of the smooth bodies at zero approach, m; zero at its lowest point, the middle cell
-    body: NDArray[np.float64]
+    body: Array
     spacing: tuple[float, float]  # (dx, dy), m
     modulus: float  # E*, Pa
     hertz: Hertz  # smooth contact; of the osculating paraboloids where the gap is none
@@ -116,13 +116,13 @@ def cells_over(length: float, spacing: float) -> int:
     return math.ceil(length / spacing - 1e-6)
 
 
-def across_window(contact: ContactKeys) -> NDArray[np.float64]:
+def across_window(contact: ContactKeys) -> Array:
     """Coordinates (n,) of the window's cells from its middle, in both directions, m."""
     n = window_cells(contact)
     return contact.spacing * np.arange(-(n // 2), n // 2 + 1, dtype=np.float64)
 
 
-def parabola(contact: ContactKeys, radius: float) -> NDArray[np.float64]:
+def parabola(contact: ContactKeys, radius: float) -> Array:
     """Section x²/2R (n,) of the gap on the window's cells, R and section in m."""
     return across_window(contact) ** 2 / (2.0 * radius)
 
@@ -218,7 +218,7 @@ class _Section:
             self._spline = scipy.interpolate.make_interp_spline(y, -levelled.heights, k=3)
             self.half_width = float(y[-1])
 
-    def at(self, y: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, y: Array) -> Array:
         if self._spline is None:
             return 0.5 * self.curvature * y**2
         if (reach := np.abs(y).max()) > self.half_width:
@@ -230,7 +230,7 @@ class _Section:
         return np.asarray(self._spline(y))
 
 
-def _measured_gap(case: Case, hertz: Hertz, load: float) -> tuple[NDArray[np.float64], Hertz]:
+def _measured_gap(case: Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
     y, body, over = across_window(case.contact), case.rolling, case.rolled_over
     keys = f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"
@@ -249,9 +249,7 @@ def _measured_gap(case: Case, hertz: Hertz, load: float) -> tuple[NDArray[np.flo
     return gap, hertz
 
 
-def _lowest_in_the_middle(
-    tread: _Section, head: _Section, y: NDArray[np.float64], keys: str
-) -> NDArray[np.float64]:
+def _lowest_in_the_middle(tread: _Section, head: _Section, y: Array, keys: str) -> Array:
     """Gap across, m, moved so that the bodies first touch in the middle of the window."""
     reach = min(tread.half_width, head.half_width)
     middle = 0.0

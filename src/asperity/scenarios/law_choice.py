@@ -9,9 +9,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
+from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.errors import percent
 from asperity.reduction.texture import areal_texture
@@ -26,14 +26,12 @@ from asperity.threads import thread_count
 
 ROWS = 2**15
 """Most rows of a path, from its middle, that are looked at: a length that is transformed fast."""
-LINES = 8
-"""Lines along a path that are transformed at a time: all of them would take much memory."""
 STEEPNESS = 8
 """Power of the wavenumber with which waves are left out below the lowest: a steeper edge rings longer."""
 RESOLUTION = 10.0
 """Step of the frequencies at which the linear force is summed, Hz, where the path is long enough."""
 
-SquareTransfer = Callable[[float, NDArray[np.float64]], NDArray[np.float64]]
+SquareTransfer = Callable[[float, Array], Array]
 """Mean square of the linear contact force per height of the texture (f,), (N/m)², by contact stiffness, N/m,
 and frequencies (f,), Hz."""
 
@@ -61,7 +59,7 @@ def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: Square
     )
 
 
-def _heard(path: Strip, shape: Geometry, speed: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _heard(path: Strip, shape: Geometry, speed: float) -> tuple[Array, Array]:
     """Heights (rows, ny) and the plane (rows,) that the patch feels, m, of what excites 100 Hz or more."""
     beside = shape.body.shape[0] // 2  # at its ends the patch sees nothing
     rows = min(path.shape[0], ROWS + 2 * beside)
@@ -73,7 +71,7 @@ def _heard(path: Strip, shape: Geometry, speed: float) -> tuple[NDArray[np.float
     return without_slow(heights[known], dx, lowest), without_slow(felt[known], dx, lowest)
 
 
-def without_slow(heights: NDArray[np.float64], spacing: float, lowest: float) -> NDArray[np.float64]:
+def without_slow(heights: Array, spacing: float, lowest: float) -> Array:
     """Heights (rows, ...) without waves along x below a wavenumber, cycles/m.
 
     The edge is smooth, half the height at the wavenumber. They are mirrored at their ends, and what is within
@@ -81,20 +79,15 @@ def without_slow(heights: NDArray[np.float64], spacing: float, lowest: float) ->
     """
     rows = len(heights)
     share = np.arange(rows) / (2.0 * rows * spacing * lowest)
-    gain = (share**STEEPNESS / (1.0 + share**STEEPNESS))[:, None]
+    gain = share**STEEPNESS / (1.0 + share**STEEPNESS)
     cut = min(round(1.0 / (lowest * spacing)), rows // 8)
-    kept = np.empty((rows - 2 * cut, *heights.shape[1:]))
-    lines, found = heights.reshape(rows, -1), kept.reshape(len(kept), -1)
-    for first in range(0, lines.shape[1], LINES):
-        among = slice(first, first + LINES)
-        spectra = fft.dct(lines[:, among], axis=0, workers=thread_count())  # of mirrored lines
-        spectra *= gain
-        passed = fft.idct(spectra, axis=0, overwrite_x=True, workers=thread_count())
-        found[:, among] = passed[cut : rows - cut]
-    return kept
+    spectra = fft.dct(heights, axis=0, workers=thread_count())  # of mirrored lines
+    spectra *= gain.reshape(-1, *[1] * (heights.ndim - 1))
+    passed = fft.idct(spectra, axis=0, overwrite_x=True, workers=thread_count())
+    return np.asarray(passed[cut : rows - cut])
 
 
-def correlation_lengths(heights: NDArray[np.float64], spacing: tuple[float, float]) -> tuple[float, float]:
+def correlation_lengths(heights: Array, spacing: tuple[float, float]) -> tuple[float, float]:
     """Lags along and across, m, at which the mean product of heights (rows, ny) falls to 0.2 of their square.
 
     The threshold is that of ISO 25178-2 for Sal. Where it is not reached: half the length, or half the width.
@@ -102,11 +95,8 @@ def correlation_lengths(heights: NDArray[np.float64], spacing: tuple[float, floa
     rows, columns = heights.shape
     furthest = rows // 2
     period = fft.next_fast_len(rows + furthest, real=True)
-    power = np.zeros(period // 2 + 1)
-    for first in range(0, columns, LINES):
-        spectra = fft.rfft(heights[:, first : first + LINES], period, axis=0, workers=thread_count())
-        power += np.einsum("fl,fl->f", spectra.real, spectra.real)
-        power += np.einsum("fl,fl->f", spectra.imag, spectra.imag)
+    spectra = fft.rfft(heights, period, axis=0, workers=thread_count())
+    power = np.sum(spectra.real**2 + spectra.imag**2, axis=1)
     along = fft.irfft(power, period)[: furthest + 1] / (columns * (rows - np.arange(furthest + 1)))
     across = [
         np.einsum("xy,xy->", heights[:, : columns - lag], heights[:, lag:]) / (rows * (columns - lag))
@@ -115,7 +105,7 @@ def correlation_lengths(heights: NDArray[np.float64], spacing: tuple[float, floa
     return _fallen(along, spacing[0]), _fallen(np.array(across), spacing[1])
 
 
-def _fallen(products: NDArray[np.float64], step: float) -> float:
+def _fallen(products: Array, step: float) -> float:
     share = products / max(products[0], np.finfo(float).tiny)
     below = np.flatnonzero(share <= CORRELATION_THRESHOLD)
     if not below.size:
@@ -125,9 +115,7 @@ def _fallen(products: NDArray[np.float64], step: float) -> float:
     return step * (k - 1 + float((share[k - 1] - CORRELATION_THRESHOLD) / fall))
 
 
-def _linear_force(
-    felt: NDArray[np.float64], shape: Geometry, speed: float, square_transfer: SquareTransfer
-) -> float:
+def _linear_force(felt: Array, shape: Geometry, speed: float, square_transfer: SquareTransfer) -> float:
     """Rms force, N, of the linear contact that follows the felt plane (rows,), m, up to 10 kHz."""
     dx = shape.spacing[0]
     wavenumber, density = psd(felt, dx, segment=min(len(felt), round(speed / RESOLUTION / dx)))
@@ -306,7 +294,7 @@ def estimate(mapped: LawMap, kind: str, place: Place, law: str) -> tuple[float, 
 
 
 @lru_cache(maxsize=32)
-def _fitted(mapped: LawMap, law: str) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _fitted(mapped: LawMap, law: str) -> tuple[Array, Array, Array]:
     """Coordinates of the points of a law, logarithms of its errors there, and their inverse covariance."""
     known = [point for point in mapped.points if law in point.errors]
     at = np.array([_coordinates(mapped, point.kind, point.place) for point in known])
@@ -314,13 +302,13 @@ def _fitted(mapped: LawMap, law: str) -> tuple[NDArray[np.float64], NDArray[np.f
     return at, np.log([point.errors[law] for point in known]), inverse
 
 
-def _covariance(these: NDArray[np.float64], those: NDArray[np.float64]) -> NDArray[np.float64]:
+def _covariance(these: Array, those: Array) -> Array:
     """Covariance (n, m) of logarithms at coordinates (n, c) and (m, c)."""
     squares = np.sum((these[:, None] - those) ** 2, axis=-1)
     return np.asarray(np.exp(-0.5 * squares / REACH**2) + TREND * these @ those.T)
 
 
-def _coordinates(mapped: LawMap, kind: str, place: Place) -> NDArray[np.float64]:
+def _coordinates(mapped: LawMap, kind: str, place: Place) -> Array:
     """Coordinates of a place; a contact feels no difference between lengths far beyond its own."""
     lengths = (min(place.correlation, LONG), min(place.across, WIDE))
     ratios = np.maximum([place.within, place.dynamic, *lengths, place.highest_wavenumber], TINY)

@@ -9,9 +9,8 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import shown
+from asperity.arguments import Array, shown
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
 from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, warn_of_flaws
@@ -36,7 +35,7 @@ class LawMaterials:
     shape: Geometry
     reduction: reducing.Reduction | None  # state functions; None where the case has no samples
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
-    planes: NDArray[np.float64] | None
+    planes: Array | None
     cache: Cache  # for the scan of the path
     progress: Progress
 
@@ -129,7 +128,7 @@ class LawMaterials:
         return scanned
 
     @property
-    def _scanned_planes(self) -> NDArray[np.float64]:
+    def _scanned_planes(self) -> Array:
         """Planes at the positions of the scan, m, peaks positive.
 
         To a femtometre: what Fourier transforms leave depends on where along the path they are taken.

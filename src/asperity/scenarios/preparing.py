@@ -1,31 +1,38 @@
-"""What comes before the work: the bodies, textures and geometry of a case, or all that is wrong with them."""
+"""What comes before the work: all that a case needs, what is wrong with it, and what the run will take."""
 
 from __future__ import annotations
 
 import math
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from functools import partial
+from typing import Any
 
 import numpy as np
 
+from asperity.arguments import Array
 from asperity.case.chosen import with_chosen
 from asperity.case.scene import Case
 from asperity.contact.batched import find_device
+from asperity.contact.scan import FILTER_SHARE, ScanJob, rtol_for, scan_forces
 from asperity.errors import CaseError, InputError, PhysicsWarning
+from asperity.files import amount, free_space
+from asperity.laws import Need, needs_of, spec_of
+from asperity.progress import Progress
 from asperity.reduction.filter import FEWEST_POSITIONS
-from asperity.scenarios.expecting import problem_of_disk, scan_sizes
+from asperity.scenarios import reducing
+from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.geometry import Geometry, geometry_of, window_cells
-from asperity.scenarios.reducing import filter_stride
+from asperity.scenarios.laws import table_stride
+from asperity.scenarios.running_in import running_in_passes, running_in_positions
 from asperity.scenarios.scene import Scene, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
-from asperity.store import Store
+from asperity.store import MOST_HELD, Store
+from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 from asperity.units import written
-
-T = TypeVar("T")
 
 STEEPEST = 1.0
 """Rms slope up to which surfaces are taken for such: the half-space is for small ones."""
@@ -38,6 +45,16 @@ _UNITS = {
     "spectrum": "Are the levels in dB re 1 µm, and the wavelengths in their unit?",
 }
 """What to ask about heights that are too large, by the key that they come from."""
+NEIGHBOUR = 0.4
+"""Time of a contact that starts from its neighbour's pressure to that of one that does not."""
+STEP_TIME = 1e-6
+"""Time of a step of one contact by a law that looks its force up, and of its spectra and record, s."""
+TRACK_TIME = 2.0
+"""Time of the moving kernels of a track, for each of its distances, s."""
+START_TIME = 2.0
+"""Time of starting the program, of laying out a result and of writing its report, s."""
+LONG = 2.0
+"""Processor time, s, after which no further sample is pressed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,25 +73,28 @@ class PreparedCase:
 def prepare(case: Case, source: str = "case") -> PreparedCase:
     """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
     begin, spent = time.perf_counter(), time.process_time()
+    made, errors = list[Any](), list[InputError]()
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
         warnings.simplefilter("always", PhysicsWarning)
-        tried = _Attempts()
-        scene = tried(lambda: scene_of(case))
-        shape = tried(lambda: geometry_of(case))
-        textures = tried(lambda: textures_of(case))
-        tried(thread_count)
-        tried(find_device)
-        tried.refuse(source)
-        assert scene is not None
-        assert shape is not None
-        assert textures is not None
+        whole = (partial(make, case) for make in (scene_of, geometry_of, textures_of))
+        for make in (*whole, thread_count, find_device):
+            try:
+                made.append(make())
+            except InputError as error:
+                errors.append(error)
+        _refuse(errors, source)
+        scene, shape, textures, *_ = made
         if (smaller := _within_the_map(case, textures)) is not None:
             return prepare(smaller, source)
-        tried.errors += _problems(case, shape, textures)
-        tried.refuse(source)
+        _refuse(list(_problems(case, shape, textures)), source)
         warn_of_textures(case, shape, textures)
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
     return PreparedCase(case, scene, shape, textures, tuple(caught), seconds, processor)
+
+
+def _refuse(errors: Sequence[InputError], source: str) -> None:
+    if errors:
+        raise errors[0] if len(errors) == 1 else CaseError(source, [str(error) for error in errors])
 
 
 def _within_the_map(case: Case, textures: Textures) -> Case | None:
@@ -84,26 +104,6 @@ def _within_the_map(case: Case, textures: Textures) -> Case | None:
         return None
     cells = int(smallest) - 1 + int(smallest) % 2  # odd, as those of every window
     return with_chosen(case, {"contact": {"window": cells * case.contact.spacing}})
-
-
-class _Attempts:
-    """Tries one thing after the other, so that all errors come at once."""
-
-    def __init__(self) -> None:
-        self.errors: list[InputError] = []
-
-    def __call__(self, make: Callable[[], T]) -> T | None:
-        try:
-            return make()
-        except InputError as error:
-            self.errors.append(error)
-            return None
-
-    def refuse(self, source: str) -> None:
-        if len(self.errors) == 1:
-            raise self.errors[0]
-        if self.errors:
-            raise CaseError(source, [str(error) for error in self.errors])
 
 
 def _problem_of_heights(case: Case, shape: Geometry, textures: Textures) -> InputError | None:
@@ -138,7 +138,7 @@ def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[Input
         yield InputError("contact.window", received, allowed, "Choose a smaller contact.window.")
         return
     if textures.strips and any(strip.heights.any() for strip in textures.strips):
-        rows, stride = min(strip.shape[0] for strip in textures.strips), filter_stride(shape)
+        rows, stride = min(strip.shape[0] for strip in textures.strips), reducing.filter_stride(shape)
         if (rows - nx) // stride + 1 < FEWEST_POSITIONS:
             least = (nx + (FEWEST_POSITIONS - 1) * stride) * contact.spacing
             received = f"strips of {rows * contact.spacing * 1e6:.4g} um"
@@ -146,9 +146,11 @@ def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[Input
             yield InputError(
                 "contact.sample_length", received, allowed, "Lengthen it, or measure larger maps."
             )
-    path = scan_sizes(case, shape, textures).get("path")
-    if path is not None:
-        yield from problem_of_disk(path, Store().root)
+    path, root = scan_sizes(case, shape, textures).get("path"), Store().root
+    if path is not None and (free := free_space(root)) < path.bytes > MOST_HELD:
+        remedy = "Set $ASPERITY_CACHE to a folder on another disk, or free some space."
+        allowed = f"{amount(path.bytes)} for the scan of the path"
+        yield InputError("disk of the cache", f"{amount(free)} free in {root}", allowed, remedy)
     if contact.running_in is not None and not textures.strips:
         allowed = "only together with a surface that asperities are known of: file, or rms"
         yield InputError(
@@ -161,3 +163,137 @@ def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[Input
             received = f"{contact.hardness / 1e9:.4g} GPa, with which the window carries {largest:.4g} N"
             allowed = f"more than the {needed:.4g} N that are needed"
             yield InputError("contact.hardness", received, allowed, "Enlarge contact.window.")
+
+
+# --- what a run will take
+
+
+@dataclass(frozen=True)
+class ScanSize:
+    """What a scan will take."""
+
+    positions: int
+    states: int
+    step: float  # distance of the positions, m
+    bytes: int  # on disk
+    single: bool  # whether the iteration will be in single precision
+
+    @property
+    def solutions(self) -> int:
+        """Contact solutions, at most: states that do not touch need none."""
+        return self.positions * self.states
+
+
+def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, ScanSize]:
+    """Find the sizes of the scans of a case, of as many states as it names or the run chooses.
+
+    ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up.
+    """
+    half_space = shape.half_space(None)
+    states = np.arange(float(len(case.contact.approaches or range(reducing.STATES))))
+
+    def sized(strips: Sequence[Strip], stride: int, accuracy: float, anchor: int = 0) -> ScanSize:
+        rtol = rtol_for(accuracy * case.numerics.force_accuracy)
+        jobs = [
+            ScanJob(half_space, strip, shape.body, states, stride, rtol, anchor=anchor) for strip in strips
+        ]
+        positions, size = sum(job.positions for job in jobs), sum(job.bytes for job in jobs)
+        single = any(job.single for job in jobs)
+        return ScanSize(positions, len(states), stride * shape.spacing[0], size, single)
+
+    sizes = {}
+    if strips := [strip for strip in textures.strips if strip.heights.any()]:
+        sizes["filters"] = sized(strips, reducing.filter_stride(shape), FILTER_SHARE)
+    if Need.SCAN in needs_of(case.laws) and textures.path is not None:
+        sizes["path"] = sized([textures.path], table_stride(shape), 1.0, textures.before)
+    return sizes
+
+
+@dataclass(frozen=True, eq=False)
+class ContactTrial:
+    """What samples of a case say of its contact."""
+
+    approaches: Array  # (k,), states much as the run will choose them, m
+    working: float  # approach of a sample under the working load, m
+    pressed: reducing.PressedSamples  # under that load; a few where that takes long
+    cut_off: float  # share of the contacts of a loading curve that the window cuts off
+    solution: float  # processor time of a contact of that curve, s
+
+
+def try_contacts(case: Case, shape: Geometry, textures: Textures, progress: Progress) -> ContactTrial:
+    """Press some samples of a case, and compute the loading curve of the first."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        progress(0, 2, "trying contacts")
+        samples = reducing.samples_of(case, shape, textures.maps, shape.class_axes)
+        half_space = shape.half_space(case.contact.hardness)
+        solve = partial(half_space.solve, load=shape.load, rtol=case.numerics.rtol)
+        contacts, begin = [solve(shape.body - samples[0])], time.process_time()
+        for sample in samples[1:]:
+            if time.process_time() - begin > LONG:
+                break
+            contacts.append(solve(shape.body - sample))
+        pressed = reducing.PressedSamples(half_space, contacts, solve(shape.body))
+        progress(1, 2, "trying contacts")
+        working = contacts[0].approach
+        if (given := case.contact.approaches) is None:
+            places = reducing.touched_places(textures, shape)
+            approaches = reducing.chosen_states([samples[0], *places], shape, half_space)
+        else:
+            approaches = np.array(given)
+            highest = [[half_space.solve(shape.body - s, r).force for r in given[-2:]] for s in samples]
+            reducing.refuse_low_states(approaches, np.mean(highest, axis=0), shape, working)
+        rtol, begin = rtol_for(case.numerics.force_accuracy), time.process_time()
+        job = ScanJob(half_space, Rows(samples[0]), shape.body, approaches, rtol=rtol, device=None)
+        counts = scan_forces(job, workers=1).counts
+        solution = (time.process_time() - begin) / len(approaches)
+        progress(2, 2, "trying contacts")
+    return ContactTrial(approaches, working, pressed, counts.truncated / max(counts.solved, 1), solution)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What a run will take."""
+
+    # ``"filters"`` where samples are scanned, ``"path"`` where a law looks its scan up
+    scans: dict[str, ScanSize]
+    solutions: dict[str, int]  # contacts to solve, at most, by what for
+    steps: int  # time steps of a law, with its run-in
+    tried: ContactTrial | None  # contacts of a sample; None without samples
+    seconds: float  # a coarse time on all threads, nothing of it found in the cache, s
+
+
+def expect(prepared: PreparedCase, progress: Progress) -> Work:
+    """Count the work of a case; a few contacts of its samples are solved for that.
+
+    Parameters
+    ----------
+    prepared : PreparedCase
+        The case.
+    progress : Progress
+        Called meanwhile.
+
+    Returns
+    -------
+    Work
+        Its time within a factor of three or so: that of one contact, times their number.
+    """
+    case, shape, textures, trial = prepared.case, prepared.shape, prepared.textures, None
+    with one_thread_in_linear_algebra():
+        if textures.maps:
+            compile_kernels(progress)
+            trial = try_contacts(case, shape, textures, progress)
+    scans = scan_sizes(case, shape, textures)
+    steps = round((case.settled_time + case.rolled_time) / case.time_step)
+    solutions = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
+    if case.contact.running_in is not None:
+        solutions["running in"] = running_in_passes(case) * running_in_positions(shape, textures)
+    contacts = len(prepared.scene.offsets)
+    solved = [law for law in case.laws if spec_of(law).solved_every_step]
+    seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.scene.points)
+    seconds += STEP_TIME * steps * contacts * len(case.laws)
+    if trial is not None:
+        one = NEIGHBOUR * trial.solution
+        seconds += case.contact.samples * len(trial.approaches) * trial.solution
+        seconds += one * sum(solutions.values()) / thread_count() + one * len(solved) * steps * contacts
+    return Work(scans, solutions | dict.fromkeys(solved, steps * contacts), steps, trial, seconds)

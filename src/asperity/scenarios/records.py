@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.case.body import Rolling
 from asperity.case.content import name_of
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
@@ -36,8 +36,6 @@ from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.steps import QUARTER, rotated
 from asperity.surfaces.strip import Rows, Strip
 from asperity.surfaces.synthesis import Continuation, close, extend, from_bands, long_strip_from_bands
-
-Array = NDArray[np.float64]
 
 MOST_POINTS = 2.0**27
 """Points of a measured map on the contact grid (1 GiB)."""

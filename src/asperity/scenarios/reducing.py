@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
 from asperity.contact import Contact, HalfSpace, scan
@@ -26,7 +26,6 @@ from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Strip
 from asperity.threads import in_order, thread_count
 
-Array = NDArray[np.float64]
 STATES = 16
 """States chosen where the case names no approaches; up to twice as many where the path is touched earlier."""
 EVENLY = 1.0 / 3.0

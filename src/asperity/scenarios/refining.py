@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
+from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.scenarios.geometry import window_cells
@@ -54,10 +54,10 @@ def restricted(textures: Textures, spacing: float, every: int, lines: int) -> Te
     smooth = every > 1 and _short_waves(textures.line, every) > SHORT_WAVES
     first = textures.before % every
 
-    def along(line: NDArray[np.float64]) -> NDArray[np.float64]:
+    def along(line: Array) -> Array:
         return (_long_waves(line, every) if smooth else line)[first::every]
 
-    def area(heights: NDArray[np.float64], phase: int, kept: int | None) -> NDArray[np.float64]:
+    def area(heights: Array, phase: int, kept: int | None) -> Array:
         found = _long_waves(heights, every) if smooth else heights
         middle = heights.shape[1] // 2
         reach = (middle if kept is None else kept // 2 * every) // every * every
@@ -66,10 +66,15 @@ def restricted(textures: Textures, spacing: float, every: int, lines: int) -> Te
     def thinned(surface: HeightMap, kept: int | None) -> HeightMap:
         return replace(surface, heights=area(surface.heights, 0, kept), spacing=(wide, wide))
 
-    wide = every * spacing
-    path = _held_path(textures, spacing)
+    wide, path = every * spacing, textures.path
     if path is not None:
-        path = HeightMap(area(path.heights, first, lines), (wide, wide), path.source)
+        rows, across = path.shape
+        if rows * across > MOST_POINTS:
+            received = f"a path of {rows} x {across} points"
+            raise InputError(
+                "path", received, f"at most {MOST_POINTS} points, to be compared on another grid"
+            )
+        path = HeightMap(area(path.rows(0, rows), first, lines), (wide, wide))
     line = along(textures.line) if path is None else path.heights[:, path.shape[1] // 2].copy()
     strips = tuple(thinned(strip, lines) for strip in textures.strips)
     every_map = tuple(thinned(one, None) for one in textures.maps)
@@ -90,19 +95,7 @@ def restricted(textures: Textures, spacing: float, every: int, lines: int) -> Te
     )
 
 
-def _held_path(textures: Textures, spacing: float) -> HeightMap | None:
-    """The path in memory, if there is one."""
-    path = textures.path
-    if path is None or isinstance(path, HeightMap):
-        return path
-    rows, across = path.shape
-    if rows * across > MOST_POINTS:
-        received = f"a path of {rows} x {across} points"
-        raise InputError("path", received, f"at most {MOST_POINTS} points, to be compared on another grid")
-    return HeightMap(path.rows(0, rows), (spacing, spacing))
-
-
-def _short_waves(line: NDArray[np.float64], every: int) -> float:
+def _short_waves(line: Array, every: int) -> float:
     """Share of the mean square slope of a line in waves of less than two of every so many points."""
     wavenumber, density = psd(line, 1.0, segment=max(16, len(line) // SEGMENTS))
     slope = wavenumber**2 * density
@@ -110,7 +103,7 @@ def _short_waves(line: NDArray[np.float64], every: int) -> float:
     return float(slope[beyond].sum() / slope.sum()) if slope.any() else 0.0
 
 
-def _long_waves(heights: NDArray[np.float64], every: int) -> NDArray[np.float64]:
+def _long_waves(heights: Array, every: int) -> Array:
     """Heights (n, ...) without waves of less than two of every so many points, by cosine series."""
     found = heights
     for axis, points in enumerate(heights.shape):
@@ -145,86 +138,40 @@ class Setting:
     scans_kept: bool = False  # whether all scans of the case are found in the cache
 
 
-def shared_settings(
-    case: Case, textures: Textures, approaches: NDArray[np.float64]
-) -> tuple[list[Setting], list[Setting]]:
+def shared_settings(case: Case, textures: Textures, approaches: Array) -> tuple[list[Setting], list[Setting]]:
     """Settings that all kinds of case have: those named before what a kind has of its own, and after it.
 
-    `approaches` (k,), m, are the states of the run.
+    `approaches` (k,), m, are the states of the run. The grid gets nodes between its own: window, strips and
+    time step stay.
     """
-    samples = bool(textures.maps)
-    first = [
-        Setting("grid", (_finer_grid(case, textures),), laid_anew=True),
-        _with_samples("window", samples, (_wider(case, textures), _narrower(case)), laid_anew=True),
-        _with_samples("samples", samples, (_more_samples(case),)),
-        _with_samples("approaches", samples, (_denser(approaches),)),
-        Setting("time step", (_shorter_step(case),), scans_kept=True),
-    ]
-    return first, [Setting(PATH_LENGTH, (Way(f"{_time(case.rolled_time)} → its first half"),))]
-
-
-def _with_samples(name: str, samples: bool, ways: tuple[Way, ...], *, laid_anew: bool = False) -> Setting:
-    """A setting of the reduction, which a case without samples has not."""
-    return Setting(name, ways, laid_anew=laid_anew) if samples else Setting(name, (), NO_SAMPLES)
-
-
-def _finer_grid(case: Case, textures: Textures) -> Way:
-    """Half the spacing, with nodes between those of the grid: window, strips and time step stay."""
-    spacing, half = case.contact.spacing, window_cells(case.contact) // 2
-    changes = {
-        "contact.spacing": 0.5 * spacing,
-        "contact.window": (4 * half + 1) * 0.5 * spacing,
-        "numerics.time_step": case.time_step,
-    }
-    return Way(f"{_length(spacing)} → {_length(0.5 * spacing)}", changes | _strip_length(textures))
-
-
-def _wider(case: Case, textures: Textures) -> Way:
-    spacing, half = case.contact.spacing, window_cells(case.contact) // 2
-    window = (4 * half + 1) * spacing
-    kept = {name: max(length, 2.001 * window) for name, length in _strip_length(textures).items()}
-    return Way(f"{_length(case.contact.window)} → {_length(window)}", {"contact.window": window} | kept)
-
-
-def _narrower(case: Case) -> Way:
-    spacing, half = case.contact.spacing, window_cells(case.contact) // 2
-    window = (2 * (half // 2) + 1) * spacing
-    words = f"{_length(case.contact.window)} → {_length(window)}"
-    return Way(words, {"contact.window": window}, coarser=True)
-
-
-def _strip_length(textures: Textures) -> dict[str, float]:
-    """Strips for the filters as long as they are, m; a little less, so that no rounding lengthens them."""
-    if not textures.strips:
-        return {}
-    rows = min(strip.shape[0] for strip in textures.strips)
-    return {"contact.sample_length": rows * textures.strips[0].spacing[0] * (1 - 1e-9)}
-
-
-def _more_samples(case: Case) -> Way:
-    count = case.contact.samples
-    return Way(f"{count} → {2 * count}", {"contact.samples": 2 * count})
-
-
-def _denser(approaches: NDArray[np.float64]) -> Way:
-    """A state more between any two."""
+    spacing, window, count = case.contact.spacing, case.contact.window, case.contact.samples
+    half, step, strip = window_cells(case.contact) // 2, case.time_step, {}
+    fine, wider, narrower = 0.5 * spacing, (4 * half + 1) * spacing, (2 * (half // 2) + 1) * spacing
+    if textures.strips:  # a little less than they are, so that no rounding lengthens them
+        rows = min(each.shape[0] for each in textures.strips)
+        strip = {"contact.sample_length": rows * textures.strips[0].spacing[0] * (1 - 1e-9)}
+    finer = {"contact.spacing": fine, "contact.window": 0.5 * wider, "numerics.time_step": step} | strip
+    long = {name: max(length, 2.001 * wider) for name, length in strip.items()}
     middles = 0.5 * (approaches[1:] + approaches[:-1])
     every = np.sort(np.concatenate([approaches, middles])).tolist()
-    return Way(f"{len(approaches)} → {len(every)} states", {"contact.approaches": tuple(every)})
-
-
-def _shorter_step(case: Case) -> Way:
-    step = case.time_step
-    return Way(f"{_us(step)} → {_us(0.5 * step)}", {"numerics.time_step": 0.5 * step})
+    windows = (
+        Way(f"{_length(window)} → {_length(wider)}", {"contact.window": wider} | long),
+        Way(f"{_length(window)} → {_length(narrower)}", {"contact.window": narrower}, coarser=True),
+    )
+    more = Way(f"{count} → {2 * count}", {"contact.samples": 2 * count})
+    denser = Way(f"{len(approaches)} → {len(every)} states", {"contact.approaches": tuple(every)})
+    shorter = Way(f"{1e6 * step:.4g} µs → {5e5 * step:.4g} µs", {"numerics.time_step": 0.5 * step})
+    reduced = [
+        Setting("window", windows, laid_anew=True),
+        Setting("samples", (more,)),
+        Setting("approaches", (denser,)),
+    ]
+    if not textures.maps:
+        reduced = [Setting(each.name, (), NO_SAMPLES) for each in reduced]
+    grid = Setting("grid", (Way(f"{_length(spacing)} → {_length(fine)}", finer),), laid_anew=True)
+    first = [grid, *reduced, Setting("time step", (shorter,), scans_kept=True)]
+    return first, [Setting(PATH_LENGTH, (Way(f"{case.rolled_time:.3g} s → its first half"),))]
 
 
 def _length(length: float) -> str:
     return written(length, "m", "um" if length < 1e-3 else "mm").replace("um", "µm")
-
-
-def _us(time: float) -> str:
-    return f"{1e6 * time:.4g} µs"
-
-
-def _time(time: float) -> str:
-    return f"{time:.3g} s"

@@ -8,9 +8,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import passes_of
+from asperity.arguments import Array, passes_of
 from asperity.case.scene import Case
 from asperity.contact.running_in import RunInHeights, RunningIn, run_in, tolerance_of, warn_of_running_in
 from asperity.contact.scan import total
@@ -78,7 +77,7 @@ def run_in_case(
 
 
 def _passes(
-    surfaces: Sequence[RunInHeights], conditions: NDArray[np.float64]
+    surfaces: Sequence[RunInHeights], conditions: Array
 ) -> tuple[dict[Entry, Any], dict[Attribute, float]]:
     """What each pass did to all surfaces together, and their conditions (2, 4) before and after."""
     weights = np.array([np.count_nonzero(each.touched) for each in surfaces], dtype=np.float64)
@@ -145,7 +144,7 @@ def _condition(case: Case, shape: Geometry, textures: Textures) -> tuple[float, 
     return float(rms), float(slope), pressed.area_ratio, float(np.mean(pressed.stiffnesses))
 
 
-def _track(heights: NDArray[np.float64], shape: Geometry) -> HeightMap:
+def _track(heights: Array, shape: Geometry) -> HeightMap:
     """Heights over which the middle of the body has rolled, as wide as the nominal patch."""
     nx, ny = shape.body.shape
     half = min(max(1, round(shape.semi_axes[1] / shape.spacing[1])), ny // 2)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.case.content import name_of
 from asperity.case.scene import SETTLED, Case
 from asperity.case.sections import ContactKeys
@@ -48,8 +49,6 @@ SAMPLED_LENGTH = 5.0
 """Samples of a synthesised rail are cut from so much of it at least, from where the record starts, m."""
 EQUAL = 1e-9
 """Relative difference of loads that are the same."""
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

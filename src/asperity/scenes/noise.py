@@ -18,7 +18,7 @@ from asperity.radiation import pass_by
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
 from asperity.reference import cnossos
-from asperity.scenarios.linear_force import force_transfer
+from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, attributes, spectra, variables

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from xarray import DataTree
@@ -11,22 +14,19 @@ from asperity.case.scene import Case
 from asperity.errors import ComputationError, warn_of_findings
 from asperity.laws import Role, in_role
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.measure import (
-    A_WEIGHTED,
-    ACCELERATION,
-    Measure,
-    a_weighted,
-    density_of,
-    line_frequencies,
-)
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.refining import Setting, Way
 from asperity.scenes import noise, schema
 from asperity.scenes.track import described_losses, loss_factor_error, warn_of_loss_factors
-from asperity.schema import spectra
+from asperity.schema import Entry, spectra
+from asperity.spectra import a_weighting
 from asperity.structures.rail_poles import POLES
 from asperity.structures.track import Track
 from asperity.units import written
+
+A_WEIGHTED = "A-weighted level"
+ACCELERATION = "rms acceleration"
+MEASURE_NAMES = (A_WEIGHTED, ACCELERATION)
 
 
 def planned_rows(prepared: PreparedCase) -> list[tuple[str, str]]:
@@ -81,6 +81,17 @@ def own_settings(case: Case) -> list[Setting]:
     return [Setting("modes", (Way(words, {f"{case.over_name}.modes_up_to": 2.0 * before}),), scans_kept=True)]
 
 
+@dataclass(frozen=True)
+class Measure:
+    """A quantity that textures of a kind of case are judged by."""
+
+    meaning: str  # what it is the level of
+    units: str  # of the level
+    # its energy per Hz (f,) relative to the square of its reference, of a law in a result
+    density: Callable[[DataTree, str], NDArray[np.float64]]
+    beside: tuple[str, ...] = ()  # laws without which it is not known
+
+
 def measures_of(case: Case) -> dict[str, Measure]:
     """What textures of a case are judged by, by name: sound where a track is rolled over, else motion."""
     if isinstance(case.rolled_over, TrackKeys):
@@ -129,3 +140,20 @@ def _sound_power(tree: DataTree, law: str) -> NDArray[np.float64]:
         if inside.any() and force[inside].sum() > 0.0 and np.isfinite(level):
             density[inside] = 10.0 ** (level / 10.0) * force[inside] / (force[inside].sum() * step)
     return density
+
+
+def line_frequencies(tree: DataTree) -> NDArray[np.float64]:
+    """Frequencies of the spectra of a result (f,), Hz."""
+    return np.asarray(tree[spectra.FREQUENCY.path].values)
+
+
+def density_of(tree: DataTree, entry: Entry, law: str) -> NDArray[np.float64]:
+    """PSD of a law over frequency (f,), mean over the places at which it is known."""
+    found = tree[entry.group].to_dataset()[entry.name].sel(law=law)
+    places = [dim for dim in found.dims if dim != spectra.FREQUENCY.name]
+    return np.asarray(found.mean(places).values)
+
+
+def a_weighted(density: Callable[[DataTree, str], NDArray[np.float64]]) -> Callable[..., NDArray[np.float64]]:
+    """Weight a density as the ear does."""
+    return lambda tree, law: 10.0 ** (a_weighting(line_frequencies(tree)) / 10.0) * density(tree, law)

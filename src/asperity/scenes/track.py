@@ -16,8 +16,7 @@ from asperity.arguments import Array
 from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
-from asperity.scenarios.linear_force import AtContact, linear_force_psd
-from asperity.scenarios.scene import Scene
+from asperity.scenarios.scene import AtContact, Scene, linear_force_psd
 from asperity.scenes import noise, schema
 from asperity.scenes.compute import Computed
 from asperity.scenes.validity import signed_level

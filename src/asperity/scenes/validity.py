@@ -13,9 +13,9 @@ from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
 from asperity.rolling.roll import RolledBodies
-from asperity.scenarios.expecting import ContactTrial
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice, written_force
+from asperity.scenarios.preparing import ContactTrial
 from asperity.scenarios.textures import Textures
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, spectra
