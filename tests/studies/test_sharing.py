@@ -2,11 +2,12 @@
 
 import json
 import threading
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
+from executors import ROUGH, Here
 from scipy.ndimage import gaussian_filter
 
 import asperity
@@ -17,7 +18,7 @@ from asperity.running import prepare_case, run
 from asperity.store import Store
 from asperity.studies.definition import study_of
 from asperity.studies.member import kept, packed
-from asperity.surfaces.strip import Fields, LongStrip
+from asperity.surfaces.strip import Fields, LongStrip, Rows
 
 WHEEL = """
 kind = "wheel-on-rail"
@@ -37,98 +38,45 @@ sample_length = "60 mm"
 highest_frequency = "2 kHz"
 poles = 40
 """
-BALL = """
-kind = "ball-on-beam"
-laws = ["table", "areal", "linear-filtered"]
-start = "0.5 m"
-duration = "20 ms"
-[surface]
-rms = "0.05 um"
-longest = "0.4 mm"
-shortest = "60 um"
-[contact]
-spacing = "20 um"
-window = "0.66 mm"
-samples = 2
-sample_length = "1.4 mm"
-[numerics]
-highest_frequency = "2 kHz"
-"""
-SPEEDS = ["21 m/s", "33 m/s"]
-LOADS = ["45 kN", "65 kN", "90 kN"]
-
-
-class Here(Executor):
-    """Computes at once, in this process."""
-
-    def submit(self, task, /, *arguments, **keywords):
-        future = Future()
-        future.set_result(task(*arguments, **keywords))
-        return future
 
 
 @pytest.fixture(autouse=True)
-def own_folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
+def cases(own_folder):
     Path("wheel.toml").write_text(WHEEL)
-    Path("ball.toml").write_text(BALL)
+    Path("rough.toml").write_text(ROUGH)
 
 
-def toml(keys):
-    return "".join(f"{key} = {json.dumps(value)}\n" for key, value in keys.items())
-
-
-def scans():
-    return {path.name for path in Store().files() if path.name.startswith("scan-")}
-
-
-def test_all_speeds_and_loads_share_the_scans_of_one_run():
-    asperity.run(as_case("wheel.toml").with_(speed=33.0, **{"wheel.load": 65e3}))
-    of_one = scans()
-    assert of_one
-    sweep = {"speed": SPEEDS, "wheel.load": LOADS}
-    table = asperity.study("wheel.toml", sweep, executor=Here())
-    assert int(table["completed"].sum()) == 6
-    assert scans() == of_one
-    kernels = [path for path in Store().files() if path.name.startswith("moving-kernel-")]
-    assert len(kernels) == len(SPEEDS)  # the response of the track under a moving contact
-
-
-def test_loads_share_the_scan_of_a_path():
-    asperity.run(as_case("ball.toml").with_(**{"ball.load": 30.0}))
-    of_one = scans()
-    asperity.study("ball.toml", {"ball.load": ["30 N", "25 N", "40 N"]}, executor=Here())
-    assert scans() == of_one
-
-
-def test_speeds_share_the_scan_of_a_path_but_for_its_ends():
-    asperity.run(as_case("ball.toml").with_(speed=1.3))
-    of_fastest = scans()
-    asperity.study("ball.toml", {"speed": ["0.6 m/s", "0.9 m/s"]}, executor=Here())
-    assert len(of_fastest) > 10
-    assert len(scans() - of_fastest) <= 2 * 2  # first and last block of a shorter path
+def stored(name):
+    return {path.name for path in Store().files() if path.name.startswith(name)}
 
 
 @pytest.mark.parametrize(
-    ("case", "sweep"),
+    ("case", "sweep", "kernels", "more"),
     [
-        ("wheel.toml", {"speed": SPEEDS, "wheel.load": LOADS[:2]}),
-        ("ball.toml", {"ball.load": ["30 N", "40 N"]}),
-        ("ball.toml", {"speed": ["0.9 m/s", "1.3 m/s", "0.6 m/s"]}),
+        ("wheel.toml", {"speed": ["21 m/s", "33 m/s"], "wheel.load": ["45 kN", "65 kN"]}, 2, 0),
+        ("rough.toml", {"ball.load": ["25 N", "40 N", "30 N"]}, 0, 0),
+        ("rough.toml", {"speed": ["0.6 m/s", "0.9 m/s", "1.3 m/s"]}, 0, 4),
     ],
+    ids=["speeds and loads of a wheel", "loads over a path", "speeds over a path"],
 )
-def test_a_member_has_the_digits_that_it_has_alone(case, sweep, tmp_path, monkeypatch):
-    members = study_of(case, sweep).members()
-    asperity.study(case, sweep, executor=Here())
-    in_study = [Store().get(member.key) for member in members]
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "another"))
+def test_members_share_scans_and_have_the_digits_that_they_have_alone(
+    case, sweep, kernels, more, monkeypatch
+):
+    """`kernels` of the track are one for each speed; a shorter path has `more` blocks, at its two ends."""
+    *_, last = study_of(case, sweep).members()
+    monkeypatch.setenv("ASPERITY_CACHE", "alone")
+    alone, of_one = packed(kept(run(last.case))), stored("scan-")
+    assert of_one
+    monkeypatch.setenv("ASPERITY_CACHE", "together")
     monkeypatch.setattr("asperity.surfaces.strip.fields", Fields())
-    alone = packed(kept(run(members[-1].case)))
-    found = in_study[-1]
+    assert asperity.study(case, sweep, executor=Here())["completed"].all()
+    assert len(of_one - stored("scan-")) == 0
+    assert len(stored("scan-") - of_one) <= more < len(of_one)
+    assert len(stored("moving-kernel-")) == kernels
+    found = Store().get(last.key)
     assert found.keys() == alone.keys()
     for name in found.keys() - {"__description__"}:
-        assert np.array_equal(found[name], alone[name], equal_nan=found[name].dtype.kind == "f"), name
+        np.testing.assert_array_equal(found[name], alone[name], err_msg=name)
     described = [json.loads(str(each["__description__"])) for each in (found, alone)]
     assert described[0]["variables"] == described[1]["variables"]
     assert described[0]["attrs"]["warnings"] == described[1]["attrs"]["warnings"]
@@ -136,30 +84,23 @@ def test_a_member_has_the_digits_that_it_has_alone(case, sweep, tmp_path, monkey
 
 def test_a_track_is_the_same_at_every_speed():
     slow, fast = (prepare_case(as_case("wheel.toml").with_(speed=v)).textures for v in (21.0, 40.0))
-    shared = slow.path.shape[0] - slow.before
-    assert fast.before > slow.before
+    lead, after = fast.before - slow.before, slow.path.shape[0] - slow.before
+    assert lead > 0
     for one, other in zip(slow.maps, fast.maps, strict=True):
         assert np.array_equal(one.heights, other.heights)
-    assert np.array_equal(
-        slow.path.rows(slow.before, slow.before + shared), fast.path.rows(fast.before, fast.before + shared)
-    )
-    assert np.array_equal(  # the run-in too, as far as both have one
-        slow.line[: slow.before], fast.line[fast.before - slow.before : fast.before]
-    )
+    shared = (each.path.rows(each.before, each.before + after) for each in (slow, fast))
+    assert np.array_equal(*shared)
+    assert np.array_equal(slow.line[: slow.before], fast.line[lead : fast.before])  # the run-in of both
 
 
 @pytest.mark.parametrize("likeness", [False, True])
 def test_the_path_of_a_ball_is_the_same_at_every_speed(likeness):
-    case = as_case("ball.toml")
+    case = as_case("rough.toml")
     if likeness:
         heights = 0.05e-6 * np.random.default_rng(1).standard_normal((100, 100))
-        np.savez("map.npz", heights=gaussian_filter(heights, 4.0, mode="wrap"))
-        measured = {"file": "map.npz", "height_unit": "m", "pixel": "20 um"}
-        Path("measured.toml").write_text(
-            BALL.replace(BALL[BALL.index("rms") : BALL.index("[contact]")], toml(measured))
-        )
-        case = as_case("measured.toml")
-    slow, fast = (prepare_case(case.with_(speed=v)).textures for v in (0.6, 1.3))
+        measured = gaussian_filter(heights, 4.0, mode="wrap")
+        case = type(case)(**case.given() | {"surface": {"file": measured, "pixel": 20e-6}})
+    slow, fast = (prepare_case(case.with_(speed=v, settling=0.1)).textures for v in (0.6, 1.3))
     assert isinstance(slow.path, LongStrip)
     after, lead = slow.path.shape[0] - slow.before, fast.before - slow.before
     assert lead > 1000
@@ -174,8 +115,6 @@ def test_processes_share_the_work_of_a_scan(tmp_path, monkeypatch):
     x = (np.arange(n) - n // 2) * dx
     body = (x[:, None] ** 2 + x[None, :] ** 2) / 6e-3
     heights = 0.02e-6 * np.random.default_rng(1).standard_normal((300, n))
-    from asperity.surfaces.strip import Rows
-
     job = ScanJob(HalfSpace((n, n), dx, 115e9), Rows(heights), body, np.array([0.0, 0.05e-6]), device=None)
     solved, solve, together = [], ScanJob.solve, threading.Barrier(2, timeout=30)
 
@@ -187,9 +126,8 @@ def test_processes_share_the_work_of_a_scan(tmp_path, monkeypatch):
 
     monkeypatch.setattr(ScanJob, "solve", counted)
     with ThreadPoolExecutor(2) as pool:
-        found = list(
-            pool.map(lambda _: scan_forces(job, cache=Store(tmp_path / "both"), workers=1), range(2))
-        )
+        stores = [Store(tmp_path / "both"), Store(tmp_path / "both")]
+        found = list(pool.map(lambda store: scan_forces(job, cache=store, workers=1), stores))
     assert len(solved) == len(job.starts)
     assert len(set(solved)) == 2
     assert np.array_equal(found[0].forces, found[1].forces)
@@ -198,11 +136,9 @@ def test_processes_share_the_work_of_a_scan(tmp_path, monkeypatch):
 
 
 def test_brief_results_lack_what_a_report_shows_and_nothing_else():
-    case = as_case("wheel.toml").with_(speed=33.0)
-    whole, brief = run(case), run(case, brief=True)
-    missing = {f"{n.path}/{v}" for n in whole.subtree for v in n.data_vars} - {
-        f"{n.path}/{v}" for n in brief.subtree for v in n.data_vars
-    }
+    whole, brief = run("wheel.toml"), run("wheel.toml", brief=True)
+    names = [{f"{n.path}/{v}" for n in tree.subtree for v in n.data_vars} for tree in (whole, brief)]
+    missing = names[0] - names[1]
     assert "/surface/psd_path" in missing
     assert all(name.startswith("/surface/") for name in missing)
     for group in ("rolling", "spectra", "contact", "pass_by", "track"):

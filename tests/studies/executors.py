@@ -1,0 +1,45 @@
+"""A small case, and an executor that computes at once, in this process."""
+
+from concurrent.futures import Executor, Future
+
+BALL = """
+kind = "ball-on-beam"
+duration = "0.02 s"
+laws = ["hertz", "linear"]
+[surface]
+spectrum = "iso3095"
+"""
+ROUGH = """
+kind = "ball-on-beam"
+laws = ["table", "areal", "linear-filtered"]
+start = "0.5 m"
+duration = "20 ms"
+settling = "5 ms"
+[surface]
+rms = "0.05 um"
+longest = "0.4 mm"
+shortest = "60 um"
+[contact]
+spacing = "20 um"
+window = "0.66 mm"
+samples = 2
+sample_length = "1.4 mm"
+[numerics]
+highest_frequency = "2 kHz"
+"""
+
+
+class Here(Executor):
+    """Counts its tasks, and loses those that `lost` says."""
+
+    def __init__(self, lost=lambda count: False):
+        self.count, self.lost = 0, lost
+
+    def submit(self, task, /, *arguments, **keywords):
+        self.count += 1
+        future = Future()
+        if self.lost(self.count):
+            future.set_exception(BrokenPipeError("worker lost"))
+        else:
+            future.set_result(task(*arguments, **keywords))
+        return future
