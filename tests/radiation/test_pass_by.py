@@ -1,9 +1,11 @@
-"""Sound pressure beside the track, and single numbers of a pass-by, against closed forms."""
+"""Sound pressure beside the track, and single numbers of a pass-by, against closed forms.
+
+Others stand in the ledger of conformance.
+"""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import quad
 
 from asperity.errors import ComputationError, InputError
 from asperity.radiation import pass_by
@@ -25,25 +27,10 @@ def levels(source, passage):
     return pass_by.pass_by_levels(time, squared_pressure(source, passage, FLAT, time), passage.passed)
 
 
-def test_a_source_opposite_is_that_of_a_half_sphere():
-    # 1 W through 2π d²: L_p = 120 dB − 10 lg(2π 7.5²) + 10 lg(413 · 1e-12/4e-10)
-    found = squared_pressure(AxleSource(WATT), ONE, FLAT, [0.0])[0, 0]
-    expected = 120.0 - decibels(2 * np.pi * D**2) + decibels(413e-12 / 4e-10)
-    assert_allclose(pass_by.pressure_level(found), expected, atol=1e-6)
-    # a hub at 0.46 m: d² = 7.5² + 0.74²
+def test_a_hub_is_as_far_as_its_height_makes_it():
+    # d² = 7.5² + 0.74² from 0.46 m to 1.2 m
     found = squared_pressure(AxleSource(WATT, height=0.46), ONE, HERE, [0.0])[0, 0]
     assert_allclose(found, IMPEDANCE / (2 * np.pi * (56.25 + 0.5476)), rtol=1e-9)
-
-
-@pytest.mark.parametrize("length", [0.3, 4.0, 60.0])
-@pytest.mark.parametrize("along", [-90.0, -11.0, 0.0, 2.0, 35.0])
-def test_the_spread_against_quadrature(length, along):
-    def integrand(xi):
-        return np.exp(-2.0 * abs(xi) / length) / (D**2 + (along + xi) ** 2) / length
-
-    ends = length * np.array([(-40.0, -1.0), (-1.0, 0.0), (0.0, 1.0), (1.0, 40.0)])
-    total = sum(quad(integrand, *pair, limit=200)[0] for pair in ends)
-    assert_allclose(divergence(length, D, along), total, rtol=1e-6)
 
 
 def test_limits_of_the_spread():
@@ -96,7 +83,7 @@ def test_the_record_holds_the_whole_rise_and_fall(passage, length):
 
 
 def test_time_weighting_of_steps():
-    """1 − exp(−t/τ) from the step on; IEC 61672-1: it falls by 34.7 dB/s with F, 10 lg(e)/0.125 s."""
+    """1 − exp(−t/τ) from the step on."""
     step = 1e-3
     time = step * np.arange(-100, 600)
     found = pass_by.time_weighted((time > -step / 2).astype(float), step)
@@ -104,9 +91,7 @@ def test_time_weighting_of_steps():
     # the ramp of one sample before the step: its middle lies half a sample before zero
     assert_allclose(found[after], 1.0 - np.exp(-(time[after] + step / 2) / FAST), atol=1e-5)
     assert (found[time < -1.5 * step] == 0.0).all()
-    steady, falling = pass_by.time_weighted(np.stack([np.ones(400), np.arange(400) < 100.0]), 5e-3)
-    assert_allclose(steady, 1.0, rtol=1e-12)
-    assert_allclose(np.diff(pass_by.pressure_level(falling[110:])) / 5e-3, -34.7, atol=0.05)
+    assert_allclose(pass_by.time_weighted(np.ones((2, 9)), step), 1.0, rtol=1e-12)
 
 
 def test_levels_of_a_point_source_with_a_train_of_known_length():
@@ -129,23 +114,6 @@ def test_the_maximum_is_that_of_the_weighted_pressure(speed):
     largest = 1e-3 * IMPEDANCE / (2 * np.pi) * np.trapezoid(weighted, lags).max()
     found = levels(MILLIWATT, Passage([0.0], speed)).maximum[0]
     assert found == pytest.approx(pass_by.pressure_level(largest), abs=0.02)
-
-
-def test_a_long_train_has_the_level_of_its_line_of_axles():
-    """L_pAeq,Tp, TEL and SEL − 10 lg Tp of W' = W/a: p² = W' ρc Q/(4 d)."""
-    source, apart = AxleSource(np.array([1e-3]), 5.0), 6.0
-    passage = Passage(apart * np.arange(400), 40.0)
-    found, duration = levels(source, passage), 400 * apart / 40.0
-    line = decibels(1e-3 / apart * IMPEDANCE * 2 / (4 * D) / 4e-10)
-    exposed = pass_by.pressure_level(pass_by.exposure(source, passage, FLAT) / duration)
-    assert exposed == pytest.approx(line, abs=1e-9)
-    # a finite line of length L, mean over its own length: (2/π) (arctan L/d − (d/2L) ln(1 + L²/d²))
-    over = 400 * apart / D
-    ends = 2 / np.pi * (np.arctan(over) - np.log1p(over**2) / (2 * over))
-    assert found.equivalent[0] == pytest.approx(line + decibels(ends), abs=2e-3)
-    assert found.transit_exposure[0] == pytest.approx(line, abs=0.05)
-    assert found.equivalent[0] < found.transit_exposure[0] < line
-    assert found.maximum[0] == pytest.approx(line, abs=0.3)
 
 
 TIME = np.linspace(-1.0, 1.0, 101)

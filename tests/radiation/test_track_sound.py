@@ -4,16 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
-from scipy.special import hankel2, j1
 from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 from asperity import Track
 from asperity.errors import InputError
 from asperity.radiation import track as sound
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, RailSection, SleeperTop
-from asperity.structures.track import decay_rate
 
 UIC60 = Track.named("uic60")
 LOSSY = Track.named("nordborg-loss-factor", rail_loss_factor=0.05)
@@ -62,63 +59,12 @@ def test_an_uneven_force_counts_by_its_square():
         assert found == pytest.approx(np.average(point, weights=square), rel=1e-5)
 
 
-def test_one_wave_of_decay_rate_d_has_a_length_of_8_686_over_d():
-    """A rail that hardly bends but shears, on nothing: exp(-ik|x|), k = ω √(m'/S), and 1/-Im k long."""
-    supports, shear = (1e3, 0.0, 1e3, 0.05), {"shear_stiffness": 2e7, "rotary_inertia": 1e-3}
-    rail = Track(1e9, 60.0, *supports, rail_loss_factor=0.05, **shear)
-    decay = -(2.0 * np.pi * 500.0 * np.sqrt(60.0 / (2e7 * (1.0 + 0.05j)))).imag
-    assert_allclose(decay_rate(rail, 500.0), 20.0 * math.log10(math.e) * decay, rtol=1e-3)
-    assert_allclose(sound.effective_length(rail, 500.0), 8.686 / decay_rate(rail, 500.0), rtol=1e-3)
-
-
-def test_what_a_force_puts_into_a_track_is_lost_in_pads_and_ballast():
-    """Energy: Re Y(x₀|x₀)/2·2 equals what viscous dampers take, without loss in the rail."""
-    track = Track.named("uic60", rail_loss_factor=0.0)
-    frequency = np.array([100.0, 400.0, 1063.0, 2500.0])
-    omega = 2.0 * np.pi * frequency
-    node, weight = leggauss(24)
-    at = 0.5 * track.sleeper_spacing * (node + 1.0)
-    put_in = 0.5 * weight @ (1j * omega * track.receptance(frequency, at, at)).real
-    below, sleepers = sleeper_per_rail(track, omega), sound.squared_sleeper_mobility(track, frequency)
-    squeezed = sleepers * np.abs((1.0 - below) / below) ** 2  # of the pads, per force
-    assert_allclose(track.pad_damping * squeezed + track.ballast_damping * sleepers, put_in, rtol=1e-6)
-
-
-@pytest.mark.parametrize("ka", [0.2, 1.0, 3.0])
-@pytest.mark.parametrize("order", [0, 1, 3])
-def test_a_cylinder_radiates_what_passes_a_circle_around_it(ka, order):
-    """Power through a circle, from pressure and its slope, over that of a plane wave; ρc = 1, a = 1."""
-    step, r = 1e-6, 5.0
-    slope = (hankel2(order, ka + step) - hankel2(order, ka - step)) / (2.0 * step)
-    amplitude = -1j / slope  # -dp/dr = i k v on the surface
-    pressure = amplitude * hankel2(order, ka * r)
-    outwards = 1j * amplitude * (hankel2(order, (r + step) * ka) - hankel2(order, (r - step) * ka))
-    around = 2.0 * math.pi if order == 0 else math.pi  # of cos² nθ
-    power = (pressure * np.conj(outwards / (2.0 * step * ka))).real * around * r
-    assert sound.cylinder(ka, order) == pytest.approx(power / around, rel=1e-6)
-
-
-@pytest.mark.parametrize("ka", [0.05, 1.0, 4.0])
-def test_a_piston_radiates_what_arrives_far_away(ka):
-    """Rayleigh's integral: |p| = k a² v |2 J₁(ka sin ϑ)/(ka sin ϑ)|/(2R), integrated over the half-space."""
-    node, weight = leggauss(200)
-    angle = 0.25 * math.pi * (node + 1.0)
-    beam = 2.0 * j1(ka * np.sin(angle)) / (ka * np.sin(angle))
-    power = 2.0 * math.pi * 0.25 * math.pi * np.sum(weight * (0.5 * ka * beam) ** 2 * np.sin(angle))
-    assert sound.baffled_piston(ka) == pytest.approx(power / math.pi, rel=1e-9)
-
-
 def test_limits_of_radiators():
-    """(π/2) ka of the line monopole, (π/2)(ka)³ of the line dipole; one where ka is large."""
-    assert_allclose(
-        [sound.cylinder(1e-3, 0), sound.cylinder(1e-3)], 0.5 * np.pi * np.array([1e-3, 1e-9]), 1e-4
-    )
+    """(π/2) ka of the line monopole; one where ka is large."""
+    assert sound.cylinder(1e-3, 0) == pytest.approx(0.5 * math.pi * 1e-3, rel=1e-4)
     ka = np.array([1e-4, 0.00999, 0.01001])  # where the series of the piston takes over
     assert_allclose(sound.baffled_piston(ka), 0.5 * ka**2 - ka**4 / 12.0 + ka**6 / 144.0, rtol=1e-9)
-    # W' = ρ c ⟨v²⟩ k³ D²/8 at low frequency, both faces of the foot at high frequency
     k = 2.0 * math.pi / SPEED_OF_SOUND
-    low = SECTION.radiating_width * SECTION.radiation_ratio(1.0)[0]
-    assert low == pytest.approx(k**3 * 0.02941**2 / 8.0, rel=2e-3)  # 0.00767 + 0.01767 + 0.00407
     low = 0.5 * (10.0 * k) ** 2 * 0.325 / math.pi  # (ka)²/2, of the circle of the same area
     assert TOP.radiation_ratio(10.0)[0] == pytest.approx(low, rel=2e-3)
     for part in (SECTION, TOP):

@@ -36,8 +36,6 @@ def test_axial_motion_is_that_of_a_disc(diameters):
         found = wheel().axial_ratio(at(over * transition))[diameters, 0]
         exact = axial_ratio(diameters, over * transition)
         assert abs(10.0 * math.log10(found / exact)) < allowed, over
-    if diameters == 0:  # force (8/3) ρ ω a³ v on the air, and F² k²/(12π ρ c) of a dipole: 8 (ka)⁴/(27π²) = 1
-        assert transition == pytest.approx((27.0 * math.pi**2 / 8.0) ** 0.25, rel=1e-12)
 
 
 @pytest.mark.parametrize("diameters", [0, 1, 2, 4])
@@ -68,10 +66,7 @@ def test_the_power_is_that_of_both_faces_of_the_disc_and_of_the_tread():
     ("call", "message"),
     [
         (lambda: wheel(radius=0.0), "radius of the wheel's tread: received 0.0"),
-        (
-            lambda: RadiatingWheel(RADIUS, WIDTH, np.arange(5), np.ones(4), np.ones(5)),
-            "4 numbers; allowed: 5",
-        ),
+        (lambda: RadiatingWheel(1.0, 0.1, np.arange(5), np.ones(4), np.ones(5)), "4 numbers; allowed: 5"),
         (lambda: wheel(radial=-1.0), "radial velocity of a mode: received -1.0; allowed: finite ratios"),
         (lambda: axial_transition(0.5), r"number of nodal diameters: received 0\.5"),
         (lambda: radial_transition(1, 0.0), r"width of the tread over its radius: received 0\.0"),

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy import stats
 
-import asperity
 from asperity.reporting.tables import population_table
 from asperity.scenes.population import along_over_across, levels_along, told_apart
 from asperity.surfaces.heightmap import HeightMap
@@ -39,11 +38,6 @@ class TestToldApart:
         assert p < 1e-6
         assert beyond == pytest.approx(2.0, rel=0.1)
 
-    def test_groups_of_one_kind_are_rarely_told_apart(self):
-        rng = np.random.default_rng(1)
-        found = [told_apart(list(rng.normal(size=(5, 4))))[0] for _ in range(1000)]
-        assert np.mean(np.array(found) <= 0.05) == pytest.approx(0.05, abs=0.02)
-
     def test_groups_without_scatter(self):
         assert told_apart([np.ones(3), np.ones(2)]) == (1.0, 0.0, False)
         p, beyond, _ = told_apart([np.zeros(3), np.full(3, 2.0)])
@@ -52,7 +46,7 @@ class TestToldApart:
 
 class TestAlongThePath:
     def test_an_even_path_is_rarely_called_uneven(self):
-        found = [told_apart(list(levels_along(noise(seed), PATCH)))[0] for seed in range(60)]
+        found = [told_apart(list(levels_along(noise(seed), PATCH)))[0] for seed in range(40)]
         assert np.mean(np.array(found) <= 0.05) < 0.15
 
     @pytest.mark.parametrize("shape", ["trend", "patch"])
@@ -81,14 +75,6 @@ class TestDirection:
         turned, _ = along_over_across([rough.transposed()], 10 * UM)
         assert turned == pytest.approx(-difference, rel=1e-6)
 
-    def test_an_isotropic_texture_has_none_and_a_stretched_one_that_of_its_spectrum(self):
-        """Waves stretched threefold along x: C(qx, qy) falls by as much in x: smoother along."""
-        keys = {"rms": UM, "hurst": 0.8, "longest": 60 * UM, "shortest": 4 * UM}
-        maps = [self_affine((256, 256), (UM, UM), **keys, seed=seed) for seed in range(4)]
-        assert abs(along_over_across(maps, 10 * UM)[0]) < 1.0
-        stretched = [self_affine((256, 256), (UM, UM), **keys, anisotropy=3.0, seed=s) for s in range(4)]
-        assert along_over_across(stretched, 10 * UM)[0] < -5.0
-
     def test_a_narrow_map_says_nothing(self):
         narrow = HeightMap(np.random.default_rng(0).normal(size=(256, 12)), (UM, UM))
         assert along_over_across([narrow], 10 * UM) is None
@@ -106,42 +92,37 @@ def asked(result):
     return {item["question"]: item for item in json.loads(result["contact"].attrs["population"])}
 
 
-@pytest.mark.usefixtures("cache_of_module")
-@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
-class TestRun:
-    def test_an_even_surface_is_one_population(self):
-        result = asperity.run(CASE)
-        found = asked(result)
-        stiffness = found["Is one contact stiffness enough for the path?"]
-        assert stiffness["answer"].startswith("One stiffness is enough: ")
-        assert stiffness["value"].startswith("8 samples, coefficient of variation ")
-        assert 0.0 < stiffness["effect"] < 1.0
-        assert found["Is the path the same all along?"]["grade"] == ""
-        assert 0.0 < found["How well is the contact filter known?"]["effect"] < 3.0
-        rows = population_table(result).rows
-        assert [row[0].text for row in rows] == list(found)
+def test_an_even_surface_is_one_population(runs):
+    found = asked(result := runs(CASE))
+    stiffness = found["Is one contact stiffness enough for the path?"]
+    assert stiffness["answer"].startswith("One stiffness is enough: ")
+    assert stiffness["value"].startswith("8 samples, coefficient of variation ")
+    assert 0.0 < stiffness["effect"] < 1.0
+    assert found["Is the path the same all along?"]["grade"] == ""
+    assert 0.0 < found["How well is the contact filter known?"]["effect"] < 3.0
+    assert [row[0].text for row in population_table(result).rows] == list(found)
 
-    def test_maps_of_two_surfaces_are_told_apart(self):
-        """Two smooth maps and two that are so rough that they are softer by some decibels."""
-        keys = {"hurst": 0.8, "longest": 1.2e-4, "shortest": 8e-5}
-        maps = tuple(
-            self_affine((60, 60), (40 * UM, 40 * UM), rms=rms, seed=seed, **keys)
-            for seed, rms in enumerate((0.02 * UM, 0.02 * UM, 1.5 * UM, 1.5 * UM))
-        )
-        case = CASE | {"surface": {"file": maps}, "contact": CASE["contact"] | {"samples": 16}}
-        result = asperity.run(case)
-        found = asked(result)["Are the measured maps one population?"]
-        assert found["answer"].startswith("The maps are not one population")
-        assert found["effect"] > 1.0
-        assert found["grade"] in ("warning", "out of range")
-        assert "in stiffness" in result.attrs["verdict"]
-        messages = [w["message"] for w in json.loads(result.attrs["warnings"])]
-        assert any(m.startswith("Are the measured maps one population?: 4 maps, p = ") for m in messages)
 
-    def test_a_path_that_gets_rougher_is_told(self):
-        line = np.random.default_rng(0).normal(size=20_000) * np.linspace(0.2, 1.8, 20_000)
-        line = np.convolve(line, np.hanning(9) / 4, "same") * 0.02 * UM
-        case = CASE | {"surface": CASE["surface"] | {"line": line, "line_spacing": 40 * UM}}
-        found = asked(asperity.run(case))["Is the path the same all along?"]
-        assert found["answer"].startswith("The roughness is not the same all along the path")
-        assert found["effect"] > 1.0
+def test_maps_of_two_surfaces_are_told_apart(runs):
+    """Two smooth maps and two that are so rough that they are softer by some decibels."""
+    keys = {"hurst": 0.8, "longest": 1.2e-4, "shortest": 8e-5}
+    maps = tuple(
+        self_affine((60, 60), (40 * UM, 40 * UM), rms=rms * UM, seed=seed, **keys)
+        for seed, rms in enumerate((0.02, 0.02, 1.5, 1.5))
+    )
+    result = runs(CASE | {"surface": {"file": maps}, "contact": CASE["contact"] | {"samples": 16}})
+    found = asked(result)["Are the measured maps one population?"]
+    assert found["answer"].startswith("The maps are not one population")
+    assert found["effect"] > 1.0
+    assert found["grade"] in ("warning", "out of range")
+    assert "in stiffness" in result.attrs["verdict"]
+    assert '"Are the measured maps one population?: 4 maps, p = ' in result.attrs["warnings"]
+
+
+def test_a_path_that_gets_rougher_is_told(runs):
+    line = np.random.default_rng(0).normal(size=20_000) * np.linspace(0.2, 1.8, 20_000)
+    line = np.convolve(line, np.hanning(9) / 4, "same") * 0.02 * UM
+    case = CASE | {"surface": CASE["surface"] | {"line": line, "line_spacing": 40 * UM}}
+    found = asked(runs(case))["Is the path the same all along?"]
+    assert found["answer"].startswith("The roughness is not the same all along the path")
+    assert found["effect"] > 1.0
