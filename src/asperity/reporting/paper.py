@@ -8,35 +8,15 @@ from collections.abc import Sequence
 from typing import Any, BinaryIO
 
 import numpy as np
-from matplotlib import rc_context
+from matplotlib import rc_context, ticker
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.gridspec import SubplotSpec
 from matplotlib.patches import Polygon
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 from matplotlib.transforms import ScaledTranslation, blended_transform_factory
 
-from asperity.reporting.chart import (
-    GRID,
-    INK,
-    MUTED,
-    WIDE,
-    Area,
-    Axis,
-    Boxes,
-    Chart,
-    Field,
-    Line,
-    Mark,
-    Note,
-    Panel,
-    Rules,
-    Second,
-    Shape,
-    limits,
-    rows_of,
-)
+from asperity.reporting import chart
+from asperity.reporting.chart import GRID, INK, MUTED, WIDE, Axis, Mark, Panel, limits
 from asperity.reporting.data import engineering, power_of_ten
 
 RC: dict[Any, Any] = {
@@ -83,6 +63,7 @@ LETTER, ROW, HANDLE = 0.068, 13.0, 10
 OPPOSITE = 32.0
 """Points that an axis opposite takes above a panel."""
 HATCHES = {"/": "///", "\\": "\\\\\\", "x": "xxx", ".": "..", "-": "---"}
+Ends = tuple[float, float]
 
 
 class ShownFigure(Figure):
@@ -94,16 +75,20 @@ class ShownFigure(Figure):
         return image.getvalue()
 
 
-def draw(chart: Chart, title: str = "") -> ShownFigure:
+def draw(drawn: chart.Chart, title: str = "") -> ShownFigure:
     """Draw a chart on white ground, in the width of the page, its panels beneath each other in rows."""
     with rc_context(RC):
-        rows = rows_of(chart)
+        rows = chart.rows_of(drawn)
         heights = [max(panel.height for panel in row) for row in rows]
         figure = ShownFigure(figsize=(WIDE, sum(heights)), layout="constrained")
         grid = figure.add_gridspec(len(rows), 1, height_ratios=heights)
         named: set[tuple[str, str]] = set()
         for number, row in enumerate(rows):
-            _draw_row(figure, grid[number], row, named)
+            shares = [panel.share for panel in row]
+            inner = grid[number].subgridspec(1, len(row), width_ratios=shares)
+            for n, panel in enumerate(row):  # one alone stands in the column of the others
+                axes = figure.add_subplot(grid[number] if len(row) == 1 else inner[n])
+                _draw_panel(axes, panel, WIDE * panel.share / sum(shares), named)
             if len(row) == 1 and number + 1 < len(rows) and _goes_on(row[0], *rows[number + 1]):
                 figure.axes[-1].tick_params(axis="x", labelbottom=False)
                 figure.axes[-1].set_xlabel("")
@@ -125,15 +110,6 @@ def _goes_on(panel: Panel, below: Panel, *beside: Panel) -> bool:
     return same and limits(panel, "x") == limits(below, "x") and not (below.title or beside)
 
 
-def _draw_row(figure: Figure, place: SubplotSpec, row: list[Panel], named: set[tuple[str, str]]) -> None:
-    """Draw panels side by side; one alone stands in the column of the others."""
-    shares = [panel.share for panel in row]
-    inner = place.subgridspec(1, len(row), width_ratios=shares)
-    for number, panel in enumerate(row):
-        axes = figure.add_subplot(place if len(row) == 1 else inner[number])
-        _draw_panel(axes, panel, WIDE * panel.share / sum(shares), named)
-
-
 def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, str]]) -> None:
     """Draw a panel of a width in inches; what is `named` already gets no second place in a legend."""
     x, y = limits(panel, "x"), limits(panel, "y")
@@ -144,7 +120,7 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, st
     axes.set(xlim=x, ylim=y)
     if panel.equal:
         axes.set_aspect("equal")
-    if panel.plain or any(isinstance(mark, Field) for mark in panel.marks):
+    if panel.plain or any(isinstance(mark, chart.Field) for mark in panel.marks):
         axes.grid(visible=False)
     if panel.plain:
         shown: dict[str, Any] = {"left": bool(panel.y.label), "bottom": bool(panel.x.label)}
@@ -155,47 +131,30 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, st
         axes.set_title(panel.title, pad=6 + above)
 
 
-def _draw_axis(axes: Axes, way: str, axis: Axis, reach: tuple[float, float], length: float) -> None:
+def _draw_axis(axes: Axes, way: str, axis: Axis, ends: Ends, length: float) -> None:
     """Scale, ticks and name of an axis of a length in inches, and what stands opposite to it."""
-    side = axes.xaxis if way == "x" else axes.yaxis
-    if axis.log:
-        (axes.set_xscale if way == "x" else axes.set_yscale)("log")
-    (axes.set_xlabel if way == "x" else axes.set_ylabel)(axis.label)
+    side, (low, high) = axes.xaxis if way == "x" else axes.yaxis, sorted(ends)
+    axes.set(**{f"{way}label": axis.label, f"{way}scale": "log" if axis.log else "linear"})
     if axis.ticks:
         at, names = zip(*axis.ticks, strict=True)
-        side.set_major_locator(FixedLocator(at))
-        side.set_major_formatter(FuncFormatter(dict(zip(at, names, strict=True)).get))
-        shown = sum(len(name) + 1.5 for number, name in axis.ticks if min(reach) <= number <= max(reach))
+        side.set_major_locator(ticker.FixedLocator(at))
+        side.set_major_formatter(ticker.FuncFormatter(dict(zip(at, names, strict=True)).get))
+        shown = sum(len(name) + 1.5 for number, name in axis.ticks if low <= number <= high)
         if way == "x" and shown * LETTER > 0.9 * length:
             axes.tick_params(axis="x", labelrotation=90)
+    elif axis.log and high / low < 300 and low >= 1e-3 and high <= 1e5:
+        side.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+        side.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     elif axis.log:
-        _log_ticks(side, min(reach), max(reach))
+        side.set_major_formatter(ticker.FuncFormatter(lambda value, _: power_of_ten(value)))
     if axis.minor or axis.ticks:
-        side.set_minor_locator(FixedLocator(axis.minor))
-    side.set_minor_formatter(NullFormatter())
+        side.set_minor_locator(ticker.FixedLocator(axis.minor))
+    side.set_minor_formatter(ticker.NullFormatter())
     if axis.second:
-        _draw_second(axes, way, axis.second, axis.log, sorted(reach), length)
+        _draw_second(axes, way, axis.second, axis.log, (low, high), length)
 
 
-def _log_ticks(side: Any, low: float, high: float) -> None:
-    """Name the decades of a logarithmic axis, or 1, 2 and 5 of each where there are few."""
-    if high / low < 300 and low >= 1e-3 and high <= 1e5:
-        side.set_major_locator(FixedLocator(series_125(low, high)))
-        side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    else:
-        side.set_major_formatter(FuncFormatter(lambda value, _: power_of_ten(value)))
-
-
-def series_125(low: float, high: float, steps: Sequence[float] = (1.0, 2.0, 5.0)) -> list[float]:
-    """Numbers 1, 2, 5, 10, 20, … of all decades between two of them."""
-    decades = range(int(np.floor(np.log10(low))), int(np.ceil(np.log10(high))) + 1)
-    found = (step * 10.0**decade for decade in decades for step in steps)
-    return [each for each in found if low * (1 - 1e-9) <= each <= high * (1 + 1e-9)]
-
-
-def _draw_second(
-    axes: Axes, way: str, second: Second, log: bool, reach: Sequence[float], length: float
-) -> None:
+def _draw_second(axes: Axes, way: str, second: chart.Second, log: bool, ends: Ends, length: float) -> None:
     """Axis opposite to another, in what it is scaled to."""
 
     def there(q: Any) -> Any:
@@ -205,135 +164,95 @@ def _draw_second(
     def back(q: Any) -> Any:
         return there(q) if second.inverse else (q - second.offset) / second.scale
 
-    functions = (there, back)
-    along_x = way == "x"
-    opposite: Any = (
-        axes.secondary_xaxis("top", functions=functions)
-        if along_x
-        else axes.secondary_yaxis("right", functions=functions)
-    )
-    side = opposite.xaxis if along_x else opposite.yaxis
+    both = (there, back)
+    x = way == "x"
+    opposite: Any = axes.secondary_xaxis("top", both) if x else axes.secondary_yaxis("right", both)
+    side = opposite.xaxis if x else opposite.yaxis
     side.set_label_text(second.label)
     if log:
-        low, high = sorted(float(there(np.array(end))) for end in reach)
+        low, high = sorted(float(there(np.array(end))) for end in ends)
         steps = (1.0, 2.0, 5.0) if high / low <= 3000 * length / WIDE else (1.0,)
-        side.set_major_locator(FixedLocator(series_125(low, high, steps)))
-        side.set_minor_locator(NullLocator())
-    digits = 1 if log else 3
+        side.set_major_locator(ticker.LogLocator(subs=steps))
+        side.set_minor_locator(ticker.NullLocator())
     if second.unit:
-        side.set_major_formatter(FuncFormatter(lambda value, _: engineering(value, second.unit, digits)))
+        digits = 1 if log else 3
+        words = ticker.FuncFormatter(lambda value, _: engineering(value, second.unit, digits))
+        side.set_major_formatter(words)
 
 
-def _draw_mark(
-    axes: Axes, mark: Mark, x: tuple[float, float], y: tuple[float, float], width: float, order: float
-) -> None:
+def _draw_mark(axes: Axes, mark: Mark, x: Ends, y: Ends, width: float, order: float) -> None:
     """Draw a mark in a panel of a width in inches that reaches from end to end of `x` and `y`."""
+    look: dict[str, Any] = {"label": getattr(mark, "label", "") or None, "zorder": order}
     match mark:
-        case Line():
-            axes.plot(
-                mark.x, mark.y, color=mark.colour, linestyle=_style(mark.dashes, mark.width),
-                linewidth=mark.width, marker=mark.marker or None, alpha=mark.opacity,
-                label=mark.label or None, zorder=order, solid_capstyle="butt",
-            )  # fmt: skip
-        case Area():
-            thin = 0.4 if mark.opacity == 1.0 else 0.0  # seen at all where it is flat
-            axes.fill_between(
-                mark.x, mark.low, mark.high, color=mark.colour, alpha=mark.opacity, linewidth=thin,
-                label=mark.label or None, zorder=order,
-            )  # fmt: skip
-        case Boxes():
-            _draw_boxes(axes, mark, x, y, order)
-        case Rules():
-            _draw_rules(axes, mark, order)
-        case Note():
+        case chart.Line():
+            look |= {"linestyle": _style(mark.dashes, mark.width), "linewidth": mark.width}
+            look |= {"marker": mark.marker or None, "alpha": mark.opacity, "solid_capstyle": "butt"}
+            axes.plot(mark.x, mark.y, color=mark.colour, **look)
+        case chart.Area():
+            look["linewidth"] = 0.4 if mark.opacity == 1.0 else 0.0  # seen at all where it is flat
+            axes.fill_between(mark.x, mark.low, mark.high, color=mark.colour, alpha=mark.opacity, **look)
+        case chart.Boxes():
+            _draw_boxes(axes, mark, x, y, look)
+        case chart.Rules():  # across the panel, or short ones at its edge
+            look |= {"linestyle": _style(mark.dashes, mark.width), "linewidth": mark.width}
+            along_x, end = mark.along == "x", 0.04 if mark.short else 1.0
+            transform = axes.get_xaxis_transform() if along_x else axes.get_yaxis_transform()
+            lines = axes.vlines if along_x else axes.hlines
+            lines(mark.at, 0.0, end, color=mark.colour, transform=transform, **look)
+        case chart.Note():
             _write_note(axes, mark, x, y)
-        case Field():
+        case chart.Field():
             _draw_field(axes, mark, width)
-        case Shape():
-            axes.add_patch(
-                Polygon(
-                    np.column_stack([mark.x, mark.y]), facecolor=mark.fill or "none",
-                    edgecolor=mark.colour or "none", linewidth=mark.width, alpha=mark.opacity,
-                    linestyle=_style(mark.dashes, mark.width), zorder=order,
-                )
-            )  # fmt: skip
+        case chart.Shape():
+            look |= {"facecolor": mark.fill or "none", "edgecolor": mark.colour or "none"}
+            look |= {"linewidth": mark.width, "linestyle": _style(mark.dashes, mark.width)}
+            axes.add_patch(Polygon(np.column_stack([mark.x, mark.y]), alpha=mark.opacity, **look))
 
 
 def _style(dashes: Sequence[float], width: float) -> Any:
-    if width <= 0:
-        return "none"
-    return (0, tuple(dashes)) if dashes else "-"
+    return "none" if width <= 0 else (0, tuple(dashes)) if dashes else "-"
 
 
-def _draw_boxes(
-    axes: Axes, mark: Boxes, x: tuple[float, float], y: tuple[float, float], order: float
-) -> None:
+def _draw_boxes(axes: Axes, mark: chart.Boxes, x: Ends, y: Ends, look: dict[str, Any]) -> None:
     """Draw rectangles, the endless ones behind the grid."""
-    endless = not np.isfinite([*mark.left, *mark.right, *mark.low, *mark.high]).all()
+    if not np.isfinite([*mark.left, *mark.right, *mark.low, *mark.high]).all():
+        look["zorder"] = 0.2
     left, right = (np.clip(edge, min(x), max(x)) for edge in (mark.left, mark.right))
     low, high = (np.clip(edge, min(y), max(y)) for edge in (mark.low, mark.high))
     corners = np.stack([left, low, left, high, right, high, right, low], axis=-1).reshape(-1, 4, 2)
-    look: dict[str, Any] = {"zorder": 0.2 if endless else order, "label": mark.label or None}
     if mark.hatch:  # drawn in the colour of the outline
-        look |= {"hatch": HATCHES[mark.hatch]}
-    edge = mark.edge or ("white" if mark.hatch else "none")
-    width = 0.8 if mark.edge else 0.0
-    axes.add_collection(
-        PolyCollection(
-            list(corners),
-            facecolors=mark.colour,
-            edgecolors=edge,
-            linewidths=width,
-            alpha=mark.opacity,
-            **look,
-        ),
-        autolim=False,
-    )
+        look["hatch"] = HATCHES[mark.hatch]
+    look |= {"edgecolors": mark.edge or ("white" if mark.hatch else "none")}
+    look |= {"linewidths": 0.8 if mark.edge else 0.0, "alpha": mark.opacity}
+    axes.add_collection(PolyCollection(list(corners), facecolors=mark.colour, **look), autolim=False)
 
 
-def _draw_rules(axes: Axes, mark: Rules, order: float) -> None:
-    """Draw lines across the panel, or short ones at its edge."""
-    look: dict[str, Any] = {
-        "color": mark.colour, "linewidth": mark.width, "linestyle": _style(mark.dashes, mark.width),
-        "label": mark.label or None, "zorder": order,
-    }  # fmt: skip
-    end = 0.04 if mark.short else 1.0
-    if mark.along == "x":
-        axes.vlines(mark.at, 0.0, end, transform=axes.get_xaxis_transform(), **look)
-    else:
-        axes.hlines(mark.at, 0.0, end, transform=axes.get_yaxis_transform(), **look)
-
-
-def _write_note(axes: Axes, note: Note, x: tuple[float, float], y: tuple[float, float]) -> None:
+def _write_note(axes: Axes, note: chart.Note, x: Ends, y: Ends) -> None:
     """Write words at a place, a little beside it; what lies outside the panel is left out."""
     inside = (note.x_share or min(x) <= note.x <= max(x)) and (note.y_share or min(y) <= note.y <= max(y))
     if not inside:
         return
-    across = axes.transAxes if note.x_share else axes.transData
-    upwards = axes.transAxes if note.y_share else axes.transData
-    beside = {"left": 4.0, "right": -4.0, "center": 0.0}[note.align]
+    across, upwards = (axes.transAxes if share else axes.transData for share in (note.x_share, note.y_share))
+    look: dict[str, Any] = {"ha": note.align, "rotation": 90 if note.upright else 0, "color": note.colour}
     axes.annotate(
         note.text,
         (note.x, note.y),
         xycoords=blended_transform_factory(across, upwards),
-        xytext=(beside, 0.0),
+        xytext=({"left": 4.0, "right": -4.0, "center": 0.0}[note.align], 0.0),
         textcoords="offset points",
-        ha=note.align,
         va=("top" if note.y > 0.5 else "bottom") if note.y_share else "center",
-        rotation=90 if note.upright else 0,
         fontsize=8.5,
-        color=note.colour,
         zorder=4,
         bbox={"facecolor": "white", "alpha": 0.6, "edgecolor": "none", "pad": 0.5},
+        **look,
     )
 
 
-def _draw_field(axes: Axes, mark: Field, width: float) -> None:
+def _draw_field(axes: Axes, mark: chart.Field, width: float) -> None:
     """Draw numbers as colours, with their scale."""
-    image = axes.imshow(
-        mark.values.T, origin="lower", extent=(*mark.x, *mark.y), aspect="auto", cmap=mark.colours,
-        vmin=mark.low, vmax=mark.high, zorder=0.3,
-    )  # fmt: skip
+    look: dict[str, Any] = {"cmap": mark.colours, "vmin": mark.low, "vmax": mark.high, "zorder": 0.3}
+    extent = (*mark.x, *mark.y)
+    image = axes.imshow(mark.values.T, origin="lower", extent=extent, aspect="auto", **look)
     below, above = bool(np.nanmin(mark.values) < mark.low), bool(np.nanmax(mark.values) > mark.high)
     extend = {(True, True): "both", (True, False): "min", (False, True): "max"}.get((below, above), "neither")
     beside = axes.inset_axes((1.0 + 0.1 / width, 0.0, 0.13 / width, 1.0))
@@ -342,38 +261,25 @@ def _draw_field(axes: Axes, mark: Field, width: float) -> None:
 
 def _legend(axes: Axes, width: float, above: float, named: set[tuple[str, str]]) -> float:
     """Legend in rows above the axes, clear of the data; return the points that it takes."""
-    handles, labels = axes.get_legend_handles_labels()
-    fresh = [
-        (handle, label)
-        for handle, label in zip(handles, labels, strict=True)
-        if (label, _looks(handle)) not in named
-    ]
-    if not fresh:
+    fresh = {}
+    for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+        colour = handle.get_color() if hasattr(handle, "get_color") else ""
+        fresh[handle, label] = (label, f"{type(handle).__name__} {colour}")
+    shown = [each for each, look in fresh.items() if look not in named]
+    if not shown:
         return above
-    named |= {(label, _looks(handle)) for handle, label in fresh}
-    columns = _columns([label for _, label in fresh], width / LETTER)
+    named |= set(fresh.values())
+    widest = max(len(label) for _, label in shown) + HANDLE
+    columns = min(len(shown), max(1, int(width / LETTER / widest)), 7)
+    shift = ScaledTranslation(0, above / 72, axes.figure.dpi_scale_trans)
     axes.legend(
-        *zip(*fresh, strict=True),
+        *zip(*shown, strict=True),
         loc="lower left",
         bbox_to_anchor=(-0.01, 1.0),
-        bbox_transform=axes.transAxes + ScaledTranslation(0, above / 72, axes.figure.dpi_scale_trans),
+        bbox_transform=axes.transAxes + shift,
         ncols=columns,
         handlelength=2.6,
         columnspacing=1.6,
         borderaxespad=0.2,
     )
-    return above + 4 + ROW * -(-len(fresh) // columns)
-
-
-def _looks(handle: Any) -> str:
-    """What tells the marks of a legend apart."""
-    return f"{type(handle).__name__} {handle.get_color() if hasattr(handle, 'get_color') else ''}"
-
-
-def _columns(labels: Sequence[str], room: float, most: int = 7) -> int:
-    """Columns of a legend that so many letters have room for."""
-    for columns in range(min(most, len(labels)), 1, -1):
-        widest = [max(map(len, column)) for column in np.array_split(labels, columns)]
-        if sum(widest) + HANDLE * len(widest) <= room:
-            return columns
-    return 1
+    return above + 4 + ROW * -(-len(shown) // columns)
