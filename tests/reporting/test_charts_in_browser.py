@@ -9,27 +9,8 @@ import pytest
 from drawn import OVERLAPS, RECORDER, pixels, settled
 from report_reading import HOSTILE
 
-from asperity.reporting.chart import (
-    BLUE,
-    COLOURS,
-    GREEN,
-    GRID,
-    INK,
-    TIME,
-    VERMILLION,
-    Area,
-    Axis,
-    Boxes,
-    Chart,
-    Field,
-    Line,
-    Note,
-    Panel,
-    Rules,
-    Second,
-    Shape,
-    colour_variables,
-)
+from asperity.reporting import chart
+from asperity.reporting.chart import BLUE, COLOURS, GREEN, INK, VERMILLION, Axis, Boxes, Chart, Line, Panel
 from asperity.reporting.page import PageFigure, page_template
 from asperity.reporting.panels import band_axis, doubtful_boxes, frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.payload import chart_script, chart_style, charts_json, digest_of
@@ -46,9 +27,9 @@ def run_chart():
     time = np.linspace(0.0, 3.0, 30_001)
     force, linear = 500 + 100 * np.sin(40 * time), 500 + 150 * np.sin(40 * time)
     force[20_000] = HIGHEST
-    axis = Axis("time / s", 0.0, 3.0, linked=TIME)
+    axis = Axis("time / s", 0.0, 3.0, linked=chart.TIME)
     bars = Boxes(*(np.array([at]) for at in (1.0, 1.1, -0.35, 0.35)), colour=BLUE, law="areal", label="areal")
-    zero = Rules(np.zeros(1), "y", dashes=())
+    zero = chart.Rules(np.zeros(1), "y", dashes=())
     forces = Panel(
         axis, Axis("contact force / N"), (zero, Line(time, linear, **LINEAR), Line(time, force, **AREAL))
     )
@@ -62,11 +43,13 @@ def spectrum_chart():
     frequency = np.geomspace(30, 5000, 200)
     level = 60 - 10 * np.log10(frequency)
     broken = np.where((frequency > 200) & (frequency < 400), np.nan, level + 6)
-    notes = [Note(words, 1000.0, 0.95, y_share=True) for words in ("first mode", "second mode, not far")]
-    upright = Note("pinned-pinned", 2000.0, 0.03, y_share=True, upright=True)
+    notes = [
+        chart.Note(words, 1000.0, 0.95, y_share=True) for words in ("first mode", "second mode, not far")
+    ]
+    upright = chart.Note("pinned-pinned", 2000.0, 0.03, y_share=True, upright=True)
     lines = (Line(frequency, broken, **LINEAR), Line(frequency, level, **AREAL))
     shades = doubtful_boxes(BANDS, BANDS < 60)
-    rules = Rules(np.array([1000.0, 1010.0, 2000.0]))
+    rules = chart.Rules(np.array([1000.0, 1010.0, 2000.0]))
     axis = Axis("force PSD / dB re 1 N²/Hz", 20, 60)
     return Chart((Panel(frequency_axis(30, 5000), axis, (*shades, rules, *lines, *notes, upright)),))
 
@@ -87,9 +70,9 @@ def map_chart():
     pressure = np.where(x**2 + y**2 < 0.5, 800 * (1 - x**2 - y**2), np.nan)
     turn = np.linspace(0, 6.28, 60)
     side, up = Axis("x / mm (rolling direction →)", -1, 1), Axis("y / mm", -1, 1)
-    field = Field((-1, 1), (-1, 1), pressure, "pressure / MPa", 0, 800, "inferno_r")
-    outline = Shape(0.7 * np.cos(turn), 0.7 * np.sin(turn), dashes=(3.0, 2.0))
-    gap = Field((-1, 1), (-1, 1), x, "gap / µm", -0.5, 0.5)
+    field = chart.Field((-1, 1), (-1, 1), pressure, "pressure / MPa", 0, 800, "inferno_r")
+    outline = chart.Shape(0.7 * np.cos(turn), 0.7 * np.sin(turn), dashes=(3.0, 2.0))
+    gap = chart.Field((-1, 1), (-1, 1), x, "gap / µm", -0.5, 0.5)
     return Chart(
         (
             Panel(side, up, (field, outline), "pressure", equal=True),
@@ -102,9 +85,9 @@ def axes_chart():
     """Second axes, turned axes, logarithmic ones, areas."""
     wave = np.geomspace(10, 2e4, 50)
     psd = Axis("one-sided PSD / m³", log=True)
-    depth = Axis("depth / µm", 10, 0, second=Second("share / %", scale=10.0))
-    turned = Axis("hardness / GPa", 5, 0, second=Second("strength / kPa", scale=0.3, offset=1.0))
-    spread = Area(wave, 0.5e-9 / wave**2, 2e-9 / wave**2, "scatter", BLUE)
+    depth = Axis("depth / µm", 10, 0, second=chart.Second("share / %", scale=10.0))
+    turned = Axis("hardness / GPa", 5, 0, second=chart.Second("strength / kPa", scale=0.3, offset=1.0))
+    spread = chart.Area(wave, 0.5e-9 / wave**2, 2e-9 / wave**2, "scatter", BLUE)
     mean = Line(wave, 1e-9 / wave**2, HOSTILE, GREEN)
     profile = Line(np.linspace(0, 10, 30), np.linspace(4, 1, 30), marker="^", width=0)
     return Chart(
@@ -114,9 +97,9 @@ def axes_chart():
 
 def scene_chart():
     """A drawing: a body and words, one axis with a name and one without."""
-    body = Shape(np.array([0.0, 4.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]), fill=BLUE)
-    notes = [Note(words, 1.0, 0.5) for words in ("1 m/s", "R = 2 m")]
-    foot = Boxes(*(np.array([at]) for at in (0.0, 0.5, -0.5, 0.0)), colour=GRID, hatch="/", edge=INK)
+    body = chart.Shape(np.array([0.0, 4.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]), fill=BLUE)
+    notes = [chart.Note(words, 1.0, 0.5) for words in ("1 m/s", "R = 2 m")]
+    foot = Boxes(*(np.array([at]) for at in (0.0, 0.5, -0.5, 0.0)), colour=chart.GRID, hatch="/", edge=INK)
     return Chart(
         (Panel(Axis("x / m", -1.0, 5.0), Axis("", -1.0, 2.0), (body, foot, *notes), equal=True, plain=True),)
     )
@@ -156,7 +139,8 @@ def text_of_page():
         for name, chart in CHARTS.items()
     )
     look = page_template("look.css.jinja").render(
-        light=colour_variables(dark=False, colours=COLOURS), dark=colour_variables(dark=True, colours=COLOURS)
+        light=chart.colour_variables(dark=False, colours=COLOURS),
+        dark=chart.colour_variables(dark=True, colours=COLOURS),
     )
     policy = f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest_of(chart_script())}'"
     return (

@@ -7,20 +7,8 @@ import pytest
 from xarray import DataTree
 
 from asperity.errors import InputError
-from asperity.reporting.chart import (
-    BLUE,
-    Area,
-    Axis,
-    Boxes,
-    Chart,
-    Field,
-    Line,
-    Note,
-    Panel,
-    Rules,
-    Second,
-    Shape,
-)
+from asperity.reporting import chart
+from asperity.reporting.chart import BLUE, Area, Axis, Boxes, Chart, Field, Line, Note, Panel, Rules, Second
 from asperity.reporting.figure import Figure, chosen_figures, write_chart, write_figures
 from asperity.reporting.panels import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.paper import draw, save_figure
@@ -74,7 +62,7 @@ def corners(boxes):
             [[0, 2, 4], [1, 3, 5]],
         ),
         (
-            Shape(X, Y[[0, 2, 0]], fill=BLUE),
+            chart.Shape(X, Y[[0, 2, 0]], fill=BLUE),
             lambda a: a.patches[0].get_xy()[:3],
             np.column_stack([X, [1, 4, 1]]),
         ),

@@ -10,20 +10,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    Area,
-    Axis,
-    Boxes,
-    Flags,
-    Line,
-    Mark,
-    Numbers,
-    Panel,
-)
+from asperity.reporting.chart import BLUE, GREEN, INK, Area, Axis, Boxes, Flags, Line, Mark, Numbers, Panel
 from asperity.reporting.figure import Figure, Lines, Of, Series, field
 from asperity.reporting.texture_figures import map_panel
 from asperity.schema import Entry, contact, rolling
@@ -348,7 +335,7 @@ def _over_wavenumbers(tree: DataTree, lines: Lines, y: Axis, marks: list[Mark], 
     """Panel over wavenumbers above zero, shaded where the texture excites nothing."""
     positive = lines.at[lines.at > 0]
     ends = np.maximum(lines.at, positive[0])[panels.stretches(~_excited(tree))]
-    lacking = [panels.shade(ends[:, 0], ends[:, 1], MUTED, opacity=0.12)] if len(ends) else []
+    lacking = [panels.shade(ends[:, 0], ends[:, 1], chart.MUTED, opacity=0.12)] if len(ends) else []
     return Panel(panels.wavenumber_axis(positive[0], positive[-1]), y, (*lacking, *marks), **place)
 
 

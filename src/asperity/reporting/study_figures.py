@@ -11,20 +11,8 @@ from typing import Any
 import numpy as np
 import xarray
 
-from asperity.reporting import data, panels
-from asperity.reporting.chart import (
-    INK,
-    MUTED,
-    Area,
-    Axis,
-    Boxes,
-    Chart,
-    Line,
-    Mark,
-    Numbers,
-    Panel,
-    sequence_styles,
-)
+from asperity.reporting import chart, data, panels
+from asperity.reporting.chart import INK, Axis, Boxes, Chart, Line, Mark, Numbers, Panel, sequence_styles
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import nominal_length, say_little
 
@@ -73,7 +61,7 @@ def ensemble_chart(bands: xarray.Dataset, looks: Looks) -> Chart:
             look = dict(looks.get(law, {}))
             shade = {key: look[key] for key in ("colour", "law") if key in look}
             marks += [
-                Area(band, low, high, opacity=0.2, **shade),
+                chart.Area(band, low, high, opacity=0.2, **shade),
                 Line(band, mean, law, **{"marker": "o"} | look),
             ]
             ends += [low, high]
@@ -106,7 +94,7 @@ def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mappin
     edges = bands.wavelength / panels.EDGE, bands.wavelength * panels.EDGE
     bounds = np.stack([*edges, bands.lowest, bands.highest])
     left, right, low, high = bounds[:, np.isfinite(bounds).all(axis=0)]
-    allowed = Boxes(left, right, low, high, "allowed", MUTED, 0.15)
+    allowed = Boxes(left, right, low, high, "allowed", chart.MUTED, 0.15)
     order = np.argsort(edges[0])
     steps = np.stack(edges, axis=1)[order].ravel()  # a level keeps its height within each band
     texture = [

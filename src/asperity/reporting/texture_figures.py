@@ -10,20 +10,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import (
-    BLUE,
-    INK,
-    MUTED,
-    VERMILLION,
-    Area,
-    Axis,
-    Chart,
-    Line,
-    Mark,
-    Note,
-    Numbers,
-    Panel,
-)
+from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Chart, Line, Mark, Numbers, Panel
 from asperity.reporting.data import length_unit
 from asperity.reporting.figure import Figure, Lines, Of, Series, field
 from asperity.schema import contact, surface
@@ -215,7 +202,7 @@ def _spectra(tree: DataTree, lines: Lines) -> list[Panel]:
     marks: list[Mark] = []
     if (radius := data.number(tree, contact.HERTZ_RADIUS) or 0.0) > 0.0:
         at, length = 1 / (2 * radius), data.engineering(2 * radius, "m")
-        note = Note(f" length of the contact, 2a = {length}", at, 0.95, y_share=True)
+        note = chart.Note(f" length of the contact, 2a = {length}", at, 0.95, y_share=True)
         marks = [chart.Rules(np.array([at]), colour=INK), note]
     return [psd_panel(drawn, *marks, height=3.9)]
 
@@ -326,7 +313,7 @@ def surface_chart(
     if heights.ndim == 1:
         along, symbol = length_unit(np.ptp(x))
         starts, low, high = chart.envelope(heights / unit[0], STRETCHES)
-        line = Area(x[starts] / along, low, high, colour=BLUE, opacity=1.0)
+        line = chart.Area(x[starts] / along, low, high, colour=BLUE, opacity=1.0)
         above = Panel(Axis(f"x / {symbol}"), Axis(f"height / {unit[1]}"), (line,), height=1.9)
     else:
         equal = bool(max(length) <= 12 * min(length))
@@ -404,12 +391,12 @@ def _lines_panel(lines: Sequence[Numbers], spacing: float, unit: tuple[float, st
     for row, (line, (colour, _)) in enumerate(zip(lines, cycle(LOOKS), strict=False)):
         starts, low, high = chart.envelope(line / size, STRETCHES)
         at, down = np.asarray(starts * spacing / along), row * reach
-        marks.append(Area(at, low - down, high - down, colour=colour, opacity=1.0))
+        marks.append(chart.Area(at, low - down, high - down, colour=colour, opacity=1.0))
     tall = 0.45 * reach  # cut down to a round length
     decade = 10.0 ** np.floor(np.log10(tall))
     tall = float(decade * max(step for step in (1, 2, 5) if step * decade <= tall))
     bar = Line(np.full(2, 0.985 * end), 0.6 * reach + np.array([0.0, tall]), width=3.0)
-    note = Note(f"{tall:g} {symbol}", 0.975 * end, 0.6 * reach + tall / 2, align="right", colour=INK)
+    note = chart.Note(f"{tall:g} {symbol}", 0.975 * end, 0.6 * reach + tall / 2, align="right", colour=INK)
     ticks = tuple((-row * reach, f"{row + 1}") for row in range(len(lines)))
     return Panel(
         Axis(f"distance along the lines / {along_symbol}", 0.0, end),

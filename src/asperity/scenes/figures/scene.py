@@ -8,21 +8,8 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import data
-from asperity.reporting.chart import (
-    BLUE,
-    GRID,
-    INK,
-    MUTED,
-    VERMILLION,
-    Axis,
-    Boxes,
-    Line,
-    Mark,
-    Note,
-    Panel,
-    Shape,
-)
+from asperity.reporting import chart, data
+from asperity.reporting.chart import BLUE, GRID, INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Panel, Shape
 from asperity.reporting.figure import Figure, Lines, Series
 from asperity.scenes.schema import ROLLING_POINT, ROLLING_SENSOR
 from asperity.schema import Entry, contact, provenance
@@ -244,7 +231,7 @@ def _supports(support: str, length: float, height: float) -> list[Mark]:
         elif support == "clamped":
             edges = np.array([*sorted((x, x + outward * size)), -height - size, size])
             left, right, low, high = edges[:, None]
-            marks.append(Boxes(left, right, low, high, colour=GRID, hatch="/", edge=INK))
+            marks.append(chart.Boxes(left, right, low, high, colour=GRID, hatch="/", edge=INK))
     return marks
 
 
