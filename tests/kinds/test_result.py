@@ -8,7 +8,7 @@ import pytest
 import asperity
 from asperity.case.cases import parse_case
 from asperity.laws import names
-from asperity.reference.decay_rate_limit import iso_3095_decay_rate
+from asperity.reference.tracks import iso_3095_decay_rate
 from asperity.scenes.track import described_losses, loss_factor_error, relaxed
 from asperity.spectra import nominal_frequency
 from asperity.structures.track import Track

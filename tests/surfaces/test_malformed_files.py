@@ -99,7 +99,7 @@ MALFORMED = [  # file, its contents, or what is changed in an X3P file, and what
         for encoding in ("utf-8", "utf-16")
     ),
     *(
-        ("a.x3p", xml(main), "an intact XML file")
+        ("a.x3p", xml(main), "an intact X3P file")
         for main in (b"<a><b></a>", b"\xff\x00\xff", b"", b"+ADwAIQ-DOCTYPE")
     ),
     ("a.x3p", xml(b"<a/>"), r"SizeZ in .* received nothing"),

@@ -205,7 +205,7 @@ REFUSED = [  # file, its contents, hints, and what the message says
     ("a.npz", SEVERAL, NM | {"array": "q"}, "received 'q'; allowed: one of: p, b, z"),
     ("a.nc", netcdf(unit=""), {}, "heights without a unit"),
     ("a.nc", netcdf(lateral=None), {}, "heights without a pixel size"),
-    ("a.nc", netcdf(lateral=""), {}, r'x of a.nc:z: received no unit.*pixel_unit="um"'),
+    ("a.nc", netcdf(lateral=""), {}, r'x of a.nc:z: .* without a unit.*pixel_unit="um"'),
     ("a.nc", netcdf(b=("xy", HEIGHTS, {}), z=("xy", HEIGHTS, {})), {}, "received b, z; allowed: exactly one"),
     ("a.nc", netcdf(), {"array": "q"}, "received 'q'; allowed: one of: z, or group/variable"),
     ("a.nc", netcdf(x=[0.0, 1.0, 2.5, 3.0]), {}, r"x of a\.nc:z: received coordinates that are not uniform"),

@@ -77,15 +77,10 @@ def mapped_points(entries: Iterable[Mapping[str, Any]]) -> tuple[MappedPoint, ..
     """Lay points out of what a file holds of each."""
     return tuple(
         MappedPoint(
-            point["kind"],
-            point["load"],
-            point["speed"],
-            point["anisotropy"],
-            point["hurst"],
-            Place(**point["place"]),
-            point["loss"],
-            {law: max(error, LEAST) for law, error in point["laws"].items()},
-            point,
+            **{name: point[name] for name in ("kind", "load", "speed", "anisotropy", "hurst", "loss")},
+            place=Place(**point["place"]),
+            errors={law: max(error, LEAST) for law, error in point["laws"].items()},
+            details=point,
         )
         for point in entries
     )

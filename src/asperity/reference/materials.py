@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from asperity.arguments import one_of
-from asperity.errors import InputError
+from asperity.arguments import one_of, positive, real
 
 
 @dataclass(frozen=True)
@@ -47,14 +44,10 @@ class Material:
     citation: str = ""
 
     def __post_init__(self) -> None:
-        for what, value in (
-            ("Young's modulus (Pa)", self.youngs_modulus),
-            ("density (kg/m^3)", self.density),
-        ):
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(f"{what} of {self.name}", value, "a finite positive number")
-        if not -1.0 < self.poisson_ratio <= 0.5:
-            raise InputError(f"Poisson's ratio of {self.name}", self.poisson_ratio, "above -1, at most 0.5")
+        positive(f"Young's modulus (Pa) of {self.name}", self.youngs_modulus)
+        positive(f"density (kg/m^3) of {self.name}", self.density)
+        what, allowed = f"Poisson's ratio of {self.name}", "above -1, at most 0.5"
+        real(what, self.poisson_ratio, allowed, above=-1.0, at_most=0.5)
 
 
 MATERIALS: dict[str, Material] = {

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from asperity.arguments import Array
 from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
-from asperity.reference.decay_rate_limit import iso_3095_decay_rate
+from asperity.reference.tracks import iso_3095_decay_rate
 from asperity.scenarios.scene import AtContact, Scene, linear_force_psd
 from asperity.scenes import noise, schema
 from asperity.scenes.compute import Computed

@@ -22,17 +22,16 @@ __all__ = ["read_surface", "read_surfaces"]
 S = TypeVar("S", HeightMap, Profile, guards.Surface)
 Reader = Callable[[Path, Hints], list[guards.Surface]]
 
-NETCDF = read_apart("netcdf", "netCDF-4")
-INSTRUMENTS = read_apart("instruments", "known instrument")
-TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
+READ_AS_TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
 OWN: dict[str, tuple[str, Reader]] = {
     ".npy": ("npy", arrays.read_npy),
     ".npz": ("npz", arrays.read_npz),
-    ".nc": ("netCDF-4", NETCDF),
-    ".nc4": ("netCDF-4", NETCDF),
+    ".nc": ("netCDF-4", read_apart("netcdf", "netCDF-4")),
     ".sdf": ("SDF", sdf.read),
     ".x3p": ("X3P", x3p.read),
 }
+TEXT: tuple[str, Reader] = "text", text.read
+OTHER: tuple[str, Reader] = "known instrument", read_apart("instruments", "known instrument")
 
 
 def read_surface(
@@ -145,38 +144,37 @@ def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
     file = guards.readable_file(path)
     with file.open("rb") as stream:
         head = stream.read(16)
-    extension, by_content = file.suffix.lower(), _by_content(file, head)
+    extension, content = file.suffix.lower().replace(".nc4", ".nc"), _by_content(file, head)
     if extension in OWN:
-        kind, reader = OWN[extension]
-        received, same = f"a file that starts with {head[:8]!r}", by_content is reader
+        received, allowed = f"a file that starts with {head[:8]!r}", f"a {OWN[extension][0]} file"
         remedy = "Export it again, or correct the extension."
-        require(same, file.name, received, f"a {kind} file", remedy)
-    else:
-        reader = by_content or (text.read if extension in TEXT else INSTRUMENTS)
-    return reader(file, hints)
+        require(content == extension, file.name, received, allowed, remedy)
+    kind, reader = OWN[content] if content else TEXT if extension in READ_AS_TEXT else OTHER
+    with guards.hostile(file.name, kind):
+        return reader(file, hints)
 
 
-def _by_content(file: Path, head: bytes) -> Reader | None:
+def _by_content(file: Path, head: bytes) -> str | None:
+    """Extension that a file of this content has by right, of those in `OWN`; None for all others."""
+    extension = file.suffix.lower()
     if head.startswith((b"aISO-1.0", b"bISO-1.0", b"aBCR-1.0", b"bBCR-1.0")):
-        return sdf.read
-    if head.startswith(b"a") and file.suffix.lower() == ".sdf":  # softgauges bear the name of their institute
-        return sdf.read
+        return ".sdf"
+    if head.startswith(b"a") and extension == ".sdf":  # softgauges bear the name of their institute
+        return ".sdf"
     if head.startswith(b"\x93NUMPY"):
-        return arrays.read_npy
-    if head.startswith(b"\x89HDF") and file.suffix.lower() in ("", ".nc", ".nc4"):
-        return NETCDF
-    return _by_members(file) if head.startswith(b"PK") else None
-
-
-def _by_members(file: Path) -> Reader | None:
+        return ".npy"
+    if head.startswith(b"\x89HDF") and extension in ("", ".nc", ".nc4"):
+        return ".nc"
+    if not head.startswith(b"PK"):
+        return None
     received, allowed = "a zip archive without its directory", "an intact archive"
     remedy = "The file is truncated; copy or export it again."
     require(zipfile.is_zipfile(file), file.name, received, allowed, remedy)
-    with guards.archive(file) as opened:
+    with guards.hostile(file.name, "zip"), guards.archive(file) as opened:
         names = opened.namelist()
     if "main.xml" in names:
-        return x3p.read
-    return arrays.read_npz if names and all(name.endswith(".npy") for name in names) else None
+        return ".x3p"
+    return ".npz" if names and all(name.endswith(".npy") for name in names) else None
 
 
 def _finished(

@@ -21,7 +21,9 @@ TOLERANCE = 0.05
 """Largest distance of a point from the grid, in spacings."""
 SPARSEST = 0.5
 """Smallest share of grid points that must be there."""
-_RESAMPLE = "Resample the heights at a uniform spacing first."
+RESAMPLE = "Resample the heights at a uniform spacing first."
+UNEVEN = "coordinates that are not uniform"
+Index = NDArray[np.intp]
 
 
 def read_npy(path: Path, hints: Hints) -> list[guards.Surface]:
@@ -29,8 +31,7 @@ def read_npy(path: Path, hints: Hints) -> list[guards.Surface]:
 
     The hints `height_unit` and `pixel` are required; Python objects are refused.
     """
-    with guards.hostile(path.name, "npy"):
-        return _surfaces(path.read_bytes(), hints, path.name, path.name)
+    return _surfaces(path.read_bytes(), hints, path.name, path.name)
 
 
 def read_npz(path: Path, hints: Hints) -> list[guards.Surface]:
@@ -38,7 +39,7 @@ def read_npz(path: Path, hints: Hints) -> list[guards.Surface]:
 
     See `read_npy`.
     """
-    with guards.archive(path) as opened, guards.hostile(path.name, "npz"):
+    with guards.archive(path) as opened:
         names = [name.removesuffix(".npy") for name in opened.namelist() if name.endswith(".npy")]
         name = hints.array
         if name is None:  # scalars such as a pixel size do not count
@@ -80,27 +81,13 @@ def _surfaces(data: bytes, hints: Hints, file: str, source: str) -> list[guards.
     return guards.surfaces_of(heights, hints.spacing_in(source), source)
 
 
-def uniform_step(coordinates: Array, source: str, name: str) -> float:
-    """Return the signed step of coordinates (n,) that must be uniform, within 0.05 steps of their places.
-
-    That is (last - first) / (n - 1), negative for falling coordinates; source and name are for the message.
-    """
-    n = len(coordinates)
-    step = float(coordinates[-1] - coordinates[0]) / (n - 1) if n > 1 else 0.0
-    off = np.abs(coordinates - coordinates[0] - step * np.arange(n))
-    uniform = np.isfinite(step) and step != 0 and np.all(off <= TOLERANCE * abs(step))
-    allowed = f"at least two points at a uniform spacing (within {TOLERANCE} of it)"
-    require(uniform, f"{name} of {source}", "coordinates that are not uniform", allowed, _RESAMPLE)
-    return step
-
-
 def line(x: Array, z: Array, source: str) -> tuple[Array, float]:
     """Put points x, z, given in any order, on the uniform line that they lie on.
 
     Returns the heights along rising x, NaN where the line has no point, and the spacing, in the units given.
     Refused are points that stand twice, or fill less than half of the line.
     """
-    index, spacing = _indices(x, source, "x", np.diff(np.sort(x)))
+    index, spacing = places(x, f"x of {source}", np.diff(np.sort(x)))
     return _gridded(index, z, (int(index.max()) + 1,), source), spacing
 
 
@@ -110,18 +97,18 @@ def rasterised(x: Array, y: Array, z: Array, source: str) -> tuple[Array, tuple[
     Returns the heights (nx, ny) along rising x and y, NaN where the grid has no point, and (dx, dy), in the
     units given. Refused are points that stand twice, or fill less than half of the grid.
     """
-    (i, dx), (j, dy) = _indices(x, source, "x", _steps(x)), _indices(y, source, "y", _steps(y))
+    (i, dx), (j, dy) = (places(v, f"{name} of {source}", _steps(v)) for name, v in (("x", x), ("y", y)))
     shape = (int(i.max()) + 1, int(j.max()) + 1)
     return _gridded(i * shape[1] + j, z, shape, source), (dx, dy)
 
 
-def _gridded(index: NDArray[np.intp], z: Array, shape: tuple[int, ...], source: str) -> Array:
+def _gridded(index: Index, z: Array, shape: tuple[int, ...], source: str) -> Array:
     """Heights on a grid; that points fill half of it is known before it is allocated."""
     received = f"{len(z)} points that would need a grid of {' x '.join(str(n) for n in shape)}"
     dense = math.prod(shape) * SPARSEST <= len(z)
-    require(dense, source, received, "points on a regular grid", _RESAMPLE)
+    require(dense, source, received, "points on a regular grid", RESAMPLE)
     single, received = len(np.unique(index)) == len(index), "several points at one place"
-    require(single, source, received, "one height per grid point", _RESAMPLE)
+    require(single, source, received, "one height per grid point", RESAMPLE)
     heights = np.full(math.prod(shape), np.nan)
     heights[index] = z
     return heights.reshape(shape)
@@ -133,16 +120,20 @@ def _steps(coordinates: Array) -> Array:
     return gaps[gaps > 0.5 * gaps.max(initial=0.0)]
 
 
-def _indices(coordinates: Array, source: str, name: str, steps: Array) -> tuple[NDArray[np.intp], float]:
-    what, finite = f"{name} of {source}", np.isfinite(coordinates).all()
-    received = "missing or infinite coordinates"
-    require(finite, what, received, "a coordinate for each point", _RESAMPLE)
-    step = float(np.median(steps)) if len(steps) else 0.0
-    require(step > 0, what, "fewer than two different coordinates", "at least two", _RESAMPLE)
+def places(coordinates: Array, what: str, gaps: Array) -> tuple[Index, float]:
+    """Number the places of coordinates on a uniform line, from zero on, and return its spacing.
+
+    Each is within 0.05 spacings of its place. `gaps` are distances of neighbours, of which the median is one
+    spacing; `what` they are is for messages.
+    """
+    finite, received = np.isfinite(coordinates).all(), "missing or infinite coordinates"
+    require(finite, what, received, "a coordinate for each point", RESAMPLE)
+    step = float(np.median(gaps)) if len(gaps) else 0.0
+    require(step > 0, what, "fewer than two different coordinates", "at least two", RESAMPLE)
     origin, extent = coordinates.min(), np.ptp(coordinates)
     step = float(extent / round(extent / step))
     index = np.rint((coordinates - origin) / step)
     uniform = np.abs(coordinates - origin - index * step).max() <= TOLERANCE * step
     allowed = f"coordinates at a uniform spacing (within {TOLERANCE} of it)"
-    require(uniform, what, "coordinates that are not uniform", allowed, _RESAMPLE)
+    require(uniform, what, UNEVEN, allowed, RESAMPLE)
     return index.astype(np.intp), step

@@ -45,7 +45,8 @@ in_python = Spelling()
 """As ``height_unit="um"``."""
 on_command_line = Spelling("option")
 """As ``--height-unit um``."""
-_spelling: ContextVar[Spelling] = ContextVar("spelling", default=in_python)
+SPELLING: ContextVar[Spelling] = ContextVar("spelling", default=in_python)
+"""The one in use."""
 
 
 def in_case(section: str, keys: Mapping[str, str]) -> Spelling:
@@ -59,16 +60,11 @@ def in_case(section: str, keys: Mapping[str, str]) -> Spelling:
 @contextmanager
 def spelled(spelling: Spelling) -> Iterator[None]:
     """Write hints in another way while the body of the ``with`` statement reads files."""
-    token = _spelling.set(spelling)
+    token = SPELLING.set(spelling)
     try:
         yield
     finally:
-        _spelling.reset(token)
-
-
-def current_spelling() -> Spelling:
-    """Return the spelling in use."""
-    return _spelling.get()
+        SPELLING.reset(token)
 
 
 def advice(name: str, value: Value, lead: str, otherwise: str) -> str:
@@ -76,16 +72,15 @@ def advice(name: str, value: Value, lead: str, otherwise: str) -> str:
 
     `lead` comes before it; `otherwise` is the sentence for a place where the hint cannot be given.
     """
-    written = _spelling.get().write(name, value)
+    written = SPELLING.get().write(name, value)
     return otherwise if written is None else f"{lead} {written}."
 
 
 def spell(name: str, value: Value = None) -> str:
     """Write a hint with a value as it is written where the user stands; its bare name if it has no place."""
-    return _spelling.get().write(name, value) or name
+    return SPELLING.get().write(name, value) or name
 
 
-_GIVEN = {"height_factor": "height_unit", "spacing": "pixel", "lateral_factor": "pixel_unit"}
 _HEADING = 'Save it as text with a heading, as "{}".'
 
 
@@ -94,29 +89,34 @@ class Hints:
     """Checked hints in SI; None where nothing was said."""
 
     array: str | None = None  # name of the array, variable or channel to read
-    height_factor: float | None = None  # length in m of one unit of the heights
-    spacing: tuple[float, float] | None = None  # (dx, dy), m
-    lateral_factor: float | None = None  # length in m of one unit of the coordinates
+    height_unit: float | None = None  # length in m of one unit of the heights
+    pixel: tuple[float, float] | None = None  # (dx, dy), m
+    pixel_unit: float | None = None  # length in m of one unit of the coordinates
     decimal: str | None = None  # mark of a text file
 
     def heights_in(self, source: str, stated: float | None = None) -> float:
         """Return the factor of the heights: the hint, else what the file states, else an `InputError`."""
         remedy = advice("height_unit", "um", "Give it, as in", _HEADING.format("z (um)"))
-        chosen = self.height_factor or stated
+        chosen = self.height_unit or stated or 0.0
         require(chosen, source, "heights without a unit", "a unit of the heights", remedy)
-        return float(chosen or 0.0)
+        return chosen
 
     def spacing_in(self, source: str, stated: tuple[float, float] | None = None) -> tuple[float, float]:
         """Return the spacing: the hint, else what the file states, else an `InputError`."""
         remedy = advice("pixel", "1.5 um", "Give it, as in", _HEADING.format("# pixel: 1.5 um"))
-        chosen = self.spacing or stated
-        allowed = "the distance of neighbouring points"
+        chosen, allowed = self.pixel or stated, "the distance of neighbouring points"
         require(chosen, source, "heights without a pixel size", allowed, remedy)
         return chosen or (0.0, 0.0)
 
+    def lateral_in(self, source: str, stated: float | None, example: str, lead: str, otherwise: str) -> float:
+        """Return the factor of coordinates as `heights_in` does; the rest is as of `advice`."""
+        chosen, remedy = self.pixel_unit or stated or 0.0, advice("pixel_unit", example, lead, otherwise)
+        require(chosen, source, "coordinates without a unit", "a unit of the coordinates", remedy)
+        return chosen
+
     def refuse(self, source: str, kind: str) -> None:
         """Raise an `InputError` if anything was said about a format that states everything itself."""
-        said = [spell(_GIVEN.get(name, name)) for name, value in asdict(self).items() if value is not None]
+        said = [spell(name) for name, value in asdict(self).items() if value is not None]
         allowed = f"no hints, because {kind} files state their lengths and have one array"
         require(not said, f"hints for {source}", ", ".join(said), allowed, "Leave them out.")
 

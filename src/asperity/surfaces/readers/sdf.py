@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 from pathlib import Path
@@ -20,10 +21,16 @@ DATA_TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")  # by the co
 MISSING = {"<u2": 2**16 - 1, "<u4": 2**32 - 1, "<i2": -(2**15), "<i4": -(2**31)}
 
 _BINARY = struct.Struct("<8s10s12s12sHHddddBBB")
-_FIELDS = (  # noqa: SIM905
-    "version manufacid createdate moddate numpoints numprofiles "
-    "xscale yscale zscale zresolution compression datatype checktype"
-).split()
+_FIELDS = {  # of the header, with what is allowed there
+    "Compression": ("a number", math.isfinite),
+    "DataType": ("0 to 7", range(len(DATA_TYPES)).__contains__),
+    "NumProfiles": guards.WHOLE,
+    "NumPoints": guards.WHOLE,
+    "Zscale": ("the height of one unit in m", bool),
+    "Xscale": ("a finite number", math.isfinite),
+    "Yscale": ("a finite number", math.isfinite),
+}
+_IN_BINARY = ("NumPoints", "NumProfiles", "Xscale", "Yscale", "Zscale", "", "Compression", "DataType", "")
 
 
 def read(path: Path, hints: Hints) -> list[guards.Surface]:
@@ -35,44 +42,33 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     source = path.name
     hints.refuse(source, "SDF")
     data = path.read_bytes()
-    with guards.hostile(source, "SDF"):
-        binary = data[:1] == b"b"
-        header, body = _binary_header(data, source) if binary else _ascii_header(data)
-        compression = guards.header_number(source, "Compression", header.get("compression", "0"))
-        require(compression == 0, source, "compressed data", "Compression = 0", "Export it uncompressed.")
-        code = guards.header_number(
-            source, "DataType", header.get("datatype"), "0 to 7", range(len(DATA_TYPES)).__contains__
-        )
-        kind = DATA_TYPES[int(code)]
-        profiles, points = (
-            guards.count(source, name, header.get(name.lower())) for name in ("NumProfiles", "NumPoints")
-        )
-        raw = (_binary_heights if binary else _ascii_heights)(body, (profiles, points), kind, source)
-        unit = guards.header_number(
-            source, "Zscale", header.get("zscale"), "the height of one unit in m", bool
-        )
-        heights = guards.scaled(raw, unit, source)
-        if kind in MISSING:
-            heights[raw == MISSING[kind]] = np.nan
-        dx, dy = (
-            guards.header_number(source, name, header.get(name.lower())) for name in ("Xscale", "Yscale")
-        )
-        return guards.surfaces_of(heights.T, (dx, dy), source)
+    binary = data[:1] == b"b"
+    header, body = _binary_header(data, source) if binary else _ascii_header(data)
+    compression, code, profiles, points, unit, dx, dy = (
+        guards.header_number(source, name, header.get(name.lower()), *fits) for name, fits in _FIELDS.items()
+    )
+    require(compression == 0, source, "compressed data", "Compression = 0", "Export it uncompressed.")
+    kind, shape = DATA_TYPES[int(code)], (int(profiles), int(points))
+    raw = (_binary_heights if binary else _ascii_heights)(body, shape, kind, source)
+    heights = guards.scaled(raw, unit, source)
+    if kind in MISSING:
+        heights[raw == MISSING[kind]] = np.nan
+    return guards.surfaces_of(heights.T, (dx, dy), source)
 
 
 def _binary_header(data: bytes, source: str) -> tuple[dict[str, str], bytes]:
     size = _BINARY.size
     received, allowed = f"{len(data)} bytes", f"a header of {size} bytes"
     require(len(data) >= size, source, received, allowed, guards.EXPORT)
-    values = (str(value) for value in _BINARY.unpack_from(data))
-    return dict(zip(_FIELDS, values, strict=True)), data[size:]
+    values = map(str, _BINARY.unpack_from(data)[4:])
+    return dict(zip(map(str.lower, _IN_BINARY), values, strict=True)), data[size:]
 
 
 def _ascii_header(data: bytes) -> tuple[dict[str, str], bytes]:
     head, _, rest = data.partition(b"*")
     pairs = (line.partition("=") for line in head.decode("latin-1").splitlines())
     header = {name.strip().lower(): value.strip() for name, _, value in pairs}
-    return header, rest.partition(b"*")[0]  # a trailer may follow
+    return {"compression": "0"} | header, rest.partition(b"*")[0]  # a trailer may follow
 
 
 def _binary_heights(body: bytes, shape: tuple[int, int], kind: str, source: str) -> NDArray[Any]:

@@ -17,8 +17,7 @@ from asperity.arguments import Array, require
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.readers import guards
-from asperity.surfaces.readers.arrays import line, rasterised
+from asperity.surfaces.readers import arrays, guards
 from asperity.surfaces.readers.hints import Hints, advice, spell
 from asperity.text_files import number_in
 from asperity.units import factor, quantity
@@ -89,14 +88,13 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     size, allowed = path.stat().st_size, f"at most {amount(MAX_TEXT_BYTES)} of text"
     remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
     require(size <= MAX_TEXT_BYTES, f"size of {path.name}", amount(size), allowed, remedy)
-    with guards.hostile(path.name, "text"):
-        encoding = _encoding(path)
-        with path.open(encoding=encoding) as lines:
-            dialect = _dialect(lines, hints.decimal, path.name)
-        with path.open(encoding=encoding) as lines:
-            header_lines, table = _table(lines, dialect, path.name)
-        header = parsed_header(header_lines, dialect.delimiter, table.shape[1])
-        return _surfaces(table, header, hints, path.name)
+    encoding = _encoding(path)
+    with path.open(encoding=encoding) as lines:
+        dialect = _dialect(lines, hints.decimal, path.name)
+    with path.open(encoding=encoding) as lines:
+        header_lines, table = _table(lines, dialect, path.name)
+    header = parsed_header(header_lines, dialect.delimiter, table.shape[1])
+    return _surfaces(table, header, hints, path.name)
 
 
 def _encoding(path: Path) -> str:
@@ -201,69 +199,48 @@ def _no_numbers(number: int, text: str, source: str) -> InputError:
     return InputError(source, received, allowed, "Correct or remove the line.")
 
 
-def _surfaces(table: Array, header: Header, hints: Hints, source: str) -> list[guards.Surface]:
-    unit = hints.heights_in(source, header.height_unit)
-    spacing = hints.spacing or header.spacing
-    columns = table.shape[1]
+def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str) -> list[guards.Surface]:
+    columns, lateral = table.shape[1], []
+    heights = table[:, -1] if columns in (2, 3) else table
+    heights *= hints.heights_in(source, header.get("z"))
+    spacing = hints.pixel or ((header["dx"], header["dy"]) if "dx" in header else None)
+    if columns in (2, 3) and spacing is None:
+        heading = 'Write it into the heading, as "x (mm)"'
+        words = ("mm", f"{heading}, or give", f"{heading}.")
+        lateral = [hints.lateral_in(source, header.get(axis), *words) for axis in "xy"[: columns - 1]]
     if columns == 2:
-        heights, step = line(table[:, 0], table[:, 1], source)
-        dx = spacing[0] if spacing else step * _lateral(header.x_unit, hints, source)
-        return [Profile(heights * unit, dx, source)]
+        line, step = arrays.line(table[:, 0], heights, source)
+        return [Profile(line, spacing[0] if spacing else step * lateral[0], source)]
     if columns == 3:
-        heights, steps = rasterised(table[:, 0], table[:, 1], table[:, 2], source)
-        if spacing is None:
-            x, y = _lateral(header.x_unit, hints, source), _lateral(header.y_unit, hints, source)
-            spacing = steps[0] * x, steps[1] * y
-        return guards.surfaces_of(heights * unit, spacing, source)
-    table *= unit
-    return guards.surfaces_of(table, hints.spacing_in(source, spacing), source)
+        heights, steps = arrays.rasterised(table[:, 0], table[:, 1], heights, source)
+        spacing = spacing or (steps[0] * lateral[0], steps[1] * lateral[1])
+    return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
 
 
-def _lateral(stated: float | None, hints: Hints, source: str) -> float:
-    unit = hints.lateral_factor or stated
-    heading = 'Write it into the heading, as "x (mm)"'
-    remedy = advice("pixel_unit", "mm", f"{heading}, or give", f"{heading}.")
-    require(unit, source, "coordinates without a unit", "a unit of the coordinates", remedy)
-    return float(unit or 0.0)
-
-
-@dataclass(frozen=True)
-class Header:
-    """What the header lines of a text file state, in m; None where they are silent."""
-
-    height_unit: float | None = None  # length in m of one unit of the column
-    x_unit: float | None = None  # likewise
-    y_unit: float | None = None  # likewise
-    spacing: tuple[float, float] | None = None  # (dx, dy), m
-
-
-def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> Header:
+def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> dict[str, float]:
     """Find units and pixel sizes in the lines above the numbers.
 
     Understood are column titles with units (``x [mm]; z (µm)``, ``Height (nm)``), lines such as ``# unit:
     um``, ``height unit = nm``, ``lateral unit: mm`` (a bare ``unit`` is that of the heights), and ``# pixel:
     1.5 um``, ``dx = 1 mm``. The delimiter of the columns is None for white space.
+
+    Returns lengths in m, where the lines do not leave them out: of one unit of ``x``, ``y`` and ``z``, and
+    the distances ``dx`` and ``dy`` of neighbouring points, which are the same where only one is given.
     """
     cleaned = [each.strip().lstrip("#%/!").strip() for each in lines]
-    titles = _column_units(cleaned, delimiter, columns)
-    lateral = height = None
+    stated: dict[str, float] = {}
     pixels: dict[str, float] = {}
     for text in (" ".join(each.split()) for each in cleaned):
         if match := _UNIT_LINE.match(text):
-            if _is_lateral(match[1]):
-                lateral = _length(match[2])
-            else:
-                height = _length(match[2])
+            stated |= dict.fromkeys("xy" if _is_lateral(match[1]) else "z", _length(match[2]))
         if match := _PIXEL_LINE.fullmatch(text):
             pixels[match[1].lower()] = quantity(f"{match[2].replace(',', '.')} {match[3]}", "m")
-    both = [size for name, size in pixels.items() if name not in ("dx", "dy")]
-    dx = pixels.get("dx", both[0] if both else pixels.get("dy"))
-    return Header(
-        height_unit=titles.get("z", height),
-        x_unit=titles.get("x", lateral),
-        y_unit=titles.get("y", titles.get("x", lateral)),
-        spacing=None if dx is None else (dx, pixels.get("dy", dx)),
-    )
+    titles = _column_units(cleaned, delimiter, columns)
+    stated |= ({"y": titles["x"]} if "x" in titles else {}) | titles
+    if pixels:
+        dx = pixels.get("dx", next(iter(pixels.values())))
+        stated |= {"dx": dx, "dy": pixels.get("dy", dx)}
+    return stated
 
 
 def _column_units(lines: list[str], delimiter: str | None, columns: int) -> dict[str, float]:

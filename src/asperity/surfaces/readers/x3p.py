@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,8 +14,7 @@ import numpy as np
 
 from asperity.arguments import Array, require
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.readers import guards
-from asperity.surfaces.readers.arrays import line, rasterised
+from asperity.surfaces.readers import arrays, guards
 from asperity.surfaces.readers.hints import Hints
 from asperity.text_files import number_in
 
@@ -39,7 +39,7 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     finite, are missing.
     """
     hints.refuse(path.name, "X3P")
-    with guards.archive(path) as opened, guards.hostile(path.name, "X3P"):
+    with guards.archive(path) as opened:
         xml = guards.member_bytes(opened, "main.xml", path.name, guards.MAX_XML_BYTES)
         if "md5checksum.hex" in opened.namelist():
             checksum = guards.member_bytes(opened, "md5checksum.hex", path.name, guards.MAX_XML_BYTES)
@@ -51,11 +51,12 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
 
 
 def _check_md5(data: bytes, stated: str | None, member: str, source: str) -> None:
-    if stated:
-        digest = hashlib.md5(data, usedforsecurity=False).hexdigest()
-        received = f"{member} with the checksum {digest}"
-        allowed = f"the checksum {stated[:40]} that it states"
-        require(digest == stated.lower(), source, received, allowed, "Copy the file again.")
+    digest = hashlib.md5(data, usedforsecurity=False).hexdigest()
+    received, allowed = (
+        f"{member} with the checksum {digest}",
+        f"the checksum {(stated or '')[:40]} that it states",
+    )
+    require(not stated or digest == stated.lower(), source, received, allowed, "Copy the file again.")
 
 
 @dataclass(frozen=True)
@@ -82,13 +83,11 @@ class _Record:
         y = points.get("CY", row * axes[1].increment)
         there = np.isfinite(x) & np.isfinite(y)
         if np.ptp(y[there]) == 0:
-            return [Profile(*line(x[there], z[there], self.source), self.source)]
-        heights, spacing = rasterised(x[there], y[there], z[there], self.source)
-        return guards.surfaces_of(heights, spacing, self.source)
+            return [Profile(*arrays.line(x[there], z[there], self.source), self.source)]
+        return guards.surfaces_of(*arrays.rasterised(x[there], y[there], z[there], self.source), self.source)
 
     def _text(self, tag: str) -> str | None:
-        text = self.root.findtext(tag)
-        return text.strip() if text and text.strip() else None
+        return (self.root.findtext(tag) or "").strip() or None
 
     def _axis(self, name: str) -> _Axis:
         base = f"Record1/Axes/{name}"
@@ -97,26 +96,20 @@ class _Record:
         require(kind in DATA_TYPES, what, repr(kind[:20]), "I, L, F or D", guards.EXPORT)
         # a coordinate stored with the points is in m; a single profile may state no increment across it
         default = "1" if absolute else "0" if name == "CY" else None
-        stated = self._text(f"{base}/Increment") or default
-
-        def long_enough(increment: float) -> bool:
-            return increment > 0 or (name == "CY" and increment == 0)
-
-        what, allowed = f"increment of {name}", "a length above zero"
-        increment = guards.header_number(self.source, what, stated, allowed, long_enough)
+        stated, least = self._text(f"{base}/Increment") or default, 0.0 if name == "CY" else math.ulp(0.0)
+        allowed = "a length above zero"
+        increment = guards.header_number(self.source, f"increment of {name}", stated, allowed, least.__le__)
         stated = self._text(f"{base}/Offset") or "0"
         offset = guards.header_number(self.source, f"offset of {name}", stated)
         return _Axis(name, absolute or name == "CZ", DATA_TYPES[kind], increment, offset)
 
     def _check_rotation(self) -> None:
-        rotation = self.root.find("Record1/Axes/Rotation")
-        if rotation is None or not len(rotation):
+        rotation, names = "Record1/Axes/Rotation", [f"r{i}{j}" for i in "123" for j in "123"]
+        if self.root.find(f"{rotation}/*") is None:
             return
-        names = [f"r{i}{j}" for i in "123" for j in "123"]
-        texts = [self._text(f"Record1/Axes/Rotation/{name}") for name in names]
         matrix = [
-            guards.header_number(self.source, f"{name} of the rotation", text)
-            for name, text in zip(names, texts, strict=True)
+            guards.header_number(self.source, f"{name} of the rotation", self._text(f"{rotation}/{name}"))
+            for name in names
         ]
         none, allowed = np.allclose(matrix, np.eye(3).ravel(), atol=1e-6), "no rotation of the axes"
         require(none, f"axes of {self.source}", "a rotation", allowed, "Export it unrotated.")
@@ -124,24 +117,24 @@ class _Record:
     def _shape(self) -> tuple[int, int, int]:
         """Sizes along z (layers), y and x."""
         if listed := self._text("Record3/ListDimension"):
-            return 1, 1, guards.count(self.source, "ListDimension", listed)
+            return 1, 1, int(guards.header_number(self.source, "ListDimension", listed, *guards.WHOLE))
         texts = {f"Size{axis}": self._text(f"Record3/MatrixDimension/Size{axis}") for axis in "ZYX"}
-        nz, ny, nx = (guards.count(self.source, name, text) for name, text in texts.items())
+        sizes = (guards.header_number(self.source, *item, *guards.WHOLE) for item in texts.items())
+        nz, ny, nx = map(int, sizes)
         return nz, ny, nx
 
     def _points(self, axes: list[_Axis], shape: tuple[int, int, int]) -> dict[str, Array]:
         """Coordinates in m of all points along each stored axis, NaN where a point is not valid."""
-        kinds = np.dtype([(axis.name, axis.kind) for axis in axes if axis.stored])
+        stored = [axis for axis in axes if axis.stored]
+        kinds = np.dtype([(axis.name, axis.kind) for axis in stored])
         if link := self._text("Record3/DataLink/PointDataLink"):
             size = self.opened.getinfo(link).file_size if link in self.opened.namelist() else 0
             n = guards.check_claim(self.source, shape, kinds.itemsize, size)
             raw = np.frombuffer(self._member(link, "PointData"), kinds, n)
-            points = {name: raw[name].astype(np.float64) for name in kinds.names or ()}
+            numbers = [raw[axis.name].astype(np.float64) for axis in stored]
         else:
-            points = self._listed(list(kinds.names or ()), shape)
-        for axis in axes:
-            if axis.stored:
-                points[axis.name] = points[axis.name] * axis.increment + axis.offset
+            numbers = list(self._listed(len(stored), shape))
+        points = {a.name: each * a.increment + a.offset for a, each in zip(stored, numbers, strict=True)}
         # instruments also mark missing points by infinite heights
         points["CZ"][~np.isfinite(points["CZ"])] = np.nan
         if link := self._text("Record3/DataLink/ValidPointsLink"):
@@ -156,17 +149,16 @@ class _Record:
         _check_md5(data, self._text(f"Record3/DataLink/MD5Checksum{name}"), link, self.source)
         return data
 
-    def _listed(self, names: list[str], shape: tuple[int, int, int]) -> dict[str, Array]:
+    def _listed(self, coordinates: int, shape: tuple[int, int, int]) -> Array:
         """Points as text: one Datum each, coordinates apart by semicolons, nothing in a missing one."""
         datums = [datum.text or "" for datum in self.root.findall("Record3/DataList/Datum")]
         points = guards.check_claim(self.source, shape, 1, len(datums))
         received, allowed = f"{len(datums)} points", f"the {points} that it claims"
         require(len(datums) == points, self.source, received, allowed, guards.EXPORT)
-        table, allowed = np.full((len(names), points), np.nan), f"{len(names)} numbers apart by semicolons"
+        table, allowed = np.full((coordinates, points), np.nan), f"{coordinates} numbers apart by semicolons"
         for i, text in enumerate(datums):
-            words = text.split(";")
-            if any(word.strip() for word in words):
-                received = f"the point {text!r}"[:80]
-                require(len(words) == len(names), self.source, received, allowed, guards.EXPORT)
+            if text.replace(";", "").strip():
+                words, received = text.split(";"), f"the point {text!r}"[:80]
+                require(len(words) == coordinates, self.source, received, allowed, guards.EXPORT)
                 table[:, i] = [number_in(word) for word in words]
-        return dict(zip(names, table, strict=True))
+        return table
