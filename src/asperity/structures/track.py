@@ -135,10 +135,8 @@ class Rail:
     @property
     def static(self) -> tuple[float, float]:
         """Bending stiffness at rest, N m², and shear compliance, 1/N."""
-        rest = self.losses.static
-        return self.bending_stiffness * rest, 1.0 / (
-            self.shear_stiffness * rest
-        ) if self.shear_stiffness else 0.0
+        rest, shear = self.losses.static, self.shear_stiffness
+        return self.bending_stiffness * rest, 1.0 / (shear * rest) if shear else 0.0
 
 
 @dataclass(frozen=True)
@@ -176,8 +174,7 @@ class SleeperSupport:
 
 
 _VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
-
-
+_STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
 _LOSS = Number(at_least=0, at_most=5)
 _RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies between"
 
@@ -250,7 +247,7 @@ class Track:
         Quantity("kg/m", above=0), "60 kg/m", "mass of the rail per length", f"1 kg/m to 1000 kg/m: {_RAILS}"
     )
     pad_stiffness: float = parameter(
-        Quantity("N/m", above=0), "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
+        _STIFFNESS, "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
     )
     sleeper_mass: float = parameter(
         Quantity("kg", above=0),
@@ -259,7 +256,7 @@ class Track:
         "1 kg to 100 t: sleepers lie between",
     )
     ballast_stiffness: float = parameter(
-        Quantity("N/m", above=0),
+        _STIFFNESS,
         "150 MN/m",
         "stiffness of the ballast under half a sleeper",
         f"1 kN/m to 1 TN/m: {_BALLAST}",
@@ -272,17 +269,13 @@ class Track:
     )
     rail_loss_factor: float = parameter(_LOSS, 0.01, "loss factor of the rail", default=0.0)
     pad_damping: float | None = parameter(
-        Quantity("N s/m", at_least=0),
-        "18 kN s/m",
-        "viscous damping of a pad",
-        f"1e-3 N s/m to 1e9 N s/m: {_PADS}",
-        default=None,
+        _DAMPING, "18 kN s/m", "viscous damping of a pad", f"1e-3 N s/m to 1e9 N s/m: {_PADS}", default=None
     )
     pad_loss_factor: float | None = parameter(
         _LOSS, 0.15, "loss factor of a pad, instead of pad_damping; approximated in time", default=None
     )
     ballast_damping: float | None = parameter(
-        Quantity("N s/m", at_least=0),
+        _DAMPING,
         "48 kN s/m",
         "viscous damping of the ballast",
         f"1e-3 N s/m to 1e9 N s/m: {_BALLAST}",
@@ -370,30 +363,31 @@ class Track:
         """All that its motion depends on, by name."""
         return {key: value for key, value in asdict(self).items() if key not in ("name", "sources")}
 
+    def _losses(self, part: str) -> ConstantLoss | Relaxation:
+        relaxed = getattr(self.relaxations, part, None)
+        return relaxed or ConstantLoss(getattr(self, f"{part}_loss_factor"))
+
     @property
     def rail(self) -> Rail:
         """The rail without supports."""
-        losses = (self.relaxations and self.relaxations.rail) or ConstantLoss(self.rail_loss_factor)
         section = self.shear_stiffness, self.rotary_inertia
-        return Rail(self.bending_stiffness, self.mass_per_length, losses, *section)
+        return Rail(self.bending_stiffness, self.mass_per_length, self._losses("rail"), *section)
 
     @property
     def support(self) -> SleeperSupport:
         """What the rail lies on at each sleeper."""
-        relaxed = self.relaxations or Relaxations()
-        pad = relaxed.pad or ConstantLoss(self.pad_loss_factor)
-        ballast = relaxed.ballast or ConstantLoss(self.ballast_loss_factor)
-        return SleeperSupport(
-            Spring(self.pad_stiffness, pad, self.pad_damping or 0.0),
-            self.sleeper_mass,
-            Spring(self.ballast_stiffness, ballast, self.ballast_damping or 0.0),
-        )
+        pad = Spring(self.pad_stiffness, self._losses("pad"), self.pad_damping or 0.0)
+        ballast = Spring(self.ballast_stiffness, self._losses("ballast"), self.ballast_damping or 0.0)
+        return SleeperSupport(pad, self.sleeper_mass, ballast)
 
     @property
     def is_causal(self) -> bool:
         """Whether it responds after a force only: no constant loss factor, or relaxations instead."""
-        lossy = self.rail_loss_factor or self.pad_loss_factor or self.ballast_loss_factor
-        return not lossy or self.relaxations is not None
+        return not self._is_lossy or self.relaxations is not None
+
+    @property
+    def _is_lossy(self) -> bool:
+        return bool(self.rail_loss_factor or self.pad_loss_factor or self.ballast_loss_factor)
 
     @property
     def nominal(self) -> Track:
@@ -403,8 +397,7 @@ class Track:
     @property
     def is_damped(self) -> bool:
         """Whether anything in the track dissipates."""
-        viscous = self.pad_damping or self.ballast_damping
-        return bool(viscous or self.rail_loss_factor or self.pad_loss_factor or self.ballast_loss_factor)
+        return bool(self._is_lossy or self.pad_damping or self.ballast_damping)
 
     def waves(self, omega: ArrayLike) -> PeriodicWaves:
         """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `SleeperSupport`.
