@@ -96,13 +96,6 @@ def test_table_reproduces_a_hertzian_table_between_its_nodes():
         assert_allclose(force(law, positions, approach), expected, rtol=1e-3, atol=1e-3 * LOAD)
 
 
-def test_linear_is_linear_and_pulls():
-    approach = WORKING + np.array([-1e-6, 0.0, 1e-6])
-    found = force(Linear(LOAD, 3e7, WORKING), np.zeros(3), approach)
-    assert_allclose(found, LOAD + 3e7 * (approach - WORKING), rtol=1e-12)
-    assert found[0] < 0.0
-
-
 def test_damping_acts_in_contact_and_never_pulls_but_of_printed_and_linear():
     # in contact: c times the rate that is left after the force has slowed it
     value, slope = with_damping(5.0, 1e7, 0.02, 1e-3, 100.0, False)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from rolling_parts import Shelf, rough, same
-from scipy.integrate import solve_ivp
 
 from asperity.kernels.pointforce import evaluate
 from asperity.laws import HertzLaw, Linear
@@ -109,79 +108,6 @@ def test_contacts_feel_each_other_through_the_beam_in_any_order_of_the_bodies():
     same(turned, found[[2, 0, 3, 1]], 1e-8)
 
 
-def test_two_moving_forces_superpose():
-    """Frýba, Vibration of Solids and Structures under Moving Loads: each mode in closed form."""
-    beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=2e3, loss_factor=0.0)
-    load, speed, apart = 50.0, 8.0, 0.23
-    # a contact so soft, and a mass so large, that the force stays the load
-    bodies, laws = [Body.rigid(1e3, load)] * 2, [Linear(load, 1e-3)] * 2
-    path = {"speed": speed, "start": 0.1, "duration": 0.06, "time_step": 1e-5, "positions": [0.0, apart]}
-    found = roll_bodies(beam, bodies, laws, **path)
-    same(found.contact_force, np.full((2, 6001), load), 1e-6)
-    t, expected = found.time, np.zeros_like(found.over_displacement)
-    for n, frequency in enumerate(beam.natural_frequencies, start=1):
-        omega, turn = 2 * np.pi * frequency, n * np.pi * speed
-        scale, q = np.sqrt(2.0 / beam.mass), 0.0
-        for first in (0.1, 0.1 + apart):
-            phase, factor = n * np.pi * first, scale * load / (omega**2 - turn**2)
-            # from the static displacement under the forces where they start, as it moves with them
-            rest = scale * load / omega**2 - factor
-            q = q + factor * np.sin(phase + turn * t) + rest * np.sin(phase) * np.cos(omega * t)
-            q = q + rest * turn * np.cos(phase) * np.sin(omega * t) / omega
-        expected += scale * np.sin(n * np.pi * found.positions) * q
-    same(found.over_displacement, expected, 1e-6)
-
-
-def test_a_rig_of_two_masses_is_that_of_an_adaptive_integrator_to_second_order():
-    """A wheel that carries a mass on spring and damper, over a sine on a Hertzian contact."""
-    rig, stiffness, amplitude, length = chain([0.4, 1.1], [4e5], [30.0]), 3e9, 5e-7, 4e-3
-
-    def force_at(t, y):
-        height = amplitude * np.sin(2 * np.pi * (0.3 + t) / length)
-        return stiffness * max(-y[0] - height, 0.0) ** 1.5
-
-    def rates(t, y):
-        total = rig.contacts[0] * force_at(t, y) - rig.damping @ y[2:] - rig.stiffness @ y[:2] - rig.pressing
-        return np.concatenate([y[2:], total / np.diag(rig.mass)])
-
-    lower, upper = rig.pressing
-    wheel = -(((lower + upper) / stiffness) ** (2 / 3) + amplitude * np.sin(2 * np.pi * 0.3 / length))
-    rest, time = [wheel, wheel - upper / 4e5, 0.0, 0.0], 1e-5 * np.arange(2001)
-    accuracy = {"rtol": 1e-12, "atol": 1e-18, "max_step": 2e-5}
-    told = solve_ivp(rates, (0.0, time[-1]), rest, "DOP853", time, **accuracy)
-    expected = np.array([force_at(t, y) for t, y in zip(told.t, told.y.T, strict=True)])
-    assert np.ptp(expected) > 2.0  # of 15 N
-    law, errors = HertzLaw(stiffness, waves(amplitude, length, 0.29, 0.4)), []
-    for h, every in ((1e-5, 1), (5e-6, 2), (2.5e-7, 40)):
-        run = rolled(None, law, rig, start=0.3, duration=0.02, time_step=h)
-        errors.append(np.abs(run.contact_force[::every] - expected).max())
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
-    assert errors[2] < 1e-6 * expected.max()
-
-
-def test_a_sprung_carriage_answers_tones_and_balls_cancel():
-    """Four balls a quarter period apart on a texture of period L: of its tones k v/L only each fourth heaves.
-
-    On stiff linear contacts a carriage heaves by K/(K − M ω²) times the mean texture under its balls.
-    """
-    period, h, stiffness, mass, tones = 8e-3, 4e-6, 2e7, 0.8, np.arange(1, 9)
-    places = 0.25 * period * (np.arange(4) - 1.5)
-    x = 0.28 + period / 800 * np.arange(80000)
-    heights = 1e-8 * sum(np.cos(2 * np.pi * k * x / period) / k for k in tones)
-    law = Linear(5.0, stiffness, 0.0, StateTexture.unfiltered(heights, period / 800, 0.28), damping=200.0)
-    path = {"speed": 1.0, "start": 0.35, "settling": 0.04, "duration": 0.2, "time_step": h}
-    run = roll_bodies(None, [pitching(mass, 20.0, places)], [law] * 4, positions=[0.0], **path)
-    heave, pitch = np.abs(np.fft.rfft(run.degrees_of_freedom[0][:, :-1])) * 2 / (run.time.size - 1)
-    lines = np.round(tones / period * (run.time.size - 1) * h).astype(int)
-    omega = 2 * np.pi * tones / period
-    spring = 4 * (stiffness + 200j * omega)
-    one_ball = np.abs(spring / (spring - mass * omega**2)) * 1e-8 / tones
-    assert_allclose(heave[lines] / one_ball, [0, 0, 0, 1, 0, 0, 0, 1], atol=0.01)
-    between = np.setdiff1d(np.arange(2, lines[-1]), np.concatenate([lines - 1, lines, lines + 1]))
-    assert heave[between].max() < 1e-3 * heave[lines].max()
-    assert pitch[lines[[3, 7]]].max() < 1e-3 * pitch[lines[:3]].min()  # what does not heave, pitches
-
-
 def test_a_coordinate_too_fast_for_the_step_follows_at_rest():
     """A wheel whose rim sits on a spring of 200 kHz is a wheel with a softer contact, at steps of 10 µs."""
     stiff, light, mass = 6e10, 0.04, 0.46
@@ -227,7 +153,7 @@ def test_evaluations_for_each_contact_do_not_grow_with_their_number():
 class Stepped:
     """A law that Python steps, and that can be interrupted."""
 
-    name, damping = "stepped", 0.0
+    name, damping = "stepped", 2.0
 
     def __init__(self, law, fails_at=-1):
         self.law, self.fails_at = law, fails_at
@@ -255,36 +181,20 @@ class Stepped:
 
 
 def test_laws_that_python_steps_stand_beside_compiled_ones_and_go_on_amid_a_step():
-    smooth, other = (HertzLaw(2.4e10, rough(2e-8, 1e-5, 0.29, 20000, seed)) for seed in (2, 3))
-    path = PATH | {"duration": 0.001, "settling": 0.0, "positions": [0.0, 0.05]}
-    whole, resumed, shelf = Stepped(other), Stepped(other), Shelf()
-    expected, found = (roll_bodies(BEAM, [BALL] * 2, [smooth, law], **path) for law in (other, whole))
-    assert expected.contact_force[1].std() > 0.1 * LOAD
+    laws = [HertzLaw(2.4e10, rough(2e-8, 1e-5, 0.29, 20000, seed), 2.0) for seed in (2, 3, 4)]
+    bodies = [BALL, pitching(0.8, 12.0, [-0.05, 0.05])]
+    path = PATH | {"duration": 0.001, "settling": 0.0, "positions": [0.0, 0.12], "sensors": [0.4]}
+    whole, resumed, shelf = Stepped(laws[2]), Stepped(laws[2]), Shelf()
+    expected, found = (roll_bodies(BEAM, bodies, [*laws[:2], law], **path) for law in (laws[2], whole))
+    assert expected.contact_force[2].std() > 0.1 * LOAD
     same(found.contact_force, expected.contact_force, 2e-5)
     assert (whole.accepted, whole.warned) == (100, 1)
     with pytest.raises(KeyboardInterrupt):
-        roll_bodies(BEAM, [BALL] * 2, [smooth, Stepped(other, 57)], checkpoint=shelf, **path)
-    again = roll_bodies(BEAM, [BALL] * 2, [smooth, resumed], checkpoint=shelf, **path)
-    assert int(shelf.arrays["law.1.accepted"]) == resumed.accepted == 100
-    assert_array_equal(again.contact_force, found.contact_force)
-
-
-def test_a_run_goes_on_where_it_was_bit_by_bit():
-    law = HertzLaw(2.4e10, rough(2e-7, 1e-5, 0.29, 30000), damping=2.0)
-    bodies = [BALL, pitching(0.8, 12.0, [-0.05, 0.05])]
-    path = PATH | {"duration": 0.05, "sensors": [0.4], "positions": [0.0, 0.12]}
-    whole, shelf = roll_bodies(BEAM, bodies, [law] * 3, **path), Shelf()
-
-    def stop(done, total, what):
-        if done > 0.4 * total:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        roll_bodies(BEAM, bodies, [law] * 3, progress=stop, checkpoint=shelf, **path)
-    assert 0 < shelf.arrays["motion.counts"][0] < 5500
-    resumed = roll_bodies(BEAM, bodies, [law] * 3, checkpoint=shelf, **path)
+        roll_bodies(BEAM, bodies, [*laws[:2], Stepped(laws[2], 57)], checkpoint=shelf, **path)
+    again = roll_bodies(BEAM, bodies, [*laws[:2], resumed], checkpoint=shelf, **path)
+    assert int(shelf.arrays["law.2.accepted"]) == resumed.accepted == 100
     for name in ("contact_force", "relative_displacement", "over_displacement", "acceleration"):
-        assert_array_equal(getattr(resumed, name), getattr(whole, name))
-    assert_array_equal(resumed.degrees_of_freedom[1], whole.degrees_of_freedom[1])
-    assert resumed.energy == whole.energy
-    assert resumed.contact_loss == whole.contact_loss
+        assert_array_equal(getattr(again, name), getattr(found, name))
+    assert_array_equal(again.degrees_of_freedom[1], found.degrees_of_freedom[1])
+    assert again.energy == found.energy
+    assert again.contact_loss == found.contact_loss

@@ -69,15 +69,6 @@ F = np.arange(20.0, 5001.0, 2.0)
 OF_WHEEL = WHEEL.receptance(F)
 
 
-def test_a_wheel_is_the_sum_of_its_modes_and_its_mass():
-    f = np.geomspace(1.0, 20e3, 400)
-    omega, natural = 2 * np.pi * f, 2 * np.pi * FREQUENCIES[:, None]
-    dynamic = MASSES[:, None] * (natural**2 - omega**2 + 2j * RATIOS[:, None] * natural * omega)
-    expected = (1 / dynamic).sum(axis=0) - 1 / (MASS * omega**2)
-    assert_allclose(WHEEL.receptance(f), expected, rtol=1e-9)
-    assert_allclose(WHEEL.body.receptance(f)[:, 0, 0], expected, rtol=1e-9)
-
-
 def test_a_fit_gives_back_the_modes_of_a_wheel():
     wheel, body = Wheel.from_receptance(MASS, LOAD, F, OF_WHEEL), fit_body(MASS, LOAD, F, OF_WHEEL)
     assert wheel.fit_error == body.fit_error < 1e-3
@@ -86,6 +77,7 @@ def test_a_fit_gives_back_the_modes_of_a_wheel():
     assert_allclose(wheel.modal_masses, MASSES, rtol=1e-3)
     assert_allclose(body.receptance(F)[:, 0, 0], OF_WHEEL, rtol=1e-3)
     assert body.static_loads == pytest.approx([LOAD])
+    assert_allclose(WHEEL.body.receptance(F)[:, 0, 0], OF_WHEEL, rtol=1e-12)
     rigid = Wheel.from_receptance(MASS, LOAD, F, Wheel(MASS, LOAD).receptance(F))
     assert rigid.natural_frequencies.size == 0
     assert rigid.fit_error < 1e-9

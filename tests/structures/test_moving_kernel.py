@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from asperity.errors import CoarseSamplingWarning, InputError, UnconvergedWarning
 from asperity.reference.tracks import TRACKS
@@ -60,21 +59,6 @@ def test_the_kernel_at_rest_is_the_receptance(track, distance):
         if not distance:
             static = kernel.track.static_deflection(1.0, x)
             assert kernel.weights[row].sum() == pytest.approx(static, rel=2e-3)
-
-
-def test_short_times_follow_the_closed_law_of_the_free_beam():
-    """g(t) = sqrt(t/2π) B^(-1/4) m^(-3/4), weighted by the hat of each step."""
-    step = 5e-6
-    weights = moving_kernel(VISCOUS, 56.0, step, duration=0.02, positions=8).weights[4]
-
-    def hat(k):
-        def law(t):
-            return np.sqrt(t / (2 * np.pi)) * BENDING**-0.25 * MASS**-0.75 * (1 - abs(t / step - k))
-
-        return sum(quad(law, start * step, (start + 1) * step)[0] for start in range(max(k - 1, 0), k + 1))
-
-    lags = [0, 1, 2, 5, 10]
-    np.testing.assert_allclose(weights[lags], list(map(hat, lags)), rtol=0.01)
 
 
 def test_close_supports_give_the_moving_deflection_of_the_winkler_beam():
