@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import nearest, no_file, shown
+from asperity.arguments import Array, nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import factor, quantity, written
@@ -316,7 +316,7 @@ class File(ValueKind):
             return self._table(value)
         return self._path(value, origin)
 
-    def _table(self, value: NDArray[Any]) -> NDArray[np.float64]:
+    def _table(self, value: NDArray[Any]) -> Array:
         if value.ndim != 2 or value.shape[1] not in self.columns or value.dtype.kind not in "fiu":
             shapes = " or ".join(f"(n, {count})" for count in self.columns)
             raise InputError("table", shown(value), f"an array of shape {shapes} of real numbers in SI")

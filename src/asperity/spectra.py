@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 
 HALF_BAND = 10.0 ** (1.0 / 20.0)
@@ -30,7 +31,7 @@ MOST_START = 0.2
 
 def psd(
     signal: ArrayLike, spacing: float, *, segment: int | None = None, overlap: float = 0.5
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """One-sided power spectral density (..., f) by Welch's method with a Hann window, after its frequencies.
 
     The signal (..., n) has any unit U; `spacing` is the step between samples along its last axis, s or m, so
@@ -66,7 +67,7 @@ def psd(
     return np.asarray(np.fft.rfftfreq(length, spacing), dtype=np.float64), density
 
 
-def hann_window(length: int) -> NDArray[np.float64]:
+def hann_window(length: int) -> Array:
     """Periodic Hann window of `length` samples."""
     return 0.5 - 0.5 * np.cos(2.0 * np.pi / length * np.arange(length))
 
@@ -89,7 +90,7 @@ def averaging_time(
     return float(spacing * weight.sum() ** 2 / (weight**2).sum())
 
 
-def band_product(centres: ArrayLike, time: float) -> NDArray[np.float64]:
+def band_product(centres: ArrayLike, time: float) -> Array:
     """Bandwidth times averaging time B T of one-third octaves (b,), Hz and s, or cycles per metre and m.
 
     Levels of bands below `LEAST_PRODUCT` say little.
@@ -102,7 +103,7 @@ def say_little(product: Any, start: Any) -> Any:
     return (product < LEAST_PRODUCT) | (start > MOST_START)
 
 
-def level_deviation(values: ArrayLike) -> NDArray[np.float64]:
+def level_deviation(values: ArrayLike) -> Array:
     """Standard deviation, dB, of the level of a mean square of as many independent complex values, from 1.
 
     4.34 √ψ′(n) of a gamma distribution, ψ′ the trigamma function: 4.34/√n for many, 5.57 dB for one.
@@ -112,7 +113,7 @@ def level_deviation(values: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(10.0 / np.log(10.0) * np.sqrt(polygamma(1, np.maximum(values, 1.0))), dtype=np.float64)
 
 
-def _check_signal(values: NDArray[np.float64], spacing: float) -> None:
+def _check_signal(values: Array, spacing: float) -> None:
     if values.ndim < 1 or values.shape[-1] < 2:
         raise InputError("signal", f"shape {values.shape}", "at least 2 samples on the last axis")
     if not np.isfinite(values).all():
@@ -142,9 +143,7 @@ def nominal_length(centre: float) -> str:
     return f"{nominal(centre / 1e-6):g} µm"
 
 
-def third_octave_bands(
-    f_low: float, f_high: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def third_octave_bands(f_low: float, f_high: float) -> tuple[Array, Array, Array]:
     """Exact one-third octaves of base 10, from the band that holds `f_low` to that of `f_high`.
 
     Centres 1000 · 10^(n/10) and edges, a factor 10^(1/20) below and above, (b,), Hz (or cycles per metre),
@@ -157,9 +156,7 @@ def third_octave_bands(
     return centres, centres / HALF_BAND, centres * HALF_BAND
 
 
-def band_energies(
-    frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, edges_high: ArrayLike
-) -> NDArray[np.float64]:
+def band_energies(frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, edges_high: ArrayLike) -> Array:
     """Mean square (..., b), U², in bands; a line that straddles an edge is shared in proportion.
 
     Each line of the density (..., f), U² per Hz, stands for the frequencies half a step around it, so
@@ -175,7 +172,7 @@ def band_energies(
     return high - low
 
 
-def _frequency_step(lines: NDArray[np.float64], density: NDArray[np.float64]) -> float:
+def _frequency_step(lines: Array, density: Array) -> float:
     if lines.ndim != 1 or lines.size < 2 or density.shape[-1:] != lines.shape:
         received = f"shapes {lines.shape} and {density.shape}"
         raise InputError("frequency and psd", received, "(f,) and (..., f), f >= 2")
@@ -185,9 +182,7 @@ def _frequency_step(lines: NDArray[np.float64], density: NDArray[np.float64]) ->
     return float(step)
 
 
-def _interpolate_last(
-    x: NDArray[np.float64], values: NDArray[np.float64], at: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _interpolate_last(x: Array, values: Array, at: Array) -> Array:
     """Linear interpolation along the last axis, constant outside."""
     inside = np.clip(at, x[0], x[-1])
     index = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, x.size - 2)
@@ -202,7 +197,7 @@ def band_levels(
     *,
     low: float | None = None,
     high: float | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """One-third-octave band levels of a PSD: centres (b,), Hz, and levels (..., b), dB.
 
     10 lg(mean square / reference²), minus infinity for an empty band, of a density (..., f), U² per Hz, at
@@ -225,7 +220,7 @@ def band_levels(
         return centres, 10.0 * np.log10(energies / reference**2)
 
 
-def _covered_centres(lines: NDArray[np.float64], step: float) -> tuple[float, float]:
+def _covered_centres(lines: Array, step: float) -> tuple[float, float]:
     """First and last centre of the bands that the lines cover and that are a step wide."""
     widest_step = step / (HALF_BAND - 1.0 / HALF_BAND)
     above = max(widest_step, (lines[0] - step / 2.0) * HALF_BAND)
@@ -234,13 +229,13 @@ def _covered_centres(lines: NDArray[np.float64], step: float) -> tuple[float, fl
     return float(10.0 ** (first / 10.0)), float(10.0 ** (last / 10.0))
 
 
-def energy_sum(levels: ArrayLike, axis: int = -1) -> NDArray[np.float64]:
+def energy_sum(levels: ArrayLike, axis: int = -1) -> Array:
     """Level of the sum of the energies of levels with one reference, dB: 10 lg Σ 10^(L/10)."""
     with np.errstate(divide="ignore"):
         return 10.0 * np.log10(np.sum(10.0 ** (np.asarray(levels, dtype=np.float64) / 10.0), axis=axis))
 
 
-def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
+def a_weighting(frequency: ArrayLike) -> Array:
     """A-weighting of sound pressure levels at frequencies >= 0, Hz: dB to add to an unweighted level.
 
     0 dB at 1 kHz within 0.001 dB, minus infinity at 0 Hz. IEC 61672-1:2013, analytical A-weighting, with the
@@ -256,7 +251,7 @@ def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
         return 20.0 * np.log10(gain) + 2.000
 
 
-def a_weighted_total(levels: ArrayLike, centres: ArrayLike) -> NDArray[np.float64]:
+def a_weighted_total(levels: ArrayLike, centres: ArrayLike) -> Array:
     """A-weighted level of one-third octaves, dB: 10 lg Σ 10^((L + A)/10) over the last axis.
 
     Levels (..., bands) with one reference, dB; centres (bands,), Hz. Bands without a level add nothing; NaN

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.case.surface import ADDED_LEVEL, LENGTH, LEVEL, LEVELS, POSITION, MeasuredLine
 from asperity.case.tables import TableFile, fitted_to, read_modes, read_receptance
 from asperity.errors import InputError
@@ -56,7 +56,7 @@ class FlatOnTread(MeasuredLine):
 
     radius: float
 
-    roughness: str | Path | NDArray[np.float64] | None = optional(
+    roughness: str | Path | Array | None = optional(
         Either(tuple(WHEEL_ROUGHNESS), LEVELS),
         "disc",
         "one-third-octave wavelength spectrum of what rolls, around its circumference, another texture at "
@@ -270,7 +270,7 @@ class Rolling(FlatOnTread):
         "that of a bar as long as the contacts are apart",
         f"1e-15 kg m^2 to 1e9 kg m^2: {_BODIES}",
     )
-    modes: Path | NDArray[np.float64] | None = optional(
+    modes: Path | Array | None = optional(
         TableFile(columns=(3, 6), read=read_modes),
         "modes.csv",
         "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
@@ -279,7 +279,7 @@ class Rolling(FlatOnTread):
         "contact",
         "rigid",
     )
-    receptance: Path | NDArray[np.float64] | None = optional(
+    receptance: Path | Array | None = optional(
         TableFile(columns=(3,), read=read_receptance),
         "receptance.csv",
         "table of the receptance of a mass, which is fitted by modes: frequency (Hz), real and imaginary "

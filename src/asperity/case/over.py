@@ -9,9 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from asperity.arguments import Array
 from asperity.case.body import INERTIA, MASS
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
@@ -333,7 +331,7 @@ class StructureKeys(RolledOver):
         f"numbers of the nodes along the path in {_UFF}",
         "all that have mode shapes",
     )
-    receptances: Path | NDArray[np.float64] | None = optional(
+    receptances: Path | Array | None = optional(
         File(columns=(5,)),
         "receptances.csv",
         "its measured receptances instead, which are fitted by modes: frequency (Hz), position of the "
@@ -395,14 +393,14 @@ class StructureKeys(RolledOver):
         return modes
 
     @cached_property
-    def _made(self) -> tuple[ModalStructure, list[Warning], NDArray[np.float64] | None]:
+    def _made(self) -> tuple[ModalStructure, list[Warning], Array | None]:
         """Modes, what was warned of, and the frequencies of receptances, Hz, rising; None of modes."""
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", PhysicsWarning)
             modes, lines = self._fitted() if self.file is None else (self._read(), None)
         return modes, [each.message for each in caught if isinstance(each.message, Warning)], lines
 
-    def _fitted(self) -> tuple[ModalStructure, NDArray[np.float64]]:
+    def _fitted(self) -> tuple[ModalStructure, Array]:
         """Modes that meet the receptances, and the frequencies of these."""
         from asperity.structures.receptance_fit import fit_structure, receptances_in
 

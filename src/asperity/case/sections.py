@@ -7,10 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
-from asperity.arguments import MOST_PASSES, SHAKEDOWN
+from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
 from asperity.case.body import DAMPING
 from asperity.case.form import Section
 from asperity.case.over import FREQUENCY
@@ -194,7 +191,7 @@ class NoiseKeys(Section):
 
     ALTERNATIVES = (("axle_positions", "wheelbase"),)
 
-    rail_radiation: Path | NDArray[np.float64] | None = optional(
+    rail_radiation: Path | Array | None = optional(
         TableFile(columns=(2,), read=read_ratios),
         "rail_radiation.csv",
         "table of the rail's radiation ratio: frequency (Hz), ratio of its sound power per length to "

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import FORMS, shown
+from asperity.arguments import FORMS, Array, shown
 from asperity.case.content import holds_memory
 from asperity.case.form import Section
 from asperity.case.tables import TableFile, read_levels
@@ -212,7 +211,7 @@ class Surface(MeasuredLine, MeasuredMap):
         _MORE_THAN_A_TURN,
         goes_with="rms",
     )
-    spectrum: str | Path | NDArray[np.float64] | None = optional(
+    spectrum: str | Path | Array | None = optional(
         Either(SPECTRA, LEVELS), "iso3095", "one-third-octave wavelength spectrum of the line of the path"
     )
     lateral: float | None = optional(

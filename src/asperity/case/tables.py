@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import no_file, shown
+from asperity.arguments import Array, no_file, shown
 from asperity.case.content import name_of
 from asperity.errors import InputError
 from asperity.files import amount
@@ -34,7 +34,6 @@ MOST_LINES = 2**22
 MOST_DIMENSIONS = 3
 _BAND = 0.1  # of a decade
 
-Array = NDArray[np.float64]
 TableSource = Path | Array
 """A file, or from Python the array that it would hold."""
 

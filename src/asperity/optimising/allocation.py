@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize
 
+from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
 
 MOST_STEPS = 500
@@ -25,15 +25,15 @@ _WIDER = "wider bounds of the levels, of the rms height or of the price"
 class Limits:
     """What a texture may be: levels L (b,), dB re 1 µm, of its one-third octaves of wavelength."""
 
-    start: NDArray[np.float64]  # levels that prices count from
-    lowest: NDArray[np.float64]
-    highest: NDArray[np.float64]
-    price: NDArray[np.float64]  # of lowering a band by 1 dB; as much is saved by raising it
+    start: Array  # levels that prices count from
+    lowest: Array
+    highest: Array
+    price: Array  # of lowering a band by 1 dB; as much is saved by raising it
     budget: float = np.inf  # largest Σ price (start − L)
     rms_at_least: float = 0.0  # of all bands together, m
     rms_at_most: float = np.inf
 
-    def cost(self, levels: NDArray[np.float64]) -> float:
+    def cost(self, levels: Array) -> float:
         """Price of a texture: Σ price (start − L)."""
         return float(self.price @ (self.start - levels))
 
@@ -54,34 +54,34 @@ class Response:
     E(L) = floor + Σ weight 10^(L/10), relative to the square of the reference of the response's level.
     """
 
-    weights: NDArray[np.float64]  # (b,), per µm²
+    weights: Array  # (b,), per µm²
     floor: float
 
-    def energies(self, levels: NDArray[np.float64]) -> NDArray[np.float64]:
+    def energies(self, levels: Array) -> Array:
         """What each band adds (b,)."""
         return np.asarray(self.weights * energy_of(levels))
 
-    def level(self, levels: NDArray[np.float64]) -> float:
+    def level(self, levels: Array) -> float:
         """10 lg E(L), dB."""
         return float(10.0 * np.log10(self.floor + self.energies(levels).sum()))
 
-    def slope(self, levels: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slope(self, levels: Array) -> Array:
         """By how much its level grows with each band's (b,), dB per dB: the band's share of the energy."""
         energies = self.energies(levels)
         return np.asarray(energies / (self.floor + energies.sum()))
 
 
-def energy_of(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+def energy_of(levels: Array) -> Array:
     """Mean square of each band, µm², of levels in dB re 1 µm."""
     return np.asarray(10.0 ** (levels / 10.0))
 
 
-def rms_of(levels: NDArray[np.float64]) -> float:
+def rms_of(levels: Array) -> float:
     """Rms height of all bands together, m."""
     return float(1e-6 * np.sqrt(energy_of(levels).sum()))
 
 
-def quietest(response: Response, limits: Limits, begin: NDArray[np.float64]) -> NDArray[np.float64]:
+def quietest(response: Response, limits: Limits, begin: Array) -> Array:
     """Find the levels (b,), dB, with the least response within limits, beginning at some.
 
     What is found is the best there is: the problem is convex in the bands' energies. Raises
@@ -92,9 +92,7 @@ def quietest(response: Response, limits: Limits, begin: NDArray[np.float64]) -> 
     return _by_linear_programme(response, limits)
 
 
-def roughest(
-    response: Response, limits: Limits, level: float, begin: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def roughest(response: Response, limits: Limits, level: float, begin: Array) -> Array:
     """Find the cheapest levels (b,), dB, whose response has a level, dB, or less.
 
     Where nothing else binds, each band adds to the response in proportion to its price:
@@ -106,7 +104,7 @@ def roughest(
     return _solved(cost, [kept], limits, begin)
 
 
-def _by_linear_programme(response: Response, limits: Limits) -> NDArray[np.float64]:
+def _by_linear_programme(response: Response, limits: Limits) -> Array:
     """Without a price, response and rms height are sums of the bands' energies, and nothing else counts."""
     low, high = energy_of(limits.lowest), energy_of(limits.highest)
     least, most = ((1e6 * rms) ** 2 for rms in (limits.rms_at_least, limits.rms_at_most))
@@ -125,8 +123,8 @@ def _by_linear_programme(response: Response, limits: Limits) -> NDArray[np.float
 class Term(NamedTuple):
     """A function of the levels, and its slope."""
 
-    value: Callable[[NDArray[np.float64]], float]
-    slope: Callable[[NDArray[np.float64]], NDArray[np.float64]]  # (b,), per dB
+    value: Callable[[Array], float]
+    slope: Callable[[Array], Array]  # (b,), per dB
 
 
 def _of_limits(limits: Limits) -> list[Term]:
@@ -141,16 +139,16 @@ def _of_limits(limits: Limits) -> list[Term]:
     return found
 
 
-def _rms_level(levels: NDArray[np.float64], rms: float) -> float:
+def _rms_level(levels: Array, rms: float) -> float:
     return 20.0 * float(np.log10(rms_of(levels) / rms))
 
 
-def _share(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+def _share(levels: Array) -> Array:
     energy = energy_of(levels)
     return np.asarray(energy / energy.sum())
 
 
-def _solved(least: Term, kept: list[Term], limits: Limits, begin: NDArray[np.float64]) -> NDArray[np.float64]:
+def _solved(least: Term, kept: list[Term], limits: Limits, begin: Array) -> Array:
     """Minimise a term where others are not negative.
 
     Over levels, in which all but the least rms height is convex; with one, over energies, in which all is.
@@ -169,9 +167,7 @@ def _solved(least: Term, kept: list[Term], limits: Limits, begin: NDArray[np.flo
     raise ComputationError(f"{_NOTHING} ({message})", _WIDER)
 
 
-def _over_levels(
-    least: Term, kept: list[Term], limits: Limits, begin: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], str]:
+def _over_levels(least: Term, kept: list[Term], limits: Limits, begin: Array) -> tuple[Array, str]:
     found = minimize(
         least.value,
         begin,
@@ -184,12 +180,10 @@ def _over_levels(
     return np.clip(found.x, limits.lowest, limits.highest), "" if found.success else str(found.message)
 
 
-def _over_energies(
-    least: Term, kept: list[Term], limits: Limits, begin: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], str]:
+def _over_energies(least: Term, kept: list[Term], limits: Limits, begin: Array) -> tuple[Array, str]:
     """Over y = 10^((L − begin)/10), dL/dy = (10/ln 10)/y."""
 
-    def levels(y: NDArray[np.float64]) -> NDArray[np.float64]:
+    def levels(y: Array) -> Array:
         return begin + 10.0 * np.log10(np.maximum(y, 1e-30))
 
     def over(term: Term) -> Term:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import shown
+from asperity.arguments import Array, shown
 from asperity.case.cases import as_case, case_of, load_case
 from asperity.case.describing import commented
 from asperity.case.form import Section
@@ -42,29 +42,29 @@ FEWEST_BANDS = 2
 class Bands:
     """A texture by its one-third octaves of wavelength, the longest first."""
 
-    wavelength: NDArray[np.float64]  # (n,), centres, m
-    levels: NDArray[np.float64]  # (n,), dB re 1 µm
+    wavelength: Array  # (n,), centres, m
+    levels: Array  # (n,), dB re 1 µm
     changed: NDArray[np.bool_]  # (n,), which of them may be changed
     lateral: float | None  # correlation length across over that along; None of a line
 
-    def with_changed(self, levels: NDArray[np.float64], lateral: float | None) -> Bands:
+    def with_changed(self, levels: Array, lateral: float | None) -> Bands:
         """The same with other levels of those that may be changed."""
         every = self.levels.copy()
         every[self.changed] = levels
         return replace(self, levels=every, lateral=lateral)
 
     @property
-    def table(self) -> NDArray[np.float64]:
+    def table(self) -> Array:
         """Wavelengths and levels side by side (n, 2), as a case takes them."""
         return np.stack([self.wavelength, self.levels], axis=1)
 
-    def edges(self, speed: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def edges(self, speed: float) -> tuple[Array, Array]:
         """Frequencies, Hz, between which the changed bands are passed at a speed, m/s."""
         centre = np.concatenate([third_octave_bands(1.0 / w, 1.0 / w)[0] for w in self.changed_wavelength])
         return speed * centre / HALF_BAND, speed * centre * HALF_BAND
 
     @property
-    def changed_wavelength(self) -> NDArray[np.float64]:
+    def changed_wavelength(self) -> Array:
         """Centres of the bands that may be changed, m."""
         return self.wavelength[self.changed]
 
@@ -99,7 +99,7 @@ def bands_of(case: Case, longest: float | None, shortest: float | None) -> Bands
     return Bands(wavelength, levels, changed, lateral)
 
 
-def _measured(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _measured(case: Case) -> tuple[Array, Array]:
     """Levels of the path, mean over its lines, at the wavelengths that it holds, the longest first."""
     textures, spacing = prepare_case(case).textures, case.contact.spacing
     line = Profile(textures.line - textures.line.mean(), spacing)
@@ -221,7 +221,7 @@ class Aim(Section):
         if self.lateral is not None and not (len(self.lateral) == 2 and self.lateral[0] < self.lateral[1]):
             yield InputError("lateral", list(self.lateral), "two numbers, the least first")
 
-    def limits(self, start: NDArray[np.float64]) -> Limits:
+    def limits(self, start: Array) -> Limits:
         """Limits of levels (b,), dB re 1 µm, around those that the search starts from."""
         return Limits(
             start,
@@ -234,9 +234,7 @@ class Aim(Section):
         ).checked()
 
 
-def _for_each(
-    name: str, values: tuple[float, ...] | None, otherwise: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _for_each(name: str, values: tuple[float, ...] | None, otherwise: Array) -> Array:
     if values is None:
         return otherwise
     if len(values) not in (1, len(otherwise)):

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity import __version__
-from asperity.arguments import shown
+from asperity.arguments import Array, shown
 from asperity.case.content import content, file_digest
 from asperity.case.scene import Case
 from asperity.errors import InputError, PhysicsWarning
@@ -80,7 +79,7 @@ class Optimised:
         density = self.measure.density(tree, law)
         return float(10.0 * np.log10(density.sum() * (frequency[1] - frequency[0])))
 
-    def band_levels(self, tree: Result, law: str) -> NDArray[np.float64]:
+    def band_levels(self, tree: Result, law: str) -> Array:
         """Level of the quantity (b,), dB, while each changed band is passed, of one of the results."""
         density = self.measure.density(tree, law)
         edges = self.after.edges(self.case.speed)
@@ -201,7 +200,7 @@ def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
         count += 1
         progress(count, count + 1, f"texture {count}: {words}")
 
-    def roll(levels: NDArray[np.float64], lateral: float | None) -> Trial:
+    def roll(levels: Array, lateral: float | None) -> Trial:
         return _rolled(assignment, measure, before.with_changed(levels, lateral), progress)
 
     start = roll(before.levels[before.changed], before.lateral)

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from asperity.arguments import Array
 from asperity.optimising.allocation import Limits, Response, energy_of, quietest, rms_of, roughest
 
 MOST_ROUNDS = 12
@@ -32,9 +32,9 @@ LEAST_MOVE = 0.02
 class Trial:
     """A texture that was rolled over."""
 
-    levels: NDArray[np.float64]  # (b,), of the bands that may be changed, dB re 1 µm
+    levels: Array  # (b,), of the bands that may be changed, dB re 1 µm
     lateral: float | None
-    energies: NDArray[np.float64]  # (b,), of the response while each is passed
+    energies: Array  # (b,), of the response while each is passed
     rest: float  # energy of the response outside of them
 
     @property
@@ -43,7 +43,7 @@ class Trial:
         return float(10.0 * np.log10(self.energies.sum() + self.rest))
 
 
-Roll = Callable[[NDArray[np.float64], float | None], Trial]
+Roll = Callable[[Array, float | None], Trial]
 """Rolls over a texture of levels (b,) and a lay."""
 
 
@@ -90,7 +90,7 @@ def _rounds(
 ) -> tuple[list[Trial], bool]:
     """Search at the lay of the last trial."""
 
-    def rolled(levels: NDArray[np.float64]) -> Trial:
+    def rolled(levels: Array) -> Trial:
         trial = roll(levels, trials[-1].lateral)
         told(f"{trial.level:.2f} dB, rms {1e6 * rms_of(levels):.3g} µm")
         return trial
@@ -101,7 +101,7 @@ def _rounds(
 
 
 def _up_to(
-    rolled: Callable[[NDArray[np.float64]], Trial], trials: list[Trial], limits: Limits, limit: float
+    rolled: Callable[[Array], Trial], trials: list[Trial], limits: Limits, limit: float
 ) -> tuple[list[Trial], bool]:
     """Find the cheapest levels that keep a limit."""
     response, before = _in_proportion(trials[-1]), len(trials)
@@ -118,7 +118,7 @@ def _up_to(
 
 
 def _quieter(
-    rolled: Callable[[NDArray[np.float64]], Trial], trials: list[Trial], limits: Limits
+    rolled: Callable[[Array], Trial], trials: list[Trial], limits: Limits
 ) -> tuple[list[Trial], bool]:
     """Find the levels with the least response; the texture of the case may lie outside of the limits."""
     first = trials[-1]
@@ -141,7 +141,7 @@ def _quieter(
     return trials, False
 
 
-def _between(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def _between(first: Array, second: Array) -> Array:
     """Half way in energies: limits that both keep are kept there, as they are convex in them."""
     return np.asarray(10.0 * np.log10(0.5 * (energy_of(first) + energy_of(second))))
 

@@ -12,13 +12,12 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import resample
 from scipy.signal.windows import tukey
 from xarray import DataArray, DataTree
 
-from asperity.arguments import file_path, shown
+from asperity.arguments import Array, file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
@@ -71,7 +70,7 @@ def _of_first(values: DataArray) -> DataArray:
     return values.isel({CONTACT.name: 0}, missing_dims="ignore", drop=True)
 
 
-def _sound_power(tree: DataTree) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+def _sound_power(tree: DataTree) -> tuple[Array, Array] | None:
     """Band centres (b,), Hz, and levels of all sources together (law, b), dB re 1 pW."""
     held = tree["spectra"].to_dataset() if "spectra" in tree.children else {}
     for name, (source, band) in SOUND_POWERS.items():
@@ -83,9 +82,7 @@ def _sound_power(tree: DataTree) -> tuple[NDArray[np.float64], NDArray[np.float6
     return None
 
 
-def radiated(
-    force: NDArray[np.float64], step: float, centre: NDArray[np.float64], level: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def radiated(force: Array, step: float, centre: Array, level: Array) -> Array:
     """Shape a force (n,) so that its mean square has a sound power level in each band, √W.
 
     Time step in s; centres (b,), Hz, and levels (b,), dB re 1 pW, of one-third octaves.
@@ -122,7 +119,7 @@ class Sound:
     law: str
     place: str  # of the sensor or point, as ``"0.5 m"``; empty where there is one only
     unit: str
-    samples: NDArray[np.float64]  # (n,), in its unit
+    samples: Array  # (n,), in its unit
 
     @property
     def file_name(self) -> str:
@@ -243,7 +240,7 @@ def _heard(tree: DataTree) -> dict[str, DataArray]:
     return {str(v.name): v for v in sorted(signals, key=lambda v: HEARD.index(v.attrs["units"]))}
 
 
-def at_rate(signal: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+def at_rate(signal: Array, step: float) -> Array:
     """Signal (n,) of a time step, s, without its mean and with soft ends, at 48 kHz.
 
     By its Fourier series: exact for what repeats in the record, and longer or shorter than it by less than a
@@ -254,7 +251,7 @@ def at_rate(signal: NDArray[np.float64], step: float) -> NDArray[np.float64]:
     return np.asarray(resample(soft, max(round(n * step * RATE), 2)))
 
 
-def wav_bytes(samples: Sequence[float] | NDArray[np.float64]) -> bytes:
+def wav_bytes(samples: Sequence[float] | Array) -> bytes:
     """A mono WAV file, 48 kHz, 16 bits, of samples between −1 and 1."""
     file = io.BytesIO()
     with wave.open(file, "wb") as sound:

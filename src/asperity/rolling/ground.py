@@ -6,7 +6,7 @@ import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from asperity.arguments import Array, positive, real
 from asperity.errors import InputError, LargeDeflectionWarning
@@ -22,7 +22,7 @@ from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_t
 class Path:
     """Positions of contacts that move at constant speed."""
 
-    positions: NDArray[np.float64]  # (c, n), at every time step of run-in and record, m
+    positions: Array  # (c, n), at every time step of run-in and record, m
     speed: float  # m/s
     time_step: float  # s
     settled: int = 0  # steps of the run-in; the record starts behind them
@@ -49,12 +49,12 @@ class Path:
         return self.positions.shape[1] - 1
 
     @property
-    def starts(self) -> NDArray[np.float64]:
+    def starts(self) -> Array:
         """Positions of the contacts at step zero (c,), m."""
         return self.positions[:, 0]
 
     @property
-    def time(self) -> NDArray[np.float64]:
+    def time(self) -> Array:
         """Times of the record, s, from zero."""
         return np.asarray(self.time_step * np.arange(self.total + 1 - self.settled))
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.case.over import BeamKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.errors import ComputationError, warn_of_findings
@@ -88,7 +88,7 @@ class Measure:
     meaning: str  # what it is the level of
     units: str  # of the level
     # its energy per Hz (f,) relative to the square of its reference, of a law in a result
-    density: Callable[[DataTree, str], NDArray[np.float64]]
+    density: Callable[[DataTree, str], Array]
     beside: tuple[str, ...] = ()  # laws without which it is not known
 
 
@@ -111,20 +111,20 @@ def measures_of(case: Case) -> dict[str, Measure]:
     return {A_WEIGHTED: Measure(meaning, "dB(A) re 1 N", a_weighted(_force))}
 
 
-def _force(tree: DataTree, law: str) -> NDArray[np.float64]:
+def _force(tree: DataTree, law: str) -> Array:
     return density_of(tree, spectra.FORCE_PSD, law)
 
 
-def _of_sensors(tree: DataTree, law: str) -> NDArray[np.float64]:
+def _of_sensors(tree: DataTree, law: str) -> Array:
     return density_of(tree, schema.ACCELERATION_PSD, law) / schema.ACCELERATION_REFERENCE**2
 
 
-def _of_points(tree: DataTree, law: str) -> NDArray[np.float64]:
+def _of_points(tree: DataTree, law: str) -> Array:
     velocity = density_of(tree, schema.POINT_VELOCITY_PSD, law)
     return velocity * (2.0 * np.pi * line_frequencies(tree) / schema.ACCELERATION_REFERENCE) ** 2
 
 
-def _sound_power(tree: DataTree, law: str) -> NDArray[np.float64]:
+def _sound_power(tree: DataTree, law: str) -> Array:
     """Energy of a band, shared out over its lines as the force is: it has no finer spectrum."""
     held = tree[schema.SOUND_POWER_LEVEL.group].to_dataset()
     if schema.SOUND_POWER_LEVEL.name not in held:
@@ -142,18 +142,18 @@ def _sound_power(tree: DataTree, law: str) -> NDArray[np.float64]:
     return density
 
 
-def line_frequencies(tree: DataTree) -> NDArray[np.float64]:
+def line_frequencies(tree: DataTree) -> Array:
     """Frequencies of the spectra of a result (f,), Hz."""
     return np.asarray(tree[spectra.FREQUENCY.path].values)
 
 
-def density_of(tree: DataTree, entry: Entry, law: str) -> NDArray[np.float64]:
+def density_of(tree: DataTree, entry: Entry, law: str) -> Array:
     """PSD of a law over frequency (f,), mean over the places at which it is known."""
     found = tree[entry.group].to_dataset()[entry.name].sel(law=law)
     places = [dim for dim in found.dims if dim != spectra.FREQUENCY.name]
     return np.asarray(found.mean(places).values)
 
 
-def a_weighted(density: Callable[[DataTree, str], NDArray[np.float64]]) -> Callable[..., NDArray[np.float64]]:
+def a_weighted(density: Callable[[DataTree, str], Array]) -> Callable[..., Array]:
     """Weight a density as the ear does."""
     return lambda tree, law: 10.0 ** (a_weighting(line_frequencies(tree)) / 10.0) * density(tree, law)

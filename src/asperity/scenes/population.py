@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 from scipy.special import fdtrc
 
+from asperity.arguments import Array
 from asperity.errors import Finding, Grade, ShortRecordWarning
 from asperity.laws import spec_of
 from asperity.reduction.stiffness import samples_of_maps
@@ -149,7 +149,7 @@ def _along_path(computed: Computed) -> Iterator[Finding]:
     yield _answer("Is the path the same all along?", value, answer, effect, brief, tuple(computed.case.laws))
 
 
-def levels_along(line: NDArray[np.float64], patch: float) -> NDArray[np.float64] | None:
+def levels_along(line: Array, patch: float) -> Array | None:
     """Levels, dB, of the slope of a line averaged over a patch, (parts, pieces); None if it is too short.
 
     The patch is in points. The slope weighs the waves near the length of the contact, which are many in
@@ -167,7 +167,7 @@ def levels_along(line: NDArray[np.float64], patch: float) -> NDArray[np.float64]
     return levels if np.isfinite(levels).all() else None
 
 
-def told_apart(groups: Sequence[NDArray[np.float64]]) -> tuple[float, float, bool]:
+def told_apart(groups: Sequence[Array]) -> tuple[float, float, bool]:
     """Probability that groups of levels differ so by chance, their standard deviation beyond it, and whether.
 
     Analysis of variance (R. A. Fisher): the F-test of one classification, and the component of variance

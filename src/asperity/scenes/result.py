@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
 
 from asperity import __version__, laws
+from asperity.arguments import Array
 from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning, warn_of_findings
 from asperity.progress import Progress
@@ -208,7 +208,7 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
     return xarray.Dataset(variables(laid_out), attrs=attributes({rolling.SPEED: computed.case.speed}))
 
 
-def _motion(computed: Computed) -> NDArray[np.float64]:
+def _motion(computed: Computed) -> Array:
     """Degrees of freedom of all bodies (laws, d, n), positive downwards, m."""
     levers = np.array(list(computed.scene.levers.values()))[:, None]
     return np.stack([-levers * np.concatenate(run.degrees_of_freedom) for run in computed.runs.values()])
@@ -251,7 +251,7 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
     return xarray.Dataset(variables(laid_out), attrs=facts)
 
 
-def level_differences(names: list[str], force_level: NDArray[np.float64]) -> dict[Entry, xarray.Variable]:
+def level_differences(names: list[str], force_level: Array) -> dict[Entry, xarray.Variable]:
     """Differences of force levels (laws, bands), dB, to the linear laws, and to a reference if any."""
     compared = {validity.difference_to(law): law for law in laws.baselines(names)}
     if (solved := laws.reference(names)) is not None:
@@ -276,7 +276,7 @@ EQUAL = 1e-6
 """Relative difference of distances that are equal."""
 
 
-def passing_frequencies(offsets: Iterable[float], speed: float, highest: float) -> NDArray[np.float64]:
+def passing_frequencies(offsets: Iterable[float], speed: float, highest: float) -> Array:
     """Multiples k v/L, Hz, of the frequency at which contacts at an equal distance L pass a place.
 
     Offsets in m, speed in m/s, up to the highest frequency, Hz; none where distances differ.

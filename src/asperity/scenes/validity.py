@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
@@ -286,7 +286,7 @@ def signed_level(difference: float | xarray.DataArray) -> str:
     return f"{rounded:+.1f}".replace("-", "−") if rounded else "0.0"
 
 
-def rms_about_mean(force: NDArray[np.float64]) -> float:
+def rms_about_mean(force: Array) -> float:
     """Rms of contact forces (c, n), N, each about its own mean."""
     return float(np.sqrt(np.mean(np.var(force, axis=-1))))
 

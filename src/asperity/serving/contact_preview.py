@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.contact import Contact, HalfSpace
 from asperity.errors import CaseError, InputError
@@ -70,7 +70,7 @@ class PressedSample:
             )
         return largest
 
-    def _states(self) -> NDArray[np.float64]:
+    def _states(self) -> Array:
         """Approaches (CURVE,), m, from the deepest to just above touch, denser there."""
         share = np.linspace(1.0, 0.0, CURVE, endpoint=False) ** 1.5
         return self.touch + (self.deepest - self.touch) * share
@@ -140,7 +140,7 @@ def _prepared(case: Case) -> PreparedCase:
         return prepare_case(case)
 
 
-def _laid_out(prepared: PreparedCase) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+def _laid_out(prepared: PreparedCase) -> tuple[Array, Array, int]:
     """Heights and gap (nx, ny), m, of the first sample, and how many cells apart their points are."""
     shape, maps = prepared.shape, prepared.textures.maps
     heights = np.zeros_like(shape.body)

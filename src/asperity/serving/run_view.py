@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.reporting import data
 from asperity.reporting.page import page_figure
 from asperity.results import read_result
@@ -90,13 +90,13 @@ def _texture(tree: DataTree) -> dict[str, Any] | None:
     return {"shape": list(heights.shape), "dx": dx, "dy": dy, "heights": heights - heights.mean()}
 
 
-def _about_long_waves(heights: NDArray[np.float64]) -> NDArray[np.float64]:
+def _about_long_waves(heights: Array) -> Array:
     """Heights (nx, ny) about their mean over a stretch around each row: long waves would hide all others."""
     stretch = min(STRETCH * heights.shape[1] | 1, len(heights))  # an odd one has a middle
     return heights - uniform_filter1d(heights.mean(axis=1), stretch, mode="nearest")[:, None]
 
 
-def _spacing(coordinate: NDArray[np.float64]) -> float:
+def _spacing(coordinate: Array) -> float:
     return float(coordinate[1] - coordinate[0]) if len(coordinate) > 1 else 0.0
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from asperity.arguments import Array, Complex, finite_array, positive, real, real_array
 from asperity.errors import CoarseSamplingWarning, InputError
@@ -25,11 +25,11 @@ class Modal(Protocol):
     """
 
     @property
-    def natural_frequencies(self) -> NDArray[np.float64]:
+    def natural_frequencies(self) -> Array:
         """Undamped, of all modes (m,), Hz."""
 
     @property
-    def damping_ratios(self) -> NDArray[np.float64]:
+    def damping_ratios(self) -> Array:
         """ζ of all modes (m,)."""
 
     @property
