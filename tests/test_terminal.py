@@ -19,7 +19,6 @@ WRITERS = {
     "progress.py",  # bars; its words go through `printable`
     "sandbox.py",  # answers to the process that asked
     "desk.py",
-    "jobs.py",
     "__main__.py",  # before anything can be imported
 }
 

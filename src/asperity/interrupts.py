@@ -21,7 +21,20 @@ _holding = 0
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Let every such signal raise KeyboardInterrupt while the body of the ``with`` statement runs.
+    """Let every such signal raise KeyboardInterrupt while the body of the ``with`` statement runs."""
+    _received.clear()
+    told = sys.unraisablehook
+    sys.unraisablehook = lambda lost: _again(lost, told)
+    try:
+        with handled(_interrupt):
+            yield
+    finally:
+        sys.unraisablehook = told
+
+
+@contextmanager
+def handled(handler: Callable[[int, FrameType | None], object]) -> Iterator[None]:
+    """Have a function called by every such signal while the body of the ``with`` statement runs.
 
     A signal that is ignored stays so, as with nohup, or in the background of a shell. Python calls handlers
     in the main thread; in another one nothing changes.
@@ -30,16 +43,12 @@ def interruptible() -> Iterator[None]:
     if threading.current_thread() is threading.main_thread():
         for number in (getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)):
             if signal.getsignal(number) is not signal.SIG_IGN:
-                earlier[number] = signal.signal(number, _interrupt)
-    _received.clear()
-    told = sys.unraisablehook
-    sys.unraisablehook = lambda lost: _again(lost, told)
+                earlier[number] = signal.signal(number, handler)
     try:
         yield
     finally:
-        sys.unraisablehook = told
-        for number, handler in earlier.items():
-            signal.signal(number, handler)
+        for number, before in earlier.items():
+            signal.signal(number, before)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

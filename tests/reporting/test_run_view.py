@@ -10,9 +10,8 @@ from report_tree import report_tree
 from asperity.results import save
 from asperity.scenes.notebook import Result
 from asperity.schema.rolling import POSITION
-from asperity.serving.answering import _answered
-from asperity.serving.comparison_view import compared_runs, numbered_names
-from asperity.serving.run_view import STRETCH, _about_long_waves, viewed_run
+from asperity.serving.apart import answered
+from asperity.serving.run_view import STRETCH, _about_long_waves, compared_runs, numbered_names, viewed_run
 
 
 @pytest.fixture(scope="module")
@@ -96,14 +95,16 @@ def test_a_damaged_run_is_refused_in_words(path, tmp_path):
     contents = bytearray(path.read_bytes())
     contents[len(contents) // 2] ^= 255
     damaged.write_bytes(contents)
-    answer = _answered(json.dumps({"question": "view", "path": str(damaged)}))
-    assert "a damaged file" in answer["refused"][0]
+    told = answered(json.dumps({"question": "view", "path": str(damaged)}))
+    assert "a damaged file" in told["refused"][0]
 
 
 def test_the_report_is_written_beside_its_result(path, monkeypatch):
     written = []
-    monkeypatch.setattr("asperity.scenes.report.report", lambda tree, folder: written.append((tree, folder)))
-    assert _answered(json.dumps({"question": "report", "path": str(path)})) == {}
+    monkeypatch.setattr(
+        "asperity.serving.run_view.report", lambda tree, folder: written.append((tree, folder))
+    )
+    assert answered(json.dumps({"question": "report", "path": str(path)})) == {}
     ((tree, folder),) = written
     assert folder == path.parent
     assert "rolling" in tree.children

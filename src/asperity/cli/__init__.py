@@ -331,7 +331,12 @@ _LOOK = "Look, listen and compare"
 @main.command(
     section=_LOOK, document=False, short_help="A page in the browser: set cases, press, roll, watch, listen."
 )
-@click.option("--port", type=int, default=0, help="Port of this machine. [default: one that is free]")
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=0,
+    help="Port of this machine. [default: one that is free]",
+)
 @output(
     "Folder of surfaces and runs; those of an earlier time are found again.",
     default=Path("asperity-page"),

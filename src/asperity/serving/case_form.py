@@ -1,22 +1,27 @@
-"""The form in which a case is set on the page, made from the schema of its kind; what is typed into it."""
+"""The page with its forms, which are made from the schemas of kinds of case, and what is typed into them."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from asperity import __version__
 from asperity.arguments import shown
 from asperity.case import PRESETS
 from asperity.case.cases import case_class
 from asperity.case.describing import CaseKey, allowed_in, entries, entry_of
 from asperity.case.toml import toml_value
 from asperity.errors import InputError
+from asperity.files import amount
 from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
+from asperity.serving.kept import LARGEST_UPLOAD
 
 LONGEST_VALUE = 2000
 """Characters of one value: more than any list of a case needs."""
@@ -57,7 +62,23 @@ class CaseForm:
     groups: tuple[FormGroup, ...]
 
 
-@lru_cache
+SLIDERS = (("Roughness", "surface.rms surface.level"), ("Load", ".load"), ("Speed", "speed"))
+"""What is turned most, and ends of the keys that do it: the first of them that holds a number."""
+
+
+@cache
+def page_text() -> str:
+    """Write the page; what it shows of runs and contacts its script asks for."""
+    environment = Environment(
+        loader=PackageLoader("asperity.serving", ""), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    largest = {"largest": LARGEST_UPLOAD, "largest_words": amount(LARGEST_UPLOAD)}
+    page = environment.get_template("page.html.jinja")
+    return page.render(forms=forms(), sliders=SLIDERS, version=__version__, **largest)
+
+
+@cache
 def forms() -> tuple[CaseForm, ...]:
     """Make the form of each kind of case."""
     return tuple(_form(name) for name in PRESETS)
@@ -164,7 +185,10 @@ def _value(entry: CaseKey, text: str, file_of: Callable[[str], Path | None]) -> 
                 raise InputError(entry.dotted, shown(text), "a surface that was uploaded", "Upload it.")
             return str(found)
         case MaterialOrName() if text.startswith("{"):
-            return _table(entry, text)
+            try:
+                return tomllib.loads(f"v = {text}")["v"]
+            except (ValueError, RecursionError):
+                raise InputError(entry.dotted, shown(text), kind.allowed) from None
     return text
 
 
@@ -178,13 +202,6 @@ def _number(text: str) -> int | float | str:
     return text
 
 
-def _table(entry: CaseKey, text: str) -> Any:
-    try:
-        return tomllib.loads(f"v = {text}")["v"]
-    except (ValueError, RecursionError):
-        raise InputError(entry.dotted, shown(text), entry.key.kind.allowed) from None
-
-
 def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> dict[str, str]:
     """Write the keys and values of a case that is right as they would be typed into its form.
 
@@ -192,9 +209,11 @@ def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> 
     """
     model = case_class(data.get(_KIND))
     found = {}
-    for dotted, value in _flat(data):
-        if dotted == _KIND:
-            continue
+    sections = {name: value for name, value in data.items() if isinstance(value, Mapping)}
+    flat = {name: value for name, value in data.items() if name not in {_KIND, *sections}}
+    for title, keys in sections.items():  # in which a material of numbers is a value
+        flat |= {f"{title}.{name}": value for name, value in keys.items()}
+    for dotted, value in flat.items():
         kind = entry_of(model, dotted).key.kind
         named = isinstance(kind, File)
         named |= isinstance(kind, Either) and isinstance(kind.other, File) and value not in kind.words
@@ -204,12 +223,3 @@ def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> 
             raise InputError(dotted, shown(Path(value).name), "a surface that was uploaded", remedy)
         found[dotted] = text
     return found
-
-
-def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Keys with their sections; a material of numbers is a value."""
-    for name, value in data.items():
-        if isinstance(value, Mapping):
-            yield from ((f"{name}.{inner}", each) for inner, each in value.items())
-        else:
-            yield name, value

@@ -1,22 +1,33 @@
-"""Asks the process that answers the page's questions, and starts another where it ends or takes too long."""
+"""Processes that work for the page: those that answer its questions, and those that roll its runs.
+
+One that ends or takes too long is replaced; runs are rolled one after the other, and can be cancelled.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import json
 import sys
+import time
 from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+from asperity.errors import InputError
+from asperity.files import discard
 from asperity.interrupts import no_interrupt_for_children
+from asperity.serving.kept import OUTCOME, RESULT, write_outcome
 
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
-    "from asperity.serving.{module} import {function}; {function}()"
+    "from asperity.serving.apart import {function}; {function}()"
 )
 LONGEST_ANSWER = 2**27  # bytes
 BACK = 2.0
 """Time that a process has to go before it is told more plainly, s."""
+MOST_WAITING = 20
+"""Runs that may wait."""
 
 
 class Refused(Exception):
@@ -27,54 +38,62 @@ class Refused(Exception):
         super().__init__("; ".join(errors))
 
 
-async def start_apart(module: str, function: str, *words: str) -> asyncio.subprocess.Process:
-    """Start a function of the serving package in a process of its own, which Ctrl-C does not reach."""
-    code = _START.format(module=module, function=function)
-    with no_interrupt_for_children():
-        return await asyncio.create_subprocess_exec(
-            sys.executable, "-c", code, json.dumps(sys.path), *words,
-            stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.DEVNULL,
-            limit=LONGEST_ANSWER,
-        )  # fmt: skip
+class Apart:
+    """A function of `apart` in a process of its own, which Ctrl-C does not reach."""
+
+    def __init__(self, process: asyncio.subprocess.Process) -> None:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        self.process, self.stdin, self.stdout = process, process.stdin, process.stdout
+
+    @classmethod
+    async def start(cls, function: str, *words: str) -> Apart:
+        """Start it."""
+        code, pipe = _START.format(function=function), asyncio.subprocess.PIPE
+        with no_interrupt_for_children():
+            process = await asyncio.create_subprocess_exec(
+                sys.executable, "-c", code, json.dumps(sys.path), *words,
+                stdin=pipe, stdout=pipe, stderr=asyncio.subprocess.DEVNULL, limit=LONGEST_ANSWER,
+            )  # fmt: skip
+        return cls(process)
+
+    async def end(self) -> None:
+        """End it, and wait until it has ended: the end of its input lets it go by itself."""
+        self.stdin.close()
+        for end in (self.process.terminate, self.process.kill):
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self.process.wait(), BACK)
+                return
+            with suppress(ProcessLookupError):
+                end()
+        await self.process.wait()
 
 
-async def end_apart(process: asyncio.subprocess.Process) -> None:
-    """End a process, and wait until it has ended: the end of its input lets it go by itself."""
-    assert process.stdin is not None
-    process.stdin.close()
-    for end in (process.terminate, process.kill):
-        with suppress(TimeoutError):
-            await asyncio.wait_for(process.wait(), BACK)
-            return
-        with suppress(ProcessLookupError):
-            end()
-    await process.wait()
+# --- questions
 
 
 class Desk:
-    """One process that answers questions, one after the other."""
+    """One process that answers questions, one after the other, each in so many seconds."""
 
     def __init__(self, seconds: float) -> None:
-        self.seconds = seconds  # that an answer may take
-        self._process: asyncio.subprocess.Process | None = None
+        self.seconds = seconds
+        self.apart: Apart | None = None
         self._turn = asyncio.Lock()
 
     async def ask(self, question: str, **arguments: Any) -> dict[str, Any]:
-        """Ask a question of `answering`, and wait for the answer; `Refused` says why there is none."""
+        """Ask a question of `apart`, and wait for the answer; `Refused` says why there is none."""
         line = json.dumps({"question": question, **arguments}).encode() + b"\n"
         async with self._turn:
-            process = await self._ready()
+            if self.apart is None or self.apart.process.returncode is not None:
+                self.apart = await Apart.start("answer_all")
             try:
-                assert process.stdin is not None
-                assert process.stdout is not None
-                process.stdin.write(line)
-                await process.stdin.drain()
-                answer = await asyncio.wait_for(process.stdout.readline(), self.seconds)
+                self.apart.stdin.write(line)
+                await self.apart.stdin.drain()
+                answer = await asyncio.wait_for(self.apart.stdout.readline(), self.seconds)
             except TimeoutError:
                 await self.end()
-                raise Refused(
-                    [f"This takes more than {self.seconds:.0f} s. Run it with 'asperity run'."]
-                ) from None
+                words = f"This takes more than {self.seconds:.0f} s. Run it with 'asperity run'."
+                raise Refused([words]) from None
             except OSError:
                 answer = b""
             except BaseException:  # nobody waits any more: the next answer must not be this one
@@ -88,13 +107,102 @@ class Desk:
             raise Refused(told["refused"])
         return told
 
-    async def _ready(self) -> asyncio.subprocess.Process:
-        if self._process is None or self._process.returncode is not None:
-            self._process = await start_apart("answering", "answer_all")
-        return self._process
-
     async def end(self) -> None:
         """End the process."""
-        if self._process is not None:
-            await end_apart(self._process)
-            self._process = None
+        if self.apart is not None:
+            await self.apart.end()
+            self.apart = None
+
+
+# --- runs
+
+
+@dataclass
+class Job:
+    """A run that is under way, or waits."""
+
+    folder: Path
+    task: asyncio.Task[None] | None = None
+    apart: Apart | None = None
+    message: str = ""
+    done: int = 0
+    total: int = 1
+    first: int = 0  # of `done`, when this piece of work was first heard of
+    since: float = 0.0
+
+    def told(self) -> dict[str, Any]:
+        """How far it is."""
+        if self.apart is None:
+            return {"state": "waiting", "message": "waits for the run before it"}
+        spent, rest = time.monotonic() - self.since, self.total - self.done
+        known = self.done > self.first and rest > 0
+        left = spent * rest / (self.done - self.first) if known else None
+        far = {"message": self.message, "done": self.done, "total": self.total, "left": left}
+        return {"state": "running", **far}
+
+    async def roll(self) -> None:
+        """Roll it, and keep what became of it."""
+        discard(self.folder / OUTCOME)
+        self.apart, report = await Apart.start("roll_run", str(self.folder)), {}
+        while "state" not in report and (line := await self.apart.stdout.readline()):
+            report = json.loads(line)
+            if "state" not in report:
+                self._hear(**report)
+        code = await self.apart.process.wait()
+        if not (self.folder / RESULT).is_file():
+            words = f"Its process ended (code {code}). Is there enough memory?"
+            write_outcome(self.folder, report.get("state", "failed"), report.get("message", words))
+
+    def _hear(self, done: int, total: int, message: str) -> None:
+        if message != self.message:
+            self.message, self.first, self.since = message, done, time.monotonic()
+        self.done, self.total = done, total
+
+
+class Jobs:
+    """All runs that are under way or wait, by the names of their folders."""
+
+    def __init__(self) -> None:
+        self._jobs: dict[str, Job] = {}
+        self._turn = asyncio.Semaphore(1)
+
+    def told(self, identifier: str) -> dict[str, Any]:
+        """How far a run is; nothing if it is not under way."""
+        job = self._jobs.get(identifier)
+        return job.told() if job else {}
+
+    def start(self, folder: Path) -> None:
+        """Roll the case in a folder, when its turn comes."""
+        if folder.name in self._jobs:
+            return
+        if len(self._jobs) > MOST_WAITING:
+            received, allowed = f"{len(self._jobs)} runs that wait", f"at most {MOST_WAITING}"
+            raise InputError("the runs", received, allowed, "Wait for some, or cancel them.")
+        job = self._jobs[folder.name] = Job(folder)
+        job.task = asyncio.create_task(self._roll(job))
+
+    async def _roll(self, job: Job) -> None:
+        try:
+            async with self._turn:
+                await job.roll()
+        finally:
+            if job.apart is not None:
+                await job.apart.end()
+            self._jobs.pop(job.folder.name, None)
+
+    async def cancel(self, identifier: str) -> None:
+        """End a run, or let it wait no longer; one that has just ended stays as it is."""
+        if (job := self._jobs.get(identifier)) is not None:
+            await self._stop(job)
+            if not (job.folder / RESULT).is_file():
+                write_outcome(job.folder, "cancelled")
+
+    async def _stop(self, job: Job) -> None:
+        if job.task is not None:
+            job.task.cancel()
+            await asyncio.gather(job.task, return_exceptions=True)
+        self._jobs.pop(job.folder.name, None)
+
+    async def end(self) -> None:
+        """End all runs; they can go on when the server is there again."""
+        await asyncio.gather(*map(self._stop, list(self._jobs.values())))

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from functools import wraps
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -19,13 +18,11 @@ from starlette.routing import Route
 
 from asperity.case.toml import LARGEST_CASE
 from asperity.errors import AsperityError
-from asperity.reporting.payload import chart_script
-from asperity.serving import kept_runs, uploads
-from asperity.serving.blocks import figures_style
-from asperity.serving.desk import Desk, Refused
-from asperity.serving.guard import policy_of
-from asperity.serving.jobs import Jobs
-from asperity.serving.page_template import page_text
+from asperity.reporting.chart import colour_variables
+from asperity.reporting.payload import chart_script, chart_style
+from asperity.serving import kept
+from asperity.serving.case_form import page_text
+from asperity.serving.desk import Desk, Jobs, Refused
 
 CONTACT_SECONDS, FILE_SECONDS = 60.0, 120.0
 """Time that a contact, and a file, may take, s."""
@@ -33,28 +30,14 @@ MOST_COMPARED = 4
 MOST_COMPARISONS = 20
 """Comparisons that are kept; others are written again when they are asked for."""
 LONGEST_SIZE = 19  # digits of a number of bytes
-Handler = Callable[["Server", Request], Awaitable[Response]]
+REPORT_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
+    "sandbox allow-scripts allow-downloads allow-popups"
+)
+"""What a file that a browser shows as a page of its own may do: run what stands in it, and ask nothing."""
 _MODULES = ("page", "asking", "canvas", "form", "contact", "runs", "watching")
 _STATIC = {f"{name}.js": "text/javascript" for name in _MODULES} | {"page.css": "text/css"}
-_WRITTEN = {"charts.js": (chart_script, "text/javascript"), "charts.css": (figures_style, "text/css")}
-"""What figures need on every page: its text, and what it is."""
-
-
-def told_plainly(handler: Handler) -> Handler:
-    """Turn what is wrong with the input into an answer that the page shows."""
-
-    @wraps(handler)
-    async def answered(server: Server, request: Request) -> Response:
-        try:
-            return await handler(server, request)
-        except Refused as error:
-            return JSONResponse({"errors": error.errors}, 422)
-        except uploads.TooLarge as error:
-            return JSONResponse({"errors": [str(error)]}, 413, {"connection": "close"})
-        except AsperityError as error:
-            return JSONResponse({"errors": [str(error)]}, 422)
-
-    return answered
 
 
 class Server:
@@ -86,50 +69,214 @@ class Server:
 
     def app(self) -> Starlette:
         """The addresses, without token and guard."""
+        addresses = (
+            ("GET", "/", self.page),
+            ("GET", "/{name}", self.static),
+            ("POST", "/ask/press", self.press),
+            ("POST", "/ask/check", self.check),
+            ("POST", "/ask/fill", self.fill),
+            ("GET", "/ask/surfaces", self.list_surfaces),
+            ("POST", "/ask/surfaces", self.take_surface),
+            ("POST", "/ask/surfaces/clear", self.clear_surfaces),
+            ("GET", "/ask/runs", self.list_runs),
+            ("POST", "/ask/runs", self.start_run),
+            ("GET", "/ask/compare", self.compare),
+            ("GET", "/runs/{run}/state", self.state),
+            ("GET", "/runs/{run}/view", self.view),
+            ("GET", "/runs/{run}/values", self.fill_from_run),
+            ("POST", "/runs/{run}/cancel", self.cancel),
+            ("POST", "/runs/{run}/go-on", self.go_on),
+            ("POST", "/runs/{run}/delete", self.delete),
+            ("GET", "/runs/{run}/{name:path}", self.send_file),
+            ("GET", "/comparisons/{run}/{name}", self.send_comparison_file),
+        )
         return Starlette(
-            routes=[
-                Route("/", self._bound(send_page)),
-                Route("/{name}", self._bound(send_static)),
-                Route("/ask/press", self._bound(press_contact), methods=["POST"]),
-                Route("/ask/check", self._bound(check_form), methods=["POST"]),
-                Route("/ask/fill", self._bound(fill_from_file), methods=["POST"]),
-                Route("/ask/surfaces", self._bound(send_surfaces)),
-                Route("/ask/surfaces", self._bound(take_upload), methods=["POST"]),
-                Route("/ask/surfaces/clear", self._bound(clear_surfaces), methods=["POST"]),
-                Route("/ask/runs", self._bound(send_runs)),
-                Route("/ask/runs", self._bound(start_run), methods=["POST"]),
-                Route("/ask/compare", self._bound(send_comparison)),
-                Route("/runs/{run}/state", self._bound(send_state)),
-                Route("/runs/{run}/view", self._bound(send_view)),
-                Route("/runs/{run}/values", self._bound(fill_from_run)),
-                Route("/runs/{run}/cancel", self._bound(cancel_run), methods=["POST"]),
-                Route("/runs/{run}/go-on", self._bound(go_on_with_run), methods=["POST"]),
-                Route("/runs/{run}/delete", self._bound(delete_run), methods=["POST"]),
-                Route("/runs/{run}/{name:path}", self._bound(send_file)),
-                Route("/comparisons/{run}/{name}", self._bound(send_comparison_file)),
-            ],
+            routes=[Route(path, handler, methods=[method]) for method, path, handler in addresses],
+            exception_handlers={Refused: _told, AsperityError: _told},
             lifespan=self.alive,
         )
 
-    def _bound(self, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
-        async def bound(request: Request) -> Response:
-            return await handler(self, request)
+    # --- the page, its contact and its form
 
-        return bound
+    async def page(self, request: Request) -> Response:
+        """Send the page itself."""
+        return HTMLResponse(page_text())
 
-    def run_of(self, request: Request) -> Path:
+    async def static(self, request: Request) -> Response:
+        """Send its scripts and its styles."""
+        match request.path_params["name"]:
+            case "charts.js":
+                return Response(chart_script(), media_type="text/javascript")
+            case "charts.css":
+                light, dark = (f":root {{ {colour_variables(dark=of)} }}" for of in (False, True))
+                style = f"{light}\n@media (prefers-color-scheme: dark) {{ {dark} }}\n{chart_style()}"
+                return Response(style, media_type="text/css")
+            case name if name in _STATIC:
+                content = resources.files(__package__).joinpath(name).read_bytes()
+                return Response(content, media_type=_STATIC[name])
+        raise HTTPException(404, "There is nothing of that name.")
+
+    async def _of_contacts(self, question: str, **words: Any) -> Response:
+        """Answer what concerns cases and contacts."""
+        return JSONResponse(await self.contacts.ask(question, **words, surfaces=str(self.surfaces)))
+
+    async def press(self, request: Request) -> Response:
+        """Press the sample of a case to an approach."""
+        found = await _typed_in(request)
+        share = found.get("share")
+        if not (share is None or (isinstance(share, int | float) and 0 <= share <= 1)):
+            raise HTTPException(400, "The share lies between 0 and 1.")
+        return await self._of_contacts("press", **_form(found), share=share, whole=found.get("whole") is True)
+
+    async def check(self, request: Request) -> Response:
+        """Read a case from its form."""
+        return await self._of_contacts("check", **_form(await _typed_in(request)))
+
+    async def fill(self, request: Request) -> Response:
+        """Read a case file into the form."""
+        text = (await _typed_in(request)).get("text")
+        if not isinstance(text, str):
+            raise HTTPException(400, "The question has no text.")
+        return await self._of_contacts("fill", text=text)
+
+    async def fill_from_run(self, request: Request) -> Response:
+        """Read the case of a run into the form."""
+        return await self._of_contacts("fill", text=kept.case_of_run(self._run(request)))
+
+    # --- surfaces
+
+    async def list_surfaces(self, request: Request) -> Response:
+        """List surfaces that were uploaded."""
+        return JSONResponse(kept.uploaded(self.surfaces))
+
+    async def take_surface(self, request: Request) -> Response:
+        """Receive a surface, and keep it if anybody can read it."""
+        size = request.headers.get("content-length", "")
+        announced = int(size) if size.isascii() and size.isdigit() and len(size) < LONGEST_SIZE else None
+        name = request.query_params.get("name", "")
+        file = await kept.receive(self.surfaces, name, announced, request.stream())
+        try:
+            told = await self.files.ask("examine", path=str(file))
+        except BaseException:
+            kept.remove_kept(file.parent)
+            raise
+        return JSONResponse(told | {"id": file.parent.name, "name": file.name})
+
+    async def clear_surfaces(self, request: Request) -> Response:
+        """Delete the surfaces that no run uses; tell which are left."""
+        kept.remove_unnamed(self.surfaces, self.runs)
+        return JSONResponse(kept.uploaded(self.surfaces))
+
+    # --- runs
+
+    def _run(self, request: Request) -> Path:
         """Folder of the run that a path names."""
-        folder = kept_runs.folder_of(self.runs, request.path_params["run"])
+        folder = kept.folder_of(self.runs, request.path_params["run"])
         if folder is None:
             raise HTTPException(404, "There is no such run.")
         return folder
 
-    def told(self, folder: Path) -> dict[str, Any]:
+    def _far(self, folder: Path) -> dict[str, Any]:
         """What a run is, and how far."""
-        return kept_runs.told_of(folder) | self.jobs.told(folder.name)
+        return kept.told_of(folder) | self.jobs.told(folder.name)
+
+    async def list_runs(self, request: Request) -> Response:
+        """List all runs, the latest first."""
+        found = map(self._far, kept.kept_in(self.runs))
+        return JSONResponse(sorted(found, key=lambda run: str(run["created"]), reverse=True))
+
+    async def start_run(self, request: Request) -> Response:
+        """Keep a case that is right, and roll it."""
+        found = await _typed_in(request)
+        form, name = _form(found), str(found.get("name", ""))
+        told = await self.contacts.ask("check", **form, surfaces=str(self.surfaces))
+        facts = {"kind": form["kind"], "name": name, "changed": told["changed"]}
+        identifier = kept.keep_run(self.runs, told["toml"], **facts)
+        try:
+            self.jobs.start(self.runs / identifier)
+        except AsperityError:  # too many wait: it is not kept as one that was begun
+            kept.remove_kept(self.runs / identifier)
+            raise
+        return JSONResponse({"id": identifier})
+
+    async def state(self, request: Request) -> Response:
+        """Tell what became of a run, or how far it is."""
+        return JSONResponse(self._far(self._run(request)))
+
+    async def view(self, request: Request) -> Response:
+        """Send what there is to be seen of a run that is done."""
+        path = self._run(request) / kept.RESULT
+        return JSONResponse(await self.files.ask("view", path=str(path)))
+
+    async def cancel(self, request: Request) -> Response:
+        """End a run."""
+        await self.jobs.cancel(self._run(request).name)
+        return await self.state(request)
+
+    async def go_on(self, request: Request) -> Response:
+        """Roll a run that ended too early; what of it is finished is not computed again."""
+        folder = self._run(request)
+        if not (folder / kept.RESULT).is_file():
+            self.jobs.start(folder)
+        return await self.state(request)
+
+    async def delete(self, request: Request) -> Response:
+        """End a run, and delete all of it."""
+        folder = self._run(request)
+        await self.jobs.cancel(folder.name)
+        kept.remove_kept(folder)
+        return JSONResponse({})
+
+    async def send_file(self, request: Request) -> Response:
+        """Send a file of a run: its result, its case, its report with the numbers of its figures, its sounds.
+
+        The report is written when it is asked for first.
+        """
+        folder, name = self._run(request), request.path_params["name"]
+        result = folder / kept.RESULT
+        if name == kept.REPORT and result.is_file() and not (folder / name).is_file():
+            await self.files.ask("report", path=str(result))
+        return _handed_out(folder, name)
+
+    # --- runs beside each other
+
+    def _compared(self, request: Request) -> tuple[str, dict[str, Any]]:
+        """What is kept of the runs that a question names, and their paths and names, in their order."""
+        found = [kept.folder_of(self.runs, each) for each in request.query_params.getlist("run")]
+        folders = [folder for folder in found if folder is not None]
+        if not 2 <= len(folders) <= MOST_COMPARED:
+            raise HTTPException(400, f"Two to {MOST_COMPARED} runs can be compared.")
+        identifier = kept.identifier_of_runs([folder.name for folder in folders])
+        names = [str(kept.told_of(folder)["name"]) for folder in folders]
+        return identifier, {"paths": [str(folder / kept.RESULT) for folder in folders], "names": names}
+
+    async def compare(self, request: Request) -> Response:
+        """Show runs beside each other."""
+        identifier, runs = self._compared(request)
+        told = await self.files.ask("compare", **runs)
+        return JSONResponse(told | {"page": f"comparisons/{identifier}/{kept.COMPARISON}"})
+
+    async def send_comparison_file(self, request: Request) -> Response:
+        """Send the page of a comparison, written when it is asked for with its runs; or its table."""
+        wanted, root = request.path_params["run"], self.comparisons
+        if "run" in request.query_params:
+            identifier, runs = self._compared(request)
+            if identifier == wanted:
+                await self.files.ask("comparison", **runs, folder=str(root / identifier))
+                for folder in kept.kept_in(root)[MOST_COMPARISONS:]:
+                    kept.remove_kept(folder)
+        return _handed_out(kept.folder_of(root, wanted), request.path_params["name"])
 
 
-async def typed_in(request: Request) -> dict[str, Any]:
+async def _told(request: Request, error: Exception) -> Response:
+    """What is wrong with the input, as an answer that the page shows."""
+    errors = error.errors if isinstance(error, Refused) else [str(error)]
+    if isinstance(error, kept.TooLarge):
+        return JSONResponse({"errors": errors}, 413, {"connection": "close"})
+    return JSONResponse({"errors": errors}, 422)
+
+
+async def _typed_in(request: Request) -> dict[str, Any]:
     """The JSON object that a request carries, of bounded size."""
     text = bytearray()
     async for piece in request.stream():
@@ -153,200 +300,12 @@ def _form(found: dict[str, Any]) -> dict[str, Any]:
     return {"kind": found.get("kind"), "values": values}
 
 
-async def send_page(server: Server, request: Request) -> Response:
-    """The page itself."""
-    return HTMLResponse(page_text())
-
-
-async def send_static(server: Server, request: Request) -> Response:
-    """Its scripts and its styles."""
-    name = request.path_params["name"]
-    if name in _WRITTEN:
-        text, kind = _WRITTEN[name]
-        return Response(text(), media_type=kind)
-    if name not in _STATIC:
-        raise HTTPException(404, "There is nothing of that name.")
-    return Response(resources.files(__package__).joinpath(name).read_bytes(), media_type=_STATIC[name])
-
-
-@told_plainly
-async def press_contact(server: Server, request: Request) -> Response:
-    """Press the sample of a case to an approach."""
-    found = await typed_in(request)
-    share = found.get("share")
-    if not (share is None or (isinstance(share, int | float) and 0 <= share <= 1)):
-        raise HTTPException(400, "The share lies between 0 and 1.")
-    whole = found.get("whole") is True
-    told = await server.contacts.ask(
-        "press", **_form(found), surfaces=str(server.surfaces), share=share, whole=whole
-    )
-    return JSONResponse(told)
-
-
-@told_plainly
-async def check_form(server: Server, request: Request) -> Response:
-    """Read a case from its form."""
-    form = _form(await typed_in(request))
-    return JSONResponse(await server.contacts.ask("check", **form, surfaces=str(server.surfaces)))
-
-
-@told_plainly
-async def fill_from_file(server: Server, request: Request) -> Response:
-    """Read a case file into the form."""
-    text = (await typed_in(request)).get("text")
-    if not isinstance(text, str):
-        raise HTTPException(400, "The question has no text.")
-    return JSONResponse(await server.contacts.ask("fill", text=text, surfaces=str(server.surfaces)))
-
-
-@told_plainly
-async def fill_from_run(server: Server, request: Request) -> Response:
-    """Read the case of a run into the form."""
-    text = kept_runs.case_of_run(server.run_of(request))
-    return JSONResponse(await server.contacts.ask("fill", text=text, surfaces=str(server.surfaces)))
-
-
-async def send_surfaces(server: Server, request: Request) -> Response:
-    """Surfaces that were uploaded."""
-    return JSONResponse(uploads.uploaded(server.surfaces))
-
-
-@told_plainly
-async def take_upload(server: Server, request: Request) -> Response:
-    """Receive a surface, and keep it if anybody can read it."""
-    size = request.headers.get("content-length", "")
-    announced = int(size) if size.isascii() and size.isdigit() and len(size) < LONGEST_SIZE else None
-    name = request.query_params.get("name", "")
-    file = await uploads.receive(server.surfaces, name, announced, request.stream())
-    try:
-        told = await server.files.ask("examine", path=str(file))
-    except BaseException:
-        kept_runs.remove_kept(file.parent)
-        raise
-    return JSONResponse(told | {"id": file.parent.name, "name": file.name})
-
-
-async def clear_surfaces(server: Server, request: Request) -> Response:
-    """Delete the surfaces that no run uses; tell which are left."""
-    kept_runs.remove_unnamed(server.surfaces, server.runs)
-    return JSONResponse(uploads.uploaded(server.surfaces))
-
-
-async def send_runs(server: Server, request: Request) -> Response:
-    """All runs, the latest first."""
-    found = [server.told(folder) for folder in kept_runs.kept_in(server.runs)]
-    return JSONResponse(sorted(found, key=lambda run: str(run["created"]), reverse=True))
-
-
-@told_plainly
-async def start_run(server: Server, request: Request) -> Response:
-    """Keep a case that is right, and roll it."""
-    found = await typed_in(request)
-    form = _form(found)
-    told = await server.contacts.ask("check", **form, surfaces=str(server.surfaces))
-    identifier = kept_runs.keep_run(
-        server.runs,
-        told["toml"],
-        kind=form["kind"],
-        name=str(found.get("name", "")),
-        changed=told["changed"],
-    )
-    try:
-        server.jobs.start(server.runs / identifier)
-    except Refused:  # too many wait: it is not kept as one that was begun
-        kept_runs.remove_kept(server.runs / identifier)
-        raise
-    return JSONResponse({"id": identifier})
-
-
-async def send_state(server: Server, request: Request) -> Response:
-    """What became of a run, or how far it is."""
-    return JSONResponse(server.told(server.run_of(request)))
-
-
-@told_plainly
-async def send_view(server: Server, request: Request) -> Response:
-    """What there is to be seen of a run that is done."""
-    path = server.run_of(request) / kept_runs.RESULT
-    return JSONResponse(await server.files.ask("view", path=str(path)))
-
-
-async def cancel_run(server: Server, request: Request) -> Response:
-    """End a run."""
-    folder = server.run_of(request)
-    await server.jobs.cancel(folder.name)
-    return JSONResponse(server.told(folder))
-
-
-@told_plainly
-async def go_on_with_run(server: Server, request: Request) -> Response:
-    """Roll a run that ended too early; what of it is finished is not computed again."""
-    folder = server.run_of(request)
-    if not (folder / kept_runs.RESULT).is_file():
-        server.jobs.start(folder)
-    return JSONResponse(server.told(folder))
-
-
-async def delete_run(server: Server, request: Request) -> Response:
-    """End a run, and delete all of it."""
-    folder = server.run_of(request)
-    await server.jobs.cancel(folder.name)
-    kept_runs.remove_kept(folder)
-    return JSONResponse({})
-
-
-def _compared(server: Server, request: Request) -> dict[str, Any]:
-    """Paths and names of the runs that a question names, in their order."""
-    found = [kept_runs.folder_of(server.runs, each) for each in request.query_params.getlist("run")]
-    folders = [folder for folder in found if folder is not None]
-    if not 2 <= len(folders) <= MOST_COMPARED:
-        raise HTTPException(400, f"Two to {MOST_COMPARED} runs can be compared.")
-    names = [str(kept_runs.told_of(folder)["name"]) for folder in folders]
-    return {"paths": [str(folder / kept_runs.RESULT) for folder in folders], "names": names}
-
-
-@told_plainly
-async def send_comparison(server: Server, request: Request) -> Response:
-    """Show runs beside each other."""
-    runs = _compared(server, request)
-    identifier = kept_runs.identifier_of_runs([Path(path).parent.name for path in runs["paths"]])
-    told = await server.files.ask("compare", **runs)
-    return JSONResponse(told | {"page": f"comparisons/{identifier}/{kept_runs.COMPARISON}"})
-
-
-@told_plainly
-async def send_comparison_file(server: Server, request: Request) -> Response:
-    """The page of a comparison, written when it is asked for with its runs; and its table."""
-    root, name = server.comparisons, request.path_params["name"]
-    if "run" in request.query_params:
-        runs = _compared(server, request)
-        identifier = kept_runs.identifier_of_runs([Path(path).parent.name for path in runs["paths"]])
-        if identifier == request.path_params["run"]:
-            await server.files.ask("comparison", **runs, folder=str(root / identifier))
-            kept_runs.keep_latest(root, MOST_COMPARISONS)
-    folder = kept_runs.folder_of(root, request.path_params["run"])
-    return _handed_out(folder, name)
-
-
 def _handed_out(folder: Path | None, name: str) -> Response:
     """A file of a run or a comparison, to be looked at or taken away."""
-    file = None if folder is None else kept_runs.file_of_run(folder, name)
+    file = None if folder is None else kept.file_of_run(folder, name)
     if folder is None or file is None:
         raise HTTPException(404, "There is no such file.")
-    shown = file.suffix in (".html", ".wav", ".svg", ".png")
-    taken = file.name if shown else f"{folder.name}-{file.name}"
-    where = "inline" if shown else "attachment"
-    return FileResponse(file, filename=taken, content_disposition_type=where, headers=policy_of(file.suffix))
-
-
-@told_plainly
-async def send_file(server: Server, request: Request) -> Response:
-    """A file of a run: its result, its case, its report with the numbers of its figures, its sounds.
-
-    The report is written when it is asked for first.
-    """
-    folder, name = server.run_of(request), request.path_params["name"]
-    result = folder / kept_runs.RESULT
-    if name == kept_runs.REPORT and result.is_file() and not (folder / name).is_file():
-        await server.files.ask("report", path=str(result))
-    return _handed_out(folder, name)
+    policy = {"content-security-policy": REPORT_POLICY} if file.suffix in (".html", ".svg") else {}
+    if file.suffix in (".html", ".wav", ".svg", ".png"):
+        return FileResponse(file, filename=file.name, content_disposition_type="inline", headers=policy)
+    return FileResponse(file, filename=f"{folder.name}-{file.name}")

@@ -1,7 +1,9 @@
-"""What the page shows of a run: force and texture to watch, figures and sounds."""
+"""What the page shows of runs: force and texture to watch, figures and sounds; and several side by side."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +13,18 @@ from xarray import DataTree
 
 from asperity.arguments import Array
 from asperity.reporting import data
-from asperity.reporting.page import page_figure
+from asperity.reporting.chart import COLOURS
+from asperity.reporting.comparison_page import compared_sections, summary
+from asperity.reporting.page import PageFigure, page_figure, page_template
+from asperity.reporting.payload import charts_json
+from asperity.reporting.tables import ReportTable
 from asperity.results import read_result
+from asperity.scenes import comparing
 from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
+from asperity.scenes.report import report
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
-from asperity.serving.blocks import told_blocks
-from asperity.serving.kept_runs import SOUNDS
+from asperity.serving.kept import SOUNDS
 
 PIECE = 20_000
 """Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""
@@ -50,7 +57,9 @@ def viewed_run(path: str) -> dict[str, Any]:
             "load": data.number(tree, contact.WORKING_LOAD),
         },
         "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
-        **_figures(tree),
+        **told_blocks(
+            [page_figure(tree, each, each.collect(tree)) for each in FIGURES if each.drawable(tree)]
+        ),
     }
 
 
@@ -100,7 +109,58 @@ def _spacing(coordinate: Array) -> float:
     return float(coordinate[1] - coordinate[0]) if len(coordinate) > 1 else 0.0
 
 
-def _figures(tree: DataTree) -> dict[str, str]:
-    """Figures of the report that tell most of the force."""
-    found = [figure for figure in FIGURES if figure.drawable(tree)]
-    return told_blocks([page_figure(tree, figure, figure.collect(tree)) for figure in found])
+# --- figures and tables
+
+
+def told_blocks(blocks: Sequence[PageFigure | ReportTable]) -> dict[str, str]:
+    """Elements of figures and tables, one after the other, and the charts that go into them."""
+    macros: Any = page_template("blocks.html.jinja").module
+    charts = {block.name: block.chart for block in blocks if isinstance(block, PageFigure)}
+    # no file lies beside this page
+    elements = (
+        macros.figure(replace(block, file="")) if isinstance(block, PageFigure) else macros.table(block)
+        for block in blocks
+    )
+    return {"blocks": "".join(elements), "charts": charts_json(charts, COLOURS)}
+
+
+# --- several runs
+
+
+def numbered_names(names: Sequence[str]) -> list[str]:
+    """Names of runs, each once: those that stand there already are numbered."""
+    found: list[str] = []
+    for name in names:
+        number, own = 1, name
+        while own in found:
+            number += 1
+            own = f"{name} ({number})"
+        found.append(own)
+    return found
+
+
+def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
+    """A sentence, and what the page of the comparison shows below it."""
+    found = comparing.comparison_of(paths, numbered_names(names))
+    blocks = [block for section in compared_sections(found) for block in section.blocks]
+    return {"summary": summary(found), **told_blocks(blocks)}
+
+
+# --- what is written when it is asked for
+
+
+def write_comparison_page(paths: list[str], names: list[str], folder: str) -> dict[str, Any]:
+    """Write the page of a comparison, with its table, into a folder."""
+    comparing.compare(*paths, names=numbered_names(names), path=folder)
+    return {}
+
+
+def write_report(path: str) -> dict[str, Any]:
+    """Write the report of a run, with the numbers of its figures, beside its result."""
+    report(read_result(path), Path(path).parent)
+    return {}
+
+
+def prepare_to_show() -> dict[str, Any]:
+    """Nothing: what shows runs is imported by now."""
+    return {}
