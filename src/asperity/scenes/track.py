@@ -270,25 +270,39 @@ def error_of_losses(computed: Computed) -> LossFactorError:
 
 def warn_of_loss_factors(error: LossFactorError) -> None:
     """Say where loss factors change the contact force of a band by more than is tolerable, 0.75 dB."""
-    off = np.flatnonzero(np.abs(error.force) > DOUBTFUL)
-    if not off.size:
-        return
-    track, frequency = error.track, error.bands[error.worst]
-    layer = max(PARTS, key=lambda part: getattr(track, f"{part}_loss_factor") or 0.0)
-    factor, remedy = getattr(track, f"{layer}_loss_factor"), "give the rail a smaller one"
+    for finding in findings_of_losses(error):
+        if finding.grade is not None:
+            warnings.warn(finding.message, LossFactorWarning, stacklevel=2)
+
+
+def findings_of_losses(error: LossFactorError) -> list[Finding]:
+    """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
+    if error.track.is_causal:
+        return []
+    level, frequency = error.force[error.worst], error.bands[error.worst]
+    factors = {part: getattr(error.track, f"{part}_loss_factor") or 0.0 for part in PARTS}
+    layer = max(factors, key=factors.__getitem__)
+    meaning = "Nothing that answers after a force only has the loss factor "
+    meaning += f"{factors[layer]:g} of the {layer} at all frequencies"
+    if off := [nominal_frequency(error.bands[i]) for i in np.flatnonzero(np.abs(error.force) > DOUBTFUL)]:
+        meaning += f": read the one-third octaves of {', '.join(off)} with their error"
+    remedy = "Give the rail a smaller one."
     if layer != "rail":
-        damping = 1e-3 * getattr(track, f"{layer}_stiffness") * factor / (2.0 * np.pi * frequency)
+        stiffness = getattr(error.track, f"{layer}_stiffness")
+        damping = 1e-3 * stiffness * factors[layer] / (2.0 * np.pi * frequency)
         exact = f"{damping:.3g} kN s/m dissipate as much at {frequency:.3g} Hz"
-        remedy = f"give {layer}_damping, which is exact: {exact}"
-    bands = ", ".join(nominal_frequency(error.bands[i]) for i in off)
-    warnings.warn(
-        f"the contact force in time is up to {signed_level(error.force[error.worst])} dB from that with "
-        f"constant loss factors, more than {DOUBTFUL:g} dB in the one-third octaves of {bands}: nothing "
-        f"that answers after a force only has the loss factor {factor:g} of the {layer} at all "
-        f"frequencies. Read these bands with their error, or {remedy}.",
-        LossFactorWarning,
-        stacklevel=2,
-    )
+        remedy = f"Give {layer}_damping, which is exact: {exact}."
+    return [
+        Finding(
+            "error of the contact force for constant loss factors, at most",
+            f"{signed_level(level)} dB ({nominal_frequency(frequency)})",
+            f"up to {DOUBTFUL:g} dB",
+            Grade.WARNING if off else None,
+            f"{meaning}.",
+            remedy,
+            warned=True,
+        )
+    ]
 
 
 def relaxed(error: LossFactorError) -> dict[Entry, Any]:
@@ -310,24 +324,6 @@ def relaxed(error: LossFactorError) -> dict[Entry, Any]:
     }
 
 
-def findings_of_losses(error: LossFactorError) -> list[Finding]:
-    """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
-    if error.track.is_causal:
-        return []
-    level = error.force[error.worst]
-    return [
-        Finding(
-            "error of the contact force for constant loss factors, at most",
-            f"{signed_level(level)} dB ({nominal_frequency(error.bands[error.worst])})",
-            f"up to {DOUBTFUL:g} dB",
-            Grade.WARNING if abs(level) > DOUBTFUL else None,
-            "Nothing that answers after a force only has one loss factor at all frequencies.",
-            "Give the layers a damping instead, which is exact.",
-            warned=True,
-        )
-    ]
-
-
 def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str, str]]:
     """Say how far the force is off in each band, and how much softer the track is at rest under a load, N.
 
@@ -343,9 +339,9 @@ def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str,
     ]
     shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]
     yield "loss factors in time", f"error of the contact force, dB: {', '.join(shown)}"
-    named = {"rail": "rail", "pads": "pad", "ballast": "ballast"}
-    parts = {name: getattr(track.relaxations, part) for name, part in named.items()}
-    shares = ", ".join(f"{name} {part.static:.2f}" for name, part in parts.items() if part is not None)
+    own = track.relaxations
+    relaxing = {"rail": own.rail, "pads": own.pad, "ballast": own.ballast}
+    shares = ", ".join(f"{name} {part.static:.2f}" for name, part in relaxing.items() if part is not None)
     half = 0.5 * track.sleeper_spacing
     rest, was = (1e3 * each.static_deflection(load, half) for each in (track, nominal))
     down = f"the load at mid-span rests {rest:.3g} mm down, nominally {was:.3g} mm"
