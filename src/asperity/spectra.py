@@ -7,13 +7,14 @@ in wavelength are those in wavenumber read backwards, since both have their cent
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array
+from asperity.arguments import Array, Complex
 from asperity.errors import InputError
 
 HALF_BAND = 10.0 ** (1.0 / 20.0)
@@ -111,6 +112,55 @@ def level_deviation(values: ArrayLike) -> Array:
     from scipy.special import polygamma
 
     return np.asarray(10.0 / np.log(10.0) * np.sqrt(polygamma(1, np.maximum(values, 1.0))), dtype=np.float64)
+
+
+LINES = 4096
+"""Frequencies in a band at which a force is looked at: they resolve loss factors down to 10⁻⁴."""
+
+
+def values_seen(signal: Array, step: float, centres: Array) -> Array:
+    """Number of independent values that bands of a record (n,) are seen to hold, for each one of B T (b,).
+
+    (Σ S)²/Σ S² of the lines of a band over what noise has that is white in it; fewer where a few lines stand
+    out, as those of a texture that comes again with each turn of a wheel. Time step in s, centres in Hz.
+    """
+    frequency = np.fft.rfftfreq(signal.size, step)
+    density = np.abs(np.fft.rfft(signal - signal.mean())) ** 2  # a window would make each line several
+    found = np.ones(len(centres))
+    for band, centre in enumerate(centres):
+        lines = density[(frequency >= centre / HALF_BAND) & (frequency < centre * HALF_BAND)]
+        if lines.size > 1 and lines.any():
+            # of lines from one record the mean square is twice that of their expected values, less the share
+            # of each in the sum
+            ratio = lines @ lines / lines.sum() ** 2
+            found[band] = (2.0 - ratio) / ratio / lines.size
+    return np.minimum(found, 1.0)
+
+
+def chance_and_start(
+    transfer: Callable[[Array], Complex], centres: Array, settled: float, record: float
+) -> tuple[Array, Array]:
+    """Independent values that bands hold (b,), and the share of their mean square that is not built up (b,).
+
+    Of the force per height (p, f) at places and frequencies, of centres (b,), Hz, and of a record, s, that
+    begins `settled`, s, after vibration did. The mean square of a force that begins at zero grows as the
+    integral of |g|²: the share is what is still to come, as a mean over the record. The mean square over a
+    record T of a force with the correlation R(τ) has a relative variance of ∫|R|²(1 − |τ|/T) dτ/(T R(0)²);
+    its inverse is the number of independent values, bandwidth times T for noise that is white in the band.
+    """
+    numbers, shares = np.empty((2, len(centres)))
+    for band, centre in enumerate(centres):
+        low, width = centre / HALF_BAND, centre * (HALF_BAND - 1.0 / HALF_BAND)
+        force = transfer(low + width * (np.arange(LINES) + 0.5) / LINES)
+        after = np.arange(LINES) / width
+        pulse = np.sum(np.abs(np.fft.ifft(force)) ** 2, axis=0)
+        coming = np.where(np.arange(LINES) < LINES // 2, np.clip((after - settled) / record, 0.0, 1.0), 0.0)
+        shares[band] = coming @ pulse / pulse.sum()
+        power = np.abs(force) ** 2
+        lag = np.minimum(after, LINES / width - after)
+        alike = np.mean(np.abs(np.fft.ifft(power)) ** 2, axis=0) @ np.maximum(1.0 - lag / record, 0.0)
+        numbers[band] = max(np.mean(power) ** 2 * width * record / alike, 1.0)
+    return numbers, shares
 
 
 def _check_signal(values: Array, spacing: float) -> None:

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import gamma
 
-from asperity.scenes.chance import chance_and_start, values_seen
-from asperity.spectra import band_product, level_deviation
+from asperity.spectra import band_product, chance_and_start, level_deviation, values_seen
 
 CENTRE = 100.0
 SETTLED, RECORD = 0.2, 0.8

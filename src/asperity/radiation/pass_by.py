@@ -181,12 +181,9 @@ def _divergences(source: AxleSource, passage: Passage, receiver: Receiver, time:
     last = passage.speed * float(time.max())
     farthest = max(-first, last)  # the same on either side
     grid = np.linspace(0.0, farthest, 2 * int(np.ceil(farthest / receiver.distance * _STEPS)) + 2)
-    heard: dict[float, Array] = {}  # those of a wheel have one length in all bands
-    for length in set(lengths):
-        one = divergence(length, distance, grid)
-        places = (np.abs(passage.speed * time - at) for at in passage.axles)
-        heard[length] = np.sum([np.interp(each, grid, one) for each in places], axis=0)
-    return np.stack([heard[length] for length in lengths])
+    places = [np.abs(passage.speed * time - at) for at in passage.axles]
+    spread = (divergence(length, distance, grid) for length in lengths)
+    return np.stack([np.sum([np.interp(each, grid, one) for each in places], axis=0) for one in spread])
 
 
 def _scaled_exp1(z: Complex) -> Complex:

@@ -6,12 +6,14 @@ import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from datetime import UTC, datetime
+from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray
 
 from asperity import __version__, laws
+from asperity import spectra as bands
 from asperity.arguments import Array
 from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning, warn_of_findings
@@ -20,7 +22,6 @@ from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenes import noise, schema, track, validity
-from asperity.scenes.chance import sureness
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import as_json, contact_group, surface_group
 from asperity.scenes.population import answers
@@ -249,6 +250,31 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
         laid_out |= track.track_spectra(computed)
         facts = attributes(track.tones(computed))
     return xarray.Dataset(variables(laid_out), attrs=facts)
+
+
+PLACES = 8
+"""Places along the record at which the linear contact is looked at."""
+
+
+def sureness(computed: Computed) -> dict[Entry, Any]:
+    """Lay out how sure the levels of bands are: B T, chance, and start.
+
+    By the first contact: others of one path hold much the same.
+    """
+    case, run, band = computed.case, computed.first, computed.band
+    time = bands.averaging_time(len(run.time), case.time_step, segment=computed.segment)
+    seen = bands.values_seen(run.contact_force[0], case.time_step, band)
+    record, (begin, end) = float(run.time[-1]), run.positions[0, [0, -1]]
+    places = begin + (end - begin) * (np.arange(PLACES) + 0.5) / PLACES
+    transfer = partial(computed.scene.transfer, computed.stiffness, places)
+    product = bands.band_product(band, time)
+    held, start = bands.chance_and_start(transfer, band, case.settled_time, record)
+    values = np.minimum(product * seen, held * time / record)
+    return {
+        spectra.START_SHARE: spectra.START_SHARE.variable(start, most=bands.MOST_START),
+        spectra.BAND_TIME_PRODUCT: spectra.BAND_TIME_PRODUCT.variable(product, least=bands.LEAST_PRODUCT),
+        spectra.LEVEL_DEVIATION: bands.level_deviation(values),
+    }
 
 
 def level_differences(names: list[str], force_level: Array) -> dict[Entry, xarray.Variable]:
