@@ -102,8 +102,8 @@ class Geometry:
 
     def within_window(self) -> Geometry:
         """Bound the states by a contact that the window holds."""
-        largest = min(self.largest_force, max(FILLED**3 * self.filling_force, self.load))
-        return replace(self, largest_force=largest)
+        held = max(FILLED**3 * self.filling_force, self.load)
+        return replace(self, largest_force=min(self.largest_force, held))
 
 
 def window_cells(contact: ContactKeys) -> int:
@@ -171,13 +171,9 @@ def _check_half_space(case: Case, hertz: Hertz, load: float) -> None:
             check_half_space((along, 0.0) if along >= across else (0.0, across), smallest, cause=cause)
         else:
             check_half_space(
-                axes,
-                body.across,
-                groove_radius=body.groove_radius,
-                raceway_radius=body.raceway_along,
-                groove_width=body.groove_width,
-                cause=cause,
-            )
+                axes, body.across, groove_radius=body.groove_radius, raceway_radius=body.raceway_along,
+                groove_width=body.groove_width, cause=cause,
+            )  # fmt: skip
 
 
 def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
@@ -224,9 +220,8 @@ class _Section:
         if (reach := np.abs(y).max()) > self.half_width:
             received = f"a section {2e3 * self.half_width:.4g} mm wide"
             allowed = f"at least {2e3 * reach:.4g} mm, the window about the point of contact"
-            raise InputError(
-                self.key, received, allowed, "Measure a wider section, or shrink contact.window."
-            )
+            remedy = "Measure a wider section, or shrink contact.window."
+            raise InputError(self.key, received, allowed, remedy)
         return np.asarray(self._spline(y))
 
 

@@ -12,7 +12,7 @@ from typing import cast
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, require
 from asperity.case.body import Rolling
 from asperity.case.content import name_of
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
@@ -20,17 +20,10 @@ from asperity.case.tables import TableSource, read_levels
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
+from asperity.surfaces import measured_lines
 from asperity.surfaces.bands import check_levels, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
-from asperity.surfaces.measured_lines import (
-    Processing,
-    bring_into_register,
-    common_length,
-    lines_of,
-    process,
-    strip_from_lines,
-)
 from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.steps import QUARTER, rotated
@@ -91,24 +84,22 @@ def spectrum_record(
     rolled over at any speed.
     """
     wavelength, levels, name = spectrum_levels(spectrum)
-    size, spacing = (grid.rows, grid.lines), (grid.spacing, grid.spacing)
     wavelength, levels = _held(wavelength, levels + level_db, grid, name, closed=before is None)
+    bands = (grid.rows, grid.lines), (grid.spacing, grid.spacing), wavelength, levels
     if before is None:
-        strip: Strip = strip_from_bands(size, spacing, wavelength, levels, lateral=lateral, seed=seed)
+        strip: Strip = strip_from_bands(*bands, lateral=lateral, seed=seed)
     else:
-        strip = long_strip_from_bands(
-            size, spacing, wavelength, levels, lateral=lateral, seed=seed, before=before
-        )
-    bands = f"{name}, bands of {nominal_length(wavelength.max())} to {nominal_length(wavelength.min())}"
-    return Record(strip, f"{bands}, {level_db:+g} dB", areal=bool(np.isfinite(lateral)))
+        strip = long_strip_from_bands(*bands, lateral=lateral, seed=seed, before=before)
+    held = f"bands of {nominal_length(wavelength.max())} to {nominal_length(wavelength.min())}"
+    return Record(strip, f"{name}, {held}, {level_db:+g} dB", areal=bool(np.isfinite(lateral)))
 
 
 def spectrum_line(spectrum: str | TableSource, level_db: float, grid: Grid, seed: int) -> Record:
     """Synthesise a line of a spectrum, cut from one that closes on itself: longer than its longest band."""
     wavelength, levels, name = spectrum_levels(spectrum)
-    fits = wavelength / HALF_BAND > 2.06 * grid.spacing  # bands that the grid can hold
-    points = max(grid.rows, math.ceil(1.2 * wavelength[fits].max() / grid.spacing))
-    line = from_bands(points, grid.spacing, wavelength[fits], levels[fits] + level_db, seed).heights
+    wavelength, levels = _held(wavelength, levels + level_db, grid, name, closed=False)
+    points = max(grid.rows, math.ceil(1.2 * wavelength.max() / grid.spacing))
+    line = from_bands(points, grid.spacing, wavelength, levels, seed).heights
     return Record(Rows(line[: grid.rows, None]), f"{name}, {level_db:+g} dB")
 
 
@@ -143,13 +134,12 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
     assert surface.file is not None
     if not isinstance(surface.file, Path):
         maps = surface.file if isinstance(surface.file, tuple) else (surface.file,)
-        if surface.index is not None and surface.index >= len(maps):
+        if surface.index is not None:
             allowed = f"0 to {len(maps) - 1}, of the maps in memory"
-            raise InputError("surface.index", surface.index, allowed)
-        chosen = maps if surface.index is None else (maps[surface.index],)
-        if surface.spikes:
-            chosen = tuple(each.without_spikes() for each in chosen)
-        return [each.filled() if surface.fill else each for each in chosen]
+            require(surface.index < len(maps), "surface.index", surface.index, allowed)
+            maps = (maps[surface.index],)
+        maps = tuple(each.without_spikes() for each in maps) if surface.spikes else maps
+        return [each.filled() if surface.fill else each for each in maps]
     if surface.recipe is not None:
         return read_recipe(surface.recipe).surfaces(surface.file)
     with spelled(in_case("surface", _MAP_KEYS)):
@@ -170,9 +160,9 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
         if not isinstance(measured, HeightMap):
             remedy = "A single line can be the path: give it as surface.line."
             raise InputError("surface.file", "a line of heights", "maps of heights", remedy)
-        if measured.missing_share > 0.0:
-            received = f"{100 * measured.missing_share:.2g} % of the points without a height"
-            raise InputError("surface.file", received, "complete maps", "Set fill = true in [surface].")
+        received = f"{100 * measured.missing_share:.2g} % of the points without a height"
+        complete = measured.missing_share == 0.0
+        require(complete, "surface.file", received, "complete maps", "Set fill = true in [surface].")
         points = math.prod(measured.size) / spacing**2
         if points > MOST_POINTS:
             sides = " × ".join(f"{1e3 * side:.4g} mm" for side in measured.size)
@@ -190,9 +180,8 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
         if surface.direction % QUARTER:  # no wave that the spacing holds suffers from turning
             levelled = resample(levelled, 0.5 * spacing)
         on_grid = level(resample(rotated(levelled, surface.direction), spacing), surface.form)
-        longest, shortest = surface.longest, surface.shortest
-        limited = longest is not None or shortest is not None
-        maps.append(band_limit(on_grid, longest=longest, shortest=shortest) if limited else on_grid)
+        band = {"longest": surface.longest, "shortest": surface.shortest}
+        maps.append(on_grid if band["longest"] is band["shortest"] is None else band_limit(on_grid, **band))
     return tuple(maps), float(np.mean([measured.missing_share for measured in read]))
 
 
@@ -234,9 +223,7 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
         raise InputError("surface.line", "a map of heights", "a line of heights", remedy)
     if surface.processing:
         (measured,), _ = processed(surface, "surface", degree=1)
-    if measured.missing_share > 0.0:
-        remedy = "Interpolate them in the file."
-        raise InputError("surface.line", "points without a height", "a complete line", remedy)
+    _complete(measured, "surface.line")
     spacing, rows = grid.spacing, grid.rows
     line = level(resample(level(measured), spacing)).heights
     origin = f"measured, {name_of(surface.line)}"  # type: ignore[arg-type]
@@ -264,7 +251,7 @@ def lines_across(surface: Surface, grid: Grid) -> Record:
     Refused are a record shorter than the path that is not to be continued, and unlikely levels.
     """
     profiles, origin = processed(surface, "surface", degree=1)
-    lines = common_length([resample(profile, grid.spacing) for profile in profiles])
+    lines = measured_lines.common_length([resample(profile, grid.spacing) for profile in profiles])
     if not surface.accept_levels:
         check_levels([Profile(line, grid.spacing) for line in lines], "rail's lines")
     if lines.shape[1] < grid.rows:
@@ -293,13 +280,13 @@ def lines_around(rolling: Rolling, name: str, grid: Grid, *, check: bool) -> Rec
             ShortRecordWarning,
             stacklevel=2,
         )
-    register = bring_into_register(profiles)
+    register = measured_lines.bring_into_register(profiles)
     lines = register.lines
     if len(lines) > 1 and np.median(register.correlations[1:]) > SAME_TEXTURE:
         moved = sum(bool(s) or r for s, r in zip(register.shifts, register.reversed, strict=True))
         origin += f", {moved} brought into register ({sum(register.reversed)} turned round)"
     else:
-        lines = common_length(profiles)
+        lines = measured_lines.common_length(profiles)
     spacing = profiles[0].spacing
     if lines.shape[1] * spacing > (1.0 + FULL_TURN) * grid.length:
         lines = lines[:, : round(grid.length / spacing)]
@@ -336,36 +323,30 @@ def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Pr
         # ends are trimmed and gaps refused below
         warnings.simplefilter("ignore", MissingPointsWarning)
         measured = read_lines(section, name)
-    raw = (measured,) if isinstance(measured, Profile) else lines_of(measured)
-    steps = {step: step in section.processing for step in ("spikes", "curvature")}
-    done = [process(line, fill_gaps="fill" in section.processing, **steps) for line in raw]
+    raw = (measured,) if isinstance(measured, Profile) else measured_lines.lines_of(measured)
+    fill, *rest = (step in section.processing for step in ("fill", "spikes", "curvature"))
+    done = [measured_lines.process(line, fill_gaps=fill, spikes=rest[0], curvature=rest[1]) for line in raw]
     words = f"{name_of(section.line)}, {_done([how for _, how in done])}"  # type: ignore[arg-type]
     return [level(line, degree) for line, _ in done], words
 
 
-def _done(steps: Sequence[Processing]) -> str:
+def _done(steps: Sequence[measured_lines.Processing]) -> str:
     """What processing did to all lines together."""
-    sums = {
-        name: sum(getattr(s, name) for s in steps) for name in ("filled", "spikes_removed", "spike_points")
-    }
-    together = replace(
-        steps[0],
-        trimmed=(sum(s.trimmed[0] for s in steps), sum(s.trimmed[1] for s in steps)),
-        lifted=sum(s.lifted for s in steps) / len(steps),
-        largest_lift=max(s.largest_lift for s in steps),
-        **sums,
-    )
+    names = ("filled", "spikes_removed", "spike_points", "lifted")
+    sums = {name: sum(getattr(each, name) for each in steps) for name in names}
+    trimmed = sum(each.trimmed[0] for each in steps), sum(each.trimmed[1] for each in steps)
+    sums |= {"trimmed": trimmed, "lifted": sums["lifted"] / len(steps)}
+    together = replace(steps[0], **sums, largest_lift=max(each.largest_lift for each in steps))
     return f"{len(steps)} line{'s' if len(steps) > 1 else ''} measured, {together}"
 
 
 def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
     if len(lines) > 1 and section.line_distance is None:
-        name = "wheel" if isinstance(section, Rolling) else "surface"
-        allowed = "the distance across between neighbouring lines"
-        received, remedy = f"no distance for {len(lines)} lines", 'Add line_distance = "5 mm", say.'
-        raise InputError(f"{name}.line_distance", received, allowed, remedy)
+        key = f"{'wheel' if isinstance(section, Rolling) else 'surface'}.line_distance"
+        allowed, remedy = "the distance across between neighbouring lines", 'Add line_distance = "5 mm", say.'
+        raise InputError(key, f"no distance for {len(lines)} lines", allowed, remedy)
     distance = section.line_distance or grid.spacing
-    return strip_from_lines(lines, grid.spacing, distance, grid.lines, grid.spacing)
+    return measured_lines.strip_from_lines(lines, grid.spacing, distance, grid.lines, grid.spacing)
 
 
 def mirrored_before(heights: Array, rows: int) -> Array:
@@ -406,6 +387,10 @@ def read_section(measured: Path | Profile, key: str) -> Profile:
         section = read_surface(measured) if isinstance(measured, Path) else measured
     if not isinstance(section, Profile):
         raise InputError(key, "a map of heights", "one line across the path")
-    if section.missing_share > 0.0:
-        raise InputError(key, "points without a height", "a complete line", "Interpolate them in the file.")
+    _complete(section, key)
     return section
+
+
+def _complete(line: Profile, key: str) -> None:
+    remedy = "Interpolate them in the file."
+    require(line.missing_share == 0.0, key, "points without a height", "a complete line", remedy)

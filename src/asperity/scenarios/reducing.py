@@ -130,14 +130,15 @@ def reduce(
     )
     along = None
     if textures.path is not None and planes is not None:
-        along = scan.first_touch(textures.path, shape.body) + _centred(planes, shape)
-    lowest = _lowest_touches(textures, shape, along, samples)
-    approaches = _approaches(contact, textures, shape, along, samples, half_space)
+        along = _touches(textures.path, planes, shape)
+    lowest = {"samples": min(float(scan.first_touch(each, shape.body).min()) for each in samples)}
+    strips = [float(scan.first_touch(each.heights, shape.body).min()) for each in textures.strips]
+    lowest["path"] = min(lowest["samples"], *strips, *([] if along is None else [float(along.min())]))
+    approaches = _approaches(case, textures, shape, along, samples)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
-    remedy = shape.remedy_for_cut_off(
-        float(approaches[-1]), pressed.approach, -lowest["path"], textures.widest_window
-    )
+    wide = textures.widest_window
+    remedy = shape.remedy_for_cut_off(float(approaches[-1]), pressed.approach, -lowest["path"], wide)
     ensemble = stiffness.stiffness_ensemble(
         samples, half_space, shape.body, approaches, 0.0, rtol=scan.rtol_for(numerics.force_accuracy),
         progress=progress, tolerance=SCAN_TOLERANCE, remedy=remedy,
@@ -147,9 +148,8 @@ def reduce(
         raise _too_rough(textures, f"contact in {np.count_nonzero(mean)} of {len(mean)} states")
     refuse_low_states(approaches, mean, shape, pressed.contacts[0].approach)
     # the curve, drawn through few states, may start a little before the first touch
-    datums = {
-        name: -min(lowest[name], ensemble.curve.first_touch, -LEAST_DATUM) for name in ("samples", "path")
-    }
+    curve = ensemble.curve.first_touch
+    datums = {name: -min(touch, curve, -LEAST_DATUM) for name, touch in lowest.items()}
     ensemble = replace(ensemble, datum=datums[contact.datum])
     filters, counts = line_filters(case, textures, shape, ensemble, cache, progress)
     scan.warn_of_flaws(counts, "the filters", SCAN_TOLERANCE, remedy)
@@ -191,39 +191,24 @@ def _too_rough(textures: Textures, sign: str) -> InputError:
     return InputError("surface", received, allowed, "Check the unit of the heights.")
 
 
-def _lowest_touches(
-    textures: Textures, shape: Geometry, along: Array | None, samples: Sequence[Array]
-) -> dict[str, float]:
-    """Lowest approach of first touch of all samples, and of these, strips and path, m."""
-    touches = [float(scan.first_touch(each, shape.body).min()) for each in samples]
-    strips = [float(scan.first_touch(each.heights, shape.body).min()) for each in textures.strips]
-    path = [] if along is None else [float(along.min())]
-    return {"samples": min(touches), "path": min(touches + strips + path)}
-
-
-def _centred(planes: Array, shape: Geometry) -> Array:
-    """Planes at the middle rows of the window's positions."""
+def _touches(strip: Strip | Array, planes: Array, shape: Geometry) -> Array:
+    """First touch at every row on which the window may begin, from the plane at its middle row, m."""
     half = shape.body.shape[0] // 2
-    return planes[half : len(planes) - half]
+    return scan.first_touch(strip, shape.body) + planes[half : len(planes) - half]
 
 
 def _approaches(
-    contact: ContactKeys,
-    textures: Textures,
-    shape: Geometry,
-    along: Array | None,
-    samples: Sequence[Array],
-    half_space: HalfSpace,
+    case: Case, textures: Textures, shape: Geometry, along: Array | None, samples: Sequence[Array]
 ) -> Array:
     """States as given, or by the load that places carry.
 
     Those of the samples do not depend on the path; more lie below where it is touched earlier, by whole
     steps: paths of other lengths over the same surface have them in common.
     """
-    if contact.approaches is not None:
-        return np.array(contact.approaches)
+    if case.contact.approaches is not None:
+        return np.array(case.contact.approaches)
     places = touched_places(textures, shape)
-    states = chosen_states([*samples, *places], shape, half_space)
+    states = chosen_states([*samples, *places], shape, shape.half_space(case.contact.hardness))
     if along is None or len(states) < 2:
         return states
     earlier = min(float((shape.body - place).min()) for place in places) - float(along.min())
@@ -240,7 +225,7 @@ def touched_places(textures: Textures, shape: Geometry) -> list[Array]:
     places, nx = [], shape.body.shape[0]
     for strip in textures.strips:
         planes = patch_planes(strip, shape)
-        touches = scan.first_touch(strip.heights, shape.body) + _centred(planes, shape)
+        touches = _touches(strip.heights, planes, shape)
         for row in (int(np.argmin(touches)), int(np.argmax(touches))):
             places.append(strip.heights[row : row + nx] - planes[row + nx // 2])
     return places
@@ -320,11 +305,18 @@ def line_filters(
         smooth = filter.closed_form(approaches, wavenumber, axes[:, 0], tangent)
         taps = filter.punch_taps(axes[:, 0], dx)
         return dict.fromkeys(needed, filter.LineFilter(smooth, taps, dx)), scan.total([])
-    scans = _scanned_strips(case, textures, shape, approaches, cache, progress)
-    spectra = [
-        _spectra(strip, scanned, shape, axes[:, 1])
-        for strip, scanned in zip(textures.strips, scans, strict=True)
+    half_space, device, stride = shape.half_space(contact.hardness), find_device(), filter_stride(shape)
+    rtol = scan.rtol_for(scan.FILTER_SHARE * case.numerics.force_accuracy)
+    jobs = [
+        scan.ScanJob(half_space, strip, shape.body, approaches, stride, rtol, device=device)
+        for strip in textures.strips
     ]
+    scans = _scanned_strips(jobs, cache, progress)
+    half, beside, spectra = shape.body.shape[0] // 2, (axes[:, 1] / shape.spacing[1]).astype(int), []
+    for strip, scanned in zip(textures.strips, scans, strict=True):
+        rows = scanned.forces.shape[1] * stride
+        # the lines under the patch of each state, at every row of the grid
+        spectra.append(filter.filter_spectra(scanned.forces, strip.heights[half : half + rows].T, dx, beside))
     fewest, most = filter.tap_count(dx, float(axes[:, 0].max())), len(textures.line) - 1
     filters = {}
     for normalise in needed:
@@ -337,21 +329,10 @@ def line_filters(
 
 
 def _scanned_strips(
-    case: Case,
-    textures: Textures,
-    shape: Geometry,
-    approaches: Array,
-    cache: Cache | None,
-    progress: Progress,
+    jobs: Sequence[scan.ScanJob], cache: Cache | None, progress: Progress
 ) -> list[scan.ScannedForces[Array]]:
     """Forces at constant approach along each strip."""
-    half_space, device = shape.half_space(case.contact.hardness), find_device()
-    rtol = scan.rtol_for(scan.FILTER_SHARE * case.numerics.force_accuracy)
-    jobs = [
-        scan.ScanJob(half_space, strip, shape.body, approaches, filter_stride(shape), rtol, device=device)
-        for strip in textures.strips
-    ]
-    workers = thread_count() if device is None else 1  # one block fills a device
+    workers = thread_count() if jobs[0].device is None else 1  # one block fills a device
     message = "scanning for the contact filters"
 
     def scanned(job: scan.ScanJob) -> scan.ScannedForces[Array]:
@@ -364,17 +345,6 @@ def _scanned_strips(
         scans.append(each)
         progress(len(scans), len(jobs), message)
     return scans
-
-
-def _spectra(
-    strip: HeightMap, scanned: scan.ScannedForces[Array], shape: Geometry, semi_axes: Array
-) -> filter.FilterSpectra:
-    """Spectra of a scan, and of the lines under the patch of each state at every row of the grid."""
-    dx, dy = shape.spacing
-    half = shape.body.shape[0] // 2
-    rows = scanned.forces.shape[1] * filter_stride(shape)
-    lines = strip.heights[half : half + rows].T
-    return filter.filter_spectra(scanned.forces, lines, dx, (semi_axes / dy).astype(int))
 
 
 def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) -> None:

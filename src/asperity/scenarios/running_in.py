@@ -65,7 +65,9 @@ def run_in_case(
             parts = parts | {over: parts[over] - lowered}
     worst = max(surfaces, key=lambda each: float(each.largest[-1]))
     together = replace(worst, counts=total(each.counts for each in surfaces))
-    warn_of_running_in(together, job, "numerics.rtol", _remedy(shape))
+    window = f"now {shape.body.shape[0] * shape.spacing[0] * 1e3:.3g} mm"
+    remedy = f"Enlarge contact.window, {window}, or leave long waves out by surface.longest."
+    warn_of_running_in(together, job, "numerics.rtol", remedy)
     maps = tuple(HeightMap(s.heights, shape.spacing, "run in") for s in strips)
     origin = f"{textures.origin}; {_words(surfaces, job, textures)}"
     after = replace(
@@ -83,10 +85,9 @@ def _passes(
     weights = np.array([np.count_nonzero(each.touched) for each in surfaces], dtype=np.float64)
     weights /= max(weights.sum(), 1.0)
     passes = max(len(each.largest) for each in surfaces)
-    largest, yielding = (
-        np.array([np.pad(values, (0, passes - len(values))) for values in every])
-        for every in ([each.largest for each in surfaces], [each.yielding for each in surfaces])
-    )
+    largest, yielding = np.zeros((2, len(surfaces), passes))
+    for n, each in enumerate(surfaces):
+        largest[n, : len(each.largest)], yielding[n, : len(each.yielding)] = each.largest, each.yielding
     names = (contact.TRACK_RMS, contact.TRACK_SLOPE, contact.TRACK_AREA_RATIO, contact.TRACK_STIFFNESS)
     entries = {
         contact.RUNNING_IN_PASS: np.arange(1, passes + 1),
@@ -119,11 +120,6 @@ def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures)
     number = " to ".join(map(str, sorted({passes[0], passes[-1]})))
     words = f"{what} run in by {number} pass{'es' if passes[-1] > 1 else ''} under {job.load:.3g} N"
     return words if textures.path is not None else f"{words}, line of the path as given"
-
-
-def _remedy(shape: Geometry) -> str:
-    side = shape.body.shape[0] * shape.spacing[0]
-    return f"Enlarge contact.window, now {side * 1e3:.3g} mm, or leave long waves out by surface.longest."
 
 
 def _condition(case: Case, shape: Geometry, textures: Textures) -> tuple[float, float, float, float]:

@@ -10,7 +10,6 @@ from functools import partial
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity.arguments import Array
 from asperity.case.content import name_of
@@ -22,20 +21,13 @@ from asperity.laws import spec_of
 from asperity.scenarios import records
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import Grid, Record
+from asperity.surfaces import synthesis
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.measured_lines import roll_over
 from asperity.surfaces.statistics import rms_slope
 from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
-from asperity.surfaces.synthesis import (
-    Continuation,
-    extend,
-    from_map,
-    long_self_affine,
-    long_strip_like,
-    self_affine,
-)
 
 STRIP_WINDOWS = 16
 """Length of a strip for the filters, in windows: few bins of its spectra span the fall of a filter else."""
@@ -138,9 +130,13 @@ def textures_of(case: Case) -> Textures:
         maps = strips = _cut(case, strip, before)
         sampled = f"{len(strips)} samples cut from the path"
     line = middle_line(over.strip)  # of a measured one, the run may end before the grid
-    on_path = _corrugated(case, len(line), seeds[2])
+    on_path, wave = np.zeros(len(line)), case.surface.corrugation_wavelength
+    if case.surface.corrugation is not None and wave is not None:
+        keys = {"amplitude": case.surface.corrugation, "bandwidth": case.surface.corrugation_bandwidth}
+        on_path = corrugation(len(line), spacing, wavelength=wave, **keys, seed=seeds[2]).heights
     around = turn.heights[:, turn.heights.shape[1] // 2]
-    parts = {"rail": line + on_path, "wheel": around[_rows_of_turn(case, len(line), len(around), before)]}
+    along = np.arange(len(line)) + _first_row(case, before)
+    parts = {"rail": line + on_path, "wheel": around[along % len(around)]}
     lines = {name: body.lines for name, body in (("rail", over), ("wheel", turn)) if body.lines}
     origins = (sampled, f"path: {over.origin}", f"{case.ROLLING}: {turn.origin}" * bool(turn.origin))
     path = raised(strip, on_path) if on_path.any() else strip
@@ -172,12 +168,9 @@ def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[OtherConta
     for contact, load in enumerate(loads):
         flats = flat and {contact + 1, 1} & set(rolling.flat_contacts)
         texture = contact if rolling.has_own_texture or flats else 0
-        for k, (bearing, at) in enumerate(known):
-            if bearing == texture and math.isclose(at, load, rel_tol=EQUAL):
-                which.append(k)
-                break
-        else:
-            which.append(len(known))
+        alike = (bearing == texture and math.isclose(at, load, rel_tol=EQUAL) for bearing, at in known)
+        which.append(next((k for k, same in enumerate(alike) if same), len(known)))
+        if which[-1] == len(known):
             known.append((texture, float(load)))
             others.append(OtherContact(partial(_under, case, texture), float(load)))
     return which, others
@@ -192,8 +185,8 @@ def _under(case: Case, contact: int, first: Textures) -> Textures:
     seed = int(np.random.SeedSequence(case.seed).generate_state(2)[1])
     turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
     change, middle = turns[1] - turns[0], turns[0].shape[1] // 2
-    along = _rows_of_turn(case, rows, len(change), before)
-    added = turns[1][along, middle] - turns[0][along, middle]
+    along = np.arange(rows) + _first_row(case, before)
+    added = (turns[1][:, middle] - turns[0][:, middle])[along % len(change)]
     path = None if first.path is None else turning(first.path, change, _first_row(case, before))
     parts = first.parts | {"wheel": first.parts["wheel"] + added}
     turned = replace(first, path=path, line=first.line + added, parts=parts)
@@ -211,9 +204,8 @@ def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
     """Warn of a record that holds the start, and of laws and windows that do not see a defect."""
     settling = case.settled_time
     if settling < SETTLED * (1 - 1e-9):
-        remedy = (
-            "set settling" if case.room is None else "shorten the duration or start farther along the path"
-        )
+        apart = "shorten the duration or start farther along the path"
+        remedy = "set settling" if case.room is None else apart
         warnings.warn(
             f"the record starts {settling * 1e3:.3g} ms after rest, less than {SETTLED * 1e3:.3g} ms: its "
             f"levels hold the start. So that there is time for settling, {remedy}.",
@@ -255,7 +247,8 @@ def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple
         return maps, strips, missing, f"{measured}{records.direction_words(surface, maps)}; {origin}"
     if surface.rms is not None:
         shape = (strip_rows(contact), window_cells(contact))
-        strips = tuple(synthesised(surface, contact.spacing, shape, seed) for seed in seeds)
+        spacing, keys = (contact.spacing, contact.spacing), _self_affine_keys(surface)
+        strips = tuple(synthesis.self_affine(shape, spacing, **keys, seed=seed) for seed in seeds)
         return strips, strips, 0.0, "samples synthesised: self-affine, Gaussian"
     return (), (), 0.0, ""
 
@@ -267,14 +260,13 @@ def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: 
     if surface.spectrum is not None:
         if surface.lateral is None:
             return records.spectrum_line(surface.spectrum, surface.level, grid, seed)
-        keys: dict[str, Any] = {"lateral": surface.lateral, "seed": seed}
+        made_by = partial(records.spectrum_record, surface.spectrum, surface.level, seed=seed)
         if surface.IN_STRIPS:
-            return records.spectrum_record(surface.spectrum, surface.level, grid, **keys, before=before)
+            return made_by(grid, lateral=surface.lateral, before=before)
         # one that closes on itself: longer than the path and than the longest band
         wavelength, *_ = records.spectrum_levels(surface.spectrum)
         rows = max(grid.rows, math.ceil(1.2 * wavelength.max() / grid.spacing))
-        longer = replace(grid, rows=rows)
-        made = records.spectrum_record(surface.spectrum, surface.level, longer, **keys, before=None)
+        made = made_by(replace(grid, rows=rows), lateral=surface.lateral, before=None)
         return replace(made, strip=HeightMap(made.strip.rows(0, grid.rows), (grid.spacing, grid.spacing)))
     if surface.line is not None:
         if not surface.has_line:
@@ -283,7 +275,10 @@ def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: 
         may_shorten = case.duration is None
         return records.single_line(surface, record, lead, 2 * margin + 2, may_shorten=may_shorten)
     if surface.rms is not None:
-        return Record(synthesised_path(surface, grid.spacing, shape, seed, before), "self-affine, Gaussian")
+        keys = _self_affine_keys(surface)
+        spacing = (grid.spacing, grid.spacing)
+        strip = synthesis.long_self_affine(shape, spacing, **keys, seed=seed, before=before)
+        return Record(strip, "self-affine, Gaussian")
     if maps:
         run_in = 0 if surface.IN_STRIPS else lead
         return Record(*path_of(maps, shape, seed, run_in, before, surface.continuation))
@@ -307,8 +302,7 @@ def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
     rolling, surface = case.rolling, case.surface
     turn = replace(grid, rows=round(rolling.circumference / grid.spacing))
     if rolling.line is not None:
-        across = rolling.line_distance is not None or (surface.IN_STRIPS and len(rolling.offsets) == 1)
-        if across:
+        if rolling.line_distance is not None or (surface.IN_STRIPS and len(rolling.offsets) == 1):
             check = surface.IN_STRIPS and not surface.accept_levels
             return records.lines_around(rolling, case.ROLLING, turn, check=check)
         return records.line_around(rolling, case.ROLLING, contact, turn)
@@ -316,15 +310,12 @@ def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
         return Record(Rows(np.zeros((turn.rows, 1))), "", areal=False)
     if contact or not surface.IN_STRIPS:
         seed = int(np.random.SeedSequence([case.seed, 1, contact]).generate_state(1)[0])
-    lateral = math.inf
+    made_by = partial(records.spectrum_record, rolling.roughness, rolling.roughness_level, seed=seed)
     if surface.IN_STRIPS:
         lateral = math.inf if surface.lateral is None else surface.lateral
-    else:
-        turn = replace(turn, lines=2)  # that are alike
-    made = records.spectrum_record(
-        rolling.roughness, rolling.roughness_level, turn, lateral=lateral, seed=seed, before=None
-    )
-    return made if surface.IN_STRIPS else replace(made, strip=Rows(made.heights[:, :1]))
+        return made_by(turn, lateral=lateral, before=None)
+    made = made_by(replace(turn, lines=2), lateral=math.inf, before=None)  # lines that are alike
+    return replace(made, strip=Rows(made.heights[:, :1]))
 
 
 def _first_row(case: Case, before: int) -> int:
@@ -332,26 +323,7 @@ def _first_row(case: Case, before: int) -> int:
     return -before if case.surface.IN_STRIPS else 0
 
 
-def _rows_of_turn(case: Case, rows: int, turn: int, before: int) -> NDArray[np.intp]:
-    return (np.arange(rows) + _first_row(case, before)) % turn
-
-
 # --- defects
-
-
-def _corrugated(case: Case, rows: int, seed: int) -> Array:
-    """Corrugation along the path: heights (rows,), m, the same all across; zero without one."""
-    surface = case.surface
-    if surface.corrugation is None or surface.corrugation_wavelength is None:
-        return np.zeros(rows)
-    return corrugation(
-        rows,
-        case.contact.spacing,
-        wavelength=surface.corrugation_wavelength,
-        amplitude=surface.corrugation,
-        bandwidth=surface.corrugation_bandwidth,
-        seed=seed,
-    ).heights
 
 
 def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
@@ -377,9 +349,8 @@ def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
         worn = length if shape == "worn" else None
         heights += flat_geometry(along, depth, rolling.radius, shape, worn)
         centre += flat_trajectory(along, depth, rolling.radius, shape, worn)
-    return (
-        {"defects": heights, "trajectory": centre} if heights.any() else {"defects": None, "trajectory": None}
-    )
+    found = {"defects": heights, "trajectory": centre}
+    return found if heights.any() else dict.fromkeys(found)
 
 
 def strip_rows(contact: ContactKeys) -> int:
@@ -396,19 +367,18 @@ def strips_of(
     Cut from the maps where these are long enough, else synthesised in their likeness.
     """
     rows, ny = strip_rows(contact), window_cells(contact)
-    longest = min(m.shape[0] for m in maps)
+    longest, narrowest = (min(sizes) for sizes in zip(*(m.shape for m in maps), strict=True))
     if contact.sample_length is None and longest >= FEWEST_WINDOWS * ny:
         rows = min(rows, longest)
-    if longest >= rows and min(m.shape[1] for m in maps) >= ny:
-        cut = []
-        for i in range(len(seeds)):
-            heights = maps[i % len(maps)].heights
-            share = (i // len(maps) + 0.5) / math.ceil(len(seeds) / len(maps))
-            first = round(share * (heights.shape[1] - ny))
-            cut.append(HeightMap(heights[:rows, first : first + ny], maps[0].spacing, maps[0].source))
-        return tuple(level(strip) for strip in cut), "filter strips cut from them"
-    strips = tuple(level(from_map(maps, (rows, ny), seed)) for seed in seeds)
-    return strips, "filter strips synthesised in their likeness"
+    if longest < rows or narrowest < ny:
+        strips = tuple(level(synthesis.from_map(maps, (rows, ny), seed)) for seed in seeds)
+        return strips, "filter strips synthesised in their likeness"
+    cut, of_each = list[HeightMap](), math.ceil(len(seeds) / len(maps))
+    for i in range(len(seeds)):
+        heights = maps[i % len(maps)].heights
+        first = round((i // len(maps) + 0.5) / of_each * (heights.shape[1] - ny))
+        cut.append(level(HeightMap(heights[:rows, first : first + ny], maps[0].spacing, maps[0].source)))
+    return tuple(cut), "filter strips cut from them"
 
 
 def cut_from(path: Strip, contact: ContactKeys, duration: float, *, first: int = 0) -> tuple[HeightMap, ...]:
@@ -445,35 +415,24 @@ def path_of(
     that `continuation`; or the path is synthesised in their likeness, the same at every speed from the row
     `before` on, where the record starts.
     """
-    first = maps[0]
-    if first.shape[0] >= shape[0] - run_in and first.shape[1] >= shape[1]:
-        middle = (first.shape[1] - shape[1]) // 2
-        heights = first.heights[: shape[0], middle : middle + shape[1]]
-        origin = "path cut from the first" + records.mirrored_words(heights, shape[0])
-        path = records.mirrored_before(heights - heights.mean(), shape[0])
-        return HeightMap(path, first.spacing, first.source), origin
-    if continuation in ("mirror", "repeat"):
-        return _continued(first, shape, run_in, cast(Continuation, continuation))
-    return long_strip_like(maps, shape, seed, before=before), "path synthesised in their likeness"
-
-
-def _continued(
-    first: HeightMap, shape: tuple[int, int], run_in: int, how: Continuation
-) -> tuple[HeightMap, str]:
-    """Mirror or repeat the middle of a map along a path (rows, ny); a repeated one closes over a window."""
-    rows, ny = shape
+    (rows, ny), first = shape, maps[0]
+    middle = max((first.shape[1] - ny) // 2, 0)
+    heights = first.heights[:rows, middle : middle + ny]
+    heights = heights - heights.mean()
+    if first.shape[0] >= rows - run_in and first.shape[1] >= ny:
+        origin = "path cut from the first" + records.mirrored_words(heights, rows)
+        return HeightMap(records.mirrored_before(heights, rows), first.spacing, first.source), origin
+    if continuation not in ("mirror", "repeat"):
+        like = synthesis.long_strip_like(maps, shape, seed, before=before)
+        return like, "path synthesised in their likeness"
     if first.shape[1] < ny or rows * ny > MOST_POINTS:
-        received = (
-            f"{first.size[1] * 1e3:.4g} mm across" if first.shape[1] < ny else f"{rows * ny:.2g} points"
-        )
+        narrow = f"{first.size[1] * 1e3:.4g} mm across" * (first.shape[1] < ny)
         allowed = f"a map as wide as the window, and paths of at most {MOST_POINTS:.2g} points"
+        received = narrow or f"{rows * ny:.2g} points"
         raise InputError("surface.continuation", received, allowed, "Leave it out, or roll shorter.")
-    middle = (first.shape[1] - ny) // 2
-    heights = first.heights[:, middle : middle + ny]
-    fade = min(ny, len(heights) // 2) if how == "repeat" else 0
-    path = extend(
-        heights - heights.mean(), rows, how, spacing=first.spacing[0], start=-run_in, crossfade=fade
-    )
+    how = cast(synthesis.Continuation, continuation)
+    fade = min(ny, len(heights) // 2) if how == "repeat" else 0  # a repeated one closes over a window
+    path = synthesis.extend(heights, rows, how, spacing=first.spacing[0], start=-run_in, crossfade=fade)
     return HeightMap(path, first.spacing, first.source), f"path cut from the first, {how}ed"
 
 
@@ -485,23 +444,6 @@ def middle_line(strip: Strip) -> Array:
     return np.concatenate(lines)
 
 
-def synthesised(surface: Surface, spacing: float, shape: tuple[int, int], seed: int) -> HeightMap:
-    """Synthesise a self-affine, Gaussian texture (rows, ny) on a spacing, m."""
-    return self_affine(shape, (spacing, spacing), **_self_affine_keys(surface), seed=seed)
-
-
-def synthesised_path(
-    surface: Surface, spacing: float, shape: tuple[int, int], seed: int, before: int
-) -> LongStrip:
-    """Synthesise a self-affine path as `synthesised` does, the same at every speed from row `before` on."""
-    keys = _self_affine_keys(surface)
-    return long_self_affine(shape, (spacing, spacing), **keys, seed=seed, before=before)
-
-
-def _self_affine_keys(surface: Surface) -> dict[str, float]:
-    longest, shortest = surface.longest, surface.shortest
-    assert surface.rms is not None
-    assert longest is not None
-    assert shortest is not None
-    keys = {"rms": surface.rms, "hurst": surface.hurst, "anisotropy": surface.anisotropy, "lay": surface.lay}
-    return keys | {"longest": longest, "shortest": shortest}
+def _self_affine_keys(surface: Surface) -> dict[str, Any]:
+    names = ("rms", "hurst", "anisotropy", "lay", "longest", "shortest")
+    return {name: getattr(surface, name) for name in names}
