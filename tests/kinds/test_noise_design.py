@@ -1,4 +1,4 @@
-"""Design answers: what pads, decay rate, roughness and speed do to the sound of rail and sleepers.
+"""Design answers: what pads and speed do to the sound of rail and sleepers.
 
 By the linear contact force in the frequency domain, on tracks of published parameters. The rules are those of
 D. J. Thompson, Railway Noise and Vibration (Elsevier, 2009).
@@ -11,7 +11,7 @@ from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.reference import cnossos
 from asperity.scenarios.scene import force_transfer, linear_force_psd
 from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
-from asperity.structures.track import Track, decay_rate
+from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
 CENTRES, LOW, HIGH = third_octave_bands(100.0, 5000.0)
@@ -34,8 +34,8 @@ def roughness_psd(speed):
     return np.exp(np.interp(at, np.log(exact[order]), np.log(energy[order])))
 
 
-def levels(track, speed=30.0):
-    """Sound power levels of rail and sleepers (2, b), dB re 1 pW, of one wheel."""
+def heard(track, speed=30.0):
+    """A-weighted sound power levels of rail and sleepers, dB re 1 pW, of one wheel."""
     lines, texture = FREQUENCY.ravel(), roughness_psd(speed).ravel()
     force = linear_force_psd(lines, texture, speed, WHEEL, track, STIFFNESS, positions=6)
 
@@ -46,12 +46,7 @@ def levels(track, speed=30.0):
     for part in (RAIL, SLEEPER):
         density = (force * part.power_per_force(track, lines, spread)).reshape(FREQUENCY.shape)
         found.append(10.0 * np.log10(density.mean(axis=1) * (HIGH - LOW) / 1e-12))
-    return np.array(found)
-
-
-def heard(track, speed=30.0):
-    """A-weighted levels of rail and sleepers."""
-    return a_weighted_total(levels(track, speed), CENTRES)
+    return a_weighted_total(np.array(found), CENTRES)
 
 
 PADS = 60e6 * 2.0 ** np.arange(8)  # 60 MN/m to 7.7 GN/m
@@ -78,21 +73,6 @@ def test_noise_against_pad_stiffness(name):
     assert min(total[0], total[-1]) > total[best] + 1.0
     equal = np.exp(np.interp(0.0, sleepers - rail, np.log(PADS[REAL])))  # where both are as loud
     assert PADS[best] / 4.0 < equal < PADS[best] * 4.0
-
-
-def test_twice_the_decay_rate_is_3_db_less_of_the_rail():
-    """W = ρ c 2b σ ⟨v₀²⟩ 8.686/Δ of a wave that decays by Δ, dB/m. Thompson."""
-    lossy = {"pad_loss_factor": 0.1, "rail_loss_factor": 0.01, "ballast_loss_factor": 0.5}
-    once, twice = (
-        Track.named("uic60", pad_stiffness=150e6, **{key: n * value for key, value in lossy.items()})
-        for n in (1.0, 2.0)
-    )
-    waves = CENTRES > 600.0  # above the cut-on of waves that the pads hold back, 390 Hz
-    ratio = decay_rate(twice, CENTRES[waves]) / decay_rate(once, CENTRES[waves])
-    np.testing.assert_allclose(ratio, 2.0, rtol=0.01)
-    change = (levels(twice) - levels(once))[0, waves]
-    np.testing.assert_allclose(change, -3.0, atol=0.5)
-    assert heard(twice)[0] - heard(once)[0] == pytest.approx(-3.0, abs=1.0)
 
 
 @pytest.mark.parametrize("name", TRACKS)

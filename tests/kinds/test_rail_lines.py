@@ -7,13 +7,8 @@ import pytest
 
 from asperity.case.cases import parse_case
 from asperity.errors import InputError, ShortRecordWarning
-from asperity.running import prepare_case
-from asperity.scenarios.laws import working_point
-from asperity.scenarios.scene import force_transfer
 from asperity.scenarios.textures import textures_of
-from asperity.scenes.compute import compute
-from like_measured import either, wheel_lines, where_measured
-from one_contact import first_contact
+from like_measured import either, wheel_lines
 
 CASE = """
 kind = "wheel-on-rail"
@@ -109,14 +104,12 @@ class TestWheel:
         np.testing.assert_allclose(np.ptp(all_of(found.path)[:, 5:-5], axis=1), 0.0, atol=1e-7)
 
 
-WHEELS = LINES.replace("lines", "wheels") + APART + 'line_array = "flat"\nprocessing = ["curvature"]\n'
-
-
 @either
 def test_flat_of_a_measured_wheel_is_found(tmp_path, runs, measured):
     flat = wheel_lines(0.6, measured=measured)
-    np.savez(tmp_path / "wheels.npz", flat=flat, other=np.zeros((10, 2880)))
-    found = runs(case(tmp_path, wheel='radius = "0.459 m"\n' + WHEELS, duration="0.11 s"))
+    np.savez(tmp_path / "lines.npz", flat=flat, other=np.zeros((10, 2880)))
+    wheel = f'radius = "0.459 m"\n{LINES}{APART}line_array = "flat"\nprocessing = ["curvature"]'
+    found = runs(case(tmp_path, wheel=wheel, duration="0.11 s"))
     force = found["rolling/contact_force"].sel(law="areal", contact=1)
     assert float(force.max()) > 2 * 65e3
     struck = found["rolling/position"].values[force.values > 0.9 * float(force.max())]
@@ -125,28 +118,3 @@ def test_flat_of_a_measured_wheel_is_found(tmp_path, runs, measured):
     assert int(found["rolling/contact_loss_events"].sel(law="areal", contact=1)) >= 2
     assert "rolled over with a circle" in found["surface"].attrs["source"]
     assert json.loads(found.attrs["warnings"])
-
-
-@pytest.mark.parametrize(
-    ("measured", "speed"), [(False, 56), *(pytest.param(True, v, marks=where_measured) for v in (20, 80))]
-)
-@pytest.mark.usefixtures("own_cache")
-def test_impact_of_a_measured_flat_is_that_of_the_receptances(tmp_path, measured, speed):
-    np.savez(tmp_path / "wheels.npz", flat=wheel_lines(0.4, measured=measured))
-    text = CASE.replace("56 m/s", f"{speed} m/s").replace('"areal", "linear"', '"linear"')
-    text = text.replace('spacing = "1 mm"', 'spacing = "0.5 mm"').replace("poles = 60", 'kernel = "scatter"')
-    text = text.format(surface="smooth = true", duration=f"{3.2 / speed:g} s", wheel=WHEELS)
-    computed = compute(prepare_case(parse_case(text, tmp_path / "case.toml")), lambda *_: None)
-    wheel, textures, step = first_contact(computed.first), computed.textures, computed.case.time_step
-    # the middle lines are lowest at 0.267 m; the wheel strikes where it reaches the flat's far end
-    struck = float(wheel.position[np.argmax(wheel.contact_force)])
-    assert 0.267 < struck % 2.88 < 0.30
-    at = textures.start + computed.shape.spacing[0] * np.arange(len(textures.followed))
-    texture = np.interp(wheel.position, at, textures.followed)
-    mirrored = np.concatenate([texture, texture[::-1]])
-    _, stiffness = working_point(computed.case.contact, computed.shape, computed.reduction)
-    frequency = np.fft.rfftfreq(len(mirrored), step)
-    first, track = computed.scene.first, computed.track
-    (transfer,) = force_transfer(frequency, first, track, stiffness, [struck % 0.6])
-    still = 65e3 + np.fft.irfft(np.fft.rfft(mirrored) * transfer, len(mirrored))[: len(texture)]
-    assert wheel.contact_force.max() == pytest.approx(still.max(), rel=0.1)
