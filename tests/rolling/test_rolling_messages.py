@@ -105,13 +105,6 @@ def warned(law, over=BEAM, **changes):
     return run, found
 
 
-def test_time_steps_that_are_too_long_are_warned_of():
-    high = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=15e3)
-    _, seen = warned(Linear(5.0, 1e9), high, time_step=2e-5, highest_frequency=6e3)
-    for what in ("the contact resonance", "the highest mode of the structure", "the highest frequency asked"):
-        assert sum(what in message for message in seen[errors.CoarseSamplingWarning]) == 1
-
-
 def test_a_law_beyond_its_data_is_told_once_for_all_contacts():
     class Short:
         name, damping = "short", 0.0

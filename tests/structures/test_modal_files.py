@@ -238,7 +238,7 @@ def test_modes_of_a_universal_file(universal, make, sets, options):
 @pytest.mark.parametrize(
     ("sets", "options", "message"),
     [
-        ([nodes(), UNITS, mode()], {"along": None}, r'along of .*received None; allowed: one of "x"'),
+        ([nodes(), UNITS, mode()], {"along": None}, r"along of .*received None; allowed: one of x"),
         ([nodes(), UNITS, mode()], {"nodes": None}, "42 nodes at 41 places along y.*Choose those under"),
         ([nodes(), UNITS, mode()], {"nodes": [1, 99]}, "node 99, which has no place or no shape"),
         ([nodes(), mode()], {}, "no unit of length.*Give length_unit"),

@@ -10,12 +10,8 @@ from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
 
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.laws import HertzLaw
-from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import MATERIALS, Material, contact_modulus, material
-from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import SUPPORTS, Beam, Support, SupportedBeam
-from asperity.structures.body import Body
 from asperity.structures.modal import ModalStructure
 
 STEEL = material("steel")
@@ -175,25 +171,6 @@ def tabled(of, positions, **options):
     return ModalStructure(positions, of.natural_frequencies, of.damping_ratios, shapes, **options)
 
 
-def rolled(structure):
-    """Two balls one behind the other, over a wave of 10 mm."""
-    balls = [Body.rigid(0.5, 30.0)] * 2
-    heights = 3e-7 * np.sin(2 * np.pi * np.arange(0.0, 0.25, 1e-4) / 0.01)
-    law = HertzLaw(2.4e10, StateTexture.unfiltered(heights, 1e-4, 0.2))
-    options = {"speed": 2.0, "start": 0.2, "duration": 0.04, "time_step": 5e-6, "positions": [0.0, 0.15]}
-    return roll_bodies(structure, balls, [law] * 2, **options)
-
-
-def test_forty_modes_from_a_table_roll_as_the_beam_does():
-    forty = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=37.6e3)
-    assert len(forty.natural_frequencies) == 40
-    expected, found = rolled(forty), rolled(tabled(forty, np.linspace(0.0, 1.0, 1001)))
-    assert np.ptp(expected.contact_force) > 1.0  # N
-    assert_allclose(found.contact_force, expected.contact_force, rtol=0.0, atol=1e-9 * 30.0)
-    deflection = np.abs(expected.over_displacement).max()
-    assert_allclose(found.over_displacement, expected.over_displacement, rtol=0.0, atol=1e-9 * deflection)
-
-
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_shapes_between_points_are_those_of_the_beam(support):
     """Ends of clamped and free beams decay within a wavelength, and are the hardest."""
@@ -201,6 +178,8 @@ def test_shapes_between_points_are_those_of_the_beam(support):
     table, x = tabled(b, np.linspace(0.0, 1.0, 101)), np.linspace(0.0, 1.0, 1234)
     for expected, found, share in zip(b.shapes(x), table.shapes(x), (2e-5, 2e-4), strict=True):
         assert_allclose(found, expected, atol=share * np.abs(expected).max())
+    fine = tabled(b, np.linspace(0.0, 1.0, 1001)).shapes(x)[0]
+    assert_allclose(fine, b.shapes(x)[0], atol=1e-9 * np.abs(fine).max())
     along = table.shapes_along(0.1, 1e-4, 3000)
     assert_allclose(along, table.shapes(0.1 + 1e-4 * np.arange(3000)), rtol=0.0, atol=1e-13)
 
@@ -242,15 +221,6 @@ def test_residual_flexibility_completes_the_static_compliance():
     assert_allclose(table(residual).receptance(f, 0.3, 0.62), many.receptance(f, 0.3, 0.62), rtol=1e-5)
 
 
-def test_modes_above_a_record_carry_on_as_their_flexibility():
-    """Twenty modes and the flexibility of nine more roll as all of them do; without it far from that."""
-    many, residual, table = cut_off(20e3, 20, 401)
-    expected = rolled(many).contact_force
-    error = [np.abs(rolled(table(each)).contact_force - expected).max() for each in (None, residual)]
-    assert error[0] > 0.1 * np.ptp(expected)
-    assert error[1] < 0.05 * error[0]
-
-
 def test_a_rigid_body_is_added_by_mass_and_inertia():
     x, f = np.linspace(0.0, 2.0, 31), np.array([7.0, 90.0])
     bending = ModalStructure(x, [300.0], 0.01, np.cos(np.pi * x)[:, None])
@@ -289,10 +259,10 @@ TABLE = {"positions": X, "frequencies": [1.0], "damping": 0.1, "mode_shapes": SI
         (Support, {"position": 0.0, "stiffness": 0.0}, "allowed: a support that holds something"),
         (Support, {"position": 0.0, "loss_factor": 2.0}, "loss factor of a support: received 2.0"),
         (ModalStructure, {"positions": X[::-1]}, "numbers that do not rise; allowed: two or more rising"),
-        (ModalStructure, {"frequencies": [1.0, 2.0]}, r"\(5, 1\); allowed: \(5, 2\): a row for each"),
+        (ModalStructure, {"frequencies": [1.0, 2.0]}, r"\(5, 1\); allowed: .*\(5, 2\): a row for each"),
         (ModalStructure, {"damping": 1.0}, "damping ratios: received 1.0; allowed: 0 and more, below 1"),
         (ModalStructure, {"damping": [0.1, 0.1]}, "damping ratios: received 2 numbers; allowed: 1"),
-        (ModalStructure, {"mode_shapes": SINE * np.nan}, "mode shapes: .* not finite"),
+        (ModalStructure, {"mode_shapes": SINE * np.nan}, "mode shapes: received nan; allowed: finite"),
         (ModalStructure, {"mode_shapes": 0.0 * SINE}, "mode 1 that does not move.*Leave it out"),
         (ModalStructure, {"modal_masses": [0.0]}, r"modal masses \(kg\): received 0.0"),
         (ModalStructure, {"frequencies": [], "mode_shapes": np.zeros((5, 0))}, "none; allowed: at least"),

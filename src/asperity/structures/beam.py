@@ -14,7 +14,7 @@ import scipy
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, positive, real
+from asperity.arguments import Array, one_of, positive, real, require
 from asperity.errors import InputError
 from asperity.kernels.along import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
@@ -70,13 +70,9 @@ class _Uniform(Modal):
         _check_loss("loss factor of the beam", loss_factor)
 
     def _needs_a_mode(self, count: int, highest_frequency: float) -> None:
-        if not count:
-            what, allowed = (
-                "highest frequency of the beam (Hz)",
-                "above the first natural frequency of bending",
-            )
-            remedy = "Raise it, in a case numerics.highest_frequency, or take a longer or softer beam."
-            raise InputError(what, highest_frequency, allowed, remedy)
+        allowed = "above the first natural frequency of bending"
+        remedy = "Raise it, in a case numerics.highest_frequency, or take a longer or softer beam."
+        require(count, "highest frequency of the beam (Hz)", highest_frequency, allowed, remedy)
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -143,8 +139,7 @@ class Beam(_Uniform):
     def __post_init__(self) -> None:
         self._check(self.loss_factor, self.highest_frequency)
         positive("suspension frequency of the beam (Hz)", self.suspension_frequency)
-        if self.support not in SUPPORTS:
-            raise InputError("beam support", repr(self.support), "one of " + ", ".join(SUPPORTS))
+        one_of("beam support", self.support, SUPPORTS)
         self._needs_a_mode(len(self._bending_roots), self.highest_frequency)
 
     @property
@@ -338,8 +333,8 @@ class Support:
         ):
             if not value >= 0.0:
                 raise InputError(what, value, "0 and more, or infinite")
-        if self.stiffness == 0.0 and self.rotational_stiffness == 0.0:
-            raise InputError("stiffness of a support (N/m)", 0.0, "a support that holds something")
+        holds = self.stiffness or self.rotational_stiffness
+        require(holds, "stiffness of a support (N/m)", 0.0, "a support that holds something")
         _check_loss("loss factor of a support", self.loss_factor)
 
 

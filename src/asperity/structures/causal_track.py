@@ -47,8 +47,6 @@ CHOICES = [
     STEPS, SETTLED,
 ]  # fmt: skip
 """All that a fit depends on beside its track."""
-MOST = 16
-"""Causal tracks that are held."""
 
 Linearised = Callable[[Array], tuple[Array, Array]]
 
@@ -65,8 +63,6 @@ def causal_track(track: Track, cache: Cache | None = None) -> Track:
     if track.is_causal:
         return track
     if track not in _fitted:
-        if len(_fitted) == MOST:
-            _fitted.clear()
         _fitted[track] = replace(track, relaxations=_relaxations(track, cache))
     return _fitted[track]
 

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, finite_array, positive, real, real_array
+from asperity.arguments import Array, Complex, finite_array, positive, real, real_array, require
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.piecewise import evaluate_pieces
 
@@ -230,27 +230,17 @@ class ModalStructure(Modal):
 
     def _checked(self) -> tuple[Array, Array, Array, Array]:
         """Positions, mass-normalised shapes, frequencies and damping ratios, of fitting sizes."""
-        at = real_array("positions of the modes (m)", self.positions, "rising numbers")
-        if at.ndim != 1 or at.size < 2 or not np.isfinite(at).all() or not (np.diff(at) > 0.0).all():
-            received = f"shape {at.shape}, or numbers that do not rise"
-            raise InputError("positions of the modes (m)", received, "two or more rising finite numbers")
-        allowed = "0 and more, below 10 MHz"
-        natural = finite_array(
-            "natural frequencies (Hz)", self.frequencies, allowed, at_least=0.0, below=HIGHEST
-        )
-        shapes, count = (
-            real_array("mode shapes", self.mode_shapes, "a matrix (positions, modes)"),
-            natural.size,
-        )
-        if natural.ndim != 1 or shapes.shape != (at.size, count):
-            allowed = f"({at.size}, {count}): a row for each position, a column for each mode"
-            raise InputError("mode shapes", f"shape {shapes.shape}", allowed)
-        if not np.isfinite(shapes).all():
-            raise InputError("mode shapes", "values that are not finite", "finite numbers")
+        what, allowed = "positions of the modes (m)", "two or more rising finite numbers"
+        at = finite_array(what, self.positions, allowed, shape=(None,), rising=True)
+        require(at.size > 1, what, f"{at.size} numbers", allowed)
+        what, allowed = "natural frequencies (Hz)", "0 and more, below 10 MHz"
+        natural = finite_array(what, self.frequencies, allowed, shape=(None,), at_least=0.0, below=HIGHEST)
+        count = natural.size
+        allowed = f"finite numbers ({at.size}, {count}): a row for each position, a column for each mode"
+        shapes = finite_array("mode shapes", self.mode_shapes, allowed, shape=(at.size, count))
         given = self.damping if np.ndim(self.damping) else np.full(count, self.damping)
-        ratios = finite_array(
-            "damping ratios", given, "0 and more, below 1", count=count, at_least=0.0, below=1.0
-        )
+        what, allowed = "damping ratios", "0 and more, below 1"
+        ratios = finite_array(what, given, allowed, count=count, at_least=0.0, below=1.0)
         if self.modal_masses is not None:
             masses = finite_array("modal masses (kg)", self.modal_masses, "above 0", count=count, above=0.0)
             shapes = shapes / np.sqrt(masses)

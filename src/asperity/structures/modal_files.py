@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, Complex, file_path, listed, no_file, shown
+from asperity.arguments import Array, Complex, file_path, listed, no_file, one_of, require, shown
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.sandbox import Answer, sandboxed
@@ -47,11 +47,9 @@ def modes_of_universal(path: str, given: dict[str, Any]) -> Answer:
 
 
 def _axis(name: str, given: object, source: str) -> int:
-    if given not in AXES:
-        what = "path" if name == "along" else "contact force"
-        remedy = f"Say in which direction of the file the {what} lies."
-        raise InputError(f"{name} of {source}", shown(given), 'one of "x", "y", "z"', remedy)
-    return AXES.index(str(given))
+    what = "path" if name == "along" else "contact force"
+    remedy = f"Say in which direction of the file the {what} lies."
+    return AXES.index(one_of(f"{name} of {source}", given, AXES, remedy))
 
 
 def _datasets(file: Path) -> tuple[list[Dataset], list[Dataset], Dataset | None]:
@@ -100,9 +98,8 @@ def _path(
         for number, at in zip(each["node_nums"], each[AXES[along]], strict=True)
     }
     turned = {int(system) for each in nodes for system in np.atleast_1d(each["disp_cs"])}
-    if len(turned) > 1:
-        received = f"nodes that move in {len(turned)} systems of coordinates"
-        raise InputError(source, received, "modes in one global system", _EXPORT)
+    received = f"nodes that move in {len(turned)} systems of coordinates"
+    require(len(turned) == 1, source, received, "modes in one global system", _EXPORT)
     shared = set.intersection(*({int(n) for n in mode["node_nums"]} for mode in modes)) & place.keys()
     numbers = sorted(shared) if chosen is None else chosen
     if missing := [number for number in numbers if number not in shared]:
@@ -135,12 +132,11 @@ def _mode(
         ratio = -eigenvalue.real / abs(eigenvalue) if eigenvalue else 0.0
         shape, turn = _real_mode(values, frequency, source)
         mass = float((complex(mode["modal_a"]) * turn**2 / (2j * abs(eigenvalue.imag) or 1.0)).real)
-    if not mass > 0.0:
-        received = f"a modal mass of {mass:.3g} of the mode at {frequency:.4g} Hz"
-        raise InputError(source, received, "positive ones; 1 of mass-normalised modes", _EXPORT)
-    if damping is None and not 0.0 < ratio < 1.0 and frequency > 0.0:
-        received = f"a damping ratio of {ratio:.3g} of the mode at {frequency:.4g} Hz"
-        raise InputError(source, received, "above 0, below 1", "Give damping, for all modes.")
+    received = f"a modal mass of {mass:.3g} of the mode at {frequency:.4g} Hz"
+    require(mass > 0.0, source, received, "positive ones; 1 of mass-normalised modes", _EXPORT)
+    known = damping is not None or 0.0 < ratio < 1.0 or frequency == 0.0
+    received = f"a damping ratio of {ratio:.3g} of the mode at {frequency:.4g} Hz"
+    require(known, source, received, "above 0, below 1", "Give damping, for all modes.")
     return frequency, ratio if damping is None else damping, mass, shape
 
 
@@ -150,10 +146,9 @@ def _real_mode(values: Complex, frequency: float, source: str) -> tuple[Array, c
     turn = complex(np.exp(-0.5j * np.angle(squares)))
     turned = values * turn
     share = float(np.sum(turned.imag**2) / max(np.sum(np.abs(turned) ** 2), np.finfo(float).tiny))
-    if share > OUT_OF_PHASE:
-        received = f"{100 * share:.0f} % of the mode at {frequency:.4g} Hz out of phase"
-        allowed = f"at most {100 * OUT_OF_PHASE:.0f} %: modes are taken as real"
-        raise InputError(source, received, allowed, "Give its receptance instead.")
+    received = f"{100 * share:.0f} % of the mode at {frequency:.4g} Hz out of phase"
+    allowed = f"at most {100 * OUT_OF_PHASE:.0f} %: modes are taken as real"
+    require(share <= OUT_OF_PHASE, source, received, allowed, "Give its receptance instead.")
     return turned.real.astype(float), turn
 
 
@@ -241,13 +236,13 @@ def read_modal_structure(
     (0.0, 1.0)
     """
     file = file_path("file of modes", path, "the path of a file")
-    if found := no_file(file):
-        raise InputError(str(file), found, "a file with modes", "Check the path.")
-    if file.stat().st_size > LARGEST_FILE:
-        raise InputError(file.name, amount(file.stat().st_size), f"at most {amount(LARGEST_FILE)}")
-    names = ("along", "force", "length_unit", "force_unit", "damping", "nodes")
+    found = no_file(file)
+    require(not found, str(file), found, "a file with modes", "Check the path.")
+    size = file.stat().st_size
+    require(size <= LARGEST_FILE, file.name, amount(size), f"at most {amount(LARGEST_FILE)}")
     numbers = None if nodes is None else [int(node) for node in nodes]
-    given = dict(zip(names, (along, force, length_unit, force_unit, damping, numbers), strict=True))
+    given: dict[str, Any] = {"along": along, "force": force, "damping": damping, "nodes": numbers}
+    given |= {"length_unit": length_unit, "force_unit": force_unit}
     kind = file.suffix.lower()
     if kind in (".uff", ".unv", ".univ"):
         return _read_from(file, "universal", modes_of_universal, given)

@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from asperity import errors
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, Complex, finite_array, require
 from asperity.errors import ComputationError, InputError
 from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
@@ -216,23 +216,21 @@ def checked_record(
 
     Without the last axes where there is one force, or one place as well.
     """
-    f, given = np.asarray(frequency, dtype=float), np.asarray(receptance, dtype=complex)
+    allowed = "frequencies above 0 Hz and rising"
+    f = finite_array(what, frequency, allowed, shape=(None,), rising=True, above=0.0)
+    given = np.asarray(receptance, dtype=complex)
     received = f"shapes {f.shape} and {given.shape}"
     if forces == 1:
         given = given.reshape(*given.shape, *(1,) * (3 - given.ndim))
-    if f.ndim != 1 or given.shape != (f.size, places, forces):
-        allowed = f"n frequencies, and (n, {places}, {forces}): one value for each of them, place and force"
-        raise InputError(what, received, allowed)
-    if not (np.isfinite(f).all() and np.isfinite(given).all()):
-        raise InputError(what, "values that are not finite", "finite values")
-    if f.size and not (f[0] > 0.0 and (np.diff(f) > 0.0).all()):
-        raise InputError(what, "frequencies in disorder", "frequencies above 0 Hz and rising")
+    allowed = f"n frequencies, and (n, {places}, {forces}): one value for each of them, place and force"
+    require(given.shape == (f.size, places, forces), what, received, allowed)
+    require(np.isfinite(given).all(), what, "values that are not finite", "finite values")
     f, given = f[f <= highest], given[f <= highest]
-    if f.size < FEWEST_FREQUENCIES:
-        up_to = f" up to {highest:g} Hz" if np.isfinite(highest) else ""
-        raise InputError(what, f"{f.size} frequencies{up_to}", f"at least {FEWEST_FREQUENCIES}")
-    if not np.abs(given).any(axis=(1, 2)).all():
-        raise InputError(what, "nothing but zeros at a frequency", "a response", "Leave it out.")
+    up_to = f" up to {highest:g} Hz" if np.isfinite(highest) else ""
+    few = f.size < FEWEST_FREQUENCIES
+    require(not few, what, f"{f.size} frequencies{up_to}", f"at least {FEWEST_FREQUENCIES}")
+    moves = np.abs(given).any(axis=(1, 2)).all()
+    require(moves, what, "nothing but zeros at a frequency", "a response", "Leave it out.")
     return f, given
 
 
