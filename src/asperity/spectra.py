@@ -14,8 +14,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex
-from asperity.errors import InputError
+from asperity.arguments import Array, Complex, require
 
 HALF_BAND = 10.0 ** (1.0 / 20.0)
 """Ratio of a one-third octave's upper edge to its centre, base 10 (IEC 61260-1)."""
@@ -47,12 +46,15 @@ def psd(
     from scipy.fft import rfft  # not where only bands are looked up
 
     values = np.asarray(signal, dtype=np.float64)
-    _check_signal(values, spacing)
-    length = values.shape[-1] if segment is None else int(segment)
-    if not 2 <= length <= values.shape[-1]:
-        raise InputError("segment", length, f"2 to {values.shape[-1]} samples", "Shorten the segment.")
-    if not 0.0 <= overlap < 1.0:
-        raise InputError("overlap", overlap, "0 <= overlap < 1")
+    long_enough, allowed = values.ndim > 0 and values.shape[-1] > 1, "at least 2 samples on the last axis"
+    require(long_enough, "signal", f"shape {values.shape}", allowed)
+    finite, remedy = np.isfinite(values).all(), "Fill or cut missing samples."
+    require(finite, "signal", "NaN or infinite values", "finite values", remedy)
+    require(0.0 < spacing < np.inf, "spacing", spacing, "a positive finite step")
+    samples = values.shape[-1]
+    length = samples if segment is None else int(segment)
+    require(2 <= length <= samples, "segment", length, f"2 to {samples} samples", "Shorten the segment.")
+    require(0.0 <= overlap < 1.0, "overlap", overlap, "0 <= overlap < 1")
     values = values - values.mean(axis=-1, keepdims=True)
     window, advance = hann_window(length), length - int(overlap * length)
     segments = sliding_window_view(values, length, axis=-1)[..., ::advance, :]
@@ -163,15 +165,6 @@ def chance_and_start(
     return numbers, shares
 
 
-def _check_signal(values: Array, spacing: float) -> None:
-    if values.ndim < 1 or values.shape[-1] < 2:
-        raise InputError("signal", f"shape {values.shape}", "at least 2 samples on the last axis")
-    if not np.isfinite(values).all():
-        raise InputError("signal", "NaN or infinite values", "finite values", "Fill or cut missing samples.")
-    if not (np.isfinite(spacing) and spacing > 0.0):
-        raise InputError("spacing", spacing, "a positive finite step")
-
-
 def nominal(centre: float) -> float:
     """Nominal value of a one-third octave's exact centre: 3150 for 3162.28 (IEC 61260-1:2014, annex E)."""
     tenths = round(10.0 * np.log10(centre))
@@ -181,16 +174,18 @@ def nominal(centre: float) -> float:
 
 def nominal_frequency(centre: float) -> str:
     """Nominal name of a one-third octave in text: ``"3.15 kHz"`` for the centre 3162.28 Hz."""
-    name = nominal(centre)
-    return f"{name / 1000:g} kHz" if name >= 1000 else f"{name:g} Hz"
+    return _named(centre, {"kHz": 1e3, "Hz": 1.0})
 
 
 def nominal_length(centre: float) -> str:
     """Nominal name of a one-third octave of wavelength in text: ``"3.15 mm"`` for the centre 3.16228 mm."""
-    for size, unit in ((1.0, "m"), (1e-3, "mm")):
-        if nominal(centre) >= size * 0.999:
-            return f"{nominal(centre / size):g} {unit}"
-    return f"{nominal(centre / 1e-6):g} µm"
+    return _named(centre, {"m": 1.0, "mm": 1e-3, "µm": 1e-6})
+
+
+def _named(centre: float, units: dict[str, float]) -> str:
+    """Nominal value in the largest unit of which it is one or more, or in the last."""
+    unit = next((name for name, size in units.items() if nominal(centre) >= 0.999 * size), list(units)[-1])
+    return f"{nominal(centre / units[unit]):g} {unit}"
 
 
 def third_octave_bands(f_low: float, f_high: float) -> tuple[Array, Array, Array]:
@@ -199,8 +194,8 @@ def third_octave_bands(f_low: float, f_high: float) -> tuple[Array, Array, Array
     Centres 1000 · 10^(n/10) and edges, a factor 10^(1/20) below and above, (b,), Hz (or cycles per metre),
     rising. IEC 61260-1:2014 (base-ten system, b = 3).
     """
-    if not 0.0 < f_low <= f_high < np.inf:
-        raise InputError("band limits", f"{f_low} to {f_high}", "0 < f_low <= f_high, finite")
+    rising = 0.0 < f_low <= f_high < np.inf
+    require(rising, "band limits", f"{f_low} to {f_high}", "0 < f_low <= f_high, finite")
     first, last = (int(np.rint(10.0 * np.log10(f / 1000.0))) for f in (f_low, f_high))
     centres = 1000.0 * 10.0 ** (np.arange(first, last + 1) / 10.0)
     return centres, centres / HALF_BAND, centres * HALF_BAND
@@ -218,26 +213,18 @@ def band_energies(frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, ed
     cell_edges = np.concatenate([lines - step / 2.0, [lines[-1] + step / 2.0]])
     start = np.zeros((*density.shape[:-1], 1))
     cumulative = np.concatenate([start, np.cumsum(density, axis=-1) * step], axis=-1)
-    low, high = (_interpolate_last(cell_edges, cumulative, np.atleast_1d(e)) for e in (edges_low, edges_high))
-    return high - low
+    edges = np.concatenate([np.atleast_1d(edges_low), np.atleast_1d(edges_high)])
+    below = np.apply_along_axis(lambda sums: np.interp(edges, cell_edges, sums), -1, cumulative)
+    return below[..., edges.size // 2 :] - below[..., : edges.size // 2]
 
 
 def _frequency_step(lines: Array, density: Array) -> float:
-    if lines.ndim != 1 or lines.size < 2 or density.shape[-1:] != lines.shape:
-        received = f"shapes {lines.shape} and {density.shape}"
-        raise InputError("frequency and psd", received, "(f,) and (..., f), f >= 2")
+    fit, received = density.shape[-1:] == lines.shape, f"shapes {lines.shape} and {density.shape}"
+    require(fit and lines.size > 1, "frequency and psd", received, "(f,) and (..., f), f >= 2")
     step = (lines[-1] - lines[0]) / (lines.size - 1)
-    if not (step > 0.0 and np.allclose(np.diff(lines), step, rtol=1e-6, atol=0.0)):
-        raise InputError("frequency", "unequal steps", "uniform, rising frequencies")
+    uniform = step > 0.0 and np.allclose(np.diff(lines), step, rtol=1e-6, atol=0.0)
+    require(uniform, "frequency", "unequal steps", "uniform, rising frequencies")
     return float(step)
-
-
-def _interpolate_last(x: Array, values: Array, at: Array) -> Array:
-    """Linear interpolation along the last axis, constant outside."""
-    inside = np.clip(at, x[0], x[-1])
-    index = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, x.size - 2)
-    share = (inside - x[index]) / (x[index + 1] - x[index])
-    return values[..., index] * (1.0 - share) + values[..., index + 1] * share
 
 
 def band_levels(
@@ -258,12 +245,11 @@ def band_levels(
     """
     lines = np.asarray(frequency, dtype=np.float64)
     step = _frequency_step(lines, np.asarray(psd, dtype=np.float64))
-    if not reference > 0.0:
-        raise InputError("reference", reference, "a positive value")
+    require(reference > 0.0, "reference", reference, "a positive value")
     smallest, largest = _covered_centres(lines, step)
     first, last = smallest if low is None else low, largest if high is None else high
-    if first > last * HALF_BAND:
-        raise InputError("frequency", f"{lines.size} lines", "enough lines to cover a band")
+    covered = first <= last * HALF_BAND
+    require(covered, "frequency", f"{lines.size} lines", "enough lines to cover a band")
     centres, edges_low, edges_high = third_octave_bands(first, max(first, last))
     energies = np.maximum(band_energies(lines, psd, edges_low, edges_high), 0.0)
     with np.errstate(divide="ignore"):
@@ -292,8 +278,7 @@ def a_weighting(frequency: ArrayLike) -> Array:
     rounded constants 20.60, 107.7, 737.9 and 12194 Hz and -2.000 dB.
     """
     f = np.asarray(frequency, dtype=np.float64)
-    if (f < 0.0).any():
-        raise InputError("frequency", float(f.min()), "0 Hz or more")
+    require(not (f < 0.0).any(), "frequency", f.min(), "0 Hz or more")
     f2 = f * f
     low = (f2 + 20.60**2) * np.sqrt((f2 + 107.7**2) * (f2 + 737.9**2))
     gain = 12194.0**2 * f2 * f2 / (low * (f2 + 12194.0**2))

@@ -293,7 +293,7 @@ def _cut(case: Case, strip: Strip, before: int) -> tuple[HeightMap, ...]:
     rows = max(math.ceil(SAMPLED_LENGTH / contact.spacing), contact.samples * strip_rows(contact))
     longer: Strip = replace(lower, shape=(before + rows, lower.shape[1]))
     if isinstance(strip, Raised):
-        longer = replace(strip, strip=longer)
+        longer = Raised(longer, strip.added)
     return cut_from(longer, contact, case.rolled_time, first=before)
 
 

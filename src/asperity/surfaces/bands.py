@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft, linalg
 from scipy.special import k1
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, require, two_lengths
 from asperity.spectra import HALF_BAND, band_energies, band_levels, psd, third_octave_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import check_shape
@@ -140,8 +140,7 @@ def strip_from_bands(
     100 mm and as ν^(-1.6) below 30 mm.
     """
     check_shape(shape)
-    positive = len(spacing) == 2 and min(spacing) > 0.0
-    require(positive, "spacing", spacing, "two positive lengths (dx, dy), m")
+    spacing = two_lengths("spacing", spacing)
     require(lateral > 0.0, "lateral", lateral, "above zero, or inf for equal lines")
     nx, ny = shape
     lines = _fourier_lines(nx, spacing[0], wavelengths, levels_db)

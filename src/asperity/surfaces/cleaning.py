@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
+import scipy
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
@@ -170,6 +171,6 @@ def _typical(distance: Array) -> Array:
     known = np.isfinite(each).any(axis=-1)
     median = np.full((nx, ny), everywhere)
     median[known] = np.maximum(np.nanmedian(each[known], axis=-1), everywhere)
-    largest = sliding_window_view(np.pad(median, 1, mode="edge"), (3, 3)).max(axis=(-2, -1))
-    spread = np.repeat(np.repeat(largest, TILE, axis=0), TILE, axis=1)
+    largest = scipy.ndimage.maximum_filter(median, 3, mode="nearest")
+    spread = np.kron(largest, np.ones((TILE, TILE)))
     return spread[: distance.shape[0], : distance.shape[1]]

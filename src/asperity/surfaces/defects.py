@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import fft
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, not_negative, positive, require
 from asperity.surfaces.heightmap import Profile
 
 FlatShape = Literal["fresh", "worn"]
@@ -39,7 +39,7 @@ def corrugation(
     what, received = "size of the corrugation", "both" if rms is not None else "neither"
     require((amplitude is None) != (rms is None), what, received, "exactly one of amplitude and rms")
     size = rms if rms is not None else amplitude / math.sqrt(2.0) if amplitude is not None else 0.0
-    require(0.0 <= size < math.inf, what, size, "zero or more, m")
+    size = not_negative(what, size)
     half = 2.0 ** (0.0 if bandwidth is None else bandwidth / 2.0)
     what, allowed = "bandwidth of the corrugation", "zero or more octaves, finite"
     require(1.0 <= half < math.inf, what, bandwidth, allowed)
@@ -122,8 +122,7 @@ def dipped_joint(x: ArrayLike, depth: float, length: float) -> Array:
     depth/length at the joint and joins the straight rail without a kink. T. X. Wu and D. J. Thompson, J.
     Sound Vib. 267 (2003) 485-496 (rail joints with quadratic dips).
     """
-    what, allowed = "length of the dipped joint", "a finite positive length, m"
-    require(0.0 < length < math.inf, what, length, allowed)
+    length = positive("length of the dipped joint", length)
     allowed = f"above zero, up to {length / 20.0:.4g} m (a twentieth of its length)"
     require(0.0 < depth <= length / 20.0, "depth of the dipped joint", f"{depth} m", allowed)
     remaining = np.clip(1.0 - 2.0 * np.abs(np.asarray(x, dtype=np.float64)) / length, 0.0, None)

@@ -11,8 +11,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, real, require, two, two_lengths, whole
-from asperity.errors import InputError
+from asperity.arguments import Array, real, real_array, require, two, two_lengths, whole
 from asperity.printable import printable
 from asperity.surfaces import cleaning, levelling
 from asperity.units import written
@@ -346,28 +345,15 @@ def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> Array:
     what = f"heights of {source}" if source else "heights"
     shape = "(nx, ny)" if dimensions == 2 else "(n,)"
     allowed = f"an array {shape} of real numbers, at least two along each axis"
-    try:
-        array = np.asanyarray(heights)
-    except ValueError:  # ragged lists
-        raise InputError(what, "rows of unequal length", allowed, "Mark missing points with NaN.") from None
-    kind = f"data of type {array.dtype}"
-    require(array.dtype.kind in "fiu", what, kind, allowed, "Convert them to numbers.")
+    array = real_array(what, heights, allowed)
     fits = array.ndim == dimensions and min(array.shape, default=0) >= 2
     require(fits, what, f"an array of shape {array.shape}", allowed, "Select one map or one line.")
-    array = _frozen_copy(array)
     finite = "finite heights, NaN where missing"
     require(not np.isinf(array).any(), what, "infinite values", finite, "Mark them as NaN.")
     nothing = "no valid height: every point is missing"
     require(not np.isnan(array).all(), what, nothing, allowed, "Check the measurement.")
-    return array
-
-
-def _frozen_copy(array: np.ndarray[Any, Any]) -> Array:
-    if isinstance(array, np.ma.MaskedArray):
-        array = np.ma.filled(array.astype(np.float64), np.nan)
-    immutable = array.dtype == np.float64 and array.flags.owndata and not array.flags.writeable
-    if not immutable:  # an array that nobody can write to needs no copy
-        array = np.array(array, dtype=np.float64, order="C")
+    if array.flags.writeable or not array.flags.owndata:  # one that nobody can write to needs no copy
+        array = array.copy()
         array.flags.writeable = False
     return array
 

@@ -70,11 +70,8 @@ def homogeneity(
 def _coarse(surface: HeightMap, tiles: tuple[int, int]) -> HeightMap:
     """The surface on fewer points where it has more than the test needs."""
     room = min(n / (FEWEST_POINTS * count) for n, count in zip(surface.shape, tiles, strict=True))
-    step = min(max(surface.shape) / MOST_POINTS, room)
-    if step <= 1.0:
-        return surface
-    dx, dy = surface.spacing
-    return resample(surface, (step * dx, step * dy))
+    step = max(1.0, min(max(surface.shape) / MOST_POINTS, room))
+    return resample(surface, (step * surface.spacing[0], step * surface.spacing[1]))
 
 
 def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import product
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -59,11 +60,9 @@ def band_limit(surface: S, longest: float | None = None, shortest: float | None 
     require(ordered, "wavelengths", f"shortest {shortest}, longest {longest}", "shortest < longest")
     size = float(np.max(spacings * heights.shape))
     if longest is not None and longest > size:
-        message = (
-            f"cut-off {longest:.4g} m exceeds the surface, {size:.4g} m: the high pass removes little more "
-            "than the mean; use a shorter cut-off or a longer surface"
-        )
-        warnings.warn(message, ShortRecordWarning, stacklevel=2)
+        what = f"cut-off {longest:.4g} m exceeds the surface, {size:.4g} m"
+        remedy = "the high pass removes little more than the mean; use a shorter cut-off or a longer surface"
+        warnings.warn(f"{what}: {remedy}", ShortRecordWarning, stacklevel=2)
     if shortest is not None:
         heights = _gaussian(heights, spacings, shortest)
     if longest is not None:
@@ -237,14 +236,9 @@ def polynomial(heights: Array, degree: int) -> Array:
     _check_count(valid, len(powers))
     # normal equations: a Legendre basis on the grid is nearly orthogonal, and long maps stay in memory
     bases = [np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, n), degree) for n in heights.shape]
-    terms = []
-    for power in powers:
-        factors = [basis[:, k] for basis, k in zip(bases, power, strict=True)]
-        terms.append(factors[0] if len(factors) == 1 else np.multiply.outer(*factors))
-    known_heights = np.where(valid, heights, 0.0)
+    factors = [[basis[:, k] for basis, k in zip(bases, power, strict=True)] for power in powers]
+    terms = [reduce(np.multiply.outer, each) for each in factors]
     matrix = np.array([[np.sum(a * b, where=valid) for a in terms] for b in terms])
-    right = np.array([np.sum(term * known_heights) for term in terms])
-    fitted = np.zeros(heights.shape)
-    for weight, term in zip(np.linalg.lstsq(matrix, right, rcond=None)[0], terms, strict=True):
-        fitted += weight * term
-    return fitted
+    right = np.array([np.sum(term * heights, where=valid) for term in terms])
+    weights = np.linalg.lstsq(matrix, right, rcond=None)[0]
+    return sum((w * term for w, term in zip(weights, terms, strict=True)), np.zeros(heights.shape))

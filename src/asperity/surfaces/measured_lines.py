@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, positive, require
 from asperity.errors import CoarseSamplingWarning, PhysicsWarning, ShortRecordWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.surfaces.bands import LIKELY_WAVELENGTHS, band_levels_of, likely_band
@@ -86,11 +86,9 @@ def process(
     twice in part. Leave `curvature` out for laws that solve the contact on the heights themselves.
     """
     if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
-        message = (
-            f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610: spikes and short waves "
-            "are not resolved; measure more finely or leave the processing out"
-        )
-        warnings.warn(message, CoarseSamplingWarning, stacklevel=2)
+        coarse = f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610"
+        remedy = "spikes and short waves are not resolved; measure more finely or leave the processing out"
+        warnings.warn(f"{coarse}: {remedy}", CoarseSamplingWarning, stacklevel=2)
     line, trimmed = trim(profile)
     missing = int(np.isnan(line.heights).sum())
     received = f"{missing} missing points inside {line.source or 'the line'}"
@@ -100,23 +98,18 @@ def process(
     removed = changed = 0
     if spikes:
         line, removed, changed = remove_spikes(line)
-    lift = np.zeros(1)
-    if curvature:
-        rolled = roll_over(line, radius)
-        lift, line = rolled.heights - line.heights, rolled
-    lifted, largest = float(np.mean(lift > 1e-12)), float(lift.max())
-    done = Processing(
-        trimmed, fill_gaps, missing, spikes, removed, changed, curvature, radius, lifted, largest
-    )
-    return line, done
+    rolled = roll_over(line, radius) if curvature else line
+    lift = rolled.heights - line.heights
+    lifted = curvature, radius, float(np.mean(lift > 1e-12)), float(lift.max())
+    return rolled, Processing(trimmed, fill_gaps, missing, spikes, removed, changed, *lifted)
 
 
 def trim(profile: Profile) -> tuple[Profile, tuple[int, int]]:
     """Cut missing points off both ends; and tell how many there."""
     valid = np.flatnonzero(np.isfinite(profile.heights))
-    first, last = int(valid[0]), int(valid[-1]) + 1
-    cut = (first, len(profile.heights) - last)
-    return (profile if cut == (0, 0) else replace(profile, heights=profile.heights[first:last])), cut
+    first, beyond = int(valid[0]), len(profile.heights) - int(valid[-1]) - 1
+    heights = profile.heights[first : len(profile.heights) - beyond]
+    return (replace(profile, heights=heights) if first or beyond else profile), (first, beyond)
 
 
 def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
@@ -152,7 +145,7 @@ def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
     them is off by at most spacing²/8R, 0.3 µm at 1 mm.
     """
     heights = _complete(profile)
-    require(0.0 < radius < math.inf, "radius of the circle", radius, "a finite positive length, m")
+    radius = positive("radius of the circle", radius)
     depth = min(float(np.ptp(heights)), radius)
     reach = min(math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing), len(heights) - 1)
     across = np.minimum(np.arange(-reach, reach + 1) * profile.spacing, radius)
@@ -261,11 +254,9 @@ def bring_into_register(profiles: Sequence[Profile]) -> Register:
         aligned.append(np.roll(line[::-1] if turned[k] else line, shifts[k]))
     replaced = tuple(k for k in range(count) if k not in full)
     if replaced:
-        message = (
-            f"{len(replaced)} of {count} parallel lines are shorter than {FULL_LINE:.0%} of the "
-            f"longest, {longest} points: their neighbours replace them; measure again or leave them out"
-        )
-        warnings.warn(message, ShortRecordWarning, stacklevel=2)
+        short = f"{len(replaced)} of {count} parallel lines are shorter than {FULL_LINE:.0%} of the longest"
+        remedy = "their neighbours replace them; measure again or leave them out"
+        warnings.warn(f"{short}, {longest} points: {remedy}", ShortRecordWarning, stacklevel=2)
     result = np.repeat(aligned, count, axis=0)
     if len(aligned) > 1:
         between = scipy.interpolate.make_interp_spline(full, np.array(aligned), k=1)

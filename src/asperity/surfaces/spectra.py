@@ -11,6 +11,7 @@ from scipy import fft
 
 from asperity.arguments import Array, require
 from asperity.errors import ShortRecordWarning
+from asperity.spectra import hann_window
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.threads import thread_count
 
@@ -24,17 +25,13 @@ def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     last = surface.heights.ndim - 1
     require(axis in range(last + 1), "axis", axis, f"0 to {last}")
     lines = np.moveaxis(_complete(surface), axis, -1)
-    length, spacing = lines.shape[-1], float(np.atleast_1d(surface.spacing)[axis])
-    window = _hann(length)
+    spacing = float(np.atleast_1d(surface.spacing)[axis])
+    length, window = lines.shape[-1], hann_window(lines.shape[-1])
     density = np.abs(fft.rfft(lines * window, axis=-1)) ** 2 * (2.0 * spacing / np.sum(window**2))
     density[..., 0] /= 2.0
     if length % 2 == 0:
         density[..., -1] /= 2.0
     return fft.rfftfreq(length, spacing), density.reshape(-1, density.shape[-1]).mean(axis=0)
-
-
-def _hann(points: int) -> Array:
-    return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(points) / points)
 
 
 def _complete(surface: HeightMap | Profile) -> Array:
@@ -51,7 +48,7 @@ def psd_2d(surface: HeightMap, window: bool = True) -> tuple[Array, Array, Array
     """
     z, energy, (dx, dy) = _complete(surface), float(surface.heights.size), surface.spacing
     if window:
-        weights = np.outer(*map(_hann, z.shape))
+        weights = np.outer(*map(hann_window, z.shape))
         z, energy = z * weights, float(np.sum(weights**2))
     density = fft.fftshift(np.abs(fft.fft2(z)) ** 2) * (dx * dy / (4.0 * np.pi**2 * energy))
     qx, qy = (2.0 * np.pi * fft.fftshift(fft.fftfreq(n, d)) for n, d in zip(z.shape, (dx, dy), strict=True))

@@ -16,6 +16,8 @@ from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.spectra import LagSums, autocorrelation_lengths, lengths_of, psd_2d, texture_direction
 from asperity.surfaces.strip import Strip
 
+SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
+"""Distances, points, and sixty times the weights of differences of heights in the slope between them."""
 CORE = 0.4
 """Share of the curve over which its secant is least steep, and which the straight line is fitted to."""
 
@@ -78,9 +80,10 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     """
     square = _square_slope(surface)
     slopes = {"dq": np.sqrt(np.nanmean(square)), "dr": np.nanmean(np.sqrt(1.0 + square)) - 1.0}
-    lags, whole = _lags(*autocorrelation_lengths(surface)), nearly_complete(surface)
-    direction = {"td": np.nan if whole is None else texture_direction(whole)}
-    values = _amplitudes(*_powers(surface.heights)) | slopes | lags | direction | stratified(surface.heights)
+    (shortest, longest), whole = autocorrelation_lengths(surface), nearly_complete(surface)
+    texture = {"al": shortest, "tr": shortest / longest}
+    texture["td"] = np.nan if whole is None else texture_direction(whole)
+    values = _amplitudes(*_powers(surface.heights)) | slopes | texture | stratified(surface.heights)
     return _statistics("S", values, bandwidth or (2.0 * min(surface.spacing), max(surface.size)))
 
 
@@ -137,10 +140,6 @@ def _amplitudes(powers: Array, total: float) -> dict[str, float]:
     return {"q": rms, "a": powers[0], "sk": powers[2] / rms**3, "ku": powers[3] / rms**4, "z": total}
 
 
-def _lags(shortest: float, longest: float) -> dict[str, float]:
-    return {"al": shortest, "tr": shortest / longest}
-
-
 def rms_slope(surface: HeightMap) -> float:
     """Rms slope Sdq of levelled heights, m; missing points are left out."""
     return float(np.sqrt(np.nanmean(_square_slope(surface))))
@@ -167,10 +166,9 @@ def _inner_slope(heights: Array, spacing: float, axis: int) -> Array:
     z = np.moveaxis(heights, axis, 0)
     n = z.shape[0] - 6
     require(n >= 1, "surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
-    slope = z[6:] - z[:n]
-    slope -= 9.0 * (z[5 : n + 5] - z[1 : n + 1])
-    slope += 45.0 * (z[4 : n + 4] - z[2 : n + 2])
-    slope /= 60.0 * spacing
+    slope = np.zeros_like(z[:n])
+    for k, weight in SEVEN_POINTS:
+        slope += weight / (60.0 * spacing) * (z[3 + k : n + 3 + k] - z[3 - k : n + 3 - k])
     return np.moveaxis(slope, 0, axis)
 
 
@@ -279,7 +277,8 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
         band = (2.0 * min(strip.spacing), max((stop - first) * strip.spacing[0], strip.size[1]))
         values = _amplitudes(sums.powers / points, high - low)
         values |= {"dq": np.sqrt(sums.square / sums.sloped), "dr": sums.stretch / sums.sloped}
-        values |= _lags(*lengths_of(lags.means(), strip.spacing))
+        shortest, longest = lengths_of(lags.means(), strip.spacing)
+        values |= {"al": shortest, "tr": shortest / longest}
         statistics = _statistics("S", values, band)
     density = np.asarray(sums.counts / (points * np.diff(edges)))
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)

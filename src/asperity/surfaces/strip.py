@@ -19,8 +19,6 @@ BYTES_IN_MEMORY = 2**26
 """The same in memory, where no file can be written."""
 FEWEST = 3
 """Fields that are kept whatever their size: neighbours are read together."""
-TOGETHER = 2**12
-"""Rows of a strip that heights are added to in one go."""
 
 
 class Fields:
@@ -118,31 +116,15 @@ class Rows(_Sized):
         return self.heights[first:stop]
 
 
-@dataclass(frozen=True, eq=False)
 class Raised(_Sized):
-    """A strip with heights added to it."""
+    """A strip with heights added to it: `added` for rows first … stop − 1, (stop − first, ny or 1), m."""
 
-    strip: Strip  # what lies below
-    added: Callable[[int, int], Array]  # for rows first … stop − 1: (stop − first, ny or 1), m
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Number of points (nx, ny)."""
-        return self.strip.shape
-
-    @property
-    def spacing(self) -> tuple[float, float]:
-        """Distances (dx, dy), m."""
-        return self.strip.spacing
+    def __init__(self, strip: Strip, added: Callable[[int, int], Array]) -> None:
+        self.strip, self.added, self.shape, self.spacing = strip, added, strip.shape, strip.spacing
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m."""
-        heights = np.empty((stop - first, self.shape[1]))
-        for start in range(first, stop, TOGETHER):
-            end = min(start + TOGETHER, stop)
-            part = heights[start - first : end - first]
-            np.add(self.strip.rows(start, end), self.added(start, end), out=part)
-        return heights
+        return self.strip.rows(first, stop) + self.added(first, stop)
 
 
 def raised(strip: Strip, heights: Array) -> Raised:

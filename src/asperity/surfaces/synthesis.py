@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import fft
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, require, two_lengths
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
@@ -125,7 +125,7 @@ def self_affine(
     rougher than the long surface they stand for. It is cut from a surface that is at least one roll-off
     wavelength larger, so not periodic.
     """
-    texture = _SelfAffine(_steps(spacing), rms, hurst, longest, shortest, anisotropy, lay)
+    texture = _SelfAffine(two_lengths("spacing", spacing), rms, hurst, longest, shortest, anisotropy, lay)
     return HeightMap(texture.heights(shape, seed), texture.steps, f"{texture}, seed {seed}")
 
 
@@ -142,7 +142,7 @@ def long_self_affine(
     Pieces of `self_affine` surfaces, whose parameters it has, blended over two roll-off wavelengths. With
     rows `before`, as `LongStrip` has them.
     """
-    texture = _SelfAffine(_steps(spacing), **parameters)
+    texture = _SelfAffine(two_lengths("spacing", spacing), **parameters)
 
     def piece(rows: int, piece_seed: int) -> Array:
         return texture.heights((rows, shape[1]), piece_seed)
@@ -150,10 +150,6 @@ def long_self_affine(
     stride, blend = _pieces(shape[1], int(np.ceil(texture.reach[0] / texture.steps[0])))
     source = f"{texture}, seed {seed}"
     return LongStrip(shape, texture.steps, piece, seed, stride, blend, None, source, before, texture)
-
-
-def _steps(spacing: tuple[float, float]) -> tuple[float, float]:
-    return float(spacing[0]), float(spacing[1])
 
 
 @dataclass(frozen=True)
@@ -172,25 +168,28 @@ class _SelfAffine:
         coarsest = 2.0 * max(self.steps)
         fine = self.shortest >= coarsest * (1 - 1e-9)
         for name, right, allowed in (
-            ("spacing", min(self.steps) > 0.0, "above zero"),
             ("rms", 0.0 <= self.rms < np.inf, "zero or more, m"),
             ("hurst", 0.0 < self.hurst <= 1.0, "above 0, up to 1"),
             ("shortest", fine, f"at least two samples, {coarsest:.4g} m"),
             ("longest", self.shortest < self.longest < np.inf, "longer than the shortest"),
             ("anisotropy", 0.0 < self.anisotropy < np.inf, "above zero"),
         ):
-            require(right, name, getattr(self, "steps" if name == "spacing" else name), allowed)
+            require(right, name, getattr(self, name), allowed)
 
     def __str__(self) -> str:
         waves = f"{self.shortest:.4g} to {self.longest:.4g} m"
         return f"self-affine: rms {self.rms:.4g} m, Hurst {self.hurst:g}, {waves}"
 
     @property
-    def reach(self) -> tuple[float, float]:
-        """How far the longest waves reach along x and y, m: a drawn-out circle, turned by the lay."""
-        stretch, (cosine, sine) = np.sqrt(self.anisotropy), (np.cos(self.lay), np.sin(self.lay))
-        along = float(np.hypot(stretch * cosine, sine / stretch))
-        return self.longest * along, self.longest * float(np.hypot(stretch * sine, cosine / stretch))
+    def drawn(self) -> Array:
+        """Matrix that draws a circle out and turns it by the lay."""
+        stretch, cosine, sine = np.sqrt(self.anisotropy), np.cos(self.lay), np.sin(self.lay)
+        return np.array([[stretch * cosine, -sine / stretch], [stretch * sine, cosine / stretch]])
+
+    @property
+    def reach(self) -> Array:
+        """How far the longest waves reach along x and y, m."""
+        return self.longest * np.hypot(*self.drawn.T)
 
     def heights(self, shape: tuple[int, int], seed: int) -> Array:
         """One realisation (nx, ny), m, cut from a periodic one."""
@@ -207,9 +206,7 @@ class _SelfAffine:
         require(small, "longest", received, f"at most {LARGEST_MAP} points", remedy)
         qx = 2.0 * np.pi * fft.fftfreq(grid[0], self.steps[0])[:, None]
         qy = 2.0 * np.pi * fft.rfftfreq(grid[1], self.steps[1])[None, :]
-        stretch, (cosine, sine) = np.sqrt(self.anisotropy), (np.cos(self.lay), np.sin(self.lay))
-        along, across = qx * cosine + qy * sine, qy * cosine - qx * sine
-        square = (along * stretch) ** 2 + (across / stretch) ** 2
+        square = sum((qx * along + qy * across) ** 2 for along, across in self.drawn.T)
         power = np.maximum(square, (2.0 * np.pi / self.longest) ** 2) ** (-1.0 - self.hurst)
         power[qx**2 + qy**2 > (2.0 * np.pi / self.shortest) ** 2 * (1.0 + 1e-12)] = 0.0
         power[0, 0] = 0.0
@@ -247,7 +244,8 @@ def long_strip_from_bands(
     the longest wavelengths. With rows `before`, as `LongStrip` has them.
     """
     given, levels = np.array(wavelengths, dtype=float), np.array(levels_db, dtype=float)
-    steps, reach = _steps(spacing), int(np.ceil(given.max() / spacing[0]))
+    steps = two_lengths("spacing", spacing)
+    reach = int(np.ceil(given.max() / steps[0]))
     stride = max(BAND_REACHES * reach, int(np.ceil(LEAST_PIECE / steps[0])))
 
     def piece(rows: int, piece_seed: int) -> Array:
