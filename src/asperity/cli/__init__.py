@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 from collections.abc import Callable
-from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -51,12 +50,19 @@ def main(debug: bool) -> None:
     """
 
 
+def _listed(section: str) -> Callable[..., Any]:
+    """Make commands that the program lists in a section, each under a sentence."""
+    return lambda words, **settings: main.command(section=section, short_help=words, **settings)
+
+
+_begin, _compute = _listed("Begin"), _listed("Compute")
+_look, _around = _listed("Look, listen and compare"), _listed("Around it")
+
+
 # --- begin
 
 
-@main.command(
-    section="Begin", document=False, long_work=True, short_help="Run a small example that needs no input."
-)
+@_begin("Run a small example that needs no input.", document=False, long_work=True)
 @output("Folder of the results.", default=Path("asperity-demo"), show_default=True)
 @options.again
 @options.overwrite("the run of another case")
@@ -76,9 +82,7 @@ def demo(directory: Path, again: bool, overwrite: bool) -> None:
     run_case(demo_case(), directory, again=again, overwrite=overwrite)
 
 
-@main.command(
-    section="Begin", document=False, short_help="Write a commented case, or a study, to begin with."
-)
+@_begin("Write a commented case, or a study, to begin with.", document=False)
 @click.argument("kind", metavar="|".join(templates()), shell_complete=options.completed(templates))
 @options.law_option("A law of the contact force, the first the main one. May be repeated.")
 def new(kind: str, laws: tuple[str, ...]) -> None:
@@ -108,51 +112,44 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 
-_SURFACE = (
-    click.option("--array", help="Name of the array, where the file holds several."),
-    click.option(
-        "--index", type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
+_SURFACE = [
+    click.Option(["--array"], help="Name of the array, where the file holds several."),
+    click.Option(
+        ["--index"], type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
     ),
-    click.option("--height-unit", metavar="UNIT", help="Unit of heights that carry none, as 'um'."),
-    click.option("--pixel", metavar="LENGTH", help="Distance of points that carry none, as '1.5625 um'."),
-    click.option("--pixel-unit", metavar="UNIT", help="Unit of coordinates that carry none, as 'mm'."),
-    click.option("--decimal", metavar="MARK", help="Decimal mark of a text, '.' or ',', where in doubt."),
-    click.option("--transpose", is_flag=True, help="Exchange x and y: roll along the other direction."),
-    click.option(
-        "--direction",
-        "--rotate",
-        "direction",
+    click.Option(["--height-unit"], metavar="UNIT", help="Unit of heights that carry none, as 'um'."),
+    click.Option(["--pixel"], metavar="LENGTH", help="Distance of points that carry none, as '1.5625 um'."),
+    click.Option(["--pixel-unit"], metavar="UNIT", help="Unit of coordinates that carry none, as 'mm'."),
+    click.Option(["--decimal"], metavar="MARK", help="Decimal mark of a text, '.' or ',', where in doubt."),
+    click.Option(["--transpose"], is_flag=True, help="Exchange x and y: roll along the other direction."),
+    click.Option(
+        ["--direction", "--rotate", "direction"],
         metavar="ANGLE",
         help="Roll in this direction, from x towards y, as '30 deg'; a bare number is in degrees.",
     ),
-    click.option("--fill", is_flag=True, help="Fill points without a height."),
-    click.option("--crop", metavar="LENGTHS", help="Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides)."),
-    click.option("--form", metavar="FORM", help="Remove plane, quadratic, sphere or cylinder."),
-    click.option("--longest", metavar="LENGTH", help="Nesting index of the L-filter (ISO 16610-21, -61)."),
-    click.option("--shortest", metavar="LENGTH", help="Nesting index of the S-filter, likewise Gaussian."),
-    click.option("--recipe", type=PATH, help="Do what a stored recipe says; options are stronger."),
-    click.option("--store", type=PATH, help="Store all that was done as a recipe that a case can name."),
-    click.option("--spikes", is_flag=True, help="Take spikes for points without a height."),
-    click.option(
-        "--lines/--map",
+    click.Option(["--fill"], is_flag=True, help="Fill points without a height."),
+    click.Option(
+        ["--crop"], metavar="LENGTHS", help="Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides)."
+    ),
+    click.Option(["--form"], metavar="FORM", help="Remove plane, quadratic, sphere or cylinder."),
+    click.Option(["--longest"], metavar="LENGTH", help="Nesting index of the L-filter (ISO 16610-21, -61)."),
+    click.Option(["--shortest"], metavar="LENGTH", help="Nesting index of the S-filter, likewise Gaussian."),
+    click.Option(["--recipe"], type=PATH, help="Do what a stored recipe says; options are stronger."),
+    click.Option(["--store"], type=PATH, help="Store all that was done as a recipe that a case can name."),
+    click.Option(["--spikes"], is_flag=True, help="Take spikes for points without a height."),
+    click.Option(
+        ["--lines/--map"],
         default=None,
         help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
     ),
-    click.option("--psd", is_flag=True, help="Write the spectra of the picture as CSV beside it."),
-    output(
-        "The picture. [default: NAME-surface.png here, with array and index in its name]", "picture", None
-    ),
-)
+    click.Option(["--psd"], is_flag=True, help="Write the spectra of the picture as CSV beside it."),
+]
 """Hints on a measured file, and steps that are taken with it: keys of a recipe."""
 
 
-def _with_surface_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    return reduce(lambda made, option: option(made), reversed(_SURFACE), command)
-
-
-@main.command(section="Begin", short_help="What is in a measured file: size, statistics, spectrum, picture.")
+@_begin("What is in a measured file: size, statistics, spectrum, picture.", params=_SURFACE)
 @click.argument("file", type=PATH)
-@_with_surface_options
+@output("The picture. [default: NAME-surface.png here, with array and index in its name]", "picture", None)
 def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture.
 
@@ -180,9 +177,7 @@ def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
 # --- compute
 
 
-@main.command(
-    section="Compute", long_work=True, short_help="Is a case valid, what will it compute, and how long?"
-)
+@_compute("Is a case valid, what will it compute, and how long?", long_work=True)
 @click.argument("case", type=PATH)
 @options.run_folder
 @options.converge
@@ -214,7 +209,7 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
     return show_plan(loaded, str(case), converge=converge)
 
 
-@main.command(section="Compute", long_work=True, short_help="Compute a case: results, report and CSVs.")
+@_compute("Compute a case: results, report and CSVs.", long_work=True)
 @click.argument("case", type=PATH)
 @options.run_folder
 @options.report
@@ -243,11 +238,7 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     return run_case(load_case(case), directory or Path("runs") / case.stem, source=str(case), **choices)
 
 
-@main.command(
-    section="Compute",
-    long_work=True,
-    short_help="Compute a case for every combination of values of some keys.",
-)
+@_compute("Compute a case for every combination of values of some keys.", long_work=True)
 @click.argument("study", type=PATH)
 @click.option(
     "--vary",
@@ -299,9 +290,7 @@ def study(study: Path, vary: tuple[str, ...], directory: Path | None, **choices:
     return run_study(definition, directory or Path("runs") / study.stem, **choices)
 
 
-@main.command(
-    section="Compute", long_work=True, short_help="Find the texture that rolls quietest within bounds."
-)
+@_compute("Find the texture that rolls quietest within bounds.", long_work=True)
 @click.argument("optimisation", type=PATH)
 @options.run_folder
 @options.report
@@ -325,12 +314,8 @@ def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Doc
 
 # --- look, listen and compare
 
-_LOOK = "Look, listen and compare"
 
-
-@main.command(
-    section=_LOOK, document=False, short_help="A page in the browser: set cases, press, roll, watch, listen."
-)
+@_look("A page in the browser: set cases, press, roll, watch, listen.", document=False)
 @click.option(
     "--port",
     type=click.IntRange(0, 65535),
@@ -364,9 +349,7 @@ def serve(port: int, directory: Path) -> None:
     say("Ended; runs and surfaces are kept.", err=True)
 
 
-@main.command(
-    "report", section=_LOOK, short_help="Write the report of a run again, or a summary of one page."
-)
+@_look("Write the report of a run again, or a summary of one page.", name="report")
 @options.run_argument
 @click.option(
     "--summary", is_flag=True, help="Result, three figures, validity and origin on one sheet of A4."
@@ -387,7 +370,7 @@ def report_again(run: Path, summary: bool, directory: Path | None) -> Document:
     return write_report(run, directory, summary=summary)
 
 
-@main.command(section=_LOOK, short_help="Draw the figures of a run to files, for a paper.")
+@_look("Draw the figures of a run to files, for a paper.")
 @options.run_argument
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
@@ -417,7 +400,7 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
     return draw_figures(run, directory, format, names)
 
 
-@main.command(section=_LOOK, short_help="What differs between runs: cases, levels, force, stiffness.")
+@_look("What differs between runs: cases, levels, force, stiffness.")
 @click.argument("runs", nargs=-1, type=PATH, required=True)
 @options.law_option(
     "Compare this law alone, the first as the main one. May be repeated. [default: all that runs have]"
@@ -445,7 +428,7 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> D
     return compare_runs(runs, directory, laws)
 
 
-@main.command(section=_LOOK, short_help="Write what a run sounds like, as WAV files.")
+@_look("Write what a run sounds like, as WAV files.")
 @options.run_argument
 @click.option(
     "--what",
@@ -472,7 +455,7 @@ def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -
     return write_sounds(run, directory, what, matched=matched)
 
 
-@main.command(section=_LOOK, short_help="Say what to cite for a run.")
+@_look("Say what to cite for a run.")
 @options.run_argument
 def cite(run: Path) -> Document:
     """Say what to cite for a RUN (run.nc, or its folder): the program and its sources.
@@ -494,7 +477,7 @@ def cite(run: Path) -> Document:
 # --- around it
 
 
-@main.command(section="Around it", short_help="Show or delete what is kept between runs.")
+@_around("Show or delete what is kept between runs.")
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
 def cache(clear: bool) -> Document:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left.
@@ -513,9 +496,7 @@ def cache(clear: bool) -> Document:
     return show_cache(clear=clear)
 
 
-@main.command(
-    section="Around it", document=False, short_help="Let the shell complete commands, files, kinds and laws."
-)
+@_around("Let the shell complete commands, files, kinds and laws.", document=False)
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 def completion(shell: str) -> None:
     """Print what makes a SHELL complete commands, options, files, kinds of case, keys and laws.

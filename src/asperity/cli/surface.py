@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, replace
 from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from asperity.case import surface as recipes
 from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.parameters import Origin
-from asperity.reporting.figure import write_chart, write_columns
+from asperity.reporting.figure import write_chart
 from asperity.reporting.texture_figures import lines_chart, surface_chart
 from asperity.spectra import nominal
 from asperity.surfaces.cleaning import FILLED_SHARE_WARNED, nearly_complete
@@ -38,6 +39,7 @@ from asperity.surfaces.statistics import (
 )
 from asperity.surfaces.steps import stepped
 from asperity.terminal import say
+from asperity.text_files import write_csv
 from asperity.units import quantity
 
 Surfaces = Sequence[HeightMap | Profile]
@@ -214,16 +216,14 @@ def _write_spectra(spectra: Spectra, picture: Path) -> Path:
     if not spectra:
         received = "more than 5 % of points without a height"
         raise InputError("--psd", received, "nearly complete heights", "Fill them with --fill.")
-    columns = {}
-    longest = max(len(wavenumber) for wavenumber, _ in spectra.values())
-    for name, pair in spectra.items():
-        titles = (f"wavenumber {name} [1/m]", f"PSD {name} [m³]")
-        if name == AREAL:
-            titles = ("angular wavenumber [rad/m]", "areal PSD, mean over directions [m⁴]")
-        for title, values in zip(titles, pair, strict=True):
-            columns[title] = np.concatenate([values, np.full(longest - len(values), np.nan)])
+    heading: list[str] = []
+    for name in spectra:
+        titles = [f"wavenumber {name} [1/m]", f"PSD {name} [m³]"]
+        areal = ["angular wavenumber [rad/m]", "areal PSD, mean over directions [m⁴]"]
+        heading += areal if name == AREAL else titles
+    columns = (values.tolist() for pair in spectra.values() for values in pair)
     name = f"{picture.stem.removesuffix('-surface')}-psd.csv"
-    return write_columns(columns, picture.with_name(name))
+    return write_csv(picture.with_name(name), heading, zip_longest(*columns, fillvalue=math.nan))
 
 
 # --- in words
