@@ -8,10 +8,9 @@ import pytest
 import xarray
 
 import asperity
+from asperity import convergence as converging
 from asperity.case.cases import as_case
-from asperity.convergence import running
-from asperity.convergence.group import halves
-from asperity.convergence.running import changed_case, on_the_surface_of, settings_for
+from asperity.convergence import changed_case, halves, on_the_surface_of, settings_for
 from asperity.errors import InputError
 from asperity.reporting.page import page
 from asperity.reporting.uncertainty import changes_table, settings_table
@@ -159,9 +158,9 @@ class TestNumbers:
         held = xarray.Dataset({"contact_force": (("law", "contact", "time"), force[None, None])})
         tree = xarray.DataTree.from_dict({"/rolling": held})
         whole, half = halves(tree, 1e-4, 2e3)
-        at = np.argmin(np.abs(whole.band - 500.0))
-        assert half.force[0, at] == pytest.approx(10 * np.log10(2.0), abs=0.1)
-        assert whole.force[0, at] == pytest.approx(10 * np.log10(1.25), abs=0.2)
+        at = np.argmin(np.abs(whole.band.values - 500.0))
+        assert half.force.values[0, at] == pytest.approx(10 * np.log10(2.0), abs=0.1)
+        assert whole.force.values[0, at] == pytest.approx(10 * np.log10(1.25), abs=0.2)
         assert told(ball, "largest_change")["path length"] > 0.1
 
     @SILENT
@@ -179,8 +178,8 @@ def converged(monkeypatch):
 
     def converged(prepared, *settings):
         result = asperity.run(prepared)
-        monkeypatch.setattr(running, "settings_for", lambda *_: settings)
-        return running.with_convergence(prepared, result, lambda *_: None)
+        monkeypatch.setattr(converging, "settings_for", lambda *_: settings)
+        return converging.with_convergence(prepared, result, lambda *_: None)
 
     return converged
 
@@ -215,7 +214,7 @@ class TestLimits:
 
     def test_what_fails_is_a_limit(self, converged):
         """No way of changing a setting ends the run."""
-        never = running.Setting("grid", (Way("to nothing", {"contact.spacing": 1.0}),))
+        never = converging.Setting("grid", (Way("to nothing", {"contact.spacing": 1.0}),))
         found = converged(case_of(BALL), never)
         assert told(found, "limit")["grid"].startswith("contact.spacing: received")
         assert found.attrs["verdict"].endswith("Not changed: grid.")
@@ -235,7 +234,7 @@ class TestKept:
                     raise KeyboardInterrupt
 
             try:
-                found = running.with_convergence(prepared, result, progress)
+                found = converging.with_convergence(prepared, result, progress)
             except KeyboardInterrupt:
                 found = None
             return found, set(seen)

@@ -84,7 +84,7 @@ def run(
             caught += prepared.caught
             result = computed_result(prepared, told, caught, brief=brief)
             if converge:
-                from asperity.convergence.running import with_convergence
+                from asperity.convergence import with_convergence
 
                 result = with_convergence(prepared, result, told)
     except ComputationError:

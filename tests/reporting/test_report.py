@@ -12,7 +12,7 @@ import xarray as xr
 from report_reading import HOSTILE, Reader, own_scripts, read_csv
 from report_tree import DATUM, LAWS, LOAD, figures_by_name, report_tree, uncertain, with_force
 
-from asperity.convergence.group import sentence
+from asperity.convergence import sentence
 from asperity.errors import ComputationError, InputError
 from asperity.laws import spec_of
 from asperity.reporting.chart import envelope, smooth_on_log_axis

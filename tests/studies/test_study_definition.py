@@ -62,7 +62,7 @@ def test_members_are_named_by_all_that_a_result_depends_on():
         ("", "study.toml: received an empty file"),
         ("# nothing", "case: received nothing; allowed: the path of a case"),
         ("case = 3", "case: received 3; allowed: the path of a case"),
-        ("case = 'a.toml'\nwhat = 1", "what: received an unknown key; allowed: case and"),
+        ("case = 'ball.toml'\nwhat = 1", "what: received an unknown key; allowed: case and"),
         ("case = 'absent.toml'\n[sweep]\nseed = [1]", "absent.toml: received no such file"),
         ("case = [", "a study in TOML"),
         ("case.kind = 'cube'\n[sweep]\nseed = [1]", "kind: received 'cube'"),

@@ -7,11 +7,12 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 from asperity.arguments import file_path, nearest, shown
 from asperity.case import PRESETS
-from asperity.case.describing import commented
+from asperity.case.describing import commented, in_toml
 from asperity.case.scene import Case
 from asperity.case.toml import plain_data, read_definition, read_toml, refuse_vast
 from asperity.errors import CaseError, InputError
@@ -28,8 +29,7 @@ _HEAD = """\
 
 def load_case(path: str | os.PathLike[str]) -> Case:
     """Read a case from a TOML file; all errors in its keys are reported at once."""
-    remedy = f"Check the path, or write a case with 'asperity new {next(iter(PRESETS))} > case.toml'."
-    return parse_case(read_definition(path, "case", remedy), path)
+    return case_of(*keys_and_origin(path))
 
 
 def as_case(case: object) -> Case:
@@ -53,12 +53,38 @@ def as_case(case: object) -> Case:
     CaseError
         With all errors at once, if the keys are wrong.
     """
+    return case if isinstance(case, Case) else case_of(*keys_and_origin(case))
+
+
+def keys_and_origin(case: object) -> tuple[dict[str, Any], Origin]:
+    """Keys and values of a case in any of its forms, as `as_case` takes it, and where they come from."""
     if isinstance(case, Case):
-        return case
+        return {"kind": case.kind, **in_toml(case, lambda _, value: value)}, FROM_PYTHON
     if isinstance(case, Mapping):
-        return case_of(plain_data(case))
+        return plain_data(case), FROM_PYTHON
     allowed = "the path of a case file, its keys as a mapping, or a case object"
-    return load_case(file_path("case", case, allowed))
+    path = file_path("case", case, allowed)
+    remedy = f"Check the path, or write a case with 'asperity new {next(iter(PRESETS))} > case.toml'."
+    return read_toml(read_definition(path, "case", remedy), "case", path), Origin.file(path)
+
+
+def read_with_case(
+    path: str | os.PathLike[str], what: str, remedy: str
+) -> tuple[dict[str, Any], dict[str, Any], Origin]:
+    """Read a TOML file with a key ``case``, the path of a case, or a section with its keys.
+
+    `what` the file is, and the remedy if it is missing, are for messages. Returns its other keys, and those
+    of the case with their origin.
+    """
+    data = read_toml(read_definition(path, what, remedy), what, path)
+    base = data.pop("case", None)
+    if isinstance(base, dict):
+        return data, base, Origin.file(path)
+    if isinstance(base, str):
+        return data, *keys_and_origin(Path(path).parent / base)
+    received = "nothing" if base is None else shown(base)
+    error = InputError("case", received, "the path of a case, or a section [case] with its keys")
+    raise CaseError(str(path), [str(error)])
 
 
 def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
+from asperity import __version__
 from asperity.reference.materials import Material
+from asperity.store import content_key
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
 
@@ -78,6 +80,17 @@ def file_digest(path: Path) -> str:
     """SHA-256 over what a file holds."""
     with open(path, "rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def case_key(
+    name: str, version: int, case: Keyed, *more: object, of_file: Callable[[Path], str] = file_digest
+) -> str:
+    """Name of what is kept of a case, as `content_key`: by its keys, its files, and what else is told.
+
+    Beside them by the version of what is kept, and of the program.
+    """
+    told = json.dumps(content(case, of_file), sort_keys=True)
+    return content_key(name, version, __version__, told, *more)
 
 
 def holds_memory(value: Any) -> bool:

@@ -168,7 +168,7 @@ def _running_in(prepared: PreparedCase) -> Rows:
 
 def _convergence(prepared: PreparedCase, work: Work) -> Rows:
     """Which settings will be made finer, in one run more each, and which cannot be."""
-    from asperity.convergence.running import unchangeable
+    from asperity.convergence import unchangeable
 
     states = np.zeros(0) if work.tried is None else work.tried.approaches
     reasons = unchangeable(prepared, states)

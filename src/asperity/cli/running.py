@@ -123,7 +123,7 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, conver
         del prepared  # what it holds is not needed beside what is written
     _write(tree, directory, report=report)
     if converge:
-        from asperity.convergence.running import with_convergence
+        from asperity.convergence import with_convergence
 
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)

@@ -5,20 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import Array, shown
-from asperity.case.cases import as_case, case_of, load_case
+from asperity.arguments import Array
+from asperity.case.cases import as_case, case_of, read_with_case
 from asperity.case.describing import commented
 from asperity.case.form import Section
 from asperity.case.scene import LAW, Case
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
-from asperity.case.toml import read_definition, read_toml
-from asperity.errors import CaseError, InputError
+from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
 from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
 from asperity.running import prepare_case
@@ -253,15 +251,8 @@ class Assignment:
 def load_assignment(path: str | os.PathLike[str]) -> Assignment:
     """Read a assignment from a TOML file: ``case``, a path or a section, and the keys of `Aim`."""
     remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
-    data = read_toml(read_definition(path, "optimisation", remedy), "optimisation", path)
-    base = data.pop("case", None)
-    if not isinstance(base, str | dict):
-        received = "nothing" if base is None else shown(base)
-        error = InputError("case", received, "the path of a case, or a section [case] with its keys")
-        raise CaseError(str(path), [str(error)])
-    origin = Origin.file(path)
-    case = case_of(base, origin) if isinstance(base, dict) else load_case(Path(path).parent / base)
-    return Assignment(case, Aim.read(data, origin))
+    keys, base, origin = read_with_case(path, "optimisation", remedy)
+    return Assignment(case_of(base, origin), Aim.read(keys, Origin.file(path)))
 
 
 def assignment_of(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import warnings
 from collections.abc import Mapping
@@ -11,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity import __version__
 from asperity.arguments import Array, shown
-from asperity.case.content import content, file_digest
+from asperity.case.content import case_key
 from asperity.case.scene import Case
 from asperity.errors import InputError, PhysicsWarning
 from asperity.optimising.allocation import Limits, rms_of
@@ -24,7 +22,7 @@ from asperity.running import prepare_case, run
 from asperity.scenes.plan import Measure, line_frequencies, measures_of
 from asperity.scenes.result import computed_result
 from asperity.spectra import band_energies
-from asperity.store import Store, content_key
+from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 
 if TYPE_CHECKING:
@@ -218,17 +216,14 @@ def _rolled(assignment: Assignment, measure: Measure, bands: Bands, progress: Pr
     aim = assignment.aim
     laws = tuple(dict.fromkeys((aim.law, *measure.beside)))
     case = with_texture(assignment.case, bands).with_(laws=laws)
-    store = Store()
-    told = json.dumps(content(case, file_digest), sort_keys=True)
-    key = content_key("texture", FORMAT, __version__, told, aim.quantity, aim.law)
-    kept = store.get(key)
-    if kept is None:
+
+    def rolled() -> dict[str, Array]:
         with warnings.catch_warnings(), one_thread_in_linear_algebra():
             warnings.simplefilter("ignore", PhysicsWarning)  # those of the texture found are told
-            prepared = prepare_case(case)
-            tree = computed_result(prepared, progress, [])
-        kept = {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
-        store.put(key, kept)
+            tree = computed_result(prepare_case(case), progress, [])
+        return {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
+
+    kept = made(Store(), case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)
     frequency, density = kept["frequency"], kept["density"]
     energies = np.maximum(band_energies(frequency, density, *bands.edges(case.speed)), 0.0)
     whole = float(density.sum() * (frequency[1] - frequency[0]))

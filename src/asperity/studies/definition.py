@@ -15,19 +15,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity import __version__
-from asperity.arguments import file_path, shown
-from asperity.case.cases import case_class, case_of
+from asperity.arguments import require, shown
+from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
 from asperity.case.chosen import shared_lengths
-from asperity.case.content import content, described_value, file_digest, holds_memory
-from asperity.case.describing import CaseKey, entry_of, in_toml, value_in_toml
+from asperity.case.content import case_key, content, described_value, file_digest, holds_memory
+from asperity.case.describing import CaseKey, entry_of, value_in_toml
 from asperity.case.scene import Case
-from asperity.case.toml import plain_data, read_definition, read_toml, toml_text
+from asperity.case.toml import toml_text
 from asperity.errors import CaseError, InputError
-from asperity.parameters import FROM_PYTHON, Origin
+from asperity.parameters import Origin
 from asperity.reference.materials import Material
 from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
-from asperity.store import content_key
 from asperity.units import factor, unit_in
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
@@ -57,37 +55,34 @@ def expanded(what: str, values: object) -> object:
     return [one for value in values for one in _values(what, value)]
 
 
-def _values(what: str, value: Any) -> Iterator[Any]:
+def _values(what: str, value: Any) -> list[Any]:
     match = _RANGE.fullmatch(value) if isinstance(value, str) else None
     if match is None:
-        yield value
-        return
+        return [value]
     low, high, unit = float(match[1]), float(match[2]), (match[3] or "").strip()
-    for number in _numbers(what, value, (low, high), match[4], match[5], unit):
-        bare = int(number) if number == int(number) else number
-        yield f"{bare} {unit}" if unit else bare
+    numbers = _numbers(what, value, low, high, match[4], match[5], unit)
+    bare = [int(number) if number == int(number) else number for number in numbers]
+    return [f"{number} {unit}" for number in bare] if unit else bare
 
 
 def _numbers(
-    what: str, value: str, ends: tuple[float, float], count: str | None, way: str | None, unit: str
+    what: str, value: str, low: float, high: float, count: str | None, way: str | None, unit: str
 ) -> list[float]:
-    low, high = ends
-    if not math.isfinite(high - low):
-        raise InputError(what, shown(value), "ends that a computer can hold")
+    given = shown(value)
+    require(math.isfinite(high - low), what, given, "ends that a computer can hold")
     if count is None:
-        if unit or low != int(low) or high != int(high) or not low < high < low + MOST_VALUES:
-            remedy = f"Say how many, as '{value.strip()}, 6 steps', or 6 ratios."
-            raise InputError(what, shown(value), "a range with its number of values", remedy)
+        whole = not unit and low == int(low) and high == int(high) and low < high < low + MOST_VALUES
+        remedy = f"Say how many, as '{value.strip()}, 6 steps', or 6 ratios."
+        require(whole, what, given, "a range with its number of values", remedy)
         return np.arange(low, high + 1.0).tolist()
-    if not 2 <= int(count) <= MOST_VALUES or low == high:
-        remedy = "Both ends count: the least is 2 steps."
-        raise InputError(what, shown(value), f"two different ends and 2 to {MOST_VALUES} values", remedy)
+    allowed = f"two different ends and 2 to {MOST_VALUES} values"
+    remedy = "Both ends count: the least is 2 steps."
+    require(2 <= int(count) <= MOST_VALUES and low != high, what, given, allowed, remedy)
     if way == "steps":
         found = np.linspace(low, high, int(count))
-    elif low * high > 0.0:
-        found = np.geomspace(low, high, int(count))
     else:
-        raise InputError(what, shown(value), "ends above zero for equal ratios", "Write steps instead.")
+        require(low * high > 0.0, what, given, "ends above zero for equal ratios", "Write steps instead.")
+        found = np.geomspace(low, high, int(count))
     return [float(f"{number:.10g}") for number in found]
 
 
@@ -129,14 +124,11 @@ class SweptAxis:
     @property
     def typed(self) -> dict[str, Any]:
         """Unit in which its first value was written that has one, and what it is in SI; nothing in SI."""
-        if self.units in ("1", "dB"):
+        units = (unit_in(value) for value in self.written if isinstance(value, str))
+        unit = next(filter(None, units), self.units)
+        if self.units in ("1", "dB") or unit == self.units:
             return {}
-        for value in self.written:
-            if isinstance(value, str) and (unit := unit_in(value)) and unit != self.units:
-                return {TYPED_UNIT: unit, TYPED_FACTOR: factor(unit, self.units)}
-            if isinstance(value, str) and unit:
-                return {}
-        return {}
+        return {TYPED_UNIT: unit, TYPED_FACTOR: factor(unit, self.units)}
 
     @property
     def coordinate(self) -> NDArray[Any]:
@@ -208,8 +200,7 @@ class Study:
             case = case_of(_with_values(self.data, values), self.origin).with_(**shared)
         except CaseError as error:
             return Member(index, values, None, error, "")
-        told = json.dumps(content(case, digest_of), sort_keys=True)  # at once: there are many
-        return Member(index, values, case, None, content_key("member", FORMAT, __version__, told))
+        return Member(index, values, case, None, case_key("member", FORMAT, case, of_file=digest_of))
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
@@ -218,21 +209,11 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     All errors of keys and values are reported at once.
     """
     remedy = "Check the path, or write a study with 'asperity new study > study.toml'."
-    data = read_toml(read_definition(path, "study", remedy), "study", path)
-    errors = [
-        str(InputError(name, "an unknown key", "case and [sweep]"))
-        for name in data.keys() - {"case", "sweep"}
-    ]
-    base = data.get("case")
-    if not isinstance(base, str | dict):
-        received = "nothing" if base is None else shown(base)
-        allowed = "the path of a case, or a section [case] with its keys"
-        errors.append(str(InputError("case", received, allowed)))
-    if errors:
-        raise CaseError(str(path), sorted(errors))
-    if isinstance(base, dict):
-        return _checked(base, Origin.file(path), data.get("sweep", {}), path)
-    return _checked(*_read_case(Path(path).parent / str(base)), data.get("sweep", {}), path)
+    data, base, origin = read_with_case(path, "study", remedy)
+    if unknown := sorted(data.keys() - {"sweep"}):
+        errors = [InputError(name, "an unknown key", "case and [sweep]") for name in unknown]
+        raise CaseError(str(path), list(map(str, errors)))
+    return _checked(base, origin, data.get("sweep", {}), path)
 
 
 def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Mapping[str, Any]) -> Study:
@@ -259,14 +240,7 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Map
     CaseError
         With all errors at once, if keys or values are wrong.
     """
-    if isinstance(case, Case):
-        return _checked(
-            {"kind": case.kind, **in_toml(case, lambda _, value: value)}, FROM_PYTHON, sweep, "study"
-        )
-    if isinstance(case, Mapping):
-        return _checked(plain_data(case), FROM_PYTHON, sweep, "study")
-    allowed = "the path of a case file, its keys as a mapping, or a case object"
-    return _checked(*_read_case(file_path("case", case, allowed)), sweep, "study")
+    return _checked(*keys_and_origin(case), sweep, "study")
 
 
 def written_out(value: object) -> str:
@@ -280,39 +254,32 @@ def written_out(value: object) -> str:
     return described_value(value) if holds_memory(value) else json.dumps(value, default=str)
 
 
-def _read_case(path: Path) -> tuple[dict[str, Any], Origin]:
-    return read_toml(read_definition(path, "case", "Check the path."), "case", path), Origin.file(path)
-
-
 def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | os.PathLike[str]) -> Study:
     """Read the swept values, or say all that is wrong with them."""
     if not isinstance(sweep, Mapping) or not sweep:
         received = "nothing" if not sweep else shown(sweep)
         example = 'Write [sweep] and below it, for instance, speed = ["20 m/s", "56 m/s"].'
         raise CaseError(str(source), [str(InputError("sweep", received, "a key with its values", example))])
-    errors: list[str] = []
-    axes: list[SweptAxis] = []
+    errors: list[InputError] = []
+    axes: dict[str, SweptAxis] = {}
     for dotted, values in _flat(sweep):
         if len(axes) + len(errors) >= MOST_KEYS:
-            errors.append(str(InputError("sweep", "more keys", f"at most {MOST_KEYS} keys")))
+            errors.append(InputError("sweep", "more keys", f"at most {MOST_KEYS} keys"))
             break
         try:
-            if dotted in (axis.name for axis in axes):
-                raise InputError(
-                    dotted, "the key more than once", "each key once", "Put all values into one list."
-                )
-            axes.append(_axis(data.get("kind"), dotted, values, origin))
+            remedy = "Put all values into one list."
+            require(dotted not in axes, dotted, "the key more than once", "each key once", remedy)
+            axes[dotted] = _axis(data.get("kind"), dotted, values, origin)
         except InputError as error:
-            name = error.what if error.what == "kind" else f"sweep.{error.what}"
-            errors.append(str(error.about(name)))
-    count = math.prod(len(axis.values) for axis in axes)
-    if count > MOST_MEMBERS:
-        received = f"{' × '.join(str(len(axis.values)) for axis in axes)} = {count} members"
+            errors.append(error if error.what == "kind" else error.about(f"sweep.{error.what}"))
+    lengths = [len(axis.values) for axis in axes.values()]
+    if (count := math.prod(lengths)) > MOST_MEMBERS:
+        received = f"{' × '.join(map(str, lengths))} = {count} members"
         remedy = "Split the study: what is finished is kept."
-        errors.append(str(InputError("sweep", received, f"at most {MOST_MEMBERS} members", remedy)))
+        errors.append(InputError("sweep", received, f"at most {MOST_MEMBERS} members", remedy))
     if errors:
-        raise CaseError(str(source), list(dict.fromkeys(errors)))
-    return Study(data, origin, tuple(axes))
+        raise CaseError(str(source), list(dict.fromkeys(map(str, errors))))
+    return Study(data, origin, tuple(axes.values()))
 
 
 def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]]:
@@ -325,8 +292,8 @@ def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, An
 
 
 def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxis:
-    if dotted == "kind":
-        raise InputError("kind", "a swept key", "one kind of case in a study", "Write a study for each kind.")
+    remedy = "Write a study for each kind."
+    require(dotted != "kind", "kind", "a swept key", "one kind of case in a study", remedy)
     entry = entry_of(case_class(kind), dotted)
     if isinstance(values, np.ndarray) and values.ndim == 1:
         values = values.tolist()
@@ -334,10 +301,9 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
     if not isinstance(values, list | tuple):
         allowed = "a list of values, or a range as '80..300 km/h, 6 steps'"
         raise InputError(dotted, shown(values), allowed, "Put the values into [ ].")
-    if not values:
-        raise InputError(dotted, "an empty list", "one value or more", "Remove the key for that of the case.")
-    if len(values) > MOST_MEMBERS:
-        raise InputError(dotted, f"{len(values)} values", f"at most {MOST_MEMBERS}", "Split the study.")
+    require(values, dotted, "an empty list", "one value or more", "Remove the key for that of the case.")
+    received, allowed = f"{len(values)} values", f"at most {MOST_MEMBERS}"
+    require(len(values) <= MOST_MEMBERS, dotted, received, allowed, "Split the study.")
     read: dict[str, Any] = {}  # in their order
     for number, value in enumerate(values, 1):
         try:
@@ -345,8 +311,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
         except InputError as error:
             raise error.about(f"{dotted}[{number}]") from None
         told = json.dumps(content(found))
-        if told in read:
-            raise InputError(dotted, f"{shown(value)} more than once", "each value once")
+        require(told not in read, dotted, f"{shown(value)} more than once", "each value once")
         read[told] = found
     written = (_in_toml(value, found, entry) for value, found in zip(values, read.values(), strict=True))
     return SweptAxis(entry, tuple(written), tuple(read.values()))
