@@ -60,6 +60,11 @@ def colour_variables(dark: bool, colours: Mapping[str, str] = COLOURS) -> str:
     )
 
 
+def spread(count: int, most: int) -> list[int]:
+    """At most so many of `count` places, from the first to the last."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist()
+
+
 def sequence(count: int) -> list[str]:
     """`count` colours from low to high; repeats nothing up to six."""
     picks = np.linspace(0, len(SEQUENCE) - 1, max(count, 1)).round().astype(int)

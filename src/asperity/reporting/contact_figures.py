@@ -10,7 +10,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import BLUE, GREEN, INK, Area, Axis, Boxes, Flags, Line, Mark, Numbers, Panel
+from asperity.reporting.chart import BLUE, GREEN, INK, Axis, Boxes, Flags, Line, Mark, Numbers, Panel
 from asperity.reporting.figure import Figure, Lines, Of, Series, field
 from asperity.reporting.texture_figures import map_panel
 from asperity.schema import Entry, contact, rolling
@@ -25,10 +25,6 @@ MICRO, MEGA = 1e-6, 1e6
 HERTZ: chart.Dashes = (4.0, 2.0)
 
 
-def _centre(axis: Numbers) -> float:
-    return 0.0 if axis[0] <= 0 <= axis[-1] else float(axis[0] + axis[-1]) / 2
-
-
 def _semi_axes(tree: DataTree) -> tuple[float, float] | None:
     """Semi-axes of Hertz's contact in m: along the rolling direction and across; the same for a circle."""
     along, across = (data.number(tree, axis) for axis in (contact.HERTZ_RADIUS, contact.HERTZ_RADIUS_ACROSS))
@@ -41,34 +37,27 @@ def _outline(tree: DataTree, x: Numbers, y: Numbers) -> list[Line]:
     if semi_axes is None:
         return []
     angle = np.linspace(0.0, 2 * np.pi, CORNERS + 1)
-    along = (_centre(x) + semi_axes[0] * np.cos(angle)) / size
-    across = (_centre(y) + semi_axes[1] * np.sin(angle)) / size
+    along, across = (
+        ((0.0 if at[0] <= 0 <= at[-1] else (at[0] + at[-1]) / 2) + semi_axis * turn(angle)) / size
+        for at, semi_axis, turn in zip((x, y), semi_axes, (np.cos, np.sin), strict=True)
+    )
     white = Line(along, across, colour="#ffffff", width=2.6)
     return [white, replace(white, colour="#000000", dashes=HERTZ, width=1.1)]
 
 
 def _pressure(tree: DataTree, lines: Lines) -> Iterator[Panel]:
-    """Pressure and, if known, gap at the working load, with Hertz's contact outlined; else a section."""
+    """Pressure and gap at the working load, with Hertz's contact outlined."""
     x, y, pressure = lines.at, data.values(tree, contact.PY), data.values(tree, contact.PRESSURE)
-    symbol, size = ("GPa", 1e9) if pressure.max() >= 2e9 else ("MPa", 1e6)
-    loaded = np.where(pressure > 0, pressure, np.nan) / size
-    outline, label = _outline(tree, x, y), f"pressure / {symbol}"
-    scale = (label, 0.0, float(np.nanmax(pressure)) / size)
+    gap = np.maximum(data.values(tree, contact.GAP), 0.0)  # but for rounding it is
+    height, symbol = data.length_unit(float(np.nanmax(gap)) or 1e-6)
+    size, unit = (1e9, "GPa") if pressure.max() >= 2e9 else (1e6, "MPa")
+    loaded, outline = np.where(pressure > 0, pressure, np.nan) / size, _outline(tree, x, y)
+    scale = (f"pressure / {unit}", 0.0, float(np.nanmax(pressure)) / size)
     above = map_panel(x, y, loaded, scale, *outline, colours="inferno_r", title="pressure", height=4.1)
     whole = np.array([-np.inf]), np.array([np.inf])
     yield replace(above, marks=(Boxes(*whole, *whole, colour=PAPER), *above.marks))
-    if data.present(tree, contact.GAP):
-        gap = np.maximum(data.values(tree, contact.GAP), 0.0)  # but for rounding it is
-        height, symbol = data.length_unit(float(np.nanmax(gap)) or 1e-6)
-        scale = (f"gap / {symbol}", 0.0, float(np.nanmax(gap)) / height)
-        yield map_panel(x, y, gap / height, scale, *outline, title="gap", height=4.1, beside=True)
-        return
-    length, symbol = data.length_unit(np.ptp(x))
-    middle = pressure[:, int(np.argmin(np.abs(y - _centre(y))))] / size
-    at, half = x / length, (x[1] - x[0]) / length / 2
-    bars = Boxes(at - half, at + half, np.zeros(at.shape), middle, colour=BLUE)
-    along = Axis(f"x / {symbol} (rolling direction →)", at[0], at[-1])
-    yield Panel(along, Axis(label, 0.0), (bars,), title="along the middle", height=4.1, beside=True)
+    scale = (f"gap / {symbol}", 0.0, float(np.nanmax(gap)) / height)
+    yield map_panel(x, y, gap / height, scale, *outline, title="gap", height=4.1, beside=True)
 
 
 def _pressure_caption(tree: DataTree) -> str:
@@ -101,7 +90,7 @@ PRESSURE = Figure(
     (field(contact.PRESSURE, contact.PY, "p"),),
     _pressure,
     _pressure_caption,
-    (contact.PRESSURE, contact.PY),
+    (contact.PRESSURE, contact.GAP, contact.PY),
 )
 
 
@@ -114,44 +103,39 @@ def _state(tree: DataTree) -> Iterator[Series]:
         yield Series("state r", "m", data.values(tree, contact.APPROACH) + datum)
 
 
-def _loading(tree: DataTree, lines: Lines) -> list[Panel]:
+def _loading(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
     rough = any(np.nanmax(series.values) > 0 for series in lines.of(contact.FORCE_STD))
     size, symbol = data.force_unit(float(np.nanmax(data.values(tree, contact.FORCE))))
     force = "rough, mean ± standard deviation" if rough else "smooth bodies (Hertz)"
     secant = "k_c = F/r, mean ± standard deviation" if rough else "F/r, smooth bodies (Hertz)"
-    forces = [
-        *_curve(lines, contact.FORCE, contact.FORCE_STD, size, force),
-        *_hertz(tree, lines.at, 1.5, size),
-    ]
-    tangents = [
-        Line(lines.at / MICRO, series.values / MEGA, "tangent dF/dδ", GREEN, (1.5, 1.5))
-        for series in lines.of(contact.TANGENT_STIFFNESS)
-    ]
-    secants = _curve(lines, contact.STIFFNESS, contact.STIFFNESS_STD, MEGA, secant)
-    low, high = lines.at.min() / MICRO, lines.at.max() / MICRO
-    margin, datum = 0.02 * (high - low or 1.0), data.number(tree, contact.DATUM)
+    at, datum = lines.at / MICRO, data.number(tree, contact.DATUM)
+    margin = 0.02 * (at.max() - at.min() or 1.0)
     state = None if datum is None else chart.Second("state r = δ + d₀ / µm", offset=datum / MICRO)
-    label = "approach δ / µm (closing →)"
-    axis = Axis(label, low - margin, high + margin, second=state, linked="approach")
+    ends = at.min() - margin, at.max() + margin
+    axis = Axis("approach δ / µm (closing →)", *ends, second=state, linked="approach")
     load, working = [], data.number(tree, contact.WORKING_APPROACH)
     if working is not None and lines.at.min() <= working <= lines.at.max():
         load = [chart.Rules(np.array([working / MICRO]), label="working load")]
-    stiffnesses = [*secants, *tangents, *_hertz(tree, lines.at, 0.5, MEGA)]
-    return [
-        Panel(axis, Axis(f"contact force F / {symbol}", 0.0), (*load, *forces), height=4.2),
-        Panel(axis, Axis("stiffness / (MN/m)", 0.0), (*load, *stiffnesses), height=4.2, beside=True),
+    forces = _curve(lines, contact.FORCE, contact.FORCE_STD, size, force)
+    forces += _hertz(tree, lines.at, 1.5, size)
+    yield Panel(axis, Axis(f"contact force F / {symbol}", 0.0), (*load, *forces), height=4.2)
+    secants = _curve(lines, contact.STIFFNESS, contact.STIFFNESS_STD, MEGA, secant)
+    tangents = [
+        Line(at, series.values / MEGA, "tangent dF/dδ", GREEN, (1.5, 1.5))
+        for series in lines.of(contact.TANGENT_STIFFNESS)
     ]
+    marks = (*load, *secants, *tangents, *_hertz(tree, lines.at, 0.5, MEGA))
+    yield Panel(axis, Axis("stiffness / (MN/m)", 0.0), marks, height=4.2, beside=True)
 
 
 def _curve(lines: Lines, mean: Entry, spread: Entry, size: float, label: str) -> list[Mark]:
     """Draw a curve, with dots where its states are few, and what it varies by."""
-    at = lines.at / MICRO
-    marks: list[Mark] = []
+    at, marks = lines.at / MICRO, list[Mark]()
     for series in lines.of(mean):
         level = series.values / size
-        for each in lines.of(spread):
-            marks.append(Area(at, level - each.values / size, level + each.values / size, colour=BLUE))
+        for by in (each.values / size for each in lines.of(spread)):
+            marks.append(chart.Area(at, level - by, level + by, colour=BLUE))
         marks.append(Line(at, level, label, BLUE, marker="o" if len(at) <= 40 else ""))
     return marks
 
@@ -181,16 +165,7 @@ def _loading_caption(tree: DataTree) -> str:
 
 def _datum_sensitivity(tree: DataTree) -> str:
     """What a force that is k_c = F/r times the texture owes to where r counts from."""
-    load, approach, datum, samples, path = (
-        data.number(tree, attribute)
-        for attribute in (
-            contact.WORKING_LOAD,
-            contact.WORKING_APPROACH,
-            contact.DATUM,
-            contact.DATUM_SAMPLES,
-            contact.DATUM_PATH,
-        )
-    )
+    load, approach, datum, samples, path = (data.number(tree, attribute) for attribute in _OF_DATUM)
     laws = data.laws(tree, rolling.CONTACT_FORCE)
     used = [law for law in laws if "datum" in data.law_entry(tree, law).needs]
     if not used or load is None or approach is None or datum is None or samples is None or path is None:
@@ -198,22 +173,22 @@ def _datum_sensitivity(tree: DataTree) -> str:
     other, where = (path, "samples and path") if datum == samples else (samples, "the samples alone")
     states, tangents = (data.values(tree, entry) for entry in (contact.APPROACH, contact.TANGENT_STIFFNESS))
     below = 20 * np.log10(np.interp(approach, states, tangents) * (approach + datum) / load)
-    change = f"{20 * np.log10((approach + datum) / (approach + other)):+.1f}".replace("-", "−")
+    change = data.signed(20 * np.log10((approach + datum) / (approach + other)))
     return (
         f" In {' and '.join(used)} k_c multiplies the texture: under the working load {below:.1f} dB below "
         f"the tangent. d₀ from {where}, {data.engineering(other, 'm')}, would change that by {change} dB."
     )
 
 
-_CURVES = (
-    contact.FORCE_STD,
-    contact.HERTZ_FORCE,
-    contact.STIFFNESS,
-    contact.STIFFNESS_STD,
-    contact.TANGENT_STIFFNESS,
-    contact.HERTZ_STIFFNESS,
-    contact.CONTACT_RADIUS,
+_OF_DATUM = (
+    contact.WORKING_LOAD,
+    contact.WORKING_APPROACH,
+    contact.DATUM,
+    contact.DATUM_SAMPLES,
+    contact.DATUM_PATH,
 )
+_SPREAD = (contact.FORCE_STD, contact.HERTZ_FORCE, contact.STIFFNESS, contact.STIFFNESS_STD)
+_CURVES = (*_SPREAD, contact.TANGENT_STIFFNESS, contact.HERTZ_STIFFNESS, contact.CONTACT_RADIUS)
 LOADING = Figure(
     "contact_force",
     "Contact force and stiffness",
@@ -248,7 +223,7 @@ def _by_state(lines: Lines, entry: Entry) -> dict[float, Numbers]:
 def _drawn_states(tree: DataTree, lines: Lines, entry: Entry, most: int) -> list[float]:
     """Approaches whose filters are drawn: a few, evenly spread, that of the working load among them."""
     filled = np.array(list(_by_state(lines, entry)))
-    picks = np.linspace(0, len(filled) - 1, min(most, len(filled))).round().astype(int)
+    picks = np.array(chart.spread(len(filled), most))
     working = data.number(tree, contact.WORKING_APPROACH)
     if working is not None:
         at_load = int(np.argmin(np.abs(filled - working)))
@@ -291,23 +266,21 @@ def _magnitudes(tree: DataTree, lines: Lines, entries: tuple[Entry, ...], states
     fitted, raw, applied, spread = (_by_state(lines, entry) for entry in entries)
     marks: list[Mark] = []
     for state, colour in zip(states, chart.sequence(len(states)), strict=True):
-
-        def line(ratio: Numbers, shown: Flags, colour: str = colour, **look: Any) -> Line:
-            return Line(lines.at, np.where(shown, _level(ratio), np.nan), colour=colour, **look)
-
+        name: dict[str, Any] = {"label": f"δ = {data.plain(state * 1e6)} µm", "width": 1.7}
+        found = [(fitted[state], excited, name)]
         if state in spread:
             edges = (fitted[state] - spread[state], fitted[state] + spread[state])
-            clear = excited & (edges[0] > 0)
-            low, high = (np.where(clear, _level(edge), np.nan) for edge in edges)
-            marks.append(Area(lines.at, low, high, colour=colour, opacity=0.09))
-        wide: dict[str, Any] = {"width": 4.5, "opacity": 0.35} if state in applied else {"width": 1.7}
-        marks.append(line(fitted[state], excited, label=f"δ = {data.plain(state * 1e6)} µm", **wide))
+            low, high = (np.where(excited & (edges[0] > 0), _level(edge), np.nan) for edge in edges)
+            marks.append(chart.Area(lines.at, low, high, colour=colour, opacity=0.09))
         if state in applied:
-            marks.append(line(applied[state], excited, width=1.1))
+            name.update(width=4.5, opacity=0.35)
+            found.append((applied[state], excited, {"width": 1.1}))
         if state in raw:
-            marks.append(line(raw[state], np.isfinite(raw[state]), marker=".", width=0.0))
+            found.append((raw[state], np.isfinite(raw[state]), {"marker": ".", "width": 0.0}))
         if theory:  # beyond the main lobe those of all states would cross
-            marks.append(line(theory[state], np.logical_and.accumulate(theory[state] > 0), **_THEORY))
+            found.append((theory[state], np.logical_and.accumulate(theory[state] > 0), _THEORY))
+        for ratio, where, look in found:
+            marks.append(Line(lines.at, np.where(where, _level(ratio), np.nan), colour=colour, **look))
     told = "magnitude" + ("; dots: ratio; wide: fit; thin: as applied" if applied else "")
     title = told + _THEORY_TOLD * bool(theory)
     return _over_wavenumbers(tree, lines, Axis("|H| / dB", FLOOR, 5.0), marks, title=title, height=4.4)
@@ -373,10 +346,10 @@ def _normalised(tree: DataTree, entry: Entry) -> str:
     return told.get(data.variable_of(tree, entry).attrs.get("normalise", ""), "")
 
 
-def _printed_filters(tree: DataTree, lines: Lines) -> list[Panel]:
+def _printed_filters(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     """The same filters, normalised as printed."""
     states = _drawn_states(tree, lines, contact.PRINTED_FILTER, MOST_PRINTED)
-    return [_magnitudes(tree, lines, contact.PRINTED_FILTERS, states)]
+    yield _magnitudes(tree, lines, contact.PRINTED_FILTERS, states)
 
 
 def _printed_filter_caption(tree: DataTree) -> str:

@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Note, Numbers, Panel, Rules, envelope
+from asperity.reporting import chart
+from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Numbers, Panel, envelope, spread
 from asperity.reporting.data import plain
 from asperity.reporting.tables import Cell, ReportTable
 
@@ -84,10 +85,10 @@ def _planes(numbers: np.ndarray) -> bytes:
     return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
 
 
-def chart_tables(chart: Chart) -> list[ReportTable]:
+def chart_tables(drawn: Chart) -> list[ReportTable]:
     """A table for each axis along which lines of a chart have the same places: a row for each place."""
     along: dict[bytes, tuple[Axis, list[tuple[Panel, Line]]]] = {}
-    for panel in chart.panels:
+    for panel in drawn.panels:
         for mark in panel.marks:
             if isinstance(mark, Line) and mark.label:
                 along.setdefault(mark.x.tobytes(), (panel.x, []))[1].append((panel, mark))
@@ -100,7 +101,7 @@ def _table(axis: Axis, lines: list[tuple[Panel, Line]]) -> ReportTable:
     rows = [
         [
             Cell(names.get(place) or plain(place), "number"),
-            *(number_cell(line.y[row]) for _, line in lines),
+            *(number_cell(line.y[row : row + 1]) for _, line in lines),
         ]
         for row, place in enumerate(places)
     ]
@@ -108,9 +109,10 @@ def _table(axis: Axis, lines: list[tuple[Panel, Line]]) -> ReportTable:
     return ReportTable("", "Numbers", [axis.label, *titles], rows)
 
 
-def number_cell(number: float) -> Cell:
-    """A number, or a dash where there is none."""
-    return Cell(plain(number, 4) if np.isfinite(number) else "–", "number")
+def number_cell(numbers: Numbers) -> Cell:
+    """The number that is in an array; a dash where there is none."""
+    known = numbers.size and np.isfinite(numbers[0])
+    return Cell(plain(float(numbers[0]), 4) if known else "–", "number")
 
 
 MOST = 300_000
@@ -131,22 +133,22 @@ def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str]) -> str:
     arrays, look = Arrays(), list(colours)
     told = {
         name: {
-            "panels": [_panel(panel, arrays, look) for panel in _thinned(chart).panels],
-            "places": {place: np.asarray(found).tolist() for place, found in chart.places.items()},
+            "panels": [_panel(panel, arrays, look) for panel in _thinned(drawn).panels],
+            "places": {place: np.asarray(found).tolist() for place, found in drawn.places.items()},
         }
-        for name, chart in charts.items()
+        for name, drawn in charts.items()
     }
     found = {"charts": told, "colours": look, "arrays": arrays.told, "data": arrays.packed}
     text = json.dumps(found, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c")  # so that nothing in it ends the element
 
 
-def _thinned(chart: Chart) -> Chart:
+def _thinned(drawn: Chart) -> Chart:
     """The chart with as many numbers as a page holds, and fields as fine as can be seen."""
-    lines = [mark for panel in chart.panels for mark in panel.marks if isinstance(mark, Line)]
+    lines = [mark for panel in drawn.panels for mark in panel.marks if isinstance(mark, Line)]
     steps = -(-sum(line.y.size for line in lines) // MOST)
-    panels = (replace(panel, marks=tuple(_thinner(m, steps) for m in panel.marks)) for panel in chart.panels)
-    return replace(chart, panels=tuple(panels))
+    panels = (replace(panel, marks=tuple(_thinner(m, steps) for m in panel.marks)) for panel in drawn.panels)
+    return replace(drawn, panels=tuple(panels))
 
 
 def _thinner(mark: Mark, steps: int) -> Mark:
@@ -191,17 +193,16 @@ def _panel(panel: Panel, arrays: Arrays, colours: list[str]) -> dict[str, Any]:
             return kind | told(value)
         return value
 
-    return told(replace(panel, marks=tuple(m for m in panel.marks if not _nowhere(m))))
+    def somewhere(mark: Mark) -> bool:
+        return not isinstance(mark, chart.Note) or bool(np.isfinite([mark.x, mark.y]).all())
+
+    return told(replace(panel, marks=tuple(filter(somewhere, panel.marks))))
 
 
 def _axis(panel: Panel, mark: Mark, name: str) -> Axis:
     """Axis along which an array of a mark is drawn."""
-    along_y = mark.along == "y" if isinstance(mark, Rules) else name in ("y", "low", "high")
+    along_y = mark.along == "y" if isinstance(mark, chart.Rules) else name in ("y", "low", "high")
     return panel.y if along_y else panel.x
-
-
-def _nowhere(mark: Mark) -> bool:
-    return isinstance(mark, Note) and not np.isfinite([mark.x, mark.y]).all()
 
 
 @cache
@@ -230,21 +231,9 @@ def digest_of(script: str) -> str:
 def numbers_table(columns: Mapping[str, Numbers], most: int = 24) -> ReportTable:
     """Numbers of a figure, at most so many rows of them, for where they are not drawn."""
     rows = max(map(len, columns.values()), default=0)
-    shown, named = _spread(rows, most), [list(columns)[n] for n in _spread(len(columns), COLUMNS)]
-    cells = [[Cell(_written(columns[name], row), "number") for name in named] for row in shown]
-    parts = [
-        f"{len(some)} of {count} {what}"
-        for some, count, what in ((shown, rows, "rows"), (named, len(columns), "columns"))
-        if len(some) < count
-    ]
+    shown, named = spread(rows, most), [list(columns)[n] for n in spread(len(columns), COLUMNS)]
+    cells = [[number_cell(columns[name][row : row + 1]) for name in named] for row in shown]
+    counts = {"rows": (len(shown), rows), "columns": (len(named), len(columns))}
+    parts = [f"{some} of {count} {what}" for what, (some, count) in counts.items() if some < count]
     note = f"{' and '.join(parts)}; the CSV file has all." if parts else ""
     return ReportTable("", "Numbers", named, cells, note)
-
-
-def _spread(count: int, most: int) -> list[int]:
-    """At most so many of `count` places, from the first to the last."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int)).tolist()
-
-
-def _written(column: np.ndarray, row: int) -> str:
-    return plain(float(column[row]), 4) if row < len(column) and np.isfinite(column[row]) else "–"
