@@ -1,5 +1,9 @@
 """What is drawn on a page: colours, and texts with their places."""
 
+from contextlib import contextmanager
+
+import pytest
+
 RECORDER = """(() => {  // every text that is drawn, where it stands in its picture
   const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
   CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
@@ -84,3 +88,45 @@ def pixels(page, name, colour, panel=0):
     settled(page)
     canvas = page.locator(f"#{name} .uplot canvas").nth(panel)
     return canvas.evaluate(PIXELS, [[int(colour[n : n + 2], 16) for n in (1, 3, 5)]])[0]
+
+
+@contextmanager
+def pages_of(browser, address, height=40_000):
+    """Opens a page at any width, so high that all is drawn; nothing is loaded and nothing fails."""
+    pages, told = [], []
+
+    def open_page(width=1280, scheme="light"):
+        page = browser.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
+        pages.append(page)
+        page.add_init_script(RECORDER)
+        page.on("console", lambda message: told.append(message.text))
+        page.on("pageerror", lambda error: told.append(str(error)))
+        page.on("request", lambda request: None if request.url == address else told.append(request.url))
+        page.goto(address)
+        for figure in page.locator("figure.chart").all():
+            figure.locator(".uplot canvas").last.wait_for(state="attached")
+        settled(page)
+        return page
+
+    yield open_page
+    for page in pages:
+        page.close()
+    assert not told
+
+
+def assert_readable(page, width):
+    """Nothing is empty, wider than the page, or stands over another."""
+    settled(page)
+    assert page.evaluate(EMPTY) == []
+    assert page.evaluate(OVERLAPS) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def assert_accessible(page):
+    """No finding of axe, with all that is folded open."""
+    name, reason = "axe_playwright_python.sync_playwright", "pip install axe-playwright-python"
+    axe = pytest.importorskip(name, reason=reason)
+    page.evaluate("document.querySelectorAll('details').forEach((folded) => { folded.open = true; })")
+    found = axe.Axe().run(page).response["violations"]
+    told = [(each["id"], [node["html"][:120] for node in each["nodes"][:3]]) for each in found]
+    assert told == [], told
