@@ -91,18 +91,20 @@ def pixels(page, name, colour, panel=0):
 
 
 @contextmanager
-def pages_of(browser, address, height=40_000):
-    """Opens a page at any width, so high that all is drawn; nothing is loaded and nothing fails."""
+def pages_of(browser, address):
+    """Opens a page at any width, with all drawn as before it is printed; nothing is loaded, nothing fails."""
     pages, told = [], []
 
     def open_page(width=1280, scheme="light"):
-        page = browser.new_page(viewport={"width": width, "height": height}, color_scheme=scheme)
+        page = browser.new_page(viewport={"width": width, "height": 1000}, color_scheme=scheme)
         pages.append(page)
         page.add_init_script(RECORDER)
         page.on("console", lambda message: told.append(message.text))
         page.on("pageerror", lambda error: told.append(str(error)))
         page.on("request", lambda request: None if request.url == address else told.append(request.url))
         page.goto(address)
+        page.locator("figure.chart.ready").last.wait_for(state="attached")
+        page.evaluate("for (const name of ['beforeprint', 'afterprint']) dispatchEvent(new Event(name))")
         for figure in page.locator("figure.chart").all():
             figure.locator(".uplot canvas").last.wait_for(state="attached")
         settled(page)

@@ -131,7 +131,7 @@ def address(tmp_path_factory):
 
 @pytest.fixture
 def opened(browser, address):
-    with pages_of(browser, address, 6000) as open_page:
+    with pages_of(browser, address) as open_page:
         yield open_page
 
 
