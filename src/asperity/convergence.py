@@ -26,7 +26,7 @@ from asperity.scenes.compute import spectrum_segment
 from asperity.scenes.plan import own_settings
 from asperity.scenes.result import computed_result
 from asperity.scenes.validity import compared_bands
-from asperity.schema import Entry, attributes, contact, convergence, provenance, rolling, spectra, variables
+from asperity.schema import Entry, Values, contact, convergence, group, provenance, rolling, spectra
 from asperity.spectra import band_levels, nominal_frequency, psd
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
@@ -249,7 +249,7 @@ def convergence_group(result: DataTree, found: Sequence[Comparison]) -> xarray.D
     changes = [comparison.change for comparison in found]
     shown = compared_bands(held.drop_vars(spectra.START_SHARE.name, errors="ignore"))  # all start alike
     largest = [_largest(change.force.values[0], shown) for change in changes]
-    laid_out: dict[Entry, object] = {
+    laid_out: Values = {
         convergence.SETTING: [comparison.setting for comparison in found],
         convergence.CHANGE: [comparison.words for comparison in found],
         convergence.LIMIT: [comparison.limit for comparison in found],
@@ -264,8 +264,7 @@ def convergence_group(result: DataTree, found: Sequence[Comparison]) -> xarray.D
         entry = convergence.MOTION_LEVEL_CHANGE
         values = [change.motion.values for change in changes]
         laid_out[entry] = entry.variable(values, quantity=motion.long_name)
-    group = xarray.Dataset(variables(laid_out))
-    return group.assign_attrs(attributes({convergence.SENTENCE: sentence(group, laws[0])}))
+    return group(laid_out | {convergence.SENTENCE: sentence(group(laid_out), laws[0])})
 
 
 def _largest(change: Array, shown: NDArray[np.bool_]) -> tuple[float, int | None]:

@@ -9,6 +9,7 @@ from asperity import WheelOnRail
 from asperity.errors import CaseError
 from asperity.scenes.figures.noise import PASS_BY, pass_by_table
 from asperity.scenes.noise import pass_by_group
+from asperity.schema import group
 
 BAND = 1000.0 * 10.0 ** (np.arange(-6, 7) / 10.0)
 KILOHERTZ = 6  # where the A-weighting is zero
@@ -25,7 +26,7 @@ def passed(rail=100.0, sleepers=90.0, wheel=np.nan, decay=1.0, **noise):
     names = {"law": ["areal"], "radiator": ["rail", "sleepers", "wheel", "total"], "band": BAND}
     power = (("law", "radiator", "band"), level[None])
     spectra = {"radiated_power_level": power, "band_decay_rate": ("band", np.full(len(BAND), decay))}
-    return pass_by_group(case(**noise), xarray.Dataset(spectra, names))
+    return group(pass_by_group(case(**noise), xarray.Dataset(spectra, names)))
 
 
 def heard(**keys):
@@ -111,10 +112,10 @@ def test_trains_that_cannot_be(noise, message):
 
 
 def test_figure_and_table_say_what_passes():
-    group = passed(wheelbase=2.5)
-    assert_allclose(group["axle_time"], [0.0, 0.05])
-    assert_allclose(group.attrs["rear_time"] - group.attrs["front_time"], 5.0 / 50.0)
-    tree = xarray.DataTree.from_dict({"/pass_by": group})
+    by = passed(wheelbase=2.5)
+    assert_allclose(by["axle_time"], [0.0, 0.05])
+    assert_allclose(by.attrs["rear_time"] - by.attrs["front_time"], 5.0 / 50.0)
+    tree = xarray.DataTree.from_dict({"/pass_by": by})
     assert "2 axles pass (ticks), two wheels on each, 7.5 m" in PASS_BY.said(tree)
     table = pass_by_table(tree)
     assert [row[1].text for row in table.rows] == ["total", "rail", "sleepers"]

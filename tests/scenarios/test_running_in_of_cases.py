@@ -129,10 +129,10 @@ def test_another_pass_is_elastic():
     prepared, found = run_in_of(ball(running_in="shakedown"))
     shape = prepared.shape
     again = run_in_case(prepared.case, found.textures, shape, None, lambda *_: None)
-    (lowered,) = again.entries[contact.RUNNING_IN_LOWERING]
+    (lowered,) = again.values[contact.RUNNING_IN_LOWERING]
     assert lowered <= 1e-3 * shape.hertz.approach(shape.load) * 1.01
-    assert again.facts[contact.YIELDED_SHARE] == 0.0
-    assert found.facts[contact.YIELDED_SHARE] > 0.02
+    assert again.values[contact.YIELDED_SHARE] == 0.0
+    assert found.values[contact.YIELDED_SHARE] > 0.02
 
 
 def test_direct_does_not_take_up_what_another_surface_left(own_cache):
@@ -150,7 +150,7 @@ def test_measured_maps_are_run_in_along_their_strips():
     prepared, found = run_in_of(ball(running_in=1) | {"surface": {"file": surface}})
     assert all(map_.shape[1] == prepared.shape.body.shape[1] for map_ in found.textures.maps)
     assert found.textures.widest_window == prepared.textures.widest_window
-    assert found.entries[contact.RUNNING_IN_LOWERING][0] > 5e-9
+    assert found.values[contact.RUNNING_IN_LOWERING][0] > 5e-9
 
 
 def test_a_line_of_the_path_stays_as_it_is():

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.reducing import PressedSamples, samples_of
 from asperity.scenarios.textures import Textures
-from asperity.schema import Attribute, Entry, contact
+from asperity.schema import Values, contact
 from asperity.store import Cache
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.statistics import rms_slope
@@ -34,8 +33,7 @@ class RunInCase:
     """Textures of a case after running-in, and what the passes did to samples and path together."""
 
     textures: Textures
-    entries: dict[Entry, Any]  # each pass, and the surface before and after them
-    facts: dict[Attribute, float]
+    values: Values  # each pass, and the surface before and after them
 
 
 def run_in_case(
@@ -75,12 +73,10 @@ def run_in_case(
     )
     before = replace(textures, maps=textures.strips)
     conditions = np.array([_condition(case, shape, each) for each in (before, after)])
-    return RunInCase(after, *_passes(surfaces, conditions))
+    return RunInCase(after, _passes(surfaces, conditions))
 
 
-def _passes(
-    surfaces: Sequence[RunInHeights], conditions: Array
-) -> tuple[dict[Entry, Any], dict[Attribute, float]]:
+def _passes(surfaces: Sequence[RunInHeights], conditions: Array) -> Values:
     """What each pass did to all surfaces together, and their conditions (2, 4) before and after."""
     weights = np.array([np.count_nonzero(each.touched) for each in surfaces], dtype=np.float64)
     weights /= max(weights.sum(), 1.0)
@@ -89,14 +85,12 @@ def _passes(
     for n, each in enumerate(surfaces):
         largest[n, : len(each.largest)], yielding[n, : len(each.yielding)] = each.largest, each.yielding
     names = (contact.TRACK_RMS, contact.TRACK_SLOPE, contact.TRACK_AREA_RATIO, contact.TRACK_STIFFNESS)
-    entries = {
+    return {
         contact.RUNNING_IN_PASS: np.arange(1, passes + 1),
         contact.RUNNING_IN_LOWERING: largest.max(axis=0),
         contact.RUNNING_IN_YIELDING: weights @ yielding,
         contact.CONDITION: ["before", "after"],
         **dict(zip(names, conditions.T, strict=True)),
-    }
-    return entries, {
         contact.YIELDED_SHARE: float(weights @ np.array([each.yielded_share for each in surfaces])),
         contact.SHAKEN_DOWN: int(all(each.settled for each in surfaces)),
     }

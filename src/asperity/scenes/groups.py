@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray
 from numpy.typing import NDArray
 
 from asperity.arguments import Array
@@ -19,7 +18,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.reducing import Reduction
 from asperity.scenarios.textures import Textures
 from asperity.scenes.compute import Computed
-from asperity.schema import Attribute, Entry, attributes, contact, surface, variables
+from asperity.schema import Values, contact, surface
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.homogeneity import SIGNIFICANCE, TILES, homogeneity, more_than_chance
@@ -45,13 +44,13 @@ def as_json(rows: object) -> str:
     return json.dumps(rows, ensure_ascii=False)
 
 
-def surface_group(computed: Computed, *, brief: bool = False) -> xarray.Dataset:
+def surface_group(computed: Computed, *, brief: bool = False) -> Values:
     """Lay out the textures of a case: first sample, a piece of the path, its line.
 
     And, if not in brief, of the whole path distribution, spectrum and statistics.
     """
     textures, dx, recorded = computed.textures, computed.shape.spacing[0], computed.textures.recorded
-    laid_out: dict[Entry, Any] = {}
+    laid_out: Values = {}
     rows: list[dict[str, Any]] = []
     if textures.maps:
         first = textures.maps[0]
@@ -82,13 +81,12 @@ def surface_group(computed: Computed, *, brief: bool = False) -> xarray.Dataset:
             if len(lines) > 1:
                 means = [mean for mean, _, _ in line_statistics(lines)]
                 rows += _rows(means, f"{len(lines)} lines of the {body}, mean")
-    facts = {
+    return laid_out | {
         surface.STATISTICS: as_json(rows),
         surface.SOURCE: textures.origin,
         surface.MISSING_SHARE: textures.missing_share,
         surface.ACROSS: "areal" if textures.areal else "lines",
     }
-    return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
 
 
 def _survey(textures: Textures, dx: float) -> StripSurvey:
@@ -118,7 +116,7 @@ def _without_bounds(found: list[Statistic], caught: list[warnings.WarningMessage
     return [item for item in found if not (short and item.symbol == "Str")]
 
 
-def _homogeneity(maps: tuple[HeightMap, ...]) -> dict[Entry, Any]:
+def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
     """Test measured maps for being the same everywhere; synthesised ones are."""
     if any(min(m.shape) < 2 * max(TILES) or not np.ptp(m.heights) for m in maps):
         return {}
@@ -143,16 +141,16 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> dict[Entry, Any]:
     }
 
 
-def _distribution(path: StripSurvey) -> dict[Entry, Any]:
+def _distribution(path: StripSurvey) -> Values:
     if not path.density.any():
         return {}
     middle = 0.5 * (path.edges[1:] + path.edges[:-1])
     return {surface.PATH_HEIGHT: middle, surface.PATH_HEIGHT_DENSITY: path.density}
 
 
-def _spectra(textures: Textures, path: StripSurvey) -> dict[Entry, Any]:
+def _spectra(textures: Textures, path: StripSurvey) -> Values:
     """Spectra of samples and path in the rolling direction, on the samples' wavenumbers."""
-    wavenumber, laid_out = path.wavenumber, dict[Entry, Any]()
+    wavenumber, laid_out = path.wavenumber, Values()
     if textures.maps:
         spectra = [psd_1d(m)[1] for m in textures.maps]
         wavenumber, first = psd_1d(textures.maps[0])[0], spectra[0]
@@ -185,17 +183,16 @@ SMOOTH = "smooth bodies have one filter, that of the working load"
 """Why the filter that is applied is not known in other states of a case without samples."""
 
 
-def contact_group(
-    computed: Computed, found: Sequence[Finding], population: Sequence[Finding]
-) -> xarray.Dataset:
+def contact_group(computed: Computed, found: Sequence[Finding], population: Sequence[Finding]) -> Values:
     """Lay out forces, stiffness and filters of all states, Hertz's where there are no samples.
 
     With the findings that hold the contact to the range of its laws, and the answers about its population.
     """
-    shape = computed.shape
-    reduced = _hertz_only(shape) if computed.reduction is None else _reduced(computed, computed.reduction)
-    laid_out, facts = reduced
-    facts |= {
+    shape, reduction = computed.shape, computed.reduction
+    laid_out = _hertz_only(shape) if reduction is None else _reduced(computed, reduction)
+    if reduction is not None:
+        laid_out[contact.POPULATION] = as_json([_asked(answer) for answer in population])
+    return laid_out | {
         contact.HERTZ_RADIUS: shape.semi_axes[0],
         contact.HERTZ_RADIUS_ACROSS: shape.semi_axes[1],
         contact.WORKING_LOAD: shape.load,
@@ -203,9 +200,6 @@ def contact_group(
         contact.HERTZ_CONSTANT: shape.hertz.stiffness_constant,
         contact.VALIDITY: as_json([finding.row() for finding in found]),
     }
-    if computed.reduction is not None:
-        facts[contact.POPULATION] = as_json([_asked(answer) for answer in population])
-    return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
 
 
 def _asked(answer: Finding) -> dict[str, Any]:
@@ -215,27 +209,15 @@ def _asked(answer: Finding) -> dict[str, Any]:
     return words | {"effect": round(answer.effect, 3), "grade": grade}
 
 
-def _reduced(computed: Computed, reduction: Reduction) -> tuple[dict[Entry, Any], dict[Attribute, Any]]:
+def _reduced(computed: Computed, reduction: Reduction) -> Values:
     """States, and the contact at the working load, of a case with samples."""
     shape, ensemble, approach = computed.shape, reduction.ensemble, reduction.approaches
     working, curve = reduction.pressed.contacts[0], ensemble.curve
-    facts: dict[Attribute, Any] = {
-        contact.DATUM: ensemble.datum,
-        contact.DATUM_FROM: computed.case.contact.datum,
-        contact.DATUM_SAMPLES: reduction.datums["samples"],
-        contact.DATUM_PATH: reduction.datums["path"],
-        contact.WORKING_APPROACH: reduction.pressed.approach,
-        contact.WORKING_STIFFNESS: float(curve.stiffness(curve.inverse(shape.load))),
-        contact.CONTACT_AREA: working.area,
-        contact.CONTACT_AREA_RATIO: reduction.pressed.area_ratio,
-        contact.ISOLATED_SHARE: reduction.pressed.isolated_share,
-        contact.RMS_SLOPE: computed.textures.rms_slope,
-        contact.SAMPLES: len(ensemble.forces),
-    }
     states, touching = (np.where(r > 0.0, r, np.inf) for r in (ensemble.states, approach))
     hertz = np.array([shape.hertz.force(s) for s in approach])
     px, py = ((np.arange(n) - n // 2) * d for n, d in zip(shape.body.shape, shape.spacing, strict=True))
-    laid_out: dict[Entry, Any] = {
+    run_in: Values = {} if computed.running_in is None else computed.running_in.values
+    return {
         contact.APPROACH: approach,
         contact.FORCE: ensemble.mean_force,
         contact.FORCE_STD: ensemble.force_spread,
@@ -249,14 +231,23 @@ def _reduced(computed: Computed, reduction: Reduction) -> tuple[dict[Entry, Any]
         contact.PY: py,
         contact.PRESSURE: working.pressure,
         contact.GAP: working.gap,
+        contact.DATUM: ensemble.datum,
+        contact.DATUM_FROM: computed.case.contact.datum,
+        contact.DATUM_SAMPLES: reduction.datums["samples"],
+        contact.DATUM_PATH: reduction.datums["path"],
+        contact.WORKING_APPROACH: reduction.pressed.approach,
+        contact.WORKING_STIFFNESS: float(curve.stiffness(curve.inverse(shape.load))),
+        contact.CONTACT_AREA: working.area,
+        contact.CONTACT_AREA_RATIO: reduction.pressed.area_ratio,
+        contact.ISOLATED_SHARE: reduction.pressed.isolated_share,
+        contact.RMS_SLOPE: computed.textures.rms_slope,
+        contact.SAMPLES: len(ensemble.forces),
+        **run_in,
+        **_filters(reduction),
     }
-    if computed.running_in is not None:
-        laid_out |= computed.running_in.entries
-        facts |= computed.running_in.facts
-    return laid_out | _filters(reduction), facts
 
 
-def _filters(reduction: Reduction) -> dict[Entry, Any]:
+def _filters(reduction: Reduction) -> Values:
     """Filters on the approaches of all states; NaN where a state carries too little load to have one."""
     main, *others = reduction.filters.values()
     estimated, states = main.contact_filter, reduction.approaches
@@ -269,7 +260,7 @@ def _filters(reduction: Reduction) -> dict[Entry, Any]:
         contact.FILTER_COHERENCE: estimated.coherence,
         contact.FILTER_THEORY: punch_filter(wavenumber[None, :], reduction.semi_axes[rows, :1]),
     }
-    laid_out: dict[Entry, Any] = {
+    laid_out: Values = {
         contact.WAVENUMBER: wavenumber,
         contact.FILTER_EXCITED: estimated.excited.astype(np.int8),
         **{entry: _on_states(values, rows, len(states)) for entry, values in by_state.items()},
@@ -291,7 +282,7 @@ def _on_states(values: Array, rows: NDArray[np.intp], count: int) -> Array:
     return full
 
 
-def _hertz_only(shape: Geometry) -> tuple[dict[Entry, Any], dict[Attribute, Any]]:
+def _hertz_only(shape: Geometry) -> Values:
     """Contact of smooth bodies, and its closed-form filter, where a case has no samples."""
     hertz, working, dx = shape.hertz, shape.hertz.approach(shape.load), shape.spacing[0]
     approach = np.linspace(0.0, 2.0 * working, 41)[1:]
@@ -302,7 +293,7 @@ def _hertz_only(shape: Geometry) -> tuple[dict[Entry, Any], dict[Attribute, Any]
     state = np.array([np.argmin(np.abs(approach - working))])
     taps = np.abs(response(punch_taps(shape.semi_axes[0], dx), dx, wavenumber))
     applied = _on_states(taps, state, len(approach))
-    laid_out = {
+    return {
         contact.APPROACH: approach,
         contact.FORCE: force,
         contact.STIFFNESS: force / approach,
@@ -310,8 +301,6 @@ def _hertz_only(shape: Geometry) -> tuple[dict[Entry, Any], dict[Attribute, Any]
         contact.WAVENUMBER: wavenumber,
         contact.FILTER: contact.FILTER.variable(theory, normalise="tangent"),
         contact.FILTER_APPLIED: contact.FILTER_APPLIED.variable(applied, normalise="tangent", missing=SMOOTH),
-    }
-    return laid_out, {
         contact.DATUM: 0.0,
         contact.WORKING_APPROACH: working,
         contact.WORKING_STIFFNESS: hertz.tangent_stiffness(working),

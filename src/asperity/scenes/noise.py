@@ -21,7 +21,7 @@ from asperity.reference import cnossos
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
-from asperity.schema import Entry, attributes, spectra, variables
+from asperity.schema import Values, spectra
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
 from asperity.structures.track import Track, decay_rate
 from asperity.surfaces.bands import band_levels_of
@@ -143,7 +143,7 @@ def _numbers(centres: ArrayLike) -> NDArray[np.int64]:
     return np.rint(10.0 * np.log10(centres)).astype(np.int64)
 
 
-def noise(computed: Computed) -> dict[Entry, Any]:
+def noise(computed: Computed) -> Values:
     """Sound power of each law: that of the linear contact, changed in each band by as much as the force.
 
     Several contacts count by the energy mean of their changes, all with the roughness of the first. The
@@ -245,7 +245,7 @@ def warn_of_silence(case: Any) -> None:
         warnings.warn(MissingSourceWarning(message, Grade.NOTE), stacklevel=2)
 
 
-def radiation(computed: Computed) -> dict[Entry, Any]:
+def radiation(computed: Computed) -> Values:
     """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels.
 
     That of what was rolled on one rail counts for all axles, each with two wheels, on two rails. The total
@@ -313,7 +313,7 @@ LONGEST = 1000.0
 """Greatest of these lengths, m; the exposure depends on none of them."""
 
 
-def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> xarray.Dataset:
+def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
     """Lay out levels beside the track, from the sound power and the decay rates that the spectra hold.
 
     All axles radiate alike: where several were rolled, as their mean.
@@ -332,7 +332,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> xarray.Dataset:
     levels = [pass_by.pass_by_levels(time, of_law, passage.passed) for of_law in squared]
     step = float(time[1] - time[0])
     kept = slice(None, None, max(1, math.floor(KEPT_STEP / step)))
-    laid_out: dict[Entry, Any] = {
+    laid_out: Values = {
         schema.PASS_BY_LAW: over_frequency[spectra.LAW.name].values,
         schema.PASS_BY_RADIATOR: over_frequency[schema.RADIATOR.name].values,
         schema.PASS_BY_BAND: band,
@@ -343,13 +343,14 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> xarray.Dataset:
         schema.PASS_BY_MAXIMUM_LEVEL: np.stack([each.maximum for each in levels]),
         schema.SOUND_EXPOSURE_LEVEL: pass_by.pressure_level(exposed),
         schema.SOUND_EXPOSURE_LEVEL_A: pass_by.pressure_level(exposed @ weights),
+        schema.RECEIVER_DISTANCE: receiver.distance,
+        schema.RECEIVER_HEIGHT: receiver.height,
     }
-    facts = {schema.RECEIVER_DISTANCE: receiver.distance, schema.RECEIVER_HEIGHT: receiver.height}
     if passage.passed is not None:
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
         laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = np.stack([each.transit_exposure for each in levels])
-        facts |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
-    return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
+        laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
+    return laid_out
 
 
 def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSource]:

@@ -25,7 +25,7 @@ from asperity.scenes import noise, schema, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import as_json, contact_group, surface_group
 from asperity.scenes.population import answers
-from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
+from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
 from asperity.structures.rail_poles import RailBetween, RailPoles
 from asperity.structures.track import Track
 
@@ -63,52 +63,45 @@ def computed_result(
     computed = compute(prepared, progress)
     case, scene, over_frequency = computed.case, computed.scene, spectra_group(computed)
     choice, population = validity.choice_of(computed, brief=brief), answers(computed)
-    found, own = validity.findings(computed, population, choice), dict[str, xarray.Dataset]()
+    found, own = validity.findings(computed, population, choice), Values()
+    in_bands = group(over_frequency)
     losses = power = None
     sources = METHOD + (ROUGH_CONTACT if computed.reduction else ()) + BANDS + (EXPECTED if choice else ())
     if isinstance(scene.over, Track):
         losses = track.error_of_losses(computed)
         found += track.findings_of_losses(losses)
-        if schema.SOUND_POWER_LEVEL_A.name in over_frequency:
-            power = over_frequency[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
+        if schema.SOUND_POWER_LEVEL_A in over_frequency:
+            power = in_bands[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
             found += noise.findings_of_labels(case)
-        own = {
-            "/track": track.track_group(computed, losses),
-            "/pass_by": noise.pass_by_group(case, over_frequency),
-        }
+        own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
         sources += (*scene.over.sources, cnossos.CITATION)
         noise.warn_of_silence(case)
         track.warn_of_loss_factors(losses)
     warn_of_findings(found)
+    textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)
+    numerics = [{"name": name, "value": value} for name, value in _numerics(computed, choice, losses)]
+    expected = {provenance.EXPECTED_ERRORS: as_json(choice.entries())} if choice else {}
     scenario = {
         provenance.KIND: case.kind,
         provenance.PARAMETERS: as_json(case.parameters()),
         provenance.LAWS: as_json([laws.spec_of(name).entry() for name in case.laws]),
-    } | ({provenance.EXPECTED_ERRORS: as_json(choice.entries())} if choice else {})
-    groups = {
-        "/surface": surface_group(computed, brief=brief),
-        "/contact": contact_group(computed, found, population),
-        "/rolling": rolling_group(computed),
-        "/spectra": over_frequency,
+        provenance.NUMERICS: as_json(numerics),
+        **expected,
     }
-    numerics = [{"name": name, "value": value} for name, value in _numerics(computed, choice, losses)]
-    scenario |= {provenance.NUMERICS: as_json(numerics)}
-    groups = {"/scenario": xarray.Dataset(attrs=attributes(scenario))} | groups | own
-    tree = xarray.DataTree.from_dict(groups)
-    tree.attrs = attributes(
-        {
-            provenance.TITLE: scene.title,
-            provenance.ASPERITY_VERSION: __version__,
-            provenance.SCHEMA_VERSION: VERSION,
-            provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
-            provenance.CASE: case.text,
-            provenance.SEED: case.seed,
-            provenance.CITATIONS: as_json(sources),
-            provenance.VERDICT: validity.verdict(computed, over_frequency, found, power, choice),
-            provenance.WARNINGS: as_json(_collected(caught)),
-        }
-    )
-    return tree
+    result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
+    told: Values = {
+        provenance.TITLE: scene.title,
+        provenance.ASPERITY_VERSION: __version__,
+        provenance.SCHEMA_VERSION: VERSION,
+        provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
+        provenance.CASE: case.text,
+        provenance.SEED: case.seed,
+        provenance.CITATIONS: as_json(sources),
+        provenance.VERDICT: validity.verdict(computed, in_bands, found, power, choice),
+        provenance.WARNINGS: as_json(_collected(caught)),  # those of laying out are among them
+    }
+    result.attrs = group(told).attrs
+    return result
 
 
 def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
@@ -173,12 +166,12 @@ def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
         yield "modes of what is rolled over", f"{len(over.natural_frequencies)}"
 
 
-def rolling_group(computed: Computed) -> xarray.Dataset:
+def rolling_group(computed: Computed) -> Values:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
     scene, stack, first = computed.scene, computed.stacked, computed.first
     runs, losses = computed.runs.values(), [run.contact_loss for run in computed.runs.values()]
     over, rolls = (getattr(schema, name.upper()) for name in scene.displacements)
-    laid_out: dict[Entry, Any] = {
+    laid_out: Values = {
         rolling.LAW: list(computed.runs),
         rolling.TIME: first.time,
         rolling.POSITION: first.positions[0],
@@ -199,6 +192,7 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
         schema.ENERGY_TERM: list(first.energy.shares),
         schema.ENERGY: [list(run.energy.shares.values()) for run in runs],
         schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
+        rolling.SPEED: computed.case.speed,
     }
     if scene.sensors:
         laid_out |= {schema.ROLLING_SENSOR: scene.sensors, schema.ACCELERATION: stack("acceleration")}
@@ -206,7 +200,7 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
         moved, velocity = computed.points
         laid_out |= {schema.ROLLING_POINT: scene.points}
         laid_out |= {schema.POINT_DISPLACEMENT: moved, schema.POINT_VELOCITY: velocity}
-    return xarray.Dataset(variables(laid_out), attrs=attributes({rolling.SPEED: computed.case.speed}))
+    return laid_out
 
 
 def _motion(computed: Computed) -> Array:
@@ -215,7 +209,7 @@ def _motion(computed: Computed) -> Array:
     return np.stack([-levers * np.concatenate(run.degrees_of_freedom) for run in computed.runs.values()])
 
 
-def spectra_group(computed: Computed) -> xarray.Dataset:
+def spectra_group(computed: Computed) -> Values:
     """Lay out PSDs and one-third octaves of force and motion, and what follows from them for sound.
 
     With how sure the levels are, and how far the laws are from each other.
@@ -223,7 +217,7 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
     scene, forces, shown = computed.scene, computed.stacked("contact_force"), computed.shown
     density = computed.force_psd.mean(axis=1)
     level = computed.levels(density)
-    laid_out: dict[Entry, Any] = {
+    laid_out: Values = {
         spectra.LAW: list(computed.runs),
         spectra.FREQUENCY: computed.frequency[shown],
         spectra.BAND: computed.band,
@@ -245,18 +239,16 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
         laid_out[schema.SPECTRA_SENSOR] = scene.sensors
         laid_out[schema.ACCELERATION_PSD] = density[..., shown]
         laid_out[schema.ACCELERATION_LEVEL] = computed.levels(density, schema.ACCELERATION_REFERENCE)
-    facts = {}
     if isinstance(scene.over, Track):
-        laid_out |= track.track_spectra(computed)
-        facts = attributes(track.tones(computed))
-    return xarray.Dataset(variables(laid_out), attrs=facts)
+        laid_out |= track.track_spectra(computed) | track.tones(computed)
+    return laid_out
 
 
 PLACES = 8
 """Places along the record at which the linear contact is looked at."""
 
 
-def sureness(computed: Computed) -> dict[Entry, Any]:
+def sureness(computed: Computed) -> Values:
     """Lay out how sure the levels of bands are: B T, chance, and start.
 
     By the first contact: others of one path hold much the same.
@@ -277,7 +269,7 @@ def sureness(computed: Computed) -> dict[Entry, Any]:
     }
 
 
-def level_differences(names: list[str], force_level: Array) -> dict[Entry, xarray.Variable]:
+def level_differences(names: list[str], force_level: Array) -> Values:
     """Differences of force levels (laws, bands), dB, to the linear laws, and to a reference if any."""
     compared = {validity.difference_to(law): law for law in laws.baselines(names)}
     if (solved := laws.reference(names)) is not None:
@@ -288,7 +280,7 @@ def level_differences(names: list[str], force_level: Array) -> dict[Entry, xarra
     }
 
 
-def _bodies(computed: Computed) -> dict[Entry, Any]:
+def _bodies(computed: Computed) -> Values:
     """Acceleration of the bodies in their degrees of freedom, from second differences of their motion."""
     step = computed.case.time_step
     curvature = np.pad(np.diff(_motion(computed), 2) / step**2, ((0, 0), (0, 0), (1, 1)), mode="edge")

@@ -6,7 +6,6 @@ import math
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray
@@ -20,7 +19,7 @@ from asperity.scenarios.scene import AtContact, Scene, linear_force_psd
 from asperity.scenes import noise, schema
 from asperity.scenes.compute import Computed
 from asperity.scenes.validity import signed_level
-from asperity.schema import Attribute, Entry, attributes, variables
+from asperity.schema import Entry, Values
 from asperity.spectra import (
     LEAST_PRODUCT,
     averaging_time,
@@ -35,12 +34,12 @@ from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
 
-def track_spectra(computed: Computed) -> dict[Entry, Any]:
+def track_spectra(computed: Computed) -> Values:
     """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track."""
     shown, case = computed.shown, computed.case
     reference, texture = linear_reference(computed)
     velocity = computed.psd(computed.points[1])
-    laid_out: dict[Entry, Any] = {
+    laid_out: Values = {
         schema.TEXTURE_PSD: texture[shown],
         schema.LINEAR_REFERENCE_PSD: reference[shown],
         schema.LINEAR_REFERENCE_LEVEL: computed.levels(reference),
@@ -129,7 +128,7 @@ def coupled_force_psd(
     return np.asarray(density / at.size)
 
 
-def _roughness(computed: Computed) -> dict[Entry, Any]:
+def _roughness(computed: Computed) -> Values:
     """Band levels of rail and wheel over wavelength, without flat and joint."""
     textures, spacing = computed.textures, computed.case.contact.spacing
     lines = {**textures.parts, "combined": textures.line}
@@ -145,7 +144,7 @@ def _roughness(computed: Computed) -> dict[Entry, Any]:
     }
 
 
-def tones(computed: Computed) -> dict[Attribute, float]:
+def tones(computed: Computed) -> Values:
     """Frequencies that speed, track and wheel have of themselves."""
     case, pinned = computed.case, computed.track.pinned_pinned_frequency
     half = 0.5 * case.speed / computed.track.sleeper_spacing
@@ -172,7 +171,7 @@ KERNEL_LAG = 0.25
 """Longest lag of the moving kernel that is kept in a result, s."""
 
 
-def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
+def track_group(computed: Computed, losses: LossFactorError) -> Values:
     """Lay out what the wheel rolls on: receptances, decay rates, moving kernel, loss factors and numbers.
 
     None of it depends on what has rolled.
@@ -185,7 +184,7 @@ def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
     positions, taps = kernel.weights.shape
     rows = np.arange(0, positions, max(1, positions // KERNEL_STARTS))
     kept = slice(0, min(taps, round(KERNEL_LAG / kernel.time_step)))
-    laid_out: dict[Entry, Any] = {
+    laid_out: Values = {
         schema.TRACK_FREQUENCY: frequency,
         schema.RECEPTANCE_MIDSPAN: np.abs(midspan),
         schema.RECEPTANCE_MIDSPAN_PHASE: np.angle(midspan),
@@ -199,17 +198,16 @@ def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
         schema.START_POSITION: rows * track.sleeper_spacing / positions,
         schema.LAG: kernel.lag[kept],
         schema.MOVING_KERNEL: kernel.weights[rows, kept] / kernel.time_step,
-        **relaxed(losses),
-    }
-    facts: dict[Attribute, Any] = {fact: getattr(track, fact.name) for fact in OF_TRACK} | {
+        **{fact: getattr(track, fact.name) for fact in OF_TRACK},
         schema.STATIC_DEFLECTION: track.static_deflection(load, half),
         schema.STATIC_DEFLECTION_IN_TIME: kernel.track.static_deflection(load, half),
         schema.KERNEL_METHOD: "scatter",
+        **relaxed(losses),
     }
     if isinstance(rail.direct, RailPoles):
-        facts |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.direct.fit_error}
-        facts |= {schema.KERNEL_POLES: rail.direct.count}
-    return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
+        laid_out |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.direct.fit_error}
+        laid_out |= {schema.KERNEL_POLES: rail.direct.count}
+    return laid_out
 
 
 # --- what stands for the loss factors of a track in time, and how far the contact force is off for it
@@ -305,7 +303,7 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
     ]
 
 
-def relaxed(error: LossFactorError) -> dict[Entry, Any]:
+def relaxed(error: LossFactorError) -> Values:
     """Lay out the stiffnesses that relax, and the errors in bands; nothing without loss factors."""
     relaxations = causal_track(error.track).relaxations
     parts = {name: getattr(relaxations, name, None) for name in PARTS}

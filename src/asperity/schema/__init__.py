@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from types import ModuleType
 
-from asperity.schema.entry import Attribute, Entry, attributes, entry, variables
+from asperity.schema.entry import Attribute, Entry, Values, entry, group, tree
 
 VERSION = 2
 """Of the schema, in every result. Raise it where a name, dimension, unit or meaning changes or goes."""
 
-__all__ = ["VERSION", "Attribute", "Entry", "attributes", "contents_of", "entry", "variables"]
+__all__ = ["VERSION", "Attribute", "Entry", "Values", "contents_of", "entry", "group", "tree"]
 
 
 def contents_of(*modules: ModuleType) -> tuple[list[Entry], list[Attribute]]:

@@ -82,16 +82,28 @@ class Attribute:
     condition: str = ""  # which results have it, where not all have
 
 
-def variables(values: Mapping[Entry, Any]) -> dict[str, xarray.Variable]:
-    """Variables by name, of one group: arrays are laid out, variables taken as they are."""
+Values = dict[Entry | Attribute, Any]
+"""What is laid out: arrays, or variables that are made already, and attributes, each by what it is."""
+
+
+def group(values: Mapping[Entry | Attribute, Any]) -> xarray.Dataset:
+    """Lay out one group."""
     import xarray
 
-    return {
-        entry.name: value if isinstance(value, xarray.Variable) else entry.variable(value)
-        for entry, value in values.items()
+    held = {
+        item.name: value if isinstance(value, xarray.Variable) else item.variable(value)
+        for item, value in values.items()
+        if isinstance(item, Entry)
     }
+    told = {item.name: value for item, value in values.items() if isinstance(item, Attribute)}
+    return xarray.Dataset(held, attrs=told)
 
 
-def attributes(values: Mapping[Attribute, Any]) -> dict[str, Any]:
-    """Attributes by name, of one group."""
-    return {attribute.name: value for attribute, value in values.items()}
+def tree(values: Mapping[Entry | Attribute, Any]) -> xarray.DataTree:
+    """Lay out all groups, in the order in which they come first."""
+    import xarray
+
+    groups: dict[str, Values] = {}
+    for item, value in values.items():
+        groups.setdefault(f"/{item.group}", {})[item] = value
+    return xarray.DataTree.from_dict({name: group(held) for name, held in groups.items()})
