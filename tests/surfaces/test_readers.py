@@ -290,12 +290,6 @@ def test_instrument_file_that_lacks_something(measured, monkeypatch):
         ("al3d-1.al3d", {}, (200, 296), 4.38027e-7),
         ("plu-1.plu", {}, (768, 576), 1.66e-6),
         ("rubber_x3p.x3p", {}, (860, 634), 2.2799e-6),
-        (
-            "aa5754_um.npz",
-            {"array": "polished", "height_unit": "um", "pixel": "1.5625 um", "index": 0},
-            (512, 512),
-            1.5625e-6,
-        ),
     ],
 )
 @pytest.mark.filterwarnings("ignore::asperity.errors.MissingPointsWarning")
