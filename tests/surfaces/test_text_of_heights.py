@@ -49,6 +49,7 @@ ANY_ORDER = points(",", np.random.default_rng(3).permutation(PLACES))
         (";;;\n" + matrix(";"), HINTS),
         ("# unit: um\n# dx = 2 um\n# dy = 3 um\n" + matrix(" "), {}),
         (f"x (um),y (um),z (um)\n{ANY_ORDER}", {}),
+        (f"x (um),y,z (um)\n{ANY_ORDER}", {}),
         (f"x (mm),y (mm),z (nm)\n{ANY_ORDER}", HINTS),  # a hint is stronger
     ],
 )

@@ -99,10 +99,6 @@ def texture_direction(surface: HeightMap) -> float:
 
 CORRELATION_THRESHOLD = 0.2
 """Default of ISO 25178-3 for Sal and Str."""
-LINES = 8
-"""Lines whose spectra along are made at a time."""
-TOGETHER = 512
-"""Wavenumbers whose spectra across are made at a time."""
 
 
 def autocorrelation(surface: HeightMap) -> Array:
@@ -145,14 +141,9 @@ class LagSums:
     def add(self, heights: Array) -> None:
         """Add a piece, (rows, columns) about the mean, m."""
         self.rows.append(len(heights))
-        along = np.empty((self.length // 2 + 1, self.columns), dtype=np.complex128)
-        for first in range(0, self.columns, LINES):
-            lines = heights[:, first : first + LINES]
-            along[:, first : first + LINES] = fft.rfft(lines, self.length, axis=0, workers=thread_count())
-        for first in range(0, len(along), TOGETHER):
-            some = slice(first, first + TOGETHER)
-            spectrum = fft.fft(along[some], self.width, axis=1)
-            self.power[some] += spectrum.real**2 + spectrum.imag**2
+        spectrum = fft.rfft(heights, self.length, axis=0, workers=thread_count())
+        spectrum = fft.fft(spectrum, self.width, axis=1, overwrite_x=True, workers=thread_count())
+        self.power += spectrum.real**2 + spectrum.imag**2
 
     def sums(self) -> Array:
         """Sums of products, m², (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle."""
@@ -164,10 +155,7 @@ class LagSums:
 
     def means(self) -> Array:
         """Mean products, m², of pieces in which no height is missing, as `sums`."""
-        means, (along, across) = self.sums(), self.pairs()
-        for first in range(0, len(means), TOGETHER):
-            means[first : first + TOGETHER] /= np.outer(along[first : first + TOGETHER], across)
-        return means
+        return self.sums() / np.outer(*self.pairs())
 
     def pairs(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Numbers of pairs of pieces without a missing height: at lags along, times those at lags across."""

@@ -227,10 +227,6 @@ PIECE = 2**20
 """Points of a strip that are looked at in one go."""
 FEWEST_ROWS = 1024
 """Rows of such a piece, at least: correlations are known up to half of them."""
-STRETCH = 256
-"""Rows of a piece that are looked at together: few enough to stay in the processor's cache."""
-LINES = 8
-"""Lines of a piece whose spectra are made together."""
 BINS = 80
 MARGIN = 3
 """Neighbours on either side that the slope at a point needs."""
@@ -268,21 +264,24 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     edges = np.linspace(low - mean, (high if high > low else low + 1e-12) - mean, BINS + 1)
     lengths = [end - start for start, end in bounds]
     lags = LagSums(max(lengths), strip.shape[1], min(lengths) // 2)
-    sums = _Sums(strip.spacing, edges, segment, lags)
+    pieces = []
     for start, end in bounds:
         before, beyond = max(first, start - MARGIN), min(stop, end + MARGIN)
-        sums.add(strip.rows(before, beyond) - mean, slice(start - before, end - before))
+        rows, inner = strip.rows(before, beyond) - mean, slice(start - before, end - before)
+        pieces.append(_sums(rows, inner, strip.spacing, edges, segment))
+        lags.add(rows[inner])
+    powers, slopes, counts, spectra, segments = (sum(each) for each in zip(*pieces, strict=True))
     statistics = []
     if high > low:
         band = (2.0 * min(strip.spacing), max((stop - first) * strip.spacing[0], strip.size[1]))
-        values = _amplitudes(sums.powers / points, high - low)
-        values |= {"dq": np.sqrt(sums.square / sums.sloped), "dr": sums.stretch / sums.sloped}
+        values = _amplitudes(powers / points, high - low)
+        values |= {"dq": np.sqrt(slopes[0] / slopes[2]), "dr": slopes[1] / slopes[2]}
         shortest, longest = lengths_of(lags.means(), strip.spacing)
         values |= {"al": shortest, "tr": shortest / longest}
         statistics = _statistics("S", values, band)
-    density = np.asarray(sums.counts / (points * np.diff(edges)))
+    density = np.asarray(counts / (points * np.diff(edges)))
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
-    return StripSurvey(statistics, edges, density, wavenumber, np.asarray(sums.spectrum / sums.segments))
+    return StripSurvey(statistics, edges, density, wavenumber, np.asarray(spectra / segments))
 
 
 def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int, int]]:
@@ -294,43 +293,21 @@ def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int
     return list(pairwise(edges.tolist()))
 
 
-class _Sums:
-    """What is added up over the pieces of a strip."""
+def _sums(
+    rows: Array, inner: slice, spacing: tuple[float, float], edges: Array, segment: int
+) -> tuple[Array, ...]:
+    """What is added up over pieces of a strip, of rows about the mean, m, of which the inner ones count.
 
-    def __init__(self, spacing: tuple[float, float], edges: Array, segment: int, lags: LagSums) -> None:
-        self.spacing, self.edges, self.segment, self.lags = spacing, edges, segment, lags
-        self.powers = np.zeros(4)  # |z|, z², z³, z⁴
-        self.square = self.stretch = 0.0
-        self.sloped = self.segments = 0
-        self.counts = np.zeros(len(edges) - 1)
-        self.spectrum = np.zeros(segment // 2 + 1)
-
-    def add(self, heights: Array, inner: slice) -> None:
-        """Add a piece about the mean, m; slopes need the rows beside it."""
-        for first in range(MARGIN, len(heights) - MARGIN, STRETCH):
-            stop = min(first + STRETCH, len(heights) - MARGIN)
-            self._add_slopes(heights[first - MARGIN : stop + MARGIN])
-        z = heights[inner]
-        for first in range(0, len(z), STRETCH):
-            self._add_heights(z[first : first + STRETCH])
-        self.lags.add(z)
-        overlap = self.segment // 2
-        count = (len(z) - overlap) // (self.segment - overlap)
-        for first in range(0, z.shape[1], LINES):
-            lines = np.ascontiguousarray(z[:, first : first + LINES].T)
-            _, density = psd(lines, self.spacing[0], segment=self.segment)
-            self.spectrum += count / z.shape[1] * density.sum(axis=0)
-        self.segments += count
-
-    def _add_slopes(self, rows: Array) -> None:
-        """Add what slopes are at all points but those within the margin."""
-        square = _inner_slope(rows[:, MARGIN:-MARGIN], self.spacing[0], 0) ** 2
-        square += _inner_slope(rows[MARGIN:-MARGIN], self.spacing[1], 1) ** 2
-        self.square += float(square.sum())
-        self.stretch += float((np.sqrt(1.0 + square) - 1.0).sum())
-        self.sloped += square.size
-
-    def _add_heights(self, z: Array) -> None:
-        squared = z * z
-        self.powers += [np.abs(z).sum(), squared.sum(), (squared * z).sum(), (squared * squared).sum()]
-        self.counts += np.histogram(z, len(self.counts), (self.edges[0], self.edges[-1]))[0]
+    Of |z|, z², z³ and z⁴; of squares of slopes, of developed areas beyond the plane's, and the number of
+    these; numbers of heights between edges; spectra, m³, and the number of segments that they are of.
+    """
+    square = _inner_slope(rows[:, MARGIN:-MARGIN], spacing[0], 0) ** 2
+    square += _inner_slope(rows[MARGIN:-MARGIN], spacing[1], 1) ** 2
+    slopes = np.array([square.sum(), (np.sqrt(1.0 + square) - 1.0).sum(), square.size])
+    z = rows[inner]
+    squared = z * z
+    powers = np.array([np.abs(z).sum(), squared.sum(), (squared * z).sum(), (squared * squared).sum()])
+    counts = np.histogram(z, BINS, (edges[0], edges[-1]))[0].astype(np.float64)
+    segments = np.array((len(z) - segment // 2) // (segment - segment // 2), dtype=np.float64)
+    density = psd(np.ascontiguousarray(z.T), spacing[0], segment=segment)[1]
+    return powers, slopes, counts, segments * density.mean(axis=0), segments
