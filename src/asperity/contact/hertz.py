@@ -10,8 +10,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array
-from asperity.errors import HalfSpaceWarning, InputError, percent
+from asperity.arguments import Array, positive, require
+from asperity.errors import HalfSpaceWarning, percent
 
 HALVINGS = 56
 """Of the interval that holds the logarithm of the axis ratio, until its ends are neighbours."""
@@ -46,9 +46,7 @@ class Hertz:
 
     def __post_init__(self) -> None:
         for name in ("modulus", "radius_x", "radius_y"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise InputError(f"Hertz {name}", value, "a positive finite number in SI units")
+            positive(f"Hertz {name}", getattr(self, name))
 
     @cached_property
     def _shape(self) -> tuple[float, float, float]:
@@ -206,13 +204,13 @@ def relative_radius(*radii: float, what: str = "radii of the bodies (m)") -> flo
         not open.
     """
     for radius in radii:
-        if math.isnan(radius) or radius == 0.0:
-            raise InputError(what, radius, "numbers other than 0; infinite where a body is flat")
+        allowed = "numbers other than 0; infinite where a body is flat"
+        require(not math.isnan(radius) and radius != 0.0, what, radius, allowed)
     curvature = sum(1.0 / radius for radius in radii)
-    if curvature <= 1e-9 * max(abs(1.0 / radius) for radius in radii):
-        received = " and ".join(f"{radius:.6g}" for radius in radii)
-        remedy = "A hollow must be rounder than what lies in it: of a greater radius."
-        raise InputError(what, received, "bodies whose gap opens on both sides", remedy)
+    opens = curvature > 1e-9 * max(abs(1.0 / radius) for radius in radii)
+    received = " and ".join(f"{radius:.6g}" for radius in radii)
+    remedy = "A hollow must be rounder than what lies in it: of a greater radius."
+    require(opens, what, received, "bodies whose gap opens on both sides", remedy)
     return 1.0 / curvature
 
 
@@ -252,8 +250,7 @@ def in_groove(
     '0.16 mm along, 1.54 mm across'
     """
     for what, value in (("radius of the ball (m)", radius), ("radius of the groove (m)", groove_radius)):
-        if not value > 0.0:
-            raise InputError(what, value, "a positive number")
+        require(value > 0.0, what, value, "a positive number")
     along = relative_radius(radius, raceway_radius, what="radii of ball and raceway (m)")
     across = relative_radius(radius, -groove_radius, what="radii of ball and groove (m)")
     return Hertz(modulus, along, across)
@@ -327,52 +324,38 @@ def check_half_space(
         _slender(across, radius, "across the path", cause)
         return
     if radius > CONFORMITY * groove_radius:
-        warnings.warn(
+        _warn(
             f"The radius of the ball is {percent(1.0 - radius / groove_radius)} below that of the groove: "
             "the width of the contact follows from form errors of the groove as much as from its radius. "
-            "Take the measured radius.",
-            HalfSpaceWarning,
-            stacklevel=2,
+            "Take the measured radius."
         )
     angle = across / groove_radius
-    if groove_width is not None and groove_radius * _edge(groove_width, groove_radius) < across:
+    if groove_width is not None:
+        carries = groove_radius * math.asin(min(0.5 * groove_width / groove_radius, 1.0)) >= across
         received = f"{groove_width * 1e3:.4g} mm, and a contact of {2e3 * across:.4g} mm under {cause}"
-        raise InputError(
-            "width of the groove",
-            received,
-            "a groove wider than the contact",
-            "The edge would carry. Press less.",
-        )
-    if angle > HOLLOW[1]:
-        received = f"{cause}, a contact that fills {angle:.2g} rad of the groove to either side"
-        allowed = f"at most {HOLLOW[1]:g} rad, where the groove is an elastic half-space"
-        raise InputError(
-            "contact", received, allowed, "Lower the load, or take a groove of a greater radius."
-        )
+        allowed, remedy = "a groove wider than the contact", "The edge would carry. Press less."
+        require(carries, "width of the groove", received, allowed, remedy)
+    fills = f"fills {angle:.2g} rad of the groove to either side"
+    allowed = f"at most {HOLLOW[1]:g} rad, where the groove is an elastic half-space"
+    remedy = "Lower the load, or take a groove of a greater radius."
+    require(angle <= HOLLOW[1], "contact", f"{cause}, a contact that {fills}", allowed, remedy)
     if angle > HOLLOW[0]:
-        warnings.warn(
-            f"Under {cause} the contact fills {angle:.2g} rad of the groove to either side, more than "
-            f"{HOLLOW[0]:g}: the plane of the half-space makes forces too large by about "
-            f"{percent(FORCE_LOST * angle**2)}. Lower the load.",
-            HalfSpaceWarning,
-            stacklevel=2,
+        _warn(
+            f"Under {cause} the contact {fills}, more than {HOLLOW[0]:g}: the plane of the half-space makes "
+            f"forces too large by about {percent(FORCE_LOST * angle**2)}. Lower the load."
         )
-
-
-def _edge(width: float, radius: float) -> float:
-    """Angle of a groove's edge, rad."""
-    return math.asin(min(0.5 * width / radius, 1.0))
 
 
 def _slender(a: float, radius: float, direction: str, cause: str) -> None:
-    if a > SLENDER[1] * radius:
-        received = f"{cause}, a semi-axis of {a / radius:.2g} R {direction}"
-        allowed = "at most R/3, where the body is an elastic half-space"
-        raise InputError("contact", received, allowed, "Lower the load, or take a larger body.")
+    axis, remedy = f"a semi-axis of {a / radius:.2g} R {direction}", "Lower the load, or take a larger body."
+    allowed = "at most R/3, where the body is an elastic half-space"
+    require(a <= SLENDER[1] * radius, "contact", f"{cause}, {axis}", allowed, remedy)
     if a > SLENDER[0] * radius:
-        warnings.warn(
-            f"Under {cause} the contact has a semi-axis of {a / radius:.2g} R {direction}, above 0.1 R: the "
-            "elastic half-space overestimates the stiffness by some per cent. Lower the load.",
-            HalfSpaceWarning,
-            stacklevel=3,
+        _warn(
+            f"Under {cause} the contact has {axis}, above 0.1 R: the elastic half-space overestimates the "
+            "stiffness by some per cent. Lower the load."
         )
+
+
+def _warn(message: str) -> None:
+    warnings.warn(message, HalfSpaceWarning, stacklevel=3)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -13,8 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-from asperity.arguments import Array
-from asperity.errors import InputError
+from asperity.arguments import Array, require
 from asperity.kernels.piecewise import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
 from asperity.spectra import hann_window
@@ -98,10 +96,9 @@ def filter_spectra(
     f, z = np.atleast_2d(forces), np.atleast_2d(lines)
     states, m = f.shape
     stride, rest = divmod(z.shape[1], m)
-    if rest or m < FEWEST_POSITIONS:
-        received = f"{m} forces, {z.shape[1]} heights"
-        allowed = f"a whole number of heights a force, at least {FEWEST_POSITIONS}"
-        raise InputError("scan for the filter", received, allowed)
+    allowed = f"a whole number of heights a force, at least {FEWEST_POSITIONS}"
+    enough = not rest and m >= FEWEST_POSITIONS
+    require(enough, "scan for the filter", f"{m} forces, {z.shape[1]} heights", allowed)
     middle = z.shape[0] // 2
     half = np.full(states, middle) if half_widths is None else np.minimum(half_widths, middle)
     highest = int(HIGHEST * (m // 2))
@@ -109,8 +106,7 @@ def filter_spectra(
     texture = _windowed(z)[:, 1 : highest + 1] / stride
     under = [texture[middle - h : middle + h + 1] for h in half]
     power = np.array([np.mean(np.abs(t) ** 2, axis=0) for t in under])
-    if not np.ptp(z) > 0.0:
-        raise InputError("line textures of the filter", "a flat surface", "a surface with texture")
+    require(np.ptp(z) > 0.0, "line textures of the filter", "a flat surface", "a surface with texture")
     mean = np.array([t.mean(axis=0) for t in under])
     wavenumber = np.arange(1, highest + 1) / (z.shape[1] * spacing)
     band = np.round(BANDS * np.log2(wavenumber / wavenumber[0])).astype(int)
@@ -157,28 +153,19 @@ def estimate_filter(
     scale = np.where(printed, np.where(anchored > 0.0, anchored, 1.0), tangent)
     forces = forces / scale[:, :, None] ** 2
     excited = _excited(k, whole[0] / strips[0].bins)
+    weights = _neighbours(k, excited)
     known = np.where(excited, lines, np.nan)
     if degree is None:
-        fits = _averaged(k, excited, forces, lines)
-        fitted = _averaged(k, excited, forces.sum(axis=0), whole)
+        fits = _averaged(weights, forces, lines)
+        fitted = _averaged(weights, forces.sum(axis=0), whole)
     else:
         fits = np.array([_polynomials(k, excited, r, degree, printed) for r in np.sqrt(forces / known)])
         fitted = fits.mean(axis=0)
-    signed, coherence = _regressed(k, excited, strips)
-    return ContactFilter(
-        np.asarray(approaches, dtype=np.float64),
-        k,
-        excited,
-        np.sqrt(forces.sum(axis=0) / known.sum(axis=0)),
-        fitted,
-        fits.std(axis=0, ddof=1) if len(fits) > 1 else np.zeros(fits.shape[1:]),
-        signed / tangent[:, None],
-        coherence,
-        anchored.mean(axis=0),
-        tangent,
-        (whole * low).sum(axis=1) / whole.sum(axis=1),
-        normalise,
-    )
+    raw = np.sqrt(forces.sum(axis=0) / known.sum(axis=0))
+    spread = fits.std(axis=0, ddof=1) if len(fits) > 1 else np.zeros(fits.shape[1:])
+    share, states = (whole * low).sum(axis=1) / whole.sum(axis=1), np.asarray(approaches, dtype=np.float64)
+    spectra = (raw, fitted, spread, *_regressed(weights, tangent, strips))
+    return ContactFilter(states, k, excited, *spectra, anchored.mean(axis=0), tangent, share, normalise)
 
 
 def _excited(wavenumber: Array, density: Array) -> NDArray[np.bool_]:
@@ -206,21 +193,19 @@ def _neighbours(wavenumber: Array, excited: NDArray[np.bool_]) -> Array:
     return np.asarray(weights * excited * wavenumber**2)
 
 
-def _averaged(wavenumber: Array, excited: NDArray[np.bool_], force: Array, lines: Array) -> Array:
+def _averaged(weights: Array, force: Array, lines: Array) -> Array:
     """Root of the ratio of two powers, each averaged about every wavenumber."""
-    weights = _neighbours(wavenumber, excited)
     return np.clip(np.sqrt((force @ weights.T) / (lines @ weights.T)), FLOOR, 1.0)
 
 
-def _regressed(
-    wavenumber: Array, excited: NDArray[np.bool_], strips: Sequence[FilterSpectra]
-) -> tuple[Array, Array]:
-    """Force regressed on the mean line, N/m, and the coherence of the two."""
-    weights = _neighbours(wavenumber, excited).T
-    cross = np.sum([s.cross for s in strips], axis=0) @ weights
-    mean = np.sum([s.mean_line for s in strips], axis=0) @ weights
-    force = np.sum([s.force for s in strips], axis=0) @ weights
-    return np.real(cross) / mean, np.abs(cross) ** 2 / np.maximum(mean * force, np.finfo(float).tiny)
+def _regressed(weights: Array, tangent: Array, strips: Sequence[FilterSpectra]) -> tuple[Array, Array]:
+    """Force regressed on the mean line, over k_t (s,), N/m, and the coherence of the two."""
+    cross, mean, force = (
+        np.sum([getattr(s, name) for s in strips], axis=0) @ weights.T
+        for name in ("cross", "mean_line", "force")
+    )
+    coherence = np.abs(cross) ** 2 / np.maximum(mean * force, np.finfo(float).tiny)
+    return np.real(cross) / mean / tangent[:, None], coherence
 
 
 def _polynomials(
@@ -244,19 +229,10 @@ def closed_form(approaches: Array, wavenumber: Array, semi_axes: Array, stiffnes
     """
     signed = punch_filter(wavenumber[None, :], semi_axes[:, None])
     none, every = np.full_like(signed, math.nan), np.ones_like(signed)
+    spectra = none, np.clip(np.abs(signed), FLOOR, 1.0), np.zeros_like(signed), signed, every
+    share, excited = np.ones(stiffness.shape), np.ones(wavenumber.shape, dtype=bool)
     return ContactFilter(
-        approaches,
-        wavenumber,
-        np.ones(wavenumber.shape, dtype=bool),
-        none,
-        np.clip(np.abs(signed), FLOOR, 1.0),
-        np.zeros_like(signed),
-        signed,
-        every,
-        stiffness,
-        stiffness,
-        np.ones(stiffness.shape),
-        "tangent",
+        approaches, wavenumber, excited, *spectra, stiffness, stiffness, share, normalise="tangent"
     )
 
 
@@ -332,44 +308,16 @@ def design_fir(
     the taps of each state sum to one.
     """
     if order is not None:
-        if order < 2 or order % 2:
-            raise InputError(
-                "order of the contact filter", order, "an even number ≥ 2", "J + 1 taps need J even."
-            )
+        even = order >= 2 and order % 2 == 0
+        require(even, "order of the contact filter", order, "an even number ≥ 2", "J + 1 taps need J even.")
         return LineFilter(contact_filter, _by_window(contact_filter, spacing, order), spacing)
-    most = max(2, 2 * (min(most, LARGEST_ORDER) // 2))
-    with one_thread_in_linear_algebra():
-        taps = _of_first_order(contact_filter, spacing, min(max(2, least), most), most)
-    return LineFilter(contact_filter, taps, spacing)
-
-
-def _of_first_order(contact_filter: ContactFilter, spacing: float, order: int, most: int) -> Array:
-    """Taps (s, J + 1) of the first order, from one on, of which no state misses the fit, or of the largest.
-
-    The state that missed it most is asked first: the others need no taps where it misses it again.
-    """
-    fine = _fine(contact_filter)
-    fitted, worst = _target(contact_filter, fine), 0
-
-    @cache
-    def target(points: int) -> Array:
-        return _target(contact_filter, np.arange(points // 2 + 1) / (points * spacing))
-
-    at_zero = _target(contact_filter, np.zeros(1))
+    fine, most = _fine(contact_filter), max(2, 2 * (min(most, LARGEST_ORDER) // 2))
+    fitted, order = _target(contact_filter, fine), min(max(2, least), most)
     while True:
-        points = 2 ** math.ceil(math.log2(max(8 * order, 2048)))
-        for states in ([worst], range(len(fitted))):
-            designed = [
-                _least_relative_error(target(points)[k], contact_filter.wavenumber[0] * spacing, order)
-                for k in states
-            ]
-            taps = np.array(designed) * at_zero[states] / np.sum(designed, axis=1, keepdims=True)
-            missed = _missed(taps, spacing, fine, fitted[states])
-            if order < most and missed.max() > ACCURACY:
-                worst = states[int(np.argmax(missed))]
-                break
-        else:
-            return taps
+        with one_thread_in_linear_algebra():
+            taps = _of_least_relative_error(contact_filter, spacing, order)
+        if order == most or _missed(taps, spacing, fine, fitted).max() <= ACCURACY:
+            return LineFilter(contact_filter, taps, spacing)
         order = min(2 * math.ceil(0.5 * GROWTH * order), most)
 
 
@@ -382,23 +330,24 @@ def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> Arr
     return _summed(contact_filter, np.hamming(order + 1) * np.hstack((even[:, :0:-1], even)))
 
 
-def _least_relative_error(target: Array, lowest: float, order: int) -> Array:
-    """Taps (J + 1,) with the least squared relative error of the response, octave for octave.
+def _of_least_relative_error(contact_filter: ContactFilter, spacing: float, order: int) -> Array:
+    """Taps (s, J + 1) with the least squared relative error of the response, octave for octave.
 
-    The target (k,) is at equal steps from wavenumber zero to half the sampling one; below the lowest, in
-    cycles per point, all octaves count as that. A response Σ_j c_j cos jω has normal equations of sums and
-    differences of lags: those of the transforms of the weight and of the weighted target. As the weight is
-    positive, so are they definite.
+    Below the lowest wavenumber of the filter all octaves count as that. A response Σ_j c_j cos jω has normal
+    equations of sums and differences of lags: those of the transforms of the weight and of the weighted
+    target. As the weight is positive, so are they definite.
     """
-    points, count = 2 * (len(target) - 1), order // 2 + 1
-    wavenumber, least = np.arange(len(target)) / points, 10.0 ** ((DOWN_TO - 3.0) / 20.0)
-    weight = 1.0 / (np.maximum(target, least) ** 2 * np.maximum(wavenumber, lowest))
-    of_weight, of_target = np.fft.irfft(weight, points), np.fft.irfft(weight * target, points)
-    apart = sliding_window_view(np.concatenate([of_weight[count - 1 : 0 : -1], of_weight[:count]]), count)
-    together = sliding_window_view(of_weight[: 2 * count - 1], count)
-    normal = cho_factor(0.5 * (apart[::-1] + together), overwrite_a=True)
-    cosines = cho_solve(normal, of_target[:count])
-    return np.concatenate([0.5 * cosines[:0:-1], cosines[:1], 0.5 * cosines[1:]])
+    points, count = 2 ** math.ceil(math.log2(max(8 * order, 2048))), order // 2 + 1
+    wavenumber, least = np.arange(points // 2 + 1) / points, 10.0 ** ((DOWN_TO - 3.0) / 20.0)
+    octaves, taps = np.maximum(wavenumber, contact_filter.wavenumber[0] * spacing), []
+    for target in _target(contact_filter, wavenumber / spacing):
+        weight = 1.0 / (np.maximum(target, least) ** 2 * octaves)
+        of_weight, of_target = np.fft.irfft(weight, points), np.fft.irfft(weight * target, points)
+        apart = sliding_window_view(np.concatenate([of_weight[count - 1 : 0 : -1], of_weight[:count]]), count)
+        together = sliding_window_view(of_weight[: 2 * count - 1], count)
+        cosines = cho_solve(cho_factor(0.5 * (apart[::-1] + together), overwrite_a=True), of_target[:count])
+        taps.append(np.concatenate([0.5 * cosines[:0:-1], cosines[:1], 0.5 * cosines[1:]]))
+    return _summed(contact_filter, np.array(taps))
 
 
 def _fine(contact_filter: ContactFilter) -> Array:

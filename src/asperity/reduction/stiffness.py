@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from asperity.arguments import Array
+from asperity.arguments import Array, positive, require
 from asperity.contact import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
-from asperity.errors import InputError
 from asperity.kernels.piecewise import continued_to_touch, cubic_coefficients, monotone_slopes
 from asperity.progress import Progress
 from asperity.threads import in_order
@@ -28,9 +27,8 @@ class ForceCurve:
     """
 
     knots: Array  # (k,), approaches, m, increasing
-    coefficients: NDArray[
-        np.float64
-    ]  # (k − 1, 4), of g in each interval, highest power first, in (approach − knot)
+    # (k − 1, 4), of g in each interval, highest power first, in (approach − knot)
+    coefficients: Array
     exponent: float = 1.5  # of g in the force
     upper: float = np.inf  # largest approach that the data cover, m; beyond it the curve is a continuation
     bilateral: bool = False
@@ -63,14 +61,13 @@ class ForceCurve:
     @classmethod
     def hertz(cls, stiffness: float) -> ForceCurve:
         """Hertzian point contact, F = K s^1.5, exact everywhere; K in N/m^1.5, 4/3 E* sqrt(R) for a ball."""
-        _check_positive("Hertz constant (N/m^1.5)", stiffness)
-        slope = float(np.cbrt(stiffness)) ** 2
+        slope = float(np.cbrt(positive("Hertz constant (N/m^1.5)", stiffness))) ** 2
         return cls(np.array([0.0, 1.0]), np.array([[0.0, 0.0, slope, 0.0]]))
 
     @classmethod
     def linear(cls, force: float, stiffness: float, approach: float = 0.0) -> ForceCurve:
         """Linear spring through a working point, N, N/m and m, acting in tension too."""
-        _check_positive("contact stiffness (N/m)", stiffness)
+        positive("contact stiffness (N/m)", stiffness)
         knots = np.array([approach, approach + 1.0])
         return cls(knots, np.array([[0.0, 0.0, stiffness, force]]), 1.0, bilateral=True)
 
@@ -103,9 +100,8 @@ class ForceCurve:
         A force is not negative unless the curve is bilateral.
         """
         f = np.asarray(force, dtype=float)
-        if not self.bilateral and np.any(f < 0.0):
-            remedy = "A contact without adhesion only pushes."
-            raise InputError("contact force (N)", f.min(), "zero or more", remedy)
+        remedy, pushing = "A contact without adhesion only pushes.", self.bilateral or np.all(f >= 0.0)
+        require(pushing, "contact force (N)", f.min(initial=0.0), "zero or more", remedy)
         g = f if self.exponent == 1.0 else f ** (1.0 / self.exponent)
         interval = np.clip(np.searchsorted(self.coefficients[:, 3], g) - 1, 0, len(self.coefficients) - 1)
         cubic, square, slope, value = np.moveaxis(self.coefficients[interval], -1, 0)
@@ -136,36 +132,23 @@ class ForceCurve:
         return np.where(touching, np.maximum(g, 0.0), 0.0), np.where(touching, derivative, 0.0)
 
 
-def _check_positive(what: str, value: float) -> None:
-    if not (np.isfinite(value) and value > 0.0):
-        raise InputError(what, value, "a finite positive number")
-
-
 def _check_samples(approach: Array, force: Array) -> None:
-    if approach.ndim != 1 or approach.shape != force.shape:
-        raise InputError(
-            "force curve samples", f"shapes {approach.shape} and {force.shape}", "two lists of one length"
-        )
-    if not (np.all(np.isfinite(approach)) and np.all(np.isfinite(force))):
-        raise InputError("force curve samples", "NaN or infinite values", "finite numbers")
-    if np.any(np.diff(approach) <= 0.0):
-        raise InputError(
-            "approaches of the force curve", "not increasing", "strictly increasing approaches (m)"
-        )
-    positive = force > 0.0
-    if np.any(force < 0.0) or positive.sum() < 2:
-        received = f"{positive.sum()} positive and {np.sum(force < 0.0)} negative forces"
-        remedy = "Choose contact.approaches that reach into the contact."
-        raise InputError(
-            "forces of the force curve", received, "at least two positive, none negative", remedy
-        )
-    if np.any(np.diff(force[np.argmax(positive) :]) <= 0.0):
-        raise InputError(
-            "forces of the force curve",
-            "forces that fall or stay while the approach grows",
-            "strictly increasing forces once in contact (N)",
-            "Raise contact.samples, or lower numerics.force_accuracy.",
-        )
+    what, received = "force curve samples", f"shapes {approach.shape} and {force.shape}"
+    alike = approach.ndim == 1 and approach.shape == force.shape
+    require(alike, what, received, "two lists of one length")
+    finite = np.isfinite(approach).all() and np.isfinite(force).all()
+    require(finite, what, "NaN or infinite values", "finite numbers")
+    what, allowed = "approaches of the force curve", "strictly increasing approaches (m)"
+    require((np.diff(approach) > 0.0).all(), what, "not increasing", allowed)
+    what, positive, negative = "forces of the force curve", force > 0.0, np.count_nonzero(force < 0.0)
+    received = f"{positive.sum()} positive and {negative} negative forces"
+    remedy = "Choose contact.approaches that reach into the contact."
+    enough = positive.sum() >= 2 and not negative
+    require(enough, what, received, "at least two positive, none negative", remedy)
+    received = "forces that fall or stay while the approach grows"
+    remedy = "Raise contact.samples, or lower numerics.force_accuracy."
+    rising = np.diff(force[np.argmax(positive) :]) > 0.0
+    require(rising.all(), what, received, "strictly increasing forces once in contact (N)", remedy)
 
 
 def isolated_share(pressure: Array) -> float:
@@ -228,14 +211,11 @@ def patches(maps: Sequence[Array], shape: tuple[int, int], count: int, weights: 
     """
     result = []
     for index, heights in enumerate(maps):
-        spare = (heights.shape[0] - shape[0], heights.shape[1] - shape[1])
-        if min(spare) < 0:
-            raise InputError(
-                "window of the contact",
-                f"{shape[0]} × {shape[1]} cells",
-                f"no more than the map's {heights.shape[0]} × {heights.shape[1]} cells at this spacing",
-                "Choose a smaller contact.window or provide larger maps.",
-            )
+        (rows, lines), spare = heights.shape, (heights.shape[0] - shape[0], heights.shape[1] - shape[1])
+        allowed = f"no more than the map's {rows} × {lines} cells at this spacing"
+        remedy = "Choose a smaller contact.window or provide larger maps."
+        received = f"{shape[0]} × {shape[1]} cells"
+        require(min(spare) >= 0, "window of the contact", received, allowed, remedy)
         for i, j in _spread(spare, samples_of_maps(len(maps), count)[index]):
             cut = heights[i : i + shape[0], j : j + shape[1]]
             result.append(cut - weighted_mean(cut, weights))

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array
+from asperity.arguments import Array, finite_array, require
 from asperity.contact.scan import FORCE_ACCURACY, ScanJob, ScannedForces, solved_blocks, total
-from asperity.errors import ComputationError, InputError
+from asperity.errors import ComputationError
 from asperity.kernels.along import OVERLAP, splines_along
 from asperity.progress import Progress
 from asperity.reduction.texture import check_states, grid_index
@@ -36,13 +36,10 @@ class StoredForces:
         return np.concatenate(parts, axis=1)[:, first - offset : stop - offset]
 
     def _forces(self, index: int) -> Array:
-        found = self.cache.get(self.keys[index])
-        if found is None:
-            raise ComputationError(
-                "forces of the path are no longer in the cache",
-                "the run again: it recomputes what is missing",
-            )
-        return found["forces"]
+        if (found := self.cache.get(self.keys[index])) is not None:
+            return found["forces"]
+        remedy = "the run again: it recomputes what is missing"
+        raise ComputationError("forces of the path are no longer in the cache", remedy)
 
 
 def scan_into(
@@ -90,16 +87,13 @@ class ForceTable:
     touches: Array | None = None
 
     def __post_init__(self) -> None:
-        forces = self.forces
+        forces, approaches = self.forces, np.asarray(self.approaches, dtype=float)
         if not isinstance(forces, StoredForces):
             forces = np.asarray(forces, dtype=float)
-        approaches = np.asarray(self.approaches, dtype=float)
         _check_forces(forces, approaches, self.spacing)
-        if self.touches is not None and (
-            np.shape(self.touches) != forces.shape[1:] or not np.all(np.isfinite(self.touches))
-        ):
+        if self.touches is not None:
             allowed = f"{forces.shape[1]} finite approaches, one a position"
-            raise InputError("first touches of the force table", f"shape {np.shape(self.touches)}", allowed)
+            finite_array("first touches of the force table", self.touches, allowed, shape=(forces.shape[1],))
         object.__setattr__(self, "forces", forces)
         object.__setattr__(self, "approaches", approaches)
 
@@ -134,13 +128,8 @@ def _check_forces(forces: Array | StoredForces, approaches: Array, spacing: floa
         check_states("force table", piece, approaches, spacing)
         lowest, largest = min(lowest, piece.min()), max(largest, piece.max())
         fall = min(fall, np.diff(piece, axis=0).min(initial=0.0))
-    if len(approaches) < 2:
-        raise InputError(
-            "force table", "one state", "at least two states", "Give contact.approaches two or more."
-        )
-    if lowest < 0.0:
-        raise InputError("force table (N)", lowest, "forces of zero or more")
-    if fall < -FALL * largest:
-        raise InputError(
-            "force table", "forces that fall while the approach grows", "forces that rise with the approach"
-        )
+    what, remedy = "force table", "Give contact.approaches two or more."
+    require(len(approaches) >= 2, what, "one state", "at least two states", remedy)
+    require(lowest >= 0.0, "force table (N)", lowest, "forces of zero or more")
+    received, allowed = "forces that fall while the approach grows", "forces that rise with the approach"
+    require(fall >= -FALL * largest, what, received, allowed)

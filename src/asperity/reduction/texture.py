@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 
-from asperity.arguments import Array
-from asperity.errors import InputError
+from asperity.arguments import Array, positive, require
 from asperity.kernels.along import splines_along
 from asperity.surfaces.strip import Rows, Strip
 
@@ -23,9 +22,8 @@ class StateTexture:
     used.
     """
 
-    heights: NDArray[
-        np.float64
-    ]  # (s, m), at state i and position m, m, positive *away* from the contact (h = −z)
+    # (s, m), at state i and position m, m, positive *away* from the contact (h = −z)
+    heights: Array
     approaches: Array  # (s,), of the states, m, increasing
     start: float  # position of the first point on the path, m
     spacing: float  # distance of the points, m
@@ -62,15 +60,14 @@ def check_states(what: str, values: Array, approaches: Array, spacing: float) ->
 
     Approaches and spacing in m; `what` they are is for the message.
     """
-    if values.ndim != 2 or values.shape[0] != len(approaches) or values.shape[1] < 4:
-        received = f"{values.shape} values for {len(approaches)} states"
-        raise InputError(what, received, "an array (states, positions) with at least 4 positions")
-    if not (np.all(np.isfinite(values)) and np.all(np.isfinite(approaches))):
-        raise InputError(what, "NaN or infinite values", "finite numbers", "Fill missing points first.")
-    if np.any(np.diff(approaches) <= 0.0):
-        raise InputError(f"approaches of the {what}", approaches, "strictly increasing approaches (m)")
-    if not (np.isfinite(spacing) and spacing > 0.0):
-        raise InputError(f"spacing of the {what} (m)", spacing, "a finite positive number")
+    received, allowed = f"{values.shape} values for {len(approaches)} states", "an array (states, positions)"
+    shaped = values.ndim == 2 and values.shape[0] == len(approaches) and values.shape[1] >= 4
+    require(shaped, what, received, f"{allowed} with at least 4 positions")
+    finite = np.all(np.isfinite(values)) and np.all(np.isfinite(approaches))
+    require(finite, what, "NaN or infinite values", "finite numbers", "Fill missing points first.")
+    rising, allowed = np.all(np.diff(approaches) > 0.0), "strictly increasing approaches (m)"
+    require(rising, f"approaches of the {what}", approaches, allowed)
+    positive(f"spacing of the {what} (m)", spacing)
 
 
 def along_path(what: str, values: Array, start: float, spacing: float, positions: ArrayLike) -> Array:
@@ -90,13 +87,10 @@ def grid_index(what: str, points: int, start: float, spacing: float, positions: 
     index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
     last = points - 1
     slack = 1e-6  # of a spacing: rounding of the positions
-    if index.min() < -slack or index.max() > last + slack:
-        raise InputError(
-            "path (m)",
-            f"{start + spacing * index.min():.6g} to {start + spacing * index.max():.6g}",
-            f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known",
-            "Shorten the duration or provide a longer texture.",
-        )
+    received = f"{start + spacing * index.min():.6g} to {start + spacing * index.max():.6g}"
+    allowed = f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known"
+    inside = index.min() >= -slack and index.max() <= last + slack
+    require(inside, "path (m)", received, allowed, "Shorten the duration or provide a longer texture.")
     return np.clip(index, 0.0, last)
 
 
@@ -171,17 +165,11 @@ def areal_texture(
     axes = np.atleast_2d(np.asarray(semi_axes, dtype=np.float64))
     strip = Rows(heights) if isinstance(heights, np.ndarray) else heights
     n, ny = strip.shape
-    if ny % 2 == 0:
-        raise InputError(
-            "width of the texture strip", f"{ny} lines", "an odd number, so that one is the middle"
-        )
-    if axes[:, 1].max() > 0.5 * ny * spacing[1]:
-        raise InputError(
-            "width of the texture strip",
-            f"{ny * spacing[1]:.3g} m",
-            f"at least the width of the widest patch, {2 * axes[:, 1].max():.3g} m",
-            "Enlarge contact.window.",
-        )
+    what, allowed = "width of the texture strip", "an odd number, so that one is the middle"
+    require(ny % 2, what, f"{ny} lines", allowed)
+    width, widest = ny * spacing[1], 2 * axes[:, 1].max()
+    allowed = f"at least the width of the widest patch, {widest:.3g} m"
+    require(widest <= width, what, f"{width:.3g} m", allowed, "Enlarge contact.window.")
     middle = ny // 2
     halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]
     reach = max(half.shape[0] // 2 for half in halves)
