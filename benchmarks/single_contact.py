@@ -27,9 +27,9 @@ from solve_profile import bare
 from asperity import HalfSpace
 from asperity.contact import Hertz, halfspace
 from asperity.kernels.box import empty_box
-from asperity.kernels.contact import room
 from asperity.kernels.influence import convolution
 from asperity.kernels.options import LOOP, compiled
+from asperity.kernels.scanning import room
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS, RADIUS, LOAD = 115e9, 25e-3, 30.0

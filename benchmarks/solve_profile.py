@@ -28,8 +28,8 @@ from scan_step import MODULUS, problem
 
 from asperity.contact import HalfSpace, halfspace
 from asperity.contact.scan import ScanJob, scan_forces
-from asperity.kernels import contact, scanning
 from asperity.kernels import projected_cg as cg
+from asperity.kernels import scanning
 from asperity.kernels.box import Box
 from asperity.kernels.convolution import Convolution, convolve
 from asperity.kernels.lanes import width
@@ -113,10 +113,10 @@ def profile(cells: int) -> None:
     total, timed = scan_time(cells), Timed()
     p = problem(cells, options())
     with (
-        patch.object(contact, "solve", timed),
-        patch.object(contact, "convolution", interpreted(contact.convolution)),
-        patch.object(contact, "empty_box", interpreted(contact.empty_box)),
-        patch.object(scanning, "solve_contact", contact.solve_contact.py_func),
+        patch.object(scanning, "solve", timed),
+        patch.object(scanning, "convolution", interpreted(scanning.convolution)),
+        patch.object(scanning, "empty_box", interpreted(scanning.empty_box)),
+        patch.object(scanning, "solve_contact", scanning.solve_contact.py_func),
         patch.object(halfspace, "solve_positions", scanning.solve_positions.py_func),
     ):
         scan_forces(scan_job(p, p["approaches"][:1]), workers=1)

@@ -15,12 +15,11 @@ from asperity import arguments
 from asperity.arguments import Array, real, require
 from asperity.errors import Outcome, UnconvergedWarning
 from asperity.kernels.batched import convolve_padded, padded_spectrum, unit_indentation
-from asperity.kernels.contact import REACH, room
+from asperity.kernels.box import foundation_approach
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.influence import Influence, influence, influence_table, prepared
-from asperity.kernels.overlap import foundation_approach
 from asperity.kernels.projected_cg import inverse_stencil
-from asperity.kernels.scanning import Block, solve_positions
+from asperity.kernels.scanning import REACH, Block, room, solve_positions
 from asperity.progress import Progress
 from asperity.store import Cache
 from asperity.surfaces.heightmap import HeightMap

@@ -93,7 +93,7 @@ def _shift(
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _sum(values: NDArray[np.float64]) -> float:
+def _sum(values: NDArray) -> float:
     total = 0.0
     for q in range(len(values)):
         total += values[q]

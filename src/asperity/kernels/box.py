@@ -1,4 +1,4 @@
-"""Fields of a contact solution on a box.
+"""Where bodies overlap, and the fields of a contact solution on the box around that.
 
 They lie flat, row after row, with some idle columns behind each row: nothing overlaps there, so that no
 pressure acts, and loops need not know where a row ends.
@@ -6,6 +6,7 @@ pressure acts, and loops need not know where a row ends.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.convolution import whole_vectors, workspace
 from asperity.kernels.lanes import lanes
-from asperity.kernels.options import CALLED, INNER, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, compiled
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
@@ -27,18 +28,18 @@ class Box(NamedTuple):
     nx: int  # rows
     ny: int  # columns
     pitch: int  # columns with the idle ones
-    overlap: NDArray[np.float64]  # of the undeformed bodies, m
-    pressure: NDArray[np.float64]  # Pa
-    residual: NDArray[np.float64]  # K p − overlap, m
-    previous: NDArray[np.float64]  # residual one iteration ago, m
-    direction: NDArray[np.float64]  # of search, Pa
-    step: NDArray[np.float64]  # change of the pressure, Pa
-    response: NDArray[np.float64]  # what the step displaces, m
-    z: NDArray[np.float64]  # preconditioned residual, Pa
+    overlap: NDArray  # of the undeformed bodies, m
+    pressure: NDArray  # Pa
+    residual: NDArray  # K p − overlap, m
+    previous: NDArray  # residual one iteration ago, m
+    direction: NDArray  # of search, Pa
+    step: NDArray  # change of the pressure, Pa
+    response: NDArray  # what the step displaces, m
+    z: NDArray  # preconditioned residual, Pa
     # at a given load, about the pressure that an approach adds on the free set, Pa/m
-    unit: NDArray[np.float64]
-    masked: NDArray[np.float64]  # residual on the free set, between REACH rows of zeros
-    work: NDArray[np.float64]  # room for convolutions
+    unit: NDArray
+    masked: NDArray  # residual on the free set, between REACH rows of zeros
+    work: NDArray  # room for convolutions
 
 
 @compiled(**INNER)
@@ -56,7 +57,7 @@ def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
 
 
 @compiled(**CALLED)
-def empty_box(nx: int, ny: int, room: NDArray[np.float64]) -> Box:
+def empty_box(nx: int, ny: int, room: NDArray) -> Box:
     """Make a box without overlap and pressure, whose fields lie in `room`, as long as `box_room` says."""
     pitch, size = _extent(nx, ny, lanes(room))
     masked, end = 9 * size, 10 * size + 2 * REACH * pitch
@@ -92,3 +93,75 @@ def paste(b: Box, outer: Box, row: int, column: int) -> None:
     for i in range(b.nx):
         for j in range(b.ny):
             outer.pressure[(row + i) * outer.pitch + column + j] = b.pressure[i * b.pitch + j]
+
+
+BALL = 4.0 / 3.0 / math.sqrt(math.pi / 2.0)
+"""Makes the estimate of the approach exact for a ball: Hertz's force over √A × (mean overlap on A)."""
+
+
+@compiled(**CALLED)
+def overlap_box(gap: NDArray, approach: float, lowest: NDArray) -> tuple[float, int, int, int, int]:
+    """Find where bodies with a gap (nx, ny), m, at zero approach overlap at an approach, m.
+
+    Returns the largest overlap, m, not positive if there is none, and the first and end row and column of the
+    smallest box that holds all overlapping cells, else zeros. `lowest` (ny,) receives the lowest gap of each
+    column, m.
+    """
+    nx, ny = gap.shape
+    for j in range(ny):
+        lowest[j] = np.inf
+    smallest, first, end = np.inf, nx, 0
+    for i in range(nx):
+        row = np.inf
+        for j in range(ny):
+            g = gap[i, j]
+            row = min(row, g)
+            lowest[j] = min(lowest[j], g)
+        smallest = min(smallest, row)
+        if row < approach:
+            first, end = min(first, i), i + 1
+    if end == 0:
+        return approach - smallest, 0, 0, 0, 0
+    left, right = 0, ny
+    while lowest[left] >= approach:
+        left += 1
+    while lowest[right - 1] >= approach:
+        right -= 1
+    return approach - smallest, first, end, left, right
+
+
+@compiled(**LOOP, nogil=True)
+def foundation_approach(
+    gap: NDArray, load: float, modulus: float, cell_area: float, hardness: float
+) -> float:
+    """Estimate the approach, m, under a load, N: BALL E* √A × (mean overlap on A).
+
+    The overlapping cells can carry the load there. Gap (nx, ny), m, at zero approach; modulus and hardness,
+    Pa; cell area, m². The load is less than the hardness over the grid.
+    """
+    count, added, lowest = _below(gap, np.inf)
+    stiffness = BALL * modulus * np.sqrt(cell_area)
+    approach = added / count + load / (stiffness * np.sqrt(count))
+    for _ in range(30):  # the mean over all cells first, then over fewer and fewer
+        count, added, _lowest = _below(gap, approach)
+        last, approach = approach, added / count + load / (stiffness * np.sqrt(count))
+        if abs(approach - last) <= 1e-3 * (approach - lowest):  # an estimate is enough
+            break
+    # where all cells are near the hardness, so many must overlap that they carry a little more than the load
+    while count * cell_area * hardness <= 1.05 * load and count < gap.size:
+        approach += 0.25 * (approach - lowest)
+        count, added, _lowest = _below(gap, approach)
+    return approach
+
+
+@compiled(**LOOP, **REASSOCIATE)
+def _below(gap: NDArray, approach: float) -> tuple[float, float, float]:
+    """Number and sum of the gaps below an approach, and the lowest."""
+    count, added, lowest = 0.0, 0.0, np.inf
+    for i in range(gap.shape[0]):
+        for j in range(gap.shape[1]):
+            g = gap[i, j]
+            count += 1.0 if g < approach else 0.0
+            added += g if g < approach else 0.0
+            lowest = min(lowest, g)
+    return count, added, lowest

@@ -10,12 +10,7 @@ from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, compiled
 
 @compiled(**CALLED, nogil=True)
 def continue_pressure(
-    last: NDArray[np.float64],
-    before: NDArray[np.float64],
-    stride: int,
-    share: float,
-    cap: float,
-    start: NDArray[np.float64],
+    last: NDArray, before: NDArray, stride: int, share: float, cap: float, start: NDArray
 ) -> None:
     """Continue the pressures of two contacts to a third, straight at every point of the surface.
 
@@ -36,12 +31,7 @@ def continue_pressure(
 
 @compiled(**LOOP, nogil=True)
 def continue_rolling(
-    last: NDArray[np.float64],
-    before: NDArray[np.float64],
-    stride: int,
-    stride_before: int,
-    cap: float,
-    start: NDArray[np.float64],
+    last: NDArray, before: NDArray, stride: int, stride_before: int, cap: float, start: NDArray
 ) -> None:
     """Continue the pressures of two contacts to a third, with the surface or with the window.
 
@@ -63,7 +53,7 @@ def continue_rolling(
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _squares(p: NDArray[np.float64], q: NDArray[np.float64], share: float) -> float:
+def _squares(p: NDArray, q: NDArray, share: float) -> float:
     """Sum of squares of p less a share of q."""
     total = 0.0
     for j in range(len(p)):
@@ -72,13 +62,7 @@ def _squares(p: NDArray[np.float64], q: NDArray[np.float64], share: float) -> fl
 
 
 @compiled(**CALLED)
-def correct_start(
-    now: NDArray[np.float64],
-    expected: NDArray[np.float64],
-    found: NDArray[np.float64],
-    cap: float,
-    start: NDArray[np.float64],
-) -> None:
+def correct_start(now: NDArray, expected: NDArray, found: NDArray, cap: float, start: NDArray) -> None:
     """Correct the pressure expected now, Pa, by how much was wrong at the approach before."""
     for i in range(start.shape[0]):
         for j in range(start.shape[1]):
@@ -87,11 +71,7 @@ def correct_start(
 
 @compiled(**CALLED, **REASSOCIATE)
 def misfits(
-    found: NDArray[np.float64],
-    expected: NDArray[np.float64],
-    last: NDArray[np.float64],
-    before: NDArray[np.float64],
-    share: float,
+    found: NDArray, expected: NDArray, last: NDArray, before: NDArray, share: float
 ) -> tuple[float, float]:
     """Sums of squares, Pa², between a pressure found and what was expected, and a line through two others.
 

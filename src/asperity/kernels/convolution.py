@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.fourier import roots, transform
+from asperity.kernels.fourier import read, roots, transform, write
 from asperity.kernels.lanes import lanes, load, store, transpose
 from asperity.kernels.options import CALLED, INNER, compiled
 
@@ -16,16 +16,16 @@ from asperity.kernels.options import CALLED, INNER, compiled
 class Convolution(NamedTuple):
     """A kernel on boxes of up to (mx, my) cells, ready to be convolved with."""
 
-    radices_x: NDArray[np.int64]  # of the length mx
-    radices_y: NDArray[np.int64]  # of the length my
-    roots_x: NDArray[np.float64]  # (2 mx,), from `fourier.roots`
-    roots_y: NDArray[np.float64]  # (2 my,), from `fourier.roots`
-    turn_x: NDArray[np.float64]  # (2 mx,), from `quarter_turn`
-    turn_y: NDArray[np.float64]  # (2 my,), from `quarter_turn`
-    spectrum: NDArray[np.float64]  # (whole_vectors(mx) my,), from `spectrum`
+    radices_x: NDArray  # of the length mx
+    radices_y: NDArray  # of the length my
+    roots_x: NDArray  # (2 mx,), from `fourier.roots`
+    roots_y: NDArray  # (2 my,), from `fourier.roots`
+    turn_x: NDArray  # (2 mx,), from `quarter_turn`
+    turn_y: NDArray  # (2 my,), from `quarter_turn`
+    spectrum: NDArray  # (whole_vectors(mx) my,), from `spectrum`
 
 
-def spectrum(table: NDArray[np.float64], mx: int, my: int, lanes: int) -> NDArray[np.float64]:
+def spectrum(table: NDArray, mx: int, my: int, lanes: int) -> NDArray:
     """Spectrum (whole_vectors(mx) my,) of an even kernel, in the order in which it is multiplied with.
 
     At the frequencies (k + ¼)/m, divided by 2 mx my. The kernel (≥ mx, ≥ my) is given at non-negative
@@ -38,7 +38,7 @@ def spectrum(table: NDArray[np.float64], mx: int, my: int, lanes: int) -> NDArra
 
 
 @lru_cache
-def quarter_turn(m: int) -> NDArray[np.float64]:
+def quarter_turn(m: int) -> NDArray:
     """Factors exp(−iπj/2m) that turn a record by a right angle from one end to the other: (2 m,).
 
     Real and imaginary parts in turn.
@@ -46,7 +46,7 @@ def quarter_turn(m: int) -> NDArray[np.float64]:
     return np.ascontiguousarray(roots(4 * m)[: 2 * m])
 
 
-def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+def quarter_spectrum(table: NDArray, axis: int) -> NDArray:
     """Spectrum of an even kernel along an axis, at the frequencies (k + ¼)/m; it is real.
 
     The kernel is given at its m non-negative separations.
@@ -80,9 +80,8 @@ def _turn_in(c: Convolution, field: NDArray, pitch: int, first: int, nx: int, bu
     """Turn a block of real columns into the buffer, zero behind the box."""
     part = lanes(buffer)
     for i in range(nx):
-        re, o = load(field, i * pitch + first), 2 * i * part
-        store(buffer, o, c.turn_x[2 * i] * re)
-        store(buffer, o + part, c.turn_x[2 * i + 1] * re)
+        re = load(field, i * pitch + first)
+        write(buffer, 2 * i * part, c.turn_x[2 * i] * re, c.turn_x[2 * i + 1] * re)
     _clear(buffer, 2 * nx * part, len(c.turn_x) * part)
 
 
@@ -91,13 +90,13 @@ def _turn_out(c: Convolution, buffer: NDArray, pitch: int, first: int, nx: int, 
     """Turn a block back and keep its real part."""
     part = lanes(buffer)
     for i in range(nx):
-        o = 2 * i * part
-        re, im = load(buffer, o), load(buffer, o + part)
+        re, im = read(buffer, 2 * i * part)
         store(out, i * pitch + first, c.turn_x[2 * i] * re - c.turn_x[2 * i + 1] * im)
 
 
 @compiled(**INNER)
-def _turned(re: Any, im: Any, cosine: Any, sine: Any) -> Any:
+def _turned(source: NDArray, index: int, cosine: Any, sine: Any) -> Any:
+    re, im = read(source, index)
     return cosine * re - sine * im, cosine * im + sine * re
 
 
@@ -109,28 +108,25 @@ def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: N
         sign = 1.0 - 2.0 * sense
         for j in range(ny):
             o = 2 * j * part
-            re, im = _turned(load(rows, o), load(rows, o + part), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
-            store(a, o, re)
-            store(a, o + part, im)
+            re, im = _turned(rows, o, c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
+            write(a, o, re, im)
         _clear(a, 2 * ny * part, 2 * my * part)
         swapped = transform(a, b, c.radices_y, c.roots_y)
         x, y = (b, a) if swapped else (a, b)
         for k in range(my):
             factor = load(c.spectrum, (block * my + (k if sense == 0 or k == 0 else my - k)) * part)
-            o = 2 * k * part
-            store(x, o, factor * load(x, o))
-            store(x, o + part, -1.0 * (factor * load(x, o + part)))
+            re, im = read(x, 2 * k * part)
+            write(x, 2 * k * part, factor * re, -1.0 * (factor * im))
         if transform(x, y, c.radices_y, c.roots_y):
             x = y
         for j in range(ny):
             o = 2 * j * part
-            re, im = _turned(load(x, o), load(x, o + part), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
+            re, im = _turned(x, o, c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
             if sense == 0:
-                store(s, o, re)
-                store(s, o + part, im)
+                write(s, o, re, im)
             else:
-                store(rows, o, re + load(s, o))
-                store(rows, o + part, im + load(s, o + part))
+                first, second = read(s, o)
+                write(rows, o, re + first, im + second)
 
 
 @compiled(**CALLED, nogil=True)

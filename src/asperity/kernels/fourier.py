@@ -45,67 +45,70 @@ def roots(n: int) -> NDArray:
 
 
 @compiled(**INNER)
+def read(source: NDArray, index: int) -> Any:
+    """Real and imaginary parts of the values at an index of a batch."""
+    return load(source, index), load(source, index + lanes(source))
+
+
+@compiled(**INNER)
+def write(target: NDArray, index: int, re: Any, im: Any) -> None:
+    """Write real and imaginary parts to an index of a batch."""
+    store(target, index, re)
+    store(target, index + lanes(target), im)
+
+
+@compiled(**INNER)
 def _put(target: NDArray, index: int, re: Any, im: Any, w: NDArray, power: int) -> None:
     c, s = w[2 * power], w[2 * power + 1]
-    store(target, index, c * re - s * im)
-    store(target, index + lanes(target), c * im + s * re)
+    write(target, index, c * re - s * im, c * im + s * re)
 
 
 @compiled(**INNER)
 def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, part = n // 2, len(w) // (2 * n), lanes(x)
-    row = 2 * part
+    m, unit, row = n // 2, len(w) // (2 * n), 2 * lanes(x)
+    hop = stride * m * row
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 2 * p) * row
-            a, ai = load(x, i), load(x, i + part)
-            i += stride * m * row
-            b, bi = load(x, i), load(x, i + part)
-            store(y, o, a + b)
-            store(y, o + part, ai + bi)
+            a, ai = read(x, i)
+            b, bi = read(x, i + hop)
+            write(y, o, a + b, ai + bi)
             _put(y, o + stride * row, a - b, ai - bi, w, p * unit)
 
 
 @compiled(**INNER)
 def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, part = n // 3, len(w) // (2 * n), lanes(x)
-    row = 2 * part
+    m, unit, row = n // 3, len(w) // (2 * n), 2 * lanes(x)
+    hop = stride * m * row
     half, sine = 0.5, 0.75**0.5
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 3 * p) * row
-            a, ai = load(x, i), load(x, i + part)
-            i += stride * m * row
-            b, bi = load(x, i), load(x, i + part)
-            i += stride * m * row
-            c, ci = load(x, i), load(x, i + part)
+            a, ai = read(x, i)
+            b, bi = read(x, i + hop)
+            c, ci = read(x, i + 2 * hop)
             t, ti = b + c, bi + ci
             u, ui = a - half * t, ai - half * ti
             v, vi = sine * (bi - ci), sine * (c - b)
-            store(y, o, a + t)
-            store(y, o + part, ai + ti)
+            write(y, o, a + t, ai + ti)
             _put(y, o + stride * row, u + v, ui + vi, w, p * unit)
             _put(y, o + 2 * stride * row, u - v, ui - vi, w, 2 * p * unit)
 
 
 @compiled(**INNER)
 def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, part = n // 4, len(w) // (2 * n), lanes(x)
-    row = 2 * part
+    m, unit, row = n // 4, len(w) // (2 * n), 2 * lanes(x)
+    hop = stride * m * row
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 4 * p) * row
-            a, ai = load(x, i), load(x, i + part)
-            i += stride * m * row
-            b, bi = load(x, i), load(x, i + part)
-            i += stride * m * row
-            c, ci = load(x, i), load(x, i + part)
-            i += stride * m * row
-            d, di = load(x, i), load(x, i + part)
+            a, ai = read(x, i)
+            b, bi = read(x, i + hop)
+            c, ci = read(x, i + 2 * hop)
+            d, di = read(x, i + 3 * hop)
             s, si, t, ti = a + c, ai + ci, a - c, ai - ci
             u, ui, v, vi = b + d, bi + di, bi - di, d - b
-            store(y, o, s + u)
-            store(y, o + part, si + ui)
+            write(y, o, s + u, si + ui)
             _put(y, o + stride * row, t + v, ti + vi, w, p * unit)
             _put(y, o + 2 * stride * row, s - u, si - ui, w, 2 * p * unit)
             _put(y, o + 3 * stride * row, t - v, ti - vi, w, 3 * p * unit)
@@ -113,26 +116,21 @@ def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @compiled(**INNER)
 def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, part = n // 5, len(w) // (2 * n), lanes(x)
-    row = 2 * part
+    m, unit, row = n // 5, len(w) // (2 * n), 2 * lanes(x)
+    hop = stride * m * row
     c1, c2 = np.cos(0.4 * np.pi), np.cos(0.8 * np.pi)
     s1, s2 = np.sin(0.4 * np.pi), np.sin(0.8 * np.pi)
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 5 * p) * row
-            a, ai = load(x, i), load(x, i + part)
-            i += stride * m * row
-            b, bi = load(x, i), load(x, i + part)
-            i += stride * m * row
-            c, ci = load(x, i), load(x, i + part)
-            i += stride * m * row
-            d, di = load(x, i), load(x, i + part)
-            i += stride * m * row
-            e, ei = load(x, i), load(x, i + part)
+            a, ai = read(x, i)
+            b, bi = read(x, i + hop)
+            c, ci = read(x, i + 2 * hop)
+            d, di = read(x, i + 3 * hop)
+            e, ei = read(x, i + 4 * hop)
             t, ti, u, ui = b + e, bi + ei, c + d, ci + di
             v, vi, z, zi = bi - ei, e - b, ci - di, d - c
-            store(y, o, a + t + u)
-            store(y, o + part, ai + ti + ui)
+            write(y, o, a + t + u, ai + ti + ui)
             f, fi = a + c1 * t + c2 * u, ai + c1 * ti + c2 * ui
             g, gi = s1 * v + s2 * z, s1 * vi + s2 * zi
             _put(y, o + stride * row, f + g, fi + gi, w, p * unit)
@@ -144,7 +142,7 @@ def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 
 @compiled(**CALLED)
-def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) -> bool:
+def transform(x: NDArray, y: NDArray, radices: NDArray, w: NDArray) -> bool:
     """Transform every column of a batch, forward and not normalised; return whether it is in `y`.
 
     If not, it is in `x`; both, (2 n lanes,), are overwritten. Radices are from `factors`, `w` from `roots`.

@@ -16,7 +16,7 @@ AT_ONCE = 2**16
 """Coefficients that are computed in one go: some ten arrays of them take memory."""
 
 
-def _edge_log(x: NDArray[np.float64], y: NDArray[np.float64], half: float) -> NDArray[np.float64]:
+def _edge_log(x: NDArray, y: NDArray, half: float) -> NDArray:
     """ln[(y₊ + √(y₊² + x²)) / (y₋ + √(y₋² + x²))] for y ≥ 0, without cancellation far away."""
     upper, lower = y + half, y - half
     r_upper, r_lower = np.hypot(upper, x), np.hypot(lower, x)
@@ -26,9 +26,7 @@ def _edge_log(x: NDArray[np.float64], y: NDArray[np.float64], half: float) -> ND
     return np.log1p(step / denominator)
 
 
-def cell_displacement(
-    x: NDArray[np.float64], y: NDArray[np.float64], dx: float, dy: float
-) -> NDArray[np.float64]:
+def cell_displacement(x: NDArray, y: NDArray, dx: float, dy: float) -> NDArray:
     """Surface displacement at (x, y), times π E*, under unit pressure on the cell dx × dy at the origin.
 
     All in m; to be divided by π E*, Pa. A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377; finite
@@ -44,7 +42,7 @@ def cell_displacement(
     )
 
 
-def influence_table(nx: int, ny: int, dx: float, dy: float) -> NDArray[np.float64]:
+def influence_table(nx: int, ny: int, dx: float, dy: float) -> NDArray:
     """Influence coefficients (nx, ny), m, times π E*: entry (i, j) for the separation (i dx, j dy), m."""
     x, y = dx * np.arange(nx, dtype=np.float64), dy * np.arange(ny, dtype=np.float64)
     table, rows = np.empty((nx, ny)), max(1, AT_ONCE // ny)
@@ -62,22 +60,20 @@ RADICES = 16
 class Influence(NamedTuple):
     """Influence of pressure on displacement, with the convolutions prepared so far."""
 
-    table: NDArray[np.float64]  # (≥ nx, ≥ ny), displacement per pressure at non-negative separations, m/Pa
+    table: NDArray  # (≥ nx, ≥ ny), displacement per pressure at non-negative separations, m/Pa
     softest: float  # no pressure of unit norm displaces by more, m/Pa
-    taps: NDArray[np.float64]  # (6,), preconditioner, from `preconditioner.inverse_stencil`, Pa/m
-    lengths: NDArray[np.int64]  # (k,), length in which n cells are convolved, at ⌈n / UNIT⌉
-    radices: NDArray[np.int64]  # (RADICES k,), radices of the length UNIT i from RADICES i on, then zeros
-    starts: NDArray[np.int64]  # (k,), where the roots and turns of the length UNIT i begin
-    roots: NDArray[np.float64]  # from `fourier.roots`, length after length
-    turns: NDArray[np.float64]  # from `convolution.quarter_turn`, length after length
+    taps: NDArray  # (6,), preconditioner, from `preconditioner.inverse_stencil`, Pa/m
+    lengths: NDArray  # (k,), length in which n cells are convolved, at ⌈n / UNIT⌉
+    radices: NDArray  # (RADICES k,), radices of the length UNIT i from RADICES i on, then zeros
+    starts: NDArray  # (k,), where the roots and turns of the length UNIT i begin
+    roots: NDArray  # from `fourier.roots`, length after length
+    turns: NDArray  # from `convolution.quarter_turn`, length after length
     # (k, k), where the spectrum on UNIT i × UNIT j cells begins; −1 if it is not prepared
-    places: NDArray[np.int64]
-    spectra: NDArray[np.float64]  # from `convolution.spectrum`, one after the other
+    places: NDArray
+    spectra: NDArray  # from `convolution.spectrum`, one after the other
 
 
-def influence(
-    table: NDArray[np.float64], taps: NDArray[np.float64], dtype: DTypeLike = np.float64
-) -> Influence:
+def influence(table: NDArray, taps: NDArray, dtype: DTypeLike = np.float64) -> Influence:
     """Make the influence of a half-space, without any convolution prepared.
 
     Table and taps as in `Influence`, the table's sides from `fourier.smooth_length`. All but the table has

@@ -26,9 +26,7 @@ def width(dtype: DTypeLike) -> int:
     return VECTOR_BYTES // np.dtype(dtype).itemsize
 
 
-def _compiled(generator: Any) -> Any:
-    """Make a function of compiled code: its first parameter is filled in."""
-    return intrinsic(generator)
+_compiled: Any = intrinsic  # makes a function of compiled code, whose first parameter is filled in
 
 
 class Lanes(types.Type):

@@ -38,8 +38,6 @@ from asperity.store import KERNELS, is_private, kernel_folders
 
 LOOP: dict[str, Any] = {"cache": True, "_nrt": False}
 """For what Python calls, as a loop over time steps; it is kept on disk with all that it calls."""
-ENTERED: dict[str, Any] = {**LOOP, "forceinline": True}
-"""For what such a loop calls, and Python in every run; it allocates nothing."""
 INNER: dict[str, Any] = {"_nrt": False, "forceinline": True, "no_cpython_wrapper": True}
 """For what only kernels call, or rarely Python, for which it is compiled once more."""
 CALLED: dict[str, Any] = {"_nrt": False, "no_cpython_wrapper": True}
@@ -52,16 +50,8 @@ DOCUMENTED = ("fastmath", "inline", "nogil")
 HIDDEN = ("_nrt", "forceinline", "no_cpython_wrapper", "no_cfunc_wrapper")
 
 
-def _tell_plain() -> None:
-    warnings.warn(
-        f"numba {version('numba')} lacks what asperity needs to keep compiled functions: every start "
-        "compiles them again, and they are slower. Install numba 0.60 to 0.68.",
-        RuntimeWarning,
-        stacklevel=2,
-    )
-
-
 try:
+    from numba.core.caching import NullCache
     from numba.core.compiler import CompileResult
     from numba.core.cpu import CPUTargetOptions
     from numba.core.registry import CPUDispatcher
@@ -73,9 +63,14 @@ try:
         + [hasattr(CompileResult, name) for name in ("_reduce", "_rebuild")]
     )
 except ImportError:
-    CPUDispatcher, PLAIN = object, True  # type: ignore[assignment,misc]
+    CPUDispatcher, NullCache, PLAIN = object, object, True  # type: ignore[assignment,misc]
 if PLAIN:
-    _tell_plain()
+    warnings.warn(
+        f"numba {version('numba')} lacks what asperity needs to keep compiled functions: every start "
+        "compiles them again, and they are slower. Install numba 0.60 to 0.68.",
+        RuntimeWarning,
+        stacklevel=2,
+    )
 
 
 class _Inner(CPUDispatcher):
@@ -106,17 +101,10 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     return decorate
 
 
-def stamp() -> str:
-    """Name of the folder of these kernels: by what they are made of, as one is compiled into another."""
-    versions = f"{version('numba')} {version('llvmlite')} {sys.version}"
-    digest = hashlib.sha256(versions.encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-SOURCES = stamp()
-"""Folder of this version."""
+_parts = [f"{version('numba')} {version('llvmlite')} {sys.version}".encode()]
+_parts += [source.read_bytes() for source in sorted(Path(__file__).parent.glob("*.py"))]
+SOURCES = hashlib.sha256(b"".join(_parts)).hexdigest()[:16]
+"""Folder of these kernels: named by what they are made of, as one is compiled into another."""
 
 
 def is_kept(kernel: str) -> bool:
@@ -126,7 +114,7 @@ def is_kept(kernel: str) -> bool:
     return False
 
 
-class Kept:
+class Kept(NullCache):
     """What numba asks for the machine code of a function, and hands it to, signature by signature.
 
     Stands for `numba.core.caching.FunctionCache`, which trusts what it finds and fails where it cannot write.
@@ -168,15 +156,6 @@ class Kept:
         """Name of a signature's file: the function's name, and a digest of all that the code depends on."""
         known = repr((self.name, str(signature), codegen.magic_tuple())).encode()
         return f"{self.name}-{hashlib.sha256(known + self.source).hexdigest()[:24]}"
-
-    def enable(self) -> None:
-        """Do nothing: it is always enabled."""
-
-    def disable(self) -> None:
-        """Do nothing: it is always enabled."""
-
-    def flush(self) -> None:
-        """Do nothing: what is out of date is not found."""
 
 
 def _read(folder: Path, name: str) -> Any:

@@ -13,7 +13,7 @@ from asperity.kernels.convolution import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
 
 
-def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
+def inverse_stencil(table: NDArray) -> NDArray:
     """Fit a 13-point stencil whose symbol approximates the inverse of that of a kernel (≥ 32, ≥ 32).
 
     The kernel is given at non-negative separations. Returns the taps at (0,0), (±1,0), (0,±1), (±1,±1),
@@ -37,9 +37,7 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def precondition(
-    b: Box, taps: NDArray[np.float64], target: NDArray[np.float64]
-) -> tuple[float, float, float]:
+def precondition(b: Box, taps: NDArray, target: NDArray) -> tuple[float, float, float]:
     """Apply the stencil (Pa/m) to what is masked, m, where that is not zero, into `target`.
 
     Returns m·target, (m − previous)·target and the sum of the target.
@@ -88,7 +86,7 @@ class Task(NamedTuple):
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _free(pressure: NDArray[np.float64], b: Box, hardness: float, level: float, tolerance: float) -> float:
+def _free(pressure: NDArray, b: Box, hardness: float, level: float, tolerance: float) -> float:
     """Mask the residual above a level with the free set; return how many cells violate complementarity."""
     real = b.z.dtype.type  # numbers of another precision would be computed with in double
     zero, one, target = real(0.0), real(1.0), b.masked[REACH * b.pitch :]
@@ -119,7 +117,7 @@ def _turn_to_gradient(b: Box, level: float) -> None:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _dot(left: NDArray[np.float64], right: NDArray[np.float64]) -> float:
+def _dot(left: NDArray, right: NDArray) -> float:
     total = left.dtype.type(0.0)
     for q in range(len(left)):
         total += left[q] * right[q]
@@ -185,7 +183,7 @@ def _advance(b: Box, share: float, hardness: float, margin: float) -> None:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _yield(pressure: NDArray[np.float64], compliance: float, response: NDArray[np.float64]) -> float:
+def _yield(pressure: NDArray, compliance: float, response: NDArray) -> float:
     """Add what bodies yield to a pressure, Pa, to what it displaces, m; return that."""
     total = pressure.dtype.type(0.0)
     for q in range(len(pressure)):
@@ -230,7 +228,7 @@ def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
 
 
 @compiled(**CALLED)
-def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: int) -> tuple[int, bool]:
+def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple[int, bool]:
     """Solve the task on a box, from a residual and a pressure that is within the bounds and carries the load.
 
     Kernel in m/Pa, taps of `inverse_stencil` in Pa/m. Returns the iterations in all, with those done before,

@@ -1,4 +1,4 @@
-"""Contacts of a body moved along a surface, each started from those before it."""
+"""Contacts of a body moved along a surface, each from those before it: from the gap to the pressure."""
 
 from __future__ import annotations
 
@@ -7,42 +7,82 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.contact import CONVERGED, UNPREPARED, Room, solve_contact
+from asperity.kernels.at_load import carry
+from asperity.kernels.box import Box, box_room, cut, empty_box, overlap_box, paste
 from asperity.kernels.continuation import continue_pressure, correct_start, misfits
-from asperity.kernels.influence import Influence
-from asperity.kernels.options import CALLED, INNER, LOOP, compiled
+from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
+from asperity.kernels.lanes import VECTOR_BYTES, lanes, width
+from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, compiled
+from asperity.kernels.projected_cg import Task, solve, survey, true_residual
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
+MARGIN = 1
+"""Cells left around pressure and overlap of what a solution starts from; what sticks out is solved again."""
+REACH = 1.3
+"""How far beyond the expected approach a solution at a given load may go; more makes the box larger."""
+NOTHING = 1e-12
+"""Share of the pressure that the overlap lets expect below which a start is taken for zero."""
+TRUSTED = 1e-10
+"""Tolerance down to which a residual in double precision need not be computed anew: less is rounding."""
+
+
+class Room(NamedTuple):
+    """Room for a solution, for one thread."""
+
+    lowest: NDArray  # (ny,), for the lowest gap of each column
+    outer: NDArray  # for the box of the overlap
+    inner: NDArray  # for the box of the contact
 
 
 class Block(NamedTuple):
     """Contacts to be solved, and what is known of them."""
 
-    rows: NDArray[np.float64]  # (rows, ny), heights under the block, m
-    body: NDArray[np.float64]  # (nx, ny), shape of the smooth body, m
-    planes: NDArray[np.float64]  # (positions,), height of the plane from which approaches count, m
-    approaches: NDArray[np.float64]  # (k,), increasing, m
+    rows: NDArray  # (rows, ny), heights under the block, m
+    body: NDArray  # (nx, ny), shape of the smooth body, m
+    planes: NDArray  # (positions,), height of the plane from which approaches count, m
+    approaches: NDArray  # (k,), increasing, m
     stride: int  # rows between positions
-    load: float  # as in `contact.solve_contact`; if given, there is one approach, an upper estimate
-    compliance: float  # of the bodies, as in `contact.solve_contact`
+    load: float  # sum of the pressure, Pa, as in `_solve_contact`; negative where approaches are given
+    compliance: float  # of bodies that yield to the sum of the pressure, m/Pa; zero at a load
     hardness: float  # Pa
-    rtol: float  # as in `contact.solve_contact`
+    rtol: float  # largest complementarity residual relative to the largest overlap
     max_iterations: int  # of a contact
-    room: Room  # from `contact.room`
-    gap: NDArray[np.float64]  # (nx, ny), room for the gap at a position, m
-    start: NDArray[np.float64]  # (nx, ny), room for the pressure that a solution starts from, Pa
+    room: Room  # from `room`
+    gap: NDArray  # (nx, ny), room for the gap at a position, m
+    start: NDArray  # (nx, ny), room for the pressure that a solution starts from, Pa
     # (2, nx, ny), what the positions before let expect at the last approaches, Pa: even first, odd second
-    expected: NDArray[np.float64]
+    expected: NDArray
     # (2, k, nx, ny), of the last two positions, Pa: even ones first, odd ones second
-    pressures: NDArray[np.float64]
-    solved: NDArray[np.int64]  # (k,), positions in contact one after the other up to the last
-    totals: NDArray[np.float64]  # (k, positions), receives the sum of the pressure over the cells, Pa
+    pressures: NDArray
+    solved: NDArray  # (k,), positions in contact one after the other up to the last
+    totals: NDArray  # (k, positions), receives the sum of the pressure over the cells, Pa
     # (k, positions), receives the largest complementarity residual relative to the largest overlap
-    residuals: NDArray[np.float64]
+    residuals: NDArray
     # (k, positions), receives how far the approach is beyond the given one, m: at a load, or if bodies yield
-    levels: NDArray[np.float64]
-    counts: NDArray[np.int64]  # (4,), solutions, iterations, unconverged and truncated solutions so far
+    levels: NDArray
+    counts: NDArray  # (4,), solutions, iterations, unconverged and truncated solutions so far
+
+
+def room(known: Influence, nx: int, ny: int) -> Room:
+    """Make room for solutions on a grid of nx × ny cells."""
+    mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
+    dtype = known.spectra.dtype
+    size = box_room(nx, ny, mx, my, width(dtype))
+    return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype))
+
+
+class Solution(NamedTuple):
+    """How a contact was solved."""
+
+    prepared: bool  # whether no convolution was missing, on nx × ny cells
+    converged: bool  # whether the tolerance was met
+    iterations: int  # of conjugate gradients
+    residual: float  # largest complementarity residual relative to the largest overlap
+    total: float  # sum of the pressure over the cells, Pa
+    level: float  # by how much the approach is beyond the given one, m: at a load, or if bodies yield
+    nx: int  # box of the overlap, or the one that is not prepared, cells
+    ny: int
 
 
 @compiled(**LOOP, nogil=True)
@@ -62,17 +102,14 @@ def solve_positions(
                 continue
             _set_start(b, m, i, touch)
             pressure = b.pressures[m % 2, i]
-            found = solve_contact(
-                known, b.gap, b.approaches[i], b.load, b.compliance, b.start, b.hardness, b.rtol,
-                b.max_iterations, b.room, pressure,
-            )  # fmt: skip
-            if found.status == UNPREPARED:
+            found = solve_contact(known, b, b.approaches[i], pressure)
+            if not found.prepared:
                 return m, i, found.nx, found.ny
             b.solved[i] += 1
             b.totals[i, m], b.residuals[i, m], b.levels[i, m] = found.total, found.residual, found.level
             b.counts[0] += 1
             b.counts[1] += found.iterations
-            b.counts[2] += found.status != CONVERGED
+            b.counts[2] += not found.converged
             b.counts[3] += _on_edge(pressure) > TRUNCATED * found.total
     return end, 0, 0, 0
 
@@ -131,7 +168,7 @@ def _share(b: Block, i: int) -> float:
 
 
 @compiled(**INNER)
-def _on_edge(pressure: NDArray[np.float64]) -> float:
+def _on_edge(pressure: NDArray) -> float:
     """Sum of the pressure over the outermost cells."""
     nx, ny = pressure.shape
     total = 0.0
@@ -140,3 +177,126 @@ def _on_edge(pressure: NDArray[np.float64]) -> float:
     for i in range(1, nx - 1):
         total += pressure[i, 0] + pressure[i, ny - 1]
     return total
+
+
+@compiled(**ONCE)
+def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray) -> Solution:
+    """Solve 0 ≤ p ≤ hardness ⟂ K p + gap − approach on a grid; no pressure acts outside of the overlap's box.
+
+    Gap, start and all else are those of a block; approach in m, positive closing. The load is less than the
+    hardness over all that overlap; the approach then is REACH times what is expected beyond first touch.
+    Bodies that yield have the given approach without their compliance. The start is within the bounds, and
+    zero on all of the overlap if nothing is known. `pressure` receives the pressure, unless a convolution is
+    missing.
+    """
+    hardness, load, compliance = b.hardness, b.load, b.compliance
+    largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
+    nx, ny = end - first, right - left
+    if not is_prepared(known, nx, ny):
+        return Solution(False, False, 0, 0.0, 0.0, 0.0, nx, ny)
+    softest = known.softest + compliance * nx * ny
+    task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations)
+    outer, everywhere = empty_box(nx, ny, b.room.outer), convolution(known, nx, ny)
+    guessed = not _enter(outer, b.gap, approach, b.start, first, left, NOTHING * known.taps[0] * largest)
+    if guessed:
+        _guess(outer, largest, largest / REACH if load >= 0.0 else largest, known.taps[0])
+    if load >= 0.0:
+        carry(outer, hardness, load, known.taps[0])
+    true_residual(everywhere, outer, compliance)
+    if guessed and load < 0.0 and not _scale(outer, hardness):
+        true_residual(everywhere, outer, compliance)
+    worst, level, top, bottom, near, far = survey(outer, task)
+    iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
+    moving, last = True, (0, 0, 0, 0)
+    while moving and worst > b.rtol * (largest + level) and iterations < b.max_iterations:
+        row, rows = _grown(known, top, bottom, nx)
+        column, columns = _grown(known, near, far, ny)
+        if not is_prepared(known, rows, columns):
+            return Solution(False, False, 0, 0.0, 0.0, 0.0, rows, columns)
+        before, again = worst, last == (row, column, rows, columns)
+        last = (row, column, rows, columns)
+        part, inner = rows < nx or columns < ny, outer
+        if part:
+            inner = empty_box(rows, columns, b.room.inner)
+            cut(outer, row, column, inner)
+        iterations, moving = solve(convolution(known, rows, columns), known.taps, inner, task, iterations)
+        if part:
+            paste(inner, outer, row, column)
+        if part or not _recurs(outer, b.rtol):
+            true_residual(everywhere, outer, compliance)
+        worst, level, top, bottom, near, far = survey(outer, task)
+        moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
+    total = _leave(outer, pressure, first, left)
+    converged = worst <= b.rtol * (largest + level)
+    return Solution(True, converged, iterations, worst / (largest + level), total, level, nx, ny)
+
+
+@compiled(**INNER)
+def _enter(
+    b: Box, gap: NDArray, approach: float, start: NDArray, first: int, left: int, least: float
+) -> bool:
+    """Set overlap and pressure, if it is not too small to matter; return whether there is any."""
+    added = 0.0
+    for i in range(b.nx):
+        here, row, known = i * b.pitch, gap[first + i], start[first + i]
+        for j in range(b.ny):
+            b.overlap[here + j] = approach - row[left + j]
+            p = known[left + j] if known[left + j] > least else 0.0
+            b.pressure[here + j] = p
+            added += p
+    return added > 0.0
+
+
+@compiled(**INNER)
+def _guess(b: Box, largest: float, expected: float, stiffness: float) -> None:
+    """Set a pressure of Hertzian form over the deeper half of the overlap that is expected."""
+    edge = largest - 0.5 * expected
+    for q in range(len(b.pressure)):
+        b.pressure[q] = stiffness * np.sqrt(expected * max(b.overlap[q] - edge, 0.0))
+
+
+@compiled(**INNER)
+def _scale(b: Box, hardness: float) -> bool:
+    """Scale a pressure and its residual to least energy; return whether the residual is still its own."""
+    done, stored = 0.0, 0.0
+    for q in range(len(b.pressure)):
+        done += b.pressure[q] * b.overlap[q]
+        stored += b.pressure[q] * (b.residual[q] + b.overlap[q])
+    factor, capped = done / stored, 0
+    for q in range(len(b.pressure)):
+        p = factor * b.pressure[q]
+        capped += p > hardness
+        b.pressure[q] = min(p, hardness)
+        b.residual[q] = factor * (b.residual[q] + b.overlap[q]) - b.overlap[q]
+    return capped == 0
+
+
+@compiled(**INNER)
+def _recurs(b: Box, rtol: float) -> bool:
+    """Whether a residual that was carried on from step to step is good enough."""
+    return rtol >= TRUSTED and lanes(b.residual) == VECTOR_BYTES // 8
+
+
+@compiled(**INNER)
+def _leave(b: Box, pressure: NDArray, first: int, left: int) -> float:
+    """Copy the pressure; return its sum over the cells."""
+    for i in range(pressure.shape[0]):
+        for j in range(pressure.shape[1]):
+            pressure[i, j] = 0.0
+    total = 0.0
+    for i in range(b.nx):
+        for j in range(b.ny):
+            p = b.pressure[i * b.pitch + j]
+            pressure[first + i, left + j] = p
+            total += p
+    return total
+
+
+@compiled(**INNER)
+def _grown(known: Influence, first: int, end: int, n: int) -> tuple[int, int]:
+    """Begin and length of a side with a margin, and with what transforms at the same cost, within n cells."""
+    needed = end - first + 2 * MARGIN
+    if needed >= n:
+        return 0, n
+    length = min(known.lengths[-(-needed // UNIT)], n)
+    return min(max(0, first - (length - (end - first)) // 2), n - length), length

@@ -13,7 +13,7 @@ import numpy as np
 
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
-from asperity.kernels import overlap, pointforce
+from asperity.kernels import box, pointforce
 from asperity.kernels.options import is_kept
 from asperity.laws import HertzLaw
 from asperity.progress import COMPILED, Progress
@@ -80,4 +80,4 @@ def press_once() -> None:
     half_space, x = HalfSpace((9, 9), (1.0, 1.0), 1.0), np.arange(-4.0, 5.0) ** 2
     half_space.solve(np.add.outer(x, x), approach=5.0)
     half_space.solve(np.add.outer(x, x), load=5.0)
-    overlap.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, np.inf)
+    box.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, np.inf)
