@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.fourier import read, roots, transform, write
+from asperity.kernels.fourier import read_parts, roots, transform, write_parts
 from asperity.kernels.lanes import lanes, load, store, transpose
 from asperity.kernels.options import CALLED, INNER, compiled
 
@@ -81,7 +81,7 @@ def _turn_in(c: Convolution, field: NDArray, pitch: int, first: int, nx: int, bu
     part = lanes(buffer)
     for i in range(nx):
         re = load(field, i * pitch + first)
-        write(buffer, 2 * i * part, c.turn_x[2 * i] * re, c.turn_x[2 * i + 1] * re)
+        write_parts(buffer, 2 * i * part, c.turn_x[2 * i] * re, c.turn_x[2 * i + 1] * re)
     _clear(buffer, 2 * nx * part, len(c.turn_x) * part)
 
 
@@ -90,13 +90,13 @@ def _turn_out(c: Convolution, buffer: NDArray, pitch: int, first: int, nx: int, 
     """Turn a block back and keep its real part."""
     part = lanes(buffer)
     for i in range(nx):
-        re, im = read(buffer, 2 * i * part)
+        re, im = read_parts(buffer, 2 * i * part)
         store(out, i * pitch + first, c.turn_x[2 * i] * re - c.turn_x[2 * i + 1] * im)
 
 
 @compiled(**INNER)
 def _turned(source: NDArray, index: int, cosine: Any, sine: Any) -> Any:
-    re, im = read(source, index)
+    re, im = read_parts(source, index)
     return cosine * re - sine * im, cosine * im + sine * re
 
 
@@ -109,24 +109,24 @@ def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: N
         for j in range(ny):
             o = 2 * j * part
             re, im = _turned(rows, o, c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
-            write(a, o, re, im)
+            write_parts(a, o, re, im)
         _clear(a, 2 * ny * part, 2 * my * part)
         swapped = transform(a, b, c.radices_y, c.roots_y)
         x, y = (b, a) if swapped else (a, b)
         for k in range(my):
             factor = load(c.spectrum, (block * my + (k if sense == 0 or k == 0 else my - k)) * part)
-            re, im = read(x, 2 * k * part)
-            write(x, 2 * k * part, factor * re, -1.0 * (factor * im))
+            re, im = read_parts(x, 2 * k * part)
+            write_parts(x, 2 * k * part, factor * re, -1.0 * (factor * im))
         if transform(x, y, c.radices_y, c.roots_y):
             x = y
         for j in range(ny):
             o = 2 * j * part
             re, im = _turned(x, o, c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
             if sense == 0:
-                write(s, o, re, im)
+                write_parts(s, o, re, im)
             else:
-                first, second = read(s, o)
-                write(rows, o, re + first, im + second)
+                first, second = read_parts(s, o)
+                write_parts(rows, o, re + first, im + second)
 
 
 @compiled(**CALLED, nogil=True)

@@ -45,13 +45,13 @@ def roots(n: int) -> NDArray:
 
 
 @compiled(**INNER)
-def read(source: NDArray, index: int) -> Any:
+def read_parts(source: NDArray, index: int) -> Any:
     """Real and imaginary parts of the values at an index of a batch."""
     return load(source, index), load(source, index + lanes(source))
 
 
 @compiled(**INNER)
-def write(target: NDArray, index: int, re: Any, im: Any) -> None:
+def write_parts(target: NDArray, index: int, re: Any, im: Any) -> None:
     """Write real and imaginary parts to an index of a batch."""
     store(target, index, re)
     store(target, index + lanes(target), im)
@@ -60,7 +60,7 @@ def write(target: NDArray, index: int, re: Any, im: Any) -> None:
 @compiled(**INNER)
 def _put(target: NDArray, index: int, re: Any, im: Any, w: NDArray, power: int) -> None:
     c, s = w[2 * power], w[2 * power + 1]
-    write(target, index, c * re - s * im, c * im + s * re)
+    write_parts(target, index, c * re - s * im, c * im + s * re)
 
 
 @compiled(**INNER)
@@ -70,9 +70,9 @@ def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 2 * p) * row
-            a, ai = read(x, i)
-            b, bi = read(x, i + hop)
-            write(y, o, a + b, ai + bi)
+            a, ai = read_parts(x, i)
+            b, bi = read_parts(x, i + hop)
+            write_parts(y, o, a + b, ai + bi)
             _put(y, o + stride * row, a - b, ai - bi, w, p * unit)
 
 
@@ -84,13 +84,13 @@ def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 3 * p) * row
-            a, ai = read(x, i)
-            b, bi = read(x, i + hop)
-            c, ci = read(x, i + 2 * hop)
+            a, ai = read_parts(x, i)
+            b, bi = read_parts(x, i + hop)
+            c, ci = read_parts(x, i + 2 * hop)
             t, ti = b + c, bi + ci
             u, ui = a - half * t, ai - half * ti
             v, vi = sine * (bi - ci), sine * (c - b)
-            write(y, o, a + t, ai + ti)
+            write_parts(y, o, a + t, ai + ti)
             _put(y, o + stride * row, u + v, ui + vi, w, p * unit)
             _put(y, o + 2 * stride * row, u - v, ui - vi, w, 2 * p * unit)
 
@@ -102,13 +102,13 @@ def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 4 * p) * row
-            a, ai = read(x, i)
-            b, bi = read(x, i + hop)
-            c, ci = read(x, i + 2 * hop)
-            d, di = read(x, i + 3 * hop)
+            a, ai = read_parts(x, i)
+            b, bi = read_parts(x, i + hop)
+            c, ci = read_parts(x, i + 2 * hop)
+            d, di = read_parts(x, i + 3 * hop)
             s, si, t, ti = a + c, ai + ci, a - c, ai - ci
             u, ui, v, vi = b + d, bi + di, bi - di, d - b
-            write(y, o, s + u, si + ui)
+            write_parts(y, o, s + u, si + ui)
             _put(y, o + stride * row, t + v, ti + vi, w, p * unit)
             _put(y, o + 2 * stride * row, s - u, si - ui, w, 2 * p * unit)
             _put(y, o + 3 * stride * row, t - v, ti - vi, w, 3 * p * unit)
@@ -123,14 +123,14 @@ def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 5 * p) * row
-            a, ai = read(x, i)
-            b, bi = read(x, i + hop)
-            c, ci = read(x, i + 2 * hop)
-            d, di = read(x, i + 3 * hop)
-            e, ei = read(x, i + 4 * hop)
+            a, ai = read_parts(x, i)
+            b, bi = read_parts(x, i + hop)
+            c, ci = read_parts(x, i + 2 * hop)
+            d, di = read_parts(x, i + 3 * hop)
+            e, ei = read_parts(x, i + 4 * hop)
             t, ti, u, ui = b + e, bi + ei, c + d, ci + di
             v, vi, z, zi = bi - ei, e - b, ci - di, d - c
-            write(y, o, a + t + u, ai + ti + ui)
+            write_parts(y, o, a + t + u, ai + ti + ui)
             f, fi = a + c1 * t + c2 * u, ai + c1 * ti + c2 * ui
             g, gi = s1 * v + s2 * z, s1 * vi + s2 * zi
             _put(y, o + stride * row, f + g, fi + gi, w, p * unit)
