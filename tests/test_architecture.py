@@ -23,39 +23,34 @@ def test_imports_point_one_way():
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize("statement", ["import asperity", "import asperity.cli"])
-def test_importing_is_light(statement):
-    """Heavy packages are imported where they are used, not before."""
-    heavy = (
-        "numba",
-        "scipy",
-        "xarray",
-        "matplotlib",
-        "pint",
-        "pydantic",
-        "rich",
-        "jinja2",
-        "starlette",
-        "uvicorn",
-    )
-    code = f"import sys; {statement}; print([m for m in {heavy!r} if m in sys.modules])"
+HEAVY = [
+    "numba",
+    "scipy",
+    "xarray",
+    "matplotlib",
+    "pint",
+    "pydantic",
+    "rich",
+    "jinja2",
+    "starlette",
+    "uvicorn",
+]
+LATE = [f"scipy.{name}" for name in ("optimize", "interpolate", "ndimage", "signal", "stats", "sparse")]
+
+
+@pytest.mark.parametrize(
+    ("statement", "waiting"),
+    [
+        ("import asperity", HEAVY),
+        ("import asperity.cli", HEAVY),
+        ("import asperity.scenarios.preparing", LATE),  # what is written out, is loaded when first named
+        ("import asperity.scenes.report as r; r.names_of_reports()", ["matplotlib"]),  # it draws for papers
+    ],
+)
+def test_packages_wait_until_they_are_used(statement, waiting):
+    code = f"import sys; {statement}; print([m for m in {waiting!r} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
-
-
-def test_large_parts_of_scipy_wait_until_they_are_used():
-    """`scipy.optimize`, written out, is loaded when it is first named."""
-    late = [f"scipy.{name}" for name in ("optimize", "interpolate", "ndimage", "signal", "stats", "sparse")]
-    code = f"import sys, asperity.scenarios.preparing; print([m for m in {late!r} if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
-def test_a_report_is_written_without_what_draws_for_papers():
-    chapters = "import asperity.scenes.report as r; r.names_of_reports()"
-    code = f"import sys; {chapters}; print('matplotlib' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
 
 
 def test_public_names_resolve():

@@ -11,32 +11,24 @@ from asperity import errors
 from asperity.errors import CaseError, ComputationError, InputError, Outcome, PhysicsWarning
 
 
-def test_an_input_error_says_what_was_received_what_is_allowed_and_what_to_do():
-    error = InputError("radius", "-1 mm", "a length greater than 0", "Give the radius of the ball.")
-    assert (
-        str(error) == "radius: received -1 mm; allowed: a length greater than 0. Give the radius of the ball."
-    )
-    assert error.exit_code == 2
-    assert isinstance(error, ValueError)
-
-
-def test_an_input_error_needs_no_remedy():
-    assert str(InputError("radius", 0, "a length")) == "radius: received 0; allowed: a length."
-
-
-def test_a_case_error_lists_every_error():
-    error = CaseError("case.toml", ["first", "second"])
-    assert str(error) == "case.toml: 2 errors\n  - first\n  - second"
-    assert str(CaseError("case.toml", ["only"])).startswith("case.toml: 1 error\n")
-    assert error.errors == ["first", "second"]
-    assert error.exit_code == 2
-    assert isinstance(error, InputError)
-
-
-def test_a_computation_error_says_what_to_try():
-    error = ComputationError("the contact at position 3 did not converge", "a larger rtol")
-    assert str(error) == "the contact at position 3 did not converge. Try: a larger rtol."
-    assert error.exit_code == 3
+@pytest.mark.parametrize(
+    ("error", "code", "message"),
+    [
+        (
+            InputError("radius", "-1 mm", "a length greater than 0", "Give the radius of the ball."),
+            2,
+            "radius: received -1 mm; allowed: a length greater than 0. Give the radius of the ball.",
+        ),
+        (InputError("radius", 0, "a length"), 2, "radius: received 0; allowed: a length."),
+        (CaseError("case.toml", ["one", "two"]), 2, "case.toml: 2 errors\n  - one\n  - two"),
+        (CaseError("case.toml", ["only"]), 2, "case.toml: 1 error\n  - only"),
+        (ComputationError("it did not end", "a larger rtol"), 3, "it did not end. Try: a larger rtol."),
+    ],
+)
+def test_errors_say_what_was_received_what_is_allowed_and_what_to_do(error, code, message):
+    assert str(error) == message
+    assert error.exit_code == code
+    assert isinstance(error, ValueError) == (code == 2)
 
 
 def test_every_physics_warning_has_a_class_with_a_meaning():

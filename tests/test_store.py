@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from asperity.errors import ComputationError, InputError
@@ -25,27 +24,18 @@ def store(tmp_path):
     return Store(tmp_path / "cache")
 
 
-def test_a_result_comes_back_as_it_was(store):
+def test_a_result_comes_back_as_it_was_and_what_was_never_stored_is_missing(store):
     key = content_key("scan", np.arange(3.0), {"spacing": 1e-6})
-    arrays = {
-        "force": np.random.default_rng(0).normal(size=(3, 4)),
-        "count": np.array(7),
-        "law": np.array(["areal"]),
-    }
+    assert store.get(key) is None
+    assert store.files() == []
+    random = np.random.default_rng(0)
+    arrays = {"force": random.normal(size=(30, 4)), "count": np.array(7), "law": np.array(["areal"])}
     store.put(key, arrays)
     found = store.get(key)
-    assert found is not None
     assert found.keys() == arrays.keys()
     for name, value in arrays.items():
-        np.testing.assert_array_equal(found[name], value)
-        assert found[name].dtype == value.dtype
-
-
-def test_what_was_never_stored_is_missing(store):
-    assert store.get(content_key("scan", 1)) is None
-    assert store.files() == []
-    store.put(content_key("scan", 1), {"force": np.zeros(100)})
-    assert store.size() == store.files()[0].stat().st_size > 800
+        np.testing.assert_array_equal(found[name], value, strict=True)
+    assert store.size() == store.files()[0].stat().st_size > 960
     with pytest.raises(InputError, match="key of a stored result"):
         store.get("../elsewhere")
 
@@ -57,11 +47,6 @@ def test_what_was_never_stored_is_missing(store):
 def test_keys_name_contents(first, second):
     same = first.shape == second.shape and first.tobytes() == second.tobytes()
     assert (content_key("a", first) == content_key("a", second)) is same
-
-
-@given(st.dictionaries(st.text(max_size=3), st.floats(allow_nan=False) | st.text(max_size=3) | st.booleans()))
-def test_the_order_of_a_dictionary_does_not_matter(parts):
-    assert content_key("a", parts) == content_key("a", dict(reversed(parts.items())))
 
 
 @pytest.mark.parametrize(
@@ -81,10 +66,11 @@ def test_keys_tell_apart_what_differs(first, second):
     assert content_key(*first) != content_key(*second)
 
 
-def test_a_key_does_not_depend_on_memory_layout():
+def test_keys_depend_on_no_layout_type_or_order():
     heights = np.arange(12.0).reshape(3, 4)
     assert content_key("a", heights) == content_key("a", np.asfortranarray(heights))
     assert content_key("a", np.float64(0.5)) == content_key("a", 0.5)
+    assert content_key("a", {"b": 1, "c": True}) == content_key("a", {"c": True, "b": 1})
 
 
 def test_objects_have_no_content_and_are_not_stored(store):
@@ -149,12 +135,11 @@ def test_a_file_that_cannot_be_trusted_counts_as_missing(store, contents, tmp_pa
 
 
 def test_a_damaged_file_counts_as_missing_and_is_replaced(store):
+    """Each of its bytes and lengths is a matter of the seal."""
     store.put("k", {"force": np.arange(6.0)})
     store.put("other", {"force": np.zeros(6)})
     whole = store.path("k").read_bytes()
-    flipped = (whole[:at] + bytes([whole[at] ^ 1 << at % 8]) + whole[at + 1 :] for at in range(len(whole)))
-    cut = (whole[:length] for length in range(0, len(whole), 97))
-    for contents in (*flipped, *cut, bytes(len(whole)), store.path("other").read_bytes()):
+    for contents in (whole[:100] + b"?" + whole[101:], whole[:-1], b"", store.path("other").read_bytes()):
         store.path("k").write_bytes(contents)
         assert store.get("k") is None
     store.put("k", {"force": np.arange(6.0)})
@@ -206,17 +191,20 @@ def test_many_processes_may_write_the_same_result(store):
         "for _ in range(20): Store(sys.argv[1]).put('k', {'force': np.arange(1000.0)})"
     )
     writers = [subprocess.Popen([sys.executable, "-c", script, str(store.root)]) for _ in range(2)]
-    seen = [store.get("k") for _ in range(200)]
-    assert all(writer.wait(60) == 0 for writer in writers)
-    seen.append(store.get("k"))
-    for found in seen:
-        assert found is None or found["force"].sum() == 499500.0
-    assert seen[-1] is not None
+    seen = [store.get("k")]
+    while any(writer.poll() is None for writer in writers):
+        seen.append(store.get("k"))
+    assert [writer.wait() for writer in writers] == [0, 0]
+    assert {found["force"].sum() for found in [*seen, store.get("k")] if found is not None} == {499500.0}
 
 
-def test_a_claim_is_held_by_one_and_leaves_nothing(store, tmp_path):
+def test_a_claim_is_held_by_one_ends_with_its_process_and_leaves_nothing(store):
     with store.claim("scan-1") as first, store.claim("scan-1") as second, store.claim("scan-2") as other:
         assert (first, second, other) == (True, False, True)
+    code = "import os, sys; from asperity.store import Store; s = Store(sys.argv[1])\n"
+    code += "with s.claim('scan-1') as free: print(free, flush=True); os._exit(1)"
+    done = subprocess.run([sys.executable, "-c", code, store.root], capture_output=True, text=True)
+    assert done.stdout.strip() == "True"
     with store.claim("scan-1") as again:
         assert again
     assert list(store.root.iterdir()) == []
@@ -235,12 +223,3 @@ def test_what_another_makes_is_waited_for(store):
     assert waited == [True]
     assert made(store, "scan-2", lambda: {"force": np.zeros(1)})["force"] == 0.0
     np.testing.assert_array_equal(store.get("scan-2")["force"], np.zeros(1))
-
-
-def test_a_claim_ends_with_its_process(store):
-    code = "import os, sys; from asperity.store import Store; s = Store(sys.argv[1])\n"
-    code += "with s.claim('scan-1') as free: print(free, flush=True); os._exit(1)"
-    done = subprocess.run([sys.executable, "-c", code, store.root], capture_output=True, text=True)
-    assert done.stdout.strip() == "True"
-    with store.claim("scan-1") as free:
-        assert free

@@ -213,21 +213,18 @@ def _locked(path: Path, flags: int = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
     if fcntl is None:  # an open file cannot be removed then
         yield True
         return
-    descriptor, free = os.open(path, flags, 0o600), None
+    descriptor = os.open(path, flags, 0o600)
     try:
+        free = None
         with suppress(OSError):  # a file system without locks
-            free = _lock(descriptor)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                free = True
+            except BlockingIOError:
+                free = False
         yield free
     finally:
         os.close(descriptor)
-
-
-def _lock(descriptor: int) -> bool:
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
 
 
 @contextmanager

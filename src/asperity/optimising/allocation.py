@@ -155,10 +155,9 @@ def _solved(least: Term, kept: list[Term], limits: Limits, begin: Array) -> Arra
     """
     kept = [*kept, *_of_limits(limits)]
     begin = np.clip(begin, limits.lowest, limits.highest)
-    ways = [_over_energies, _over_levels] if limits.rms_at_least > 0.0 else [_over_levels]
     message = ""
-    for way in ways:
-        levels, message = way(least, kept, limits, begin)
+    for over_energies in (True, False) if limits.rms_at_least > 0.0 else (False,):
+        levels, message = _searched(least, kept, limits, begin, over_energies)
         missed = min((term.value(levels) for term in kept), default=0.0)
         if missed < -SLACK:
             message = f"a limit is missed by {-missed:.2g}"
@@ -167,42 +166,34 @@ def _solved(least: Term, kept: list[Term], limits: Limits, begin: Array) -> Arra
     raise ComputationError(f"{_NOTHING} ({message})", _WIDER)
 
 
-def _over_levels(least: Term, kept: list[Term], limits: Limits, begin: Array) -> tuple[Array, str]:
-    found = minimize(
-        least.value,
-        begin,
-        jac=least.slope,
-        method="SLSQP",
-        bounds=list(zip(limits.lowest, limits.highest, strict=True)),
-        constraints=[{"type": "ineq", "fun": term.value, "jac": term.slope} for term in kept],
-        options={"maxiter": MOST_STEPS, "ftol": PRECISION},
-    )
-    return np.clip(found.x, limits.lowest, limits.highest), "" if found.success else str(found.message)
-
-
-def _over_energies(least: Term, kept: list[Term], limits: Limits, begin: Array) -> tuple[Array, str]:
-    """Over y = 10^((L − begin)/10), dL/dy = (10/ln 10)/y."""
+def _searched(
+    least: Term, kept: list[Term], limits: Limits, begin: Array, over_energies: bool
+) -> tuple[Array, str]:
+    """Best levels found, over levels or over y = 10^((L − begin)/10), and why they are not to be trusted."""
 
     def levels(y: Array) -> Array:
-        return begin + 10.0 * np.log10(np.maximum(y, 1e-30))
+        return begin + 10.0 * np.log10(np.maximum(y, 1e-30)) if over_energies else y
 
-    def over(term: Term) -> Term:
+    def over(term: Term) -> Term:  # dL/dy = (10/ln 10)/y
+        if not over_energies:
+            return term
         return Term(
             lambda y: term.value(levels(y)),
             lambda y: term.slope(levels(y)) * (10.0 / np.log(10.0)) / np.maximum(y, 1e-30),
         )
 
-    low, high = energy_of(limits.lowest - begin), energy_of(limits.highest - begin)
+    start, low, high = (
+        energy_of(each - begin) if over_energies else each for each in (begin, limits.lowest, limits.highest)
+    )
     aim, limited = over(least), [over(term) for term in kept]
     found = minimize(
         aim.value,
-        np.ones_like(begin),
+        start,
         jac=aim.slope,
         method="SLSQP",
         bounds=list(zip(low, high, strict=True)),
         constraints=[{"type": "ineq", "fun": term.value, "jac": term.slope} for term in limited],
         options={"maxiter": MOST_STEPS, "ftol": PRECISION},
     )
-    return np.clip(levels(found.x), limits.lowest, limits.highest), "" if found.success else str(
-        found.message
-    )
+    message = "" if found.success else str(found.message)
+    return np.clip(levels(found.x), limits.lowest, limits.highest), message

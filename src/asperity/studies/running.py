@@ -8,7 +8,6 @@ import signal
 import threading
 import time
 import warnings
-from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -17,12 +16,13 @@ from concurrent.futures import (
     Future,
     ProcessPoolExecutor,
     ThreadPoolExecutor,
+    as_completed,
     wait,
 )
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
-from asperity.arguments import shown, whole
+from asperity.arguments import require, shown, whole
 from asperity.case.scene import Case
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
@@ -35,8 +35,6 @@ from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
-
-    from asperity.studies.definition import Member
 
     Outcome = dict[str, Any] | Failure
     Outcomes = Generator[tuple[Member, Outcome], None, None]
@@ -112,43 +110,37 @@ def locally(members: Sequence[Member], workers: int | None = None) -> Outcomes:
     One process per processor by default. A member that ends its process, as one that needs too much memory
     does, fails alone: those that were computed beside it are computed again.
     """
-    waiting = deque(members)
+    waiting = list(members)
     while waiting:
-        suspects: list[Member] = []
         count = min(workers or processors(), len(waiting))
-        yield from _until_broken(waiting, count, suspects)
+        lost = yield from _in_processes(waiting, count)
+        suspects, waiting = lost[:count], lost[count:]  # they are begun in their order
         for member in suspects:
-            guilty: list[Member] = []
-            yield from _until_broken(deque([member]), 1, guilty)
-            if guilty:
+            if (yield from _in_processes([member], 1)):
                 message = "The process ended without a word. Try: fewer workers; memory may be too small."
                 yield member, Failure("ProcessEnded", message)
 
 
-def _until_broken(waiting: deque[Member], workers: int, lost: list[Member]) -> Outcomes:
-    """Compute members until none waits, or a process ends: `lost` then holds those under way."""
+def _in_processes(
+    members: Sequence[Member], workers: int
+) -> Generator[tuple[Member, Outcome], None, list[Member]]:
+    """Compute members until all are, or a process ends; return those that are not, in their order."""
+    missing = dict.fromkeys(members)
+    futures: dict[Future[Outcome], Member] = {}
     with _pool(workers) as pool:
-        under_way: dict[Future[Outcome], Member] = {}
-        while waiting or under_way:
+        with suppress(BrokenExecutor):
+            for member in members:
+                with no_interrupt_for_children():  # a process may start here
+                    futures[_submitted(pool, member)] = member
+        for future in as_completed(futures):
+            member = futures.pop(future)
             try:
-                while waiting and len(under_way) < workers:
-                    with no_interrupt_for_children():  # a process may start here
-                        future = _submitted(pool, waiting[0])
-                    under_way[future] = waiting.popleft()
+                outcome = future.result()
             except BrokenExecutor:
-                lost += under_way.values()
-                return
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                member = under_way.pop(future)
-                try:
-                    outcome = future.result()
-                except BrokenExecutor:
-                    lost.append(member)
-                    continue
-                yield member, outcome
-            if lost:
-                lost += under_way.values()
-                return
+                continue
+            del missing[member]
+            yield member, outcome
+    return list(missing)
 
 
 @contextmanager
@@ -275,17 +267,15 @@ def _planned(
     definition: str | os.PathLike[str] | Mapping[str, Any] | Study | Case, sweep: Mapping[str, Any] | None
 ) -> Study:
     if isinstance(definition, Study):
-        if sweep is not None:
-            raise InputError(
-                "sweep", "keys for a study that has its own", "a case with keys, or a study alone"
-            )
+        allowed = "a case with keys, or a study alone"
+        require(sweep is None, "sweep", "keys for a study that has its own", allowed)
         return definition
     if sweep is not None:
         return study_of(definition, sweep)
     if isinstance(definition, str | os.PathLike):
         return load_study(definition)
-    if isinstance(definition, Case | Mapping):
-        raise InputError("sweep", "nothing", "keys of the case, each with a list of values")
+    a_case = isinstance(definition, Case | Mapping)
+    require(not a_case, "sweep", "nothing", "keys of the case, each with a list of values")
     allowed = "the path of a study file, or with keys to sweep a case"
     raise InputError("definition of the study", shown(definition), allowed)
 
