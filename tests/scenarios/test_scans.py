@@ -46,7 +46,7 @@ def prepared_of(case=CASE, spacing="10 um", **keys):
 @pytest.mark.parametrize("spacing", ["10 um", "6 um"])
 def test_sizes_and_states_are_those_of_the_run(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
-    prepared = prepared_of(spacing=spacing)
+    prepared = prepared_of(spacing=spacing, duration="2 ms")
     expected = scan_sizes(prepared.case, prepared.shape, prepared.textures)["path"]
     tried = try_contacts(prepared.case, prepared.shape, prepared.textures, quiet)
     computed = compute(prepared, quiet)

@@ -47,7 +47,7 @@ LINE = from_bands(40_000, 0.5e-3, BANDS, np.full(BANDS.size, -10.0), 3).heights
 ON_TRACK = {
     "speed": SPEED, "start": 2.0, "duration": 0.3, "settling": 0.06, "laws": ["linear", "hertz"],
     "track": {"name": "nordborg", "points": [4.0]},
-    "numerics": {"time_step": 0.5e-3 / SPEED, "highest_frequency": 2500},
+    "numerics": {"time_step": 0.5e-3 / SPEED, "highest_frequency": 2500, "kernel": "scatter"},
     "contact": {"spacing": 0.5e-3, "window": 20e-3},
     "surface": {"line": Profile(LINE, 0.5e-3), "continuation": "mirror"},
 }  # fmt: skip

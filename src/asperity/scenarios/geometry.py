@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import scipy
 
-from asperity.arguments import Array
+from asperity.arguments import Array, require
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.hertz import check_half_space, groove_gap
 from asperity.contact.scan import window_for
-from asperity.errors import CoarseSamplingWarning, InputError
+from asperity.errors import CoarseSamplingWarning
 from asperity.scenarios.records import read_section
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
@@ -148,11 +149,11 @@ def geometry_of(case: Case) -> Geometry:
     of_class = HIGHEST_FORCE * shape.class_load
     shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)
     _check_half_space(case, hertz, load)
+    width = 2.0 * max(shape.semi_axes)
     for side, size in over.sides.items():
-        if size < (width := 2.0 * max(shape.semi_axes)):
-            allowed = f"at least {width * 1e6:.3g} um, the width of the smooth contact under {load:.3g} N"
-            remedy = "A beam smaller than its contact is no elastic half-space: enlarge it, or press less."
-            raise InputError(f"{case.over_name}.{side}", f"{size * 1e6:.3g} um", allowed, remedy)
+        allowed = f"at least {width * 1e6:.3g} um, the width of the smooth contact under {load:.3g} N"
+        remedy = "A beam smaller than its contact is no elastic half-space: enlarge it, or press less."
+        require(size >= width, f"{case.over_name}.{side}", f"{size * 1e6:.3g} um", allowed, remedy)
     _check_grid(n, h, shape.semi_axes, load)
     return shape.within_window()
 
@@ -179,14 +180,12 @@ def _check_half_space(case: Case, hertz: Hertz, load: float) -> None:
 def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
     """Hold the grid to the smooth contact under the load, N: the window holds it, cells are finer than it."""
     wide, small = 2.2e6 * max(axes), min(axes)
-    if wide > cells * spacing * 1e6:
-        allowed = f"at least {wide:.4g} um, 1.1 times the width of the smooth contact under {load:.3g} N"
-        received = f"{cells * spacing * 1e6:.4g} um"
-        raise InputError("contact.window", received, allowed, "Enlarge the window.")
-    if spacing > 2.0 * small:
-        allowed = f"less than {2e6 * small:.2g} um, the width of the smooth contact under {load:.3g} N"
-        remedy = "Refine the spacing and the window with it, or press harder."
-        raise InputError("contact.spacing", f"{spacing * 1e6:.3g} um", allowed, remedy)
+    allowed = f"at least {wide:.4g} um, 1.1 times the width of the smooth contact under {load:.3g} N"
+    held = cells * spacing * 1e6
+    require(held >= wide, "contact.window", f"{held:.4g} um", allowed, "Enlarge the window.")
+    allowed = f"less than {2e6 * small:.2g} um, the width of the smooth contact under {load:.3g} N"
+    remedy = "Refine the spacing and the window with it, or press harder."
+    require(spacing <= 2.0 * small, "contact.spacing", f"{spacing * 1e6:.3g} um", allowed, remedy)
     if spacing > small / 8:
         warnings.warn(
             f"contact.spacing = {spacing * 1e6:.3g} µm is coarser than an eighth of the contact radius "
@@ -201,66 +200,62 @@ _FINE = 10
 """Points per cell on which the lowest point of a measured gap is looked for."""
 
 
-class _Section:
-    """Depth below the middle of one body across the path, m."""
+def _section(
+    measured: Path | Profile | None, radius: float, key: str
+) -> tuple[Callable[[Array], Array], float]:
+    """Depth below the middle of one body across the path, and half the width where it is known, m."""
+    if measured is None:
+        curvature = 1.0 / radius
+        return lambda y: 0.5 * curvature * y**2, math.inf
+    levelled = level(read_section(measured, key))
+    count = len(levelled.heights)
+    known = (np.arange(count) - 0.5 * (count - 1)) * levelled.spacing
+    spline = scipy.interpolate.make_interp_spline(known, -levelled.heights, k=3)
 
-    def __init__(self, measured: Path | Profile | None, radius: float, key: str) -> None:
-        self.curvature, self.key, self.half_width = 1.0 / radius, key, math.inf
-        self._spline = None
-        if measured is not None:
-            levelled = level(read_section(measured, key))
-            count = len(levelled.heights)
-            y = (np.arange(count) - 0.5 * (count - 1)) * levelled.spacing
-            self._spline = scipy.interpolate.make_interp_spline(y, -levelled.heights, k=3)
-            self.half_width = float(y[-1])
+    def depth(y: Array) -> Array:
+        received, reach = f"a section {2e3 * known[-1]:.4g} mm wide", np.abs(y).max()
+        allowed = f"at least {2e3 * reach:.4g} mm, the window about the point of contact"
+        remedy = "Measure a wider section, or shrink contact.window."
+        require(reach <= known[-1], key, received, allowed, remedy)
+        return np.asarray(spline(y))
 
-    def at(self, y: Array) -> Array:
-        if self._spline is None:
-            return 0.5 * self.curvature * y**2
-        if (reach := np.abs(y).max()) > self.half_width:
-            received = f"a section {2e3 * self.half_width:.4g} mm wide"
-            allowed = f"at least {2e3 * reach:.4g} mm, the window about the point of contact"
-            remedy = "Measure a wider section, or shrink contact.window."
-            raise InputError(self.key, received, allowed, remedy)
-        return np.asarray(self._spline(y))
+    return depth, float(known[-1])
 
 
 def _measured_gap(case: Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
     y, body, over = across_window(case.contact), case.rolling, case.rolled_over
     keys = f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"
-    tread = _Section(body.profile, body.across, keys[0])
-    head = _Section(over.profile, over.radius_across, keys[1])
-    gap = _lowest_in_the_middle(tread, head, y, " and ".join(keys))
+    tread, wide = _section(body.profile, body.across, keys[0])
+    head, broad = _section(over.profile, over.radius_across, keys[1])
+    both = " and ".join(keys)
+    gap = _lowest_in_the_middle(lambda at: tread(at) + head(at), min(wide, broad), y, both)
     half = 0.5 * y[-1]
     for _ in range(10):
         inside = np.abs(y) <= max(half, 3 * case.contact.spacing)
         curvature = np.polynomial.polynomial.polyfit(y[inside], gap[inside], 2)[2]
-        if curvature <= 0.0:
-            received, allowed = "bodies that fit each other across the path", "a gap that opens on both sides"
-            raise InputError(" and ".join(keys), received, allowed)
+        received, allowed = "bodies that fit each other across the path", "a gap that opens on both sides"
+        require(curvature > 0.0, both, received, allowed)
         hertz = replace(hertz, radius_y=float(0.5 / curvature))
         half = hertz.semi_axes(hertz.approach(load))[1]
     return gap, hertz
 
 
-def _lowest_in_the_middle(tread: _Section, head: _Section, y: Array, keys: str) -> Array:
+def _lowest_in_the_middle(depths: Callable[[Array], Array], reach: float, y: Array, keys: str) -> Array:
     """Gap across, m, moved so that the bodies first touch in the middle of the window."""
-    reach = min(tread.half_width, head.half_width)
     middle = 0.0
     if np.isfinite(reach) and reach > y[-1]:
         fine = np.linspace(y[-1] - reach, reach - y[-1], _FINE * len(y))
-        lowest = int(np.argmin(tread.at(fine) + head.at(fine)))
+        lowest = int(np.argmin(depths(fine)))
         around = (float(fine[max(lowest - 1, 0)]), float(fine[min(lowest + 1, len(fine) - 1)]))
         middle = scipy.optimize.minimize_scalar(
-            lambda at: float((tread.at(np.array([at])) + head.at(np.array([at])))[0]),
+            lambda at: float(depths(np.array([at]))[0]),
             bounds=around,
             method="bounded",
             options={"xatol": 1e-7},
         ).x
-    gap = tread.at(y + middle) + head.at(y + middle)
+    gap = depths(y + middle)
     gap = gap - gap[len(y) // 2]
-    if gap.min() < -1e-9:
-        allowed = "sections that touch in one place, convex against each other"
-        raise InputError(keys, "bodies that touch outside the window's middle", allowed)
+    allowed = "sections that touch in one place, convex against each other"
+    require(gap.min() >= -1e-9, keys, "bodies that touch outside the window's middle", allowed)
     return np.maximum(gap, 0.0)

@@ -45,10 +45,14 @@ def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: Square
     heights, felt = _heard(path, shape, speed)
     if not heights.any():
         return None
-    approach = shape.hertz.approach(shape.load)
+    approach, dx = shape.hertz.approach(shape.load), shape.spacing[0]
     along, across = correlation_lengths(heights, shape.spacing)
     a, b = shape.semi_axes
-    force = _linear_force(felt, shape, speed, square_transfer)
+    # rms force of the linear contact that follows the felt plane, up to 10 kHz
+    wavenumber, density = psd(felt, dx, segment=min(len(felt), round(speed / RESOLUTION / dx)))
+    among = (wavenumber * speed >= LOW) & (wavenumber * speed <= 2.0 * HIGH)
+    transfer = square_transfer(shape.hertz.tangent_stiffness(approach), (wavenumber * speed)[among])
+    force = float(np.sqrt(density[among] @ transfer * (wavenumber[1] - wavenumber[0])))
     return Place(
         roughness=float(np.sqrt(np.mean(heights**2))) / approach,
         correlation=along / (2.0 * a),
@@ -113,17 +117,6 @@ def _fallen(products: Array, step: float) -> float:
     k = max(int(below[0]), 1)
     fall = max(share[k - 1] - share[k], np.finfo(float).tiny)
     return step * (k - 1 + float((share[k - 1] - CORRELATION_THRESHOLD) / fall))
-
-
-def _linear_force(felt: Array, shape: Geometry, speed: float, square_transfer: SquareTransfer) -> float:
-    """Rms force, N, of the linear contact that follows the felt plane (rows,), m, up to 10 kHz."""
-    dx = shape.spacing[0]
-    wavenumber, density = psd(felt, dx, segment=min(len(felt), round(speed / RESOLUTION / dx)))
-    frequency = wavenumber * speed
-    among = (frequency >= LOW) & (frequency <= 2.0 * HIGH)
-    stiffness = shape.hertz.tangent_stiffness(shape.hertz.approach(shape.load))
-    transfer = square_transfer(stiffness, frequency[among])
-    return float(np.sqrt(density[among] @ transfer * (wavenumber[1] - wavenumber[0])))
 
 
 MEANING = (

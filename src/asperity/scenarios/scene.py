@@ -9,9 +9,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, Complex, require
 from asperity.case.scene import Case
-from asperity.errors import InputError
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal, modal_receptance
 from asperity.structures.track import Track
@@ -184,10 +183,8 @@ def force_transfer(
     load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
-    if not (f >= 0.0).all():
-        raise InputError("frequency (Hz)", float(np.min(f)), "zero or above")
-    if not stiffness > 0.0:
-        raise InputError("contact stiffness (N/m)", stiffness, "a positive number")
+    require((f >= 0.0).all(), "frequency (Hz)", float(np.min(f, initial=0.0)), "zero or above")
+    require(stiffness > 0.0, "contact stiffness (N/m)", stiffness, "a positive number")
     positions, moving = np.atleast_1d(np.asarray(x, dtype=float)), f > 0.0
     transfer = np.zeros((positions.size, f.size), dtype=complex)
     carried = wheel.receptance(f[moving]) + 1.0 / stiffness
@@ -207,8 +204,7 @@ def mean_square_transfer(
     As `force_transfer`, at the midpoints of `positions` equal parts of half a bay, which is its own mirror
     image.
     """
-    if positions < 1:
-        raise InputError("positions in a bay", positions, "one or more")
+    require(positions >= 1, "positions in a bay", positions, "one or more")
     x = (np.arange(positions) + 0.5) * 0.5 * track.sleeper_spacing / positions
     return np.mean(np.abs(force_transfer(frequency, wheel, track, stiffness, x)) ** 2, axis=0)
 
@@ -233,8 +229,7 @@ def linear_force_psd(
     splits and lowers; without the tones of the sleepers.
     """
     f, texture = np.atleast_1d(np.asarray(frequency, dtype=float)), np.atleast_1d(np.asarray(texture_psd))
-    if not (np.isfinite(speed) and speed > 0.0):
-        raise InputError("speed (m/s)", speed, "a finite positive number")
-    if f.shape != texture.shape:
-        raise InputError("texture_psd", f"shape {texture.shape}", f"one value per frequency, {f.shape}")
+    require(0.0 < speed < np.inf, "speed (m/s)", speed, "a finite positive number")
+    one = f"one value per frequency, {f.shape}"
+    require(f.shape == texture.shape, "texture_psd", f"shape {texture.shape}", one)
     return mean_square_transfer(f, wheel, track, stiffness, positions) * texture / speed
