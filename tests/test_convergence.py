@@ -17,7 +17,7 @@ from asperity.reporting.uncertainty import changes_table, settings_table
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted
 from asperity.scenes.report import CHAPTERS
-from asperity.schema import contents_of, convergence
+from asperity.schema import Entry, convergence
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import LongStrip
 from command_line import call, words_of
@@ -126,9 +126,9 @@ class TestOnTheSameSurface:
 class TestNumbers:
     def test_each_setting_is_told_as_the_schema_says(self, ball):
         group = ball["convergence"].to_dataset()
-        entries, (sentence,) = contents_of(convergence)
+        entries = [item for item in vars(convergence).values() if isinstance(item, Entry)]
         assert set(group.variables) == {entry.name for entry in entries}
-        assert set(group.attrs) == {sentence.name}
+        assert set(group.attrs) == {convergence.SENTENCE.name}
         for entry in entries:
             assert (group[entry.name].dims, group[entry.name].attrs["units"]) == (entry.dims, entry.units)
         words = told(ball, "change")

@@ -14,7 +14,7 @@ from asperity.case.cases import case_class, case_of
 from asperity.case.describing import entries
 from asperity.errors import AsperityError
 from asperity.parameters import Choice, Number, Quantity
-from asperity.schema.entry import UNKNOWN
+from asperity.schema import UNKNOWN
 from asperity.units import quantity
 
 ROUGH = {

@@ -5,7 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 from asperity.scenes import schema
-from asperity.schema import VERSION, contact, contents_of, convergence, provenance, rolling, spectra, surface
+from asperity.schema import (
+    VERSION,
+    Attribute,
+    Entry,
+    contact,
+    convergence,
+    provenance,
+    rolling,
+    spectra,
+    surface,
+)
 
 SHARED = (provenance, surface, contact, rolling, spectra, convergence)
 
@@ -16,6 +26,14 @@ Version {VERSION} of the schema: the attribute `schema_version` of a file names 
 version is refused, with what to do. Every variable has `units` and `long_name`; where values are missing
 (NaN), `missing` says why. "Not in all" says which results have what not all have.
 """
+
+
+def contents_of(*modules):
+    """Entries and attributes that modules define, in their order."""
+    held = [value for module in modules for value in vars(module).values()]
+    items = [item for value in held for item in (value.values() if isinstance(value, dict) else (value,))]
+    kinds = ([item for item in items if isinstance(item, kind)] for kind in (Entry, Attribute))
+    return tuple(list(dict.fromkeys(each)) for each in kinds)
 
 
 def table(entries, attributes):

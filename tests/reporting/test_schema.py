@@ -6,13 +6,12 @@ import ast
 from pathlib import Path
 
 import pytest
-from schema_page import PAGE, SHARED, page
+from schema_page import PAGE, SHARED, contents_of, page
 
 import asperity
 from asperity.scenes import schema
 from asperity.scenes.report import CHAPTERS, figures_of
-from asperity.schema import VERSION, contents_of, convergence
-from asperity.schema.entry import UNKNOWN
+from asperity.schema import UNKNOWN, VERSION, convergence
 
 SOURCE = Path(asperity.__file__).parent
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track", "pass_by", "convergence")

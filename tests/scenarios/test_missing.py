@@ -6,8 +6,7 @@ import xarray as xr
 
 from asperity.errors import PhysicsWarning
 from asperity.scenes.report import page_of
-from asperity.schema import Entry
-from asperity.schema.entry import UNKNOWN
+from asperity.schema import UNKNOWN, Entry
 from asperity.schema.spectra import NO_SIGNAL
 
 LEVEL = Entry("spectra", "level", ("band",), "dB re 1 N", "level", missing=NO_SIGNAL)

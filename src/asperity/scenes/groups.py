@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
@@ -37,11 +36,6 @@ PATH_ROWS = 2000
 """Rows of a path, at most, that are kept to be looked at from above."""
 FEWEST_POINTS = 16
 """Points of a segment of a line's spectrum, at least."""
-
-
-def as_json(rows: object) -> str:
-    """Lay rows out as JSON that people can read."""
-    return json.dumps(rows, ensure_ascii=False)
 
 
 def surface_group(computed: Computed, *, brief: bool = False) -> Values:
@@ -82,7 +76,7 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
                 means = [mean for mean, _, _ in line_statistics(lines)]
                 rows += _rows(means, f"{len(lines)} lines of the {body}, mean")
     return laid_out | {
-        surface.STATISTICS: as_json(rows),
+        surface.STATISTICS: rows,
         surface.SOURCE: textures.origin,
         surface.MISSING_SHARE: textures.missing_share,
         surface.ACROSS: "areal" if textures.areal else "lines",
@@ -191,14 +185,14 @@ def contact_group(computed: Computed, found: Sequence[Finding], population: Sequ
     shape, reduction = computed.shape, computed.reduction
     laid_out = _hertz_only(shape) if reduction is None else _reduced(computed, reduction)
     if reduction is not None:
-        laid_out[contact.POPULATION] = as_json([_asked(answer) for answer in population])
+        laid_out[contact.POPULATION] = [_asked(answer) for answer in population]
     return laid_out | {
         contact.HERTZ_RADIUS: shape.semi_axes[0],
         contact.HERTZ_RADIUS_ACROSS: shape.semi_axes[1],
         contact.WORKING_LOAD: shape.load,
         contact.CONTACT_MODULUS: shape.modulus,
         contact.HERTZ_CONSTANT: shape.hertz.stiffness_constant,
-        contact.VALIDITY: as_json([finding.row() for finding in found]),
+        contact.VALIDITY: [finding.row() for finding in found],
     }
 
 

@@ -23,7 +23,7 @@ from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenes import noise, schema, track, validity
 from asperity.scenes.compute import Computed, compute
-from asperity.scenes.groups import as_json, contact_group, surface_group
+from asperity.scenes.groups import contact_group, surface_group
 from asperity.scenes.population import answers
 from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
 from asperity.structures.rail_poles import RailBetween, RailPoles
@@ -80,12 +80,12 @@ def computed_result(
     warn_of_findings(found)
     textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)
     numerics = [{"name": name, "value": value} for name, value in _numerics(computed, choice, losses)]
-    expected = {provenance.EXPECTED_ERRORS: as_json(choice.entries())} if choice else {}
+    expected = {provenance.EXPECTED_ERRORS: choice.entries()} if choice else {}
     scenario = {
         provenance.KIND: case.kind,
-        provenance.PARAMETERS: as_json(case.parameters()),
-        provenance.LAWS: as_json([laws.spec_of(name).entry() for name in case.laws]),
-        provenance.NUMERICS: as_json(numerics),
+        provenance.PARAMETERS: case.parameters(),
+        provenance.LAWS: [laws.spec_of(name).entry() for name in case.laws],
+        provenance.NUMERICS: numerics,
         **expected,
     }
     result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
@@ -96,9 +96,9 @@ def computed_result(
         provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
         provenance.CASE: case.text,
         provenance.SEED: case.seed,
-        provenance.CITATIONS: as_json(sources),
+        provenance.CITATIONS: sources,
         provenance.VERDICT: validity.verdict(computed, in_bands, found, power, choice),
-        provenance.WARNINGS: as_json(_collected(caught)),  # those of laying out are among them
+        provenance.WARNINGS: _collected(caught),  # those of laying out are among them
     }
     result.attrs = group(told).attrs
     return result

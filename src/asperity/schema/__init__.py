@@ -1,31 +1,120 @@
 """What a result file holds: each variable and attribute once, for who writes it and for who draws it.
 
-One module per group holds what all kinds of case share; what one kind adds stands in the module `schema`
-of its folder. ``docs/result_file.md`` lists it all.
+One module per group holds what all kinds of case share; what depends on the scene stands in
+`asperity.scenes.schema`. ``docs/result_file.md`` lists it all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from types import ModuleType
+import json
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from asperity.schema.entry import Attribute, Entry, Values, entry, group, tree
+from asperity.errors import Grade, PhysicsWarning
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import ArrayLike
 
 VERSION = 2
 """Of the schema, in every result. Raise it where a name, dimension, unit or meaning changes or goes."""
-
-__all__ = ["VERSION", "Attribute", "Entry", "Values", "contents_of", "entry", "group", "tree"]
-
-
-def contents_of(*modules: ModuleType) -> tuple[list[Entry], list[Attribute]]:
-    """Entries and attributes that modules define, in their order."""
-    items = list(dict.fromkeys(item for module in modules for item in _items(module)))
-    entries = [item for item in items if isinstance(item, Entry)]
-    return entries, [item for item in items if isinstance(item, Attribute)]
+UNKNOWN = "no reason is known"
 
 
-def _items(module: ModuleType) -> Iterator[Entry | Attribute]:
-    for value in vars(module).values():
-        for item in value.values() if isinstance(value, dict) else (value,):
-            if isinstance(item, Entry | Attribute):
-                yield item
+@dataclass(frozen=True)
+class Entry:
+    """A variable of a result file."""
+
+    group: str  # where it stands
+    name: str  # what it is called there
+    dims: tuple[str, ...]  # its dimensions; those of a coordinate are its own name
+    units: str  # in SI; ``"1"`` for a pure number, ``"dB re 1 N"`` for a level
+    long_name: str  # what it is
+    condition: str = ""  # which results have it, where not all have
+    missing: str = ""  # why values may be missing (NaN)
+    attributes: tuple[str, ...] = ()  # what else is said of it
+
+    @property
+    def path(self) -> str:
+        """As ``"contact/force"``."""
+        return f"{self.group}/{self.name}"
+
+    def variable(self, values: ArrayLike, **attributes: Any) -> xarray.Variable:
+        """Make the variable; what is not a finite number is missing, and the variable says why."""
+        import numpy as np
+        import xarray
+
+        numbers = np.asarray(values)
+        attrs = {"units": self.units, "long_name": self.long_name} | attributes
+        if numbers.dtype.kind == "f" and not (finite := np.isfinite(numbers)).all():
+            attrs.setdefault("missing", self.missing or UNKNOWN)
+            if attrs["missing"] == UNKNOWN:
+                lost = f"{numbers.size - finite.sum()} of {numbers.size} values of {self.name}"
+                message = f"{lost} are not finite numbers, and {UNKNOWN}"
+                warnings.warn(PhysicsWarning(message, Grade.OUT), stacklevel=2)
+            numbers = np.where(finite, numbers, np.nan)
+        return xarray.Variable(self.dims, numbers, attrs)
+
+
+def entry(
+    group: str,
+    place: str,
+    units: str,
+    long_name: str,
+    condition: str = "",
+    missing: str = "",
+    attributes: tuple[str, ...] = (),
+) -> Entry:
+    """Make the entry of a variable of a group.
+
+    Its place is as ``"filter(approach, wavenumber)"``, with its dimensions; as ``"approach"`` that of a
+    coordinate, whose dimension is its own name.
+    """
+    name, _, dims = place.removesuffix(")").partition("(")
+    return Entry(
+        group, name, tuple((dims or name).split(", ")), units, long_name, condition, missing, attributes
+    )
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """An attribute of a group of a result file, or of its root."""
+
+    group: str  # where it stands; ``""`` at the root
+    name: str  # what it is called there
+    units: str  # in SI; ``"text"``, or ``"JSON"`` for what is laid out as that
+    meaning: str  # what it is
+    condition: str = ""  # which results have it, where not all have
+
+
+Values = dict[Entry | Attribute, Any]
+"""What is laid out: arrays, or variables that are made already, and attributes, each by what it is."""
+
+
+def group(values: Mapping[Entry | Attribute, Any]) -> xarray.Dataset:
+    """Lay out one group."""
+    import xarray
+
+    held = {
+        item.name: value if isinstance(value, xarray.Variable) else item.variable(value)
+        for item, value in values.items()
+        if isinstance(item, Entry)
+    }
+    told = {
+        item.name: json.dumps(value, ensure_ascii=False) if item.units == "JSON" else value
+        for item, value in values.items()
+        if isinstance(item, Attribute)
+    }
+    return xarray.Dataset(held, attrs=told)
+
+
+def tree(values: Mapping[Entry | Attribute, Any]) -> xarray.DataTree:
+    """Lay out all groups, in the order in which they come first."""
+    import xarray
+
+    groups: dict[str, Values] = {}
+    for item, value in values.items():
+        groups.setdefault(f"/{item.group}", {})[item] = value
+    return xarray.DataTree.from_dict({name: group(held) for name, held in groups.items()})

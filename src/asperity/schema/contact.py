@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Attribute, Entry, entry
+from asperity.schema import Attribute, Entry, entry
 
 SAMPLED = "where there are samples"
 _NO_FILTER = "the samples do not touch in these states, or have no waves of these lengths"

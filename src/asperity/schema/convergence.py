@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Attribute, entry
+from asperity.schema import Attribute, entry
 
 _ASKED = "where convergence was asked for"
 _entry = partial(entry, "convergence", condition=_ASKED)

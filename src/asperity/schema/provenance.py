@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Attribute
+from asperity.schema import Attribute
 
 _root, _scenario = partial(Attribute, ""), partial(Attribute, "scenario")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Attribute, entry
+from asperity.schema import Attribute, entry
 
 _entry = partial(entry, "rolling")
 CONTACTS = "number of the contact, body by body, each from its rearmost"

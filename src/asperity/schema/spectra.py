@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Entry, entry
+from asperity.schema import Entry, entry
 from asperity.schema.rolling import CONTACTS
 
 _entry = partial(entry, "spectra")

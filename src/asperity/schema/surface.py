@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
+from asperity.schema import Attribute, entry
 from asperity.schema.contact import RUN_IN, SAMPLED
-from asperity.schema.entry import Attribute, entry
 
 _entry, _attribute = partial(entry, "surface"), partial(Attribute, "surface")
 _sampled = partial(_entry, condition=SAMPLED)
