@@ -29,6 +29,14 @@ def commands(job):
     return [step["run"] for step in job["steps"] if "run" in step]
 
 
+def module_at(path):
+    """A module that belongs to no package."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 def test_the_version_is_the_same_everywhere():
     assert f"\nversion: {asperity.__version__}\n" in text("CITATION.cff")
     assert f"\n## {asperity.__version__} " in text("CHANGELOG.md")
@@ -62,9 +70,7 @@ def test_the_oldest_versions_are_tested():
 
 def test_addresses_are_those_of_the_repository_that_builds():
     pytest.importorskip("hatchling")
-    spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")
-    hook = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(hook)
+    hook = module_at(ROOT / "hatch_build.py")
     assert hook.addresses({}) == {}
     hosted = {"GITHUB_SERVER_URL": "https://host", "GITHUB_REPOSITORY": "people/asperity"}
     assert hook.addresses(hosted)["Issues"] == "https://host/people/asperity/issues"
@@ -87,13 +93,7 @@ def test_every_link_of_a_page_leads_somewhere():
 
 def test_files_that_contributors_are_sent_to_are_there():
     package = ROOT / "src" / "asperity"
-    places = [
-        ROOT,
-        package,
-        package / "laws",
-        package / "surfaces",
-        ROOT / ".github/workflows",
-    ]
+    places = [ROOT, package, package / "laws", package / "surfaces", ROOT / ".github/workflows"]
     names = re.findall(r"`([\w./]+(?:\.py|\.md|\.yml|/)|\.ci/\w+)`", text("CONTRIBUTING.md"))
     assert len(names) > 20
     for name in names:
@@ -107,10 +107,7 @@ def test_no_two_files_of_tests_have_one_name():
 
 
 def test_what_pages_and_examples_import_is_in_the_reference():
-    path = Path(__file__).parents[1] / "docs" / "extensions" / "written_pages.py"
-    spec = importlib.util.spec_from_file_location("written_pages", path)
-    pages = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(pages)
+    pages = module_at(ROOT / "docs" / "extensions" / "written_pages.py")
     listed = {line.strip().rpartition(".")[2] for line in pages.api().splitlines()}
     wanted = {"self_affine", "areal_statistics", "homogeneity", "psd_1d", "decay_rate", "RailSection"}
     assert wanted <= listed

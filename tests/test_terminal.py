@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import asperity
-from asperity.cli import main
+from asperity.printable import printable
 from asperity.terminal import say, say_table
 
 SOURCE = Path(asperity.__file__).parent
@@ -21,8 +21,8 @@ WRITERS = {
     "desk.py",
     "__main__.py",  # before anything can be imported
 }
-
 posix = pytest.mark.skipif(sys.platform == "win32", reason="streams are closed otherwise there")
+full = pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 
 
 def test_nothing_else_writes_to_the_terminal():
@@ -36,7 +36,30 @@ def test_nothing_else_writes_to_the_terminal():
                 assert "csv" not in [alias.name for alias in node.names], module
 
 
-def test_what_controls_a_terminal_is_spelled_out(capsys):
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("map [um] v2 – höhe, 粗さ.npy", "map [um] v2 – höhe, 粗さ.npy"),
+        ("a\N{NO-BREAK SPACE}b", "a\N{NO-BREAK SPACE}b"),
+        ("\x1b[31mred", "\\x1b[31mred"),
+        ("\x9b31m", "\\x9b31m"),  # the same in one character
+        ("a\x07\x08\r\x7f", "a\\x07\\x08\\r\\x7f"),
+        ("beam\u202excod.exe", "beam\\u202excod.exe"),
+        ("\u2066a\u2069\u200f", "\\u2066a\\u2069\\u200f"),
+        ("a\u2028b", "a\\u2028b"),
+        ("a\ud800b", "a\\ud800b"),
+        ("\udcff.toml", "\\xff.toml"),  # how Python carries a byte of a file name that is no UTF-8
+        ("a\nb\tc", "a\\nb\\tc"),
+    ],
+)
+def test_what_would_act_is_spelled_out(text, shown):
+    assert printable(text) == shown
+    assert printable(shown) == shown
+    printable(text).encode("utf-8")
+
+
+def test_line_ends_and_tabs_may_stay(capsys):
+    assert printable("a\n\tb\r\x1b", lines=True) == "a\n\tb\\r\\x1b"
     say("\x1b]0;owned\x07\nError: none", err=True)
     say("first\n\tsecond\x9b1m", lines=True)
     printed = capsys.readouterr()
@@ -52,32 +75,33 @@ def test_names_in_tables_are_text(capsys, name):
     assert "\x1b" not in printed
 
 
-def run(command, folder, **options):
-    """Run a command line of a shell, with ``asperity`` for the program; returns its exit code and outputs."""
-    program = f"'{sys.executable}' -m asperity"
+# --- the program, whoever reads what it says
+
+
+def run(command, folder, code=0):
+    """What a command line of a shell, with ``asperity`` for the program, says on standard error."""
     environment = os.environ | {"ASPERITY_CACHE": str(folder / "cache"), "PYTHONIOENCODING": "utf-8"}
     (folder / "case.toml").write_text(CASE)
-    return subprocess.run(
-        ["bash", "-c", command.replace("asperity", program)],
-        cwd=folder, env=environment, capture_output=True, timeout=300, check=False, **options,
+    done = subprocess.run(
+        ["bash", "-c", command.replace("asperity", f"'{sys.executable}' -m asperity", 1)],
+        cwd=folder, env=environment, capture_output=True, timeout=300,
     )  # fmt: skip
+    assert done.returncode == code, done
+    return done.stderr.decode()
 
 
 @posix
 @pytest.mark.parametrize("command", ["check case.toml", "new wheel-on-rail", "--help", "surface --help"])
 def test_a_reader_that_ends_is_no_failure(tmp_path, command):
-    done = run(f"asperity {command} | true; exit ${{PIPESTATUS[0]}}", tmp_path)
-    assert done.returncode == 0
-    assert b"Error" not in done.stderr
-    done = run(f"asperity {command} 2>&1 | head -c 1; exit ${{PIPESTATUS[0]}}", tmp_path)
-    assert done.returncode == 0
+    assert "Error" not in run(f"asperity {command} | true; exit ${{PIPESTATUS[0]}}", tmp_path)
+    run(f"asperity {command} 2>&1 | head -c 1; exit ${{PIPESTATUS[0]}}", tmp_path)
 
 
 @posix
-@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
 def test_closed_streams_are_no_failure(tmp_path, closed):
-    assert run(f"asperity check case.toml {closed}", tmp_path).returncode == 0
-    assert run(f"asperity check absent.toml {closed}", tmp_path).returncode == 2
+    run(f"asperity check case.toml {closed}", tmp_path)
+    run(f"asperity check absent.toml {closed}", tmp_path, code=2)
 
 
 @posix
@@ -90,44 +114,30 @@ def test_no_file_takes_the_number_of_a_closed_stream(tmp_path):
         "    raise SystemExit(0 if opened > 2 and os.path.getsize('data') == 0 else 1)"
     )
     (tmp_path / "code.py").write_text(code)
-    done = run(f"'{sys.executable}' code.py <&- >&- 2>&-", tmp_path)
-    assert done.returncode == 0
+    run(f"'{sys.executable}' code.py <&- >&- 2>&-", tmp_path)
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_standard_output_on_a_full_disk_is_a_failure(tmp_path):
-    done = run("asperity new ball-on-beam > /dev/full", tmp_path)
-    assert done.returncode == 3
-    assert done.stderr.decode().startswith("Error: standard output could not be written (")
-    assert run("asperity check absent.toml 2> /dev/full", tmp_path).returncode == 2
+@full
+@pytest.mark.parametrize(
+    "words", ["new ball-on-beam", "cache --json", "check absent.toml --json", "check --json"]
+)
+def test_standard_output_on_a_full_disk_is_a_failure(tmp_path, words):
+    """Of a document too, whether the command has done its work, failed, or was called wrongly."""
+    told = run(f"asperity {words} > /dev/full", tmp_path, code=3)
+    assert "Error: standard output could not be written (" in told
+    assert "Traceback" not in told
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-@pytest.mark.parametrize("words", ["cache", "check absent.toml", "check"])
-def test_a_document_on_a_full_disk_is_a_failure(tmp_path, words):
-    """Whether the command has done its work, failed, or was called wrongly."""
-    done = run(f"asperity {words} --json > /dev/full", tmp_path)
-    assert done.returncode == 3
-    assert "Error: standard output could not be written (" in done.stderr.decode()
-    assert "Traceback" not in done.stderr.decode()
+@full
+def test_standard_error_on_a_full_disk_changes_no_code(tmp_path):
+    run("asperity check absent.toml 2> /dev/full", tmp_path, code=2)
 
 
 @posix
-def test_names_of_files_and_commands_are_spelled_out(tmp_path):
-    escape = b"\x1b"
-    for arguments in (r"check $'\e[31m.toml'", r"check $'\xff.toml'", r"$'\e[31mrun'", r"run a b $'\e]0;x'"):
-        done = run(f"asperity {arguments}", tmp_path)
-        assert done.returncode == 2, done
-        assert escape not in done.stderr
-        assert done.stderr.decode()  # and all of it is UTF-8
-    assert b"\\xff.toml: received no such file" in run(r"asperity check $'\xff.toml'", tmp_path).stderr
-
-
-def test_an_interrupt_before_a_command_begins_is_130(monkeypatch):
-    def interrupted(*arguments):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(main, "make_context", interrupted)
-    with pytest.raises(SystemExit) as caught:
-        main([])
-    assert caught.value.code == 130
+@pytest.mark.parametrize(
+    "words", [r"check $'\e[31m.toml'", r"check $'\xff.toml'", r"$'\e[31mrun'", r"run a b $'\e]0;x'"]
+)
+def test_names_of_files_and_commands_are_spelled_out(tmp_path, words):
+    told = run(f"asperity {words}", tmp_path, code=2)  # and all of it is UTF-8
+    assert "\x1b" not in told
+    assert "xff" not in words or "\\xff.toml: received no such file" in told
