@@ -50,14 +50,6 @@ def test_the_levels_are_those_asked_for(points, lateral, bands):
         assert_array_equal(heights, np.broadcast_to(heights[:, :1], heights.shape))
 
 
-def test_single_lines_scatter_about_the_levels():
-    wavelengths, levels = rail(13, 29)
-    strip = strip_from_bands((40000, 9), (MM, 2 * MM), wavelengths, levels, seed=2)
-    each = np.array([periodogram_levels(line, wavelengths) for line in strip.heights.T])
-    assert_allclose(each, np.broadcast_to(levels, each.shape), atol=1.5)
-    assert each[:, -1].std() > 0.01
-
-
 @pytest.mark.parametrize("lateral", [1.0, 4.0])
 def test_lines_share_what_the_spectrum_across_says(lateral):
     """Coherence of lines a distance y apart: ∫ D cos(ky y) dky = z K1(z), z = kx y / lateral."""

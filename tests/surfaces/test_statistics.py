@@ -223,6 +223,13 @@ def test_the_direction_of_a_rough_texture_is_not_decided_by_its_longest_waves():
     directions = rng.uniform(0.0, 180.0, 12)
     errors = [(found(turned_texture(d, 2.0, rng)) - d + 90) % 180 - 90 for d in directions]
     assert np.sqrt(np.mean(np.square(errors))) < 6.0  # 16 by the power of heights
+    x, y = np.indices((128, 128))
+    waves = sum(
+        size * np.sin(2 * np.pi * (x * np.cos(np.radians(d)) + y * np.sin(np.radians(d))) / 7.0)
+        for d, size in ((30.0, 1.0), (52.0, np.sqrt(0.3)))
+    )
+    mean = 30.0 + 0.5 * np.degrees(np.angle(1.0 + 0.3 * np.exp(2j * np.radians(22.0))))
+    assert found(waves) == pytest.approx(mean, abs=1.5)  # of all that lies within 30 degrees
     crossed = found(turned_texture(20.0, 10.0, rng) + turned_texture(80.0, 10.0, rng))
     assert min(abs(crossed - 20.0), abs(crossed - 80.0)) < 4.0
 

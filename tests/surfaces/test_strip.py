@@ -1,7 +1,7 @@
 """Strips that are generated where they are read, what is kept of them, and what they are like as a whole."""
 
 import gc
-import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -225,20 +225,9 @@ def test_without_a_file_few_fields_are_held_in_memory(monkeypatch, at_once):
 
 
 def test_threads_read_beside_each_other():
-    made, failed = Made(), []
-
-    def read():
-        try:
-            made.read(*30 * (0, 1, 2))
-        except AssertionError as error:
-            failed.append(error)
-
-    threads = [threading.Thread(target=read) for _ in range(6)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert not failed
+    made = Made()
+    with ThreadPoolExecutor(6) as threads:
+        list(threads.map(lambda _: made.read(*30 * (0, 1, 2)), range(6)))
     assert sorted(made.numbers) == [0, 1, 2]
 
 
