@@ -12,7 +12,7 @@ from scipy import fft, linalg
 from scipy.special import k1
 
 from asperity.arguments import Array, require, two_lengths
-from asperity.spectra import HALF_BAND, band_energies, band_levels, psd, third_octave_bands
+from asperity.spectra import HALF_BAND, band_energies, band_levels, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import check_shape
 from asperity.threads import thread_count
@@ -228,10 +228,9 @@ def _wavenumber_bands(wavelengths: ArrayLike, levels_db: ArrayLike) -> tuple[Arr
     received = f"shapes {given.shape} and {levels.shape}"
     require(pairs, "wavelengths and levels", received, "two lists of equal length, levels not NaN")
     require((given > 0.0).all() and np.isfinite(given).all(), "wavelengths", given, "positive and finite, m")
-    bands = [third_octave_bands(1.0 / w, 1.0 / w) for w in given]
-    centres, low, high = (np.array([b[k][0] for b in bands]) for k in range(3))
+    centres = 10.0 ** (np.rint(-10.0 * np.log10(given)) / 10.0)
     right = (np.abs(given * centres - 1.0) < 0.03).all()  # nominal ones lie within 2.4 % of the exact ones
     right = right and np.unique(centres).size == centres.size
     remedy = "Give each band once by its centre, as 0.1, 0.125, 0.16 m."
     require(right, "wavelengths", given, "distinct centres of base-10 one-third octaves", remedy)
-    return centres, low, high, levels
+    return centres, centres / HALF_BAND, centres * HALF_BAND, levels

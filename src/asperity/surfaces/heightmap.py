@@ -101,22 +101,20 @@ class Heights:
 
     def _repr_html_(self) -> str:
         """Describe and draw the heights, in µm over lengths in mm, as HTML without anything active."""
-        spacings = np.atleast_1d(self.spacing)
-        sizes = spacings * self.heights.shape
-        points, size, step = (
-            " × ".join(each) for each in (
-                map(str, self.heights.shape),
-                (written(float(f"{length:.4g}"), "m", "mm") for length in sizes),
-                (written(float(f"{spacing:.4g}"), "m", "um") for spacing in spacings),
-            )
-        )  # fmt: skip
-        rms = written(float(f"{np.nanstd(self.heights):.4g}"), "m", "um")
+
+        def lengths(values: ArrayLike, unit: str) -> str:
+            return " × ".join(written(float(f"{each:.4g}"), "m", unit) for each in np.atleast_1d(values))
+
+        points = " × ".join(map(str, self.heights.shape))
+        sizes = np.atleast_1d(self.spacing) * self.heights.shape
         missing = f", {self.missing_share:.2%} without a height" if self.missing_share else ""
         what = "Height map" if self.heights.ndim == 2 else "Profile"
-        text = f"{points} points, {size}, {step} apart, rms height {rms}{missing}.".replace(" um", " µm")
+        text = f"{points} points, {lengths(sizes, 'mm')}, {lengths(self.spacing, 'um')} apart"
+        text += f", rms height {lengths(np.nanstd(self.heights), 'um')}{missing}."
         source = f"<br>{escape(printable(self.source))}" if self.source else ""
         picture = f'<img alt="{what.lower()}" src="data:image/png;base64,{self._picture(sizes)}">'
-        return f"<div><p><strong>{what}.</strong> {escape(text)}{source}</p>{picture}</div>"
+        said = escape(text.replace(" um", " µm"))
+        return f"<div><p><strong>{what}.</strong> {said}{source}</p>{picture}</div>"
 
     def _picture(self, sizes: Array) -> str:
         """Picture of heights with sides of these lengths, m, as PNG in base 64."""

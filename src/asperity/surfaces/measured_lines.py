@@ -199,9 +199,9 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
         processed = [process(line)[0] for line in full]
     (wavelength, before), (_, after) = map(_levels, (full, processed))
     nominal, limits = rail_roughness("iso3095")
-    limit = np.full(wavelength.shape, np.nan)
-    for at, level in zip(nominal[likely_band(nominal)], limits[likely_band(nominal)], strict=True):
-        limit[np.abs(np.log10(wavelength / at)) < 0.03] = level
+    nominal, limits = nominal[likely_band(nominal)], limits[likely_band(nominal)]
+    same = np.abs(np.log10(wavelength[:, None] / nominal)) < 0.03
+    limit = np.where(same.any(axis=1), limits[same.argmax(axis=1)], np.nan)
     few = np.isfinite(limit).sum() < FEWEST_BANDS
     return None if few else ThirdOctaves(wavelength, before, after, limit)
 
