@@ -8,7 +8,7 @@ from asperity.errors import CoarseSamplingWarning, InputError, MissingPointsWarn
 from asperity.reference import cnossos
 from asperity.spectra import energy_sum
 from asperity.surfaces import measured_lines
-from asperity.surfaces.bands import band_levels_of, check_levels, strip_from_bands
+from asperity.surfaces.bands import band_levels_of, check_levels, from_bands, strip_from_bands
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.measured_lines import bring_into_register, process, remove_spikes, roll_over, trim
 from like_measured import either, wheel_lines
@@ -192,6 +192,19 @@ def test_a_short_line_of_a_measured_wheel_does_not_spoil_the_others(measured):
     assert found.replaced == (4,)
     assert np.ptp(np.argmin(found.lines[:9], axis=1)) <= 10
     assert min(found.correlations[:9]) > 0.75
+
+
+def test_third_octaves_stand_beside_the_limit():
+    wavelengths, limit = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
+    line = from_bands(20000, 0.5 * MM, wavelengths, limit, seed=1)
+    found = measured_lines.third_octaves([line])
+    assert_allclose(found.wavelength[found.limited], wavelengths, rtol=0.025)
+    assert_array_equal(found.limit[found.limited], limit)
+    assert_allclose(found.measured[found.limited][9:], limit[9:], atol=1.0)  # of bands below 50 mm
+    assert (found.processed <= found.measured + 0.5)[
+        found.limited
+    ].all()  # of smooth lines nothing is bridged
+    assert measured_lines.third_octaves([Profile(np.zeros(100), 0.2)]) is None
 
 
 HOLED = Profile([*np.zeros(40), *20 * [np.nan], *np.zeros(40)], MM)
