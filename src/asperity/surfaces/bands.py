@@ -229,8 +229,8 @@ def _wavenumber_bands(wavelengths: ArrayLike, levels_db: ArrayLike) -> tuple[Arr
     require(pairs, "wavelengths and levels", received, "two lists of equal length, levels not NaN")
     require((given > 0.0).all() and np.isfinite(given).all(), "wavelengths", given, "positive and finite, m")
     centres = 10.0 ** (np.rint(-10.0 * np.log10(given)) / 10.0)
-    right = (np.abs(given * centres - 1.0) < 0.03).all()  # nominal ones lie within 2.4 % of the exact ones
-    right = right and np.unique(centres).size == centres.size
+    near = np.abs(given * centres - 1.0) < 0.03  # nominal ones lie within 2.4 % of the exact ones
+    right = near.all() and np.unique(centres).size == centres.size
     remedy = "Give each band once by its centre, as 0.1, 0.125, 0.16 m."
     require(right, "wavelengths", given, "distinct centres of base-10 one-third octaves", remedy)
     return centres, centres / HALF_BAND, centres * HALF_BAND, levels
