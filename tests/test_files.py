@@ -57,18 +57,12 @@ def test_archives_and_hdf5_files_are_read_behind_their_seal(tmp_path):
         np.testing.assert_array_equal(opened["x"], np.arange(3))
 
 
-def test_left_overs_are_swept_at_the_first_write_into_a_folder(tmp_path):
-    (tmp_path / ".run.nc.0123abcd.part").write_bytes(b"killed")
-    (tmp_path / ".run.nc.part").write_bytes(b"not ours")
-    write_bytes(tmp_path / "run.nc", b"new")
-    assert names(tmp_path) == [".run.nc.part", "run.nc"]
-    (tmp_path / ".run.nc.0123abcd.part").write_bytes(b"killed later")
-    write_bytes(tmp_path / "run.nc", b"again")
-    assert [path.name for path in left_overs(tmp_path)] == [".run.nc.0123abcd.part"]
-
-
 @posix
-def test_a_part_that_is_being_written_is_no_left_over(tmp_path):
+def test_left_overs_are_swept_at_the_first_write_and_what_is_being_written_is_none(tmp_path):
+    part = tmp_path / ".run.nc.0123abcd.part"
+    part.write_bytes(b"killed")
+    (tmp_path / ".run.nc.part").write_bytes(b"not ours")
+
     def write(file):
         assert left_overs(tmp_path) == []
         assert remove_left_overs(tmp_path) == 0
@@ -76,6 +70,10 @@ def test_a_part_that_is_being_written_is_no_left_over(tmp_path):
         file.write(b"whole")
 
     assert atomic_write(tmp_path / "run.nc", write).read_bytes() == b"whole"
+    assert names(tmp_path) == [".run.nc.part", "run.nc"]
+    part.write_bytes(b"killed later")
+    write_bytes(tmp_path / "run.nc", b"again")
+    assert left_overs(tmp_path) == [part]
     with together(tmp_path, last="b") as new:
         assert left_overs(tmp_path) == []
         assert new.is_dir()

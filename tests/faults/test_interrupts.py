@@ -3,10 +3,8 @@
 import os
 import random
 import signal
-import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 from program import CASE, LONG, RUN, ended, goes_on, left, outcome, prepared, program, promised, same
@@ -135,23 +133,3 @@ def test_of_two_runs_in_one_folder_one_is_refused(tmp_path):
     refused = found[1][1]
     assert "another run is writing" in refused or "the run of another case" in refused
     assert left(folder) == []
-
-
-def test_signals_reach_the_program_however_the_shell_was_started(tmp_path):
-    """A background job of a shell ignores Ctrl-C, and so would all that it starts."""
-    inner = "import signal; print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)"
-    test = (
-        "import subprocess, sys\n"
-        f"def test(): assert subprocess.check_output([sys.executable, '-c', {inner!r}]) == b'False\\n'\n"
-    )
-    here = Path(__file__).parents[1]
-    (tmp_path / "test_child.py").write_text(test)
-    ignoring = (
-        "import signal, sys, pytest; signal.signal(signal.SIGINT, signal.SIG_IGN); "
-        f"sys.exit(pytest.main(['-q', '-c', {os.devnull!r}, '-p', 'conftest', {str(tmp_path)!r}]))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", ignoring], cwd=here, capture_output=True, text=True,
-        env=os.environ | {"PYTHONPATH": f"{here}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"},
-    )  # fmt: skip
-    assert done.returncode == 0, done.stdout

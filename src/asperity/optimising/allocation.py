@@ -33,18 +33,17 @@ class Limits:
     rms_at_least: float = 0.0  # of all bands together, m
     rms_at_most: float = np.inf
 
-    def cost(self, levels: Array) -> float:
-        """Price of a texture: Σ price (start − L)."""
-        return float(self.price @ (self.start - levels))
-
-    def checked(self) -> Limits:
+    def __post_init__(self) -> None:
         """Refuse bounds that leave nothing between them."""
         crossed = np.flatnonzero(self.lowest > self.highest)
         if crossed.size:
             low, high = self.lowest[crossed[0]], self.highest[crossed[0]]
             received = f"{low:g} dB as lowest, {high:g} dB as highest, in band {crossed[0] + 1}"
             raise InputError("bounds of the levels", received, "lowest below highest in every band")
-        return self
+
+    def cost(self, levels: Array) -> float:
+        """Price of a texture: Σ price (start − L)."""
+        return float(self.price @ (self.start - levels))
 
 
 @dataclass(frozen=True, eq=False)

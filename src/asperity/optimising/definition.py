@@ -229,7 +229,7 @@ class Aim(Section):
             np.inf if self.budget is None else self.budget,
             self.rms_at_least or 0.0,
             self.rms_at_most or np.inf,
-        ).checked()
+        )
 
 
 def _for_each(name: str, values: tuple[float, ...] | None, otherwise: Array) -> Array:

@@ -130,8 +130,7 @@ def _warnings(tables: Sequence[xarray.Dataset]) -> list[dict[str, Any]]:
         met = {_kind(w["category"], w["message"]): w for w in json.loads(table.attrs["warnings"])}
         for kind, warning in met.items():
             start = {key: warning[key] for key in ("category", "message", "grade") if key in warning}
-            start["members"] = 0
-            groups.setdefault(kind, start)["members"] += 1
+            groups.setdefault(kind, start | {"members": 0})["members"] += 1
     return list(groups.values())
 
 
@@ -139,10 +138,9 @@ def _grouped(members: Sequence[Member], failures: Mapping[tuple[int, ...], Failu
     """Failures that differ in more than their numbers, with the members that have them."""
     groups: dict[tuple[str, str], dict[str, Any]] = {}
     for member in members:
-        failure = failures.get(member.index)
-        if failure is not None:
-            start = {"error": failure.error, "message": failure.message, "members": []}
-            groups.setdefault(_kind(failure.error, failure.message), start)["members"].append(member.label)
+        if (failure := failures.get(member.index)) is not None:
+            kind = _kind(failure.error, failure.message)
+            groups.setdefault(kind, vars(failure) | {"members": []})["members"].append(member.label)
     return list(groups.values())
 
 
@@ -162,14 +160,27 @@ def axes_of(table: xarray.Dataset) -> list[str]:
 def columns_of(table: xarray.Dataset, *, bands: bool = True) -> Rows:
     """Heading and rows of a study, one for each member and law; with or without what has bands."""
     axes = axes_of(table)
+    shown = [
+        (name, others)
+        for name, others in _in_order(table, axes)
+        if len(others) <= 1 and (bands or not _has_bands(others))
+    ]
+    return _laid_out(table, axes, shown)
+
+
+def long_columns(table: xarray.Dataset, axes: Sequence[str]) -> Rows:
+    """Heading and rows of what has all these axes, one row for each place on them."""
+    held = [str(name) for name, values in table.data_vars.items() if set(values.dims) == set(axes)]
+    return _laid_out(table, axes, [(name, []) for name in held])
+
+
+def _laid_out(table: xarray.Dataset, axes: Sequence[str], shown: Sequence[tuple[str, list[str]]]) -> Rows:
+    """A row for each place on the axes; quantities have some of them, and at most one dimension beside."""
     heading = [key_title(table[axis]) for axis in axes]
     chosen: list[tuple[list[str], NDArray[Any]]] = []
-    for name, others in _in_order(table, axes):
-        if len(others) > 1 or (not bands and _has_bands(others)):
-            continue
-        values = table[name]
-        own = [axis for axis in axes if axis in values.dims]
-        chosen.append((own, values.transpose(*own, *others).values))
+    for name, others in shown:
+        own = [axis for axis in axes if axis in table[name].dims]
+        chosen.append((own, table[name].transpose(*own, *others).values))
         heading += _titles(table, name, others)
     labels = {axis: typed_values(table[axis]) for axis in axes}
     rows: list[list[object]] = []
@@ -213,23 +224,6 @@ def key_title(key: xarray.DataArray) -> str:
     """Heading of an axis, with the unit in which its values were typed."""
     unit = typed_unit(key)
     return f"{key.name} [{unit}]" if unit else str(key.name)
-
-
-def long_columns(table: xarray.Dataset, axes: Sequence[str]) -> Rows:
-    """Heading and rows of what has all these axes, one row for each place on them."""
-    held = {
-        str(name): values.transpose(*axes)
-        for name, values in table.data_vars.items()
-        if set(values.dims) == set(axes)
-    }
-    heading = [key_title(table[axis]) for axis in axes]
-    heading += [f"{name} [{values.attrs['units']}]" for name, values in held.items()]
-    labels = [typed_values(table[axis]) for axis in axes]
-    numbers = [values.values.ravel().tolist() for values in held.values()]
-    rows: list[list[object]] = [
-        [*place, *found] for place, found in zip(product(*labels), zip(*numbers, strict=True), strict=True)
-    ]
-    return heading, rows
 
 
 WEIGHTED = f"{spectra.FORCE_LEVEL.name}_a"
