@@ -29,12 +29,8 @@ INTERRUPTED = 130
 _INTERRUPTED = "interrupted; run the same command again to continue"
 COLLECT_AFTER = 1_000_000
 """New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
-_PARTS = {
-    errors.CaseError: ("errors",),
-    errors.InputError: ("what", "received", "allowed", "remedy"),
-    errors.ComputationError: ("what", "remedy"),
-}
-"""What a document says of an error beside its message; the first class that fits."""
+_PARTS = ("what", "received", "allowed", "remedy", "errors")
+"""What a document says of an error beside its message, as far as it is known."""
 
 
 class Command(click.Command):
@@ -116,11 +112,10 @@ class Program(Command, click.Group):
                 code = content if isinstance(content, int) else 0
                 if isinstance(content, Mapping) and manner().document:
                     met = [{"grade": "warning", "message": message} for message in warned]
-                    files = {what: path.resolve() for what, path in content.get("files", {}).items()}
-                    told = {"warnings": [*content.get("warnings", ()), *met]} | (
-                        {"files": files} if files else {}
-                    )
-                    _say_document(name, code, {**content, **told})
+                    told = {**content, "warnings": [*content.get("warnings", ()), *met]}
+                    if files := {what: path.resolve() for what, path in content.get("files", {}).items()}:
+                        told["files"] = files
+                    _say_document(name, code, told)
             except (click.ClickException, click.Abort, errors.ComputationError) as error:
                 code = _failed(error, name)
         if standalone_mode:
@@ -156,16 +151,21 @@ def _failed(error: BaseException, command: str, *, debug: bool = False) -> int:
         told = message = _INTERRUPTED  # even where an import has made another error of it
         code = INTERRUPTED
     else:
-        message, code = _outcome(error)
+        message, code = f"the program failed with {type(error).__name__}: {error}", FAILED
+        message = f"{printable(message)}. Try: asperity --debug …, which shows where."
+        if isinstance(error, errors.AsperityError):
+            message, code = str(error), error.exit_code
+        elif isinstance(error, MemoryError):
+            message = errors.TOO_MUCH_MEMORY
         told = f"Error: {message}"
         if debug:
             say(traceback.format_exc(), err=True, lines=True)
     say(told, err=True, lines=True)
     if manner().document:
-        kind = "UsageError" if isinstance(error, click.ClickException) else "ProgramError"
-        kind = type(error).__name__ if isinstance(error, errors.AsperityError) else kind
-        names = next((names for known, names in _PARTS.items() if isinstance(error, known)), ())
-        parts = {name: getattr(error, name) for name in names}
+        kind, parts = "UsageError" if isinstance(error, click.ClickException) else "ProgramError", {}
+        if isinstance(error, errors.AsperityError):
+            kind = type(error).__name__
+            parts = {name: getattr(error, name) for name in _PARTS if hasattr(error, name)}
         if "received" in parts:
             parts["received"] = str(parts["received"])
         try:
@@ -173,16 +173,6 @@ def _failed(error: BaseException, command: str, *, debug: bool = False) -> int:
         except errors.ComputationError as unheard:
             return _failed(unheard, command)
     return code
-
-
-def _outcome(error: BaseException) -> tuple[str, int]:
-    """Message and exit code of an error that is neither one of use nor an interrupt."""
-    if isinstance(error, errors.AsperityError):
-        return str(error), error.exit_code
-    if isinstance(error, MemoryError):
-        return errors.TOO_MUCH_MEMORY, FAILED
-    what = printable(f"the program failed with {type(error).__name__}: {error}")
-    return f"{what}. Try: asperity --debug …, which shows where.", FAILED
 
 
 def _say_document(command: str, code: int, content: Mapping[str, Any]) -> None:

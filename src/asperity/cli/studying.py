@@ -50,6 +50,9 @@ def run_study(
     scheduler at an address. `overwrite` says whether another study in the folder may be replaced, `show`
     names what is printed and drawn instead of what is usual.
     """
+    from asperity.studies.cluster import cluster
+    from asperity.studies.running import study as computed
+
     asked = tables.chosen(show)
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
@@ -57,7 +60,10 @@ def run_study(
     with files.alone_in(directory):
         if not overwrite:
             _refuse_other(study, directory)
-        table = _computed(study, workers, scheduler)
+        remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
+        place = nullcontext() if scheduler is None else cluster(scheduler)
+        with place as executor, progress_bar() as progress:
+            table = computed(study, executor=executor, workers=workers, progress=progress)
         several = table.sizes.get(SEED, 0)
         means = mean_and_scatter(table) if several > 1 else None
         band = prediction_band(table) if several >= FEWEST else None
@@ -79,17 +85,6 @@ def run_study(
         "failures": json.loads(table.attrs["failures"]),
         "files": written,
     }
-
-
-def _computed(study: Study, workers: int | None, scheduler: str | None) -> xarray.Dataset:
-    """The table of a study."""
-    from asperity.studies.cluster import cluster
-    from asperity.studies.running import study as computed
-
-    remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
-    place = nullcontext() if scheduler is None else cluster(scheduler)
-    with place as executor, progress_bar() as progress:
-        return computed(study, executor=executor, workers=workers, progress=progress)
 
 
 def varied(case: Path, words: Sequence[str]) -> Study:

@@ -23,6 +23,8 @@ MOST_CELLS_SHOWN = 129
 CURVE = 16
 """States of the curve of k_c."""
 RTOL = 1e-5
+DESCRIBED = ("spacing", "thinning", "heights", "source", "load", "passing", "touch", "deepest", "working")
+"""What is told of a sample that does not change while it is pressed."""
 SPARE = 4.0
 """Length of the path beyond a strip for the filters, in windows: one sample needs no longer one."""
 
@@ -46,16 +48,16 @@ class PressedSample:
             case.contact.hardness,
         )  # fmt: skip
         self.gap = gap
-        self.source = (
-            prepared.textures.origin if prepared.textures.maps else "smooth bodies: no sample is given"
-        )
+        smooth = "smooth bodies: no sample is given"
+        self.source = prepared.textures.origin if prepared.textures.maps else smooth
         self.touch = float(gap.min())
         self.last = self.half_space.solve(gap, load=self._largest(shape), rtol=RTOL)
         self.deepest = self.last.approach
-        self.curve = [_state(self._at(d), self.touch) for d in self._states()]
-        self.working = self.half_space.solve(
-            gap, load=self.load, start=self.last.pressure, rtol=RTOL
-        ).approach
+        share = np.linspace(1.0, 0.0, CURVE, endpoint=False) ** 1.5  # from the deepest, denser at touch
+        states = self.touch + (self.deepest - self.touch) * share
+        self.curve = [_state(self._at(approach), self.touch) for approach in states]
+        self.last = self.half_space.solve(gap, load=self.load, start=self.last.pressure, rtol=RTOL)
+        self.working = self.last.approach
 
     def _largest(self, shape: Geometry) -> float:
         """Largest force, N, that the window holds and, with a hardness, carries."""
@@ -63,17 +65,10 @@ class PressedSample:
         carried = 0.9 * self.half_space.pressure_cap * self.half_space.cell_area * cells
         largest = min(shape.largest_force, carried)
         if largest <= shape.load:
-            raise InputError(
-                "contact.hardness",
-                f"{self.half_space.pressure_cap / 1e9:.3g} GPa",
-                f"a hardness with which the window carries the load of {shape.load:.3g} N",
-            )
+            received = f"{self.half_space.pressure_cap / 1e9:.3g} GPa"
+            allowed = f"a hardness with which the window carries the load of {shape.load:.3g} N"
+            raise InputError("contact.hardness", received, allowed)
         return largest
-
-    def _states(self) -> Array:
-        """Approaches (CURVE,), m, from the deepest to just above touch, denser there."""
-        share = np.linspace(1.0, 0.0, CURVE, endpoint=False) ** 1.5
-        return self.touch + (self.deepest - self.touch) * share
 
     def _at(self, approach: float) -> Contact:
         self.last = self.half_space.solve(self.gap, approach=approach, start=self.last.pressure, rtol=RTOL)
@@ -102,16 +97,8 @@ class PressedSample:
         """What does not change while the slider moves."""
         return {
             "shape": list(self.gap.shape),
-            "spacing": list(self.spacing),
-            "thinning": self.thinning,
-            "heights": self.heights,
-            "source": self.source,
-            "load": self.load,
-            "passing": self.passing,
-            "touch": self.touch,
-            "deepest": self.deepest,
-            "working": self.working,
             "curve": self.curve[::-1],
+            **{name: getattr(self, name) for name in DESCRIBED},
         }
 
 
