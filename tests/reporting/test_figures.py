@@ -17,6 +17,8 @@ from asperity.schema import contact
 
 PARTS = figures_by_name()
 SPECTRA = ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws")
+OF_LAWS = ("force_psd", "force_bands", "acceleration_laws", "force_piece", "force_envelope")
+WAVE = np.sin(np.arange(1000) * 0.1)
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +26,7 @@ def tree():
     return report_tree()
 
 
+@pytest.fixture
 def small():
     return report_tree(["areal", "linear"], steps=1000)
 
@@ -39,18 +42,14 @@ def marks(name, tree, kind=Line):
 # --- laws
 
 
-@pytest.mark.parametrize("laws", [["linear"], ["areal", "hertz-filtered", "linear-filtered"]])
-def test_any_set_of_laws(laws):
+@pytest.mark.parametrize("laws", [LAWS, ["linear"], ["areal", "hertz-filtered", "linear-filtered"]])
+def test_any_set_of_laws_in_its_colours(laws):
     tree = report_tree(laws, steps=500)
-    for name in ("force_envelope", "force_piece", "force_psd", "force_bands", "acceleration_laws"):
+    for name in OF_LAWS:
         assert laws_in(PARTS[name].laid_out(tree)) == set(laws)
-        assert set(laws) <= {line.label for line in marks(name, tree)}
-
-
-def test_laws_keep_their_colours_in_all_figures(tree):
-    for name in ("force_psd", "force_bands", "acceleration_laws", "force_piece", "force_envelope"):
         drawn = {line.law: line.colour for line in marks(name, tree) if line.law}
-        assert drawn == {law: spec_of(law).look.colour for law in LAWS}, name
+        assert drawn == {law: spec_of(law).look.colour for law in laws}, name
+        assert set(laws) <= {line.label for line in marks(name, tree)}
 
 
 def test_no_two_laws_of_a_result_have_one_colour():
@@ -66,18 +65,11 @@ def test_no_two_laws_of_a_result_have_one_colour():
 
 
 def test_short_piece_holds_the_longest_loss_of_contact():
-    tree = report_tree(["areal"], steps=5000)
-    rolling = tree["rolling"].to_dataset()
-    force = np.full((1, 5000), 5.0)
-    force[0, 100:110], force[0, 4000:4300] = 0.0, 0.0
-    share = rolling["contact_loss_share"].copy(data=[0.062])
-    tree["rolling"] = rolling.assign(contact_force=(("law", "time"), force), contact_loss_share=share)
-    part = piece(tree)
+    force = np.full(5000, 5.0)
+    force[100:110] = force[4000:4300] = 0.0
+    part = piece(with_force(force))
     assert part.start < 4000
     assert part.stop > 4300
-
-
-WAVE = np.sin(np.arange(1000) * 0.1)
 
 
 @pytest.mark.parametrize("name", ["force_piece", "force_envelope"])
@@ -87,27 +79,22 @@ def test_a_wild_law_does_not_flatten_the_main_one(name):
     assert axis.high - axis.low < 2.2 * 20.0
     assert axis.low < 50.0 < 70.0 < axis.high
     assert [line.opacity for line in marks(name, tree)] == [0.5, 0.5, 1.0]  # the main law is drawn last
-    caption = PARTS[name].said(tree)
-    assert "beyond it: shifted (30.0 N to 90.0 N), linear (−340 N to 460 N)" in caption
-
-
-def test_an_axis_that_suits_all_says_nothing():
-    caption = PARTS["force_piece"].caption
-    assert "beyond" not in caption(with_force(60 + 10 * WAVE, 60 + 12 * WAVE, 60 + 9 * WAVE))
+    beyond = "beyond it: shifted (30.0 N to 90.0 N), linear (−340 N to 460 N)"
+    assert beyond in PARTS[name].said(tree)
+    assert "beyond" not in PARTS[name].said(with_force(60 + 10 * WAVE, 60 + 12 * WAVE, 60 + 9 * WAVE))
     flying = with_force(np.maximum(5 + 10 * WAVE, 0.0), 5 + 4 * WAVE)
-    assert panels("force_piece", flying)[0].y.low < 0.0  # zero is where contact is lost
+    assert panels(name, flying)[0].y.low < 0.0  # zero is where contact is lost
 
 
 def test_loss_of_contact_is_drawn_where_there_is_any():
     force = np.full(1000, 5.0)
     force[[0, 1, 700, 999]] = 0.0
     tree = with_force(force, force, 5 * WAVE)
-    chart = PARTS["force_envelope"].laid_out(tree)
-    time = 1e3 * tree["rolling/time"].values
+    chart, time = PARTS["force_envelope"].laid_out(tree), 1e3 * tree["rolling/time"].values
     whole, below = chart.panels
     areal, shifted = (mark for mark in below.marks if isinstance(mark, Boxes))  # linear pulls
     assert (areal.law, shifted.law) == ("areal", "shifted")
-    assert [word for _, word in below.x.ticks or below.y.ticks] == ["areal", "shifted", "linear"]
+    assert [word for _, word in below.y.ticks] == ["areal", "shifted", "linear"]
     half = (time[1] - time[0]) / 2
     np.testing.assert_allclose(areal.left, time[[0, 700, 999]] - half)
     np.testing.assert_allclose(areal.right, time[[1, 700, 999]] + half)
@@ -125,9 +112,8 @@ def test_loss_of_contact_is_drawn_where_there_is_any():
 
 
 def test_the_whole_run_is_there_step_by_step(tree):
-    lines = marks("force_envelope", tree)
     force = tree["rolling/contact_force"]
-    for line in lines:
+    for line in marks("force_envelope", tree):
         np.testing.assert_array_equal(line.y, force.sel(law=line.law).values)
     largest = PARTS["force_envelope"].laid_out(tree).places["largest force"]
     peak = float(tree["rolling/time"][int(force[0].values.argmax())])  # s
@@ -139,8 +125,7 @@ def test_the_whole_run_is_there_step_by_step(tree):
 
 def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
     held, row = tree["contact"].to_dataset(), 4  # the state nearest the working load
-    excited = held["filter_excited"].values > 0
-    lines = marks("contact_filter", tree)
+    excited, lines = held["filter_excited"].values > 0, marks("contact_filter", tree)
     for name in ("filter_raw", "filter", "filter_applied"):
         level = 20 * np.log10(held[name].values[row])
         shown = excited & (level > -40)
@@ -150,103 +135,78 @@ def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
     assert all(line.dashes for line in beyond)
     assert len(marks("contact_filter", tree, Boxes)) == 2  # in both panels
     assert "Grey: waves that the texture lacks" in PARTS["contact_filter"].said(tree)
+    # faint where force and line have little in common
+    known = (held["filter_coherence"].values[row] >= 0.25) & excited
+    full = np.where(known, held["filter_signed"].values[row], np.nan)
+    assert any(np.array_equal(line.y, full, equal_nan=True) for line in lines)
 
 
-def test_signed_estimate_is_faint_where_force_and_line_have_little_in_common(tree):
-    held = tree["contact"].to_dataset()
-    known = (held["filter_coherence"].values[4] >= 0.25) & (held["filter_excited"].values > 0)
-    full = np.where(known, held["filter_signed"].values[4], np.nan)
-    assert any(np.array_equal(line.y, full, equal_nan=True) for line in marks("contact_filter", tree))
-
-
-def test_hertz_is_drawn_in_closed_form_and_not_below_its_touch():
-    tree = small()
-    constant = tree["contact"].attrs["hertz_constant"]
-    for panel, power, unit in zip(panels("contact_force", tree), (1.5, 0.5), (1.0, 1e6), strict=True):
+def test_hertz_is_drawn_in_closed_form_and_not_below_its_touch(small):
+    constant = small["contact"].attrs["hertz_constant"]
+    for panel, power, unit in zip(panels("contact_force", small), (1.5, 0.5), (1.0, 1e6), strict=True):
         (line,) = (mark for mark in panel.marks if isinstance(mark, Line) and mark.label == "Hertz")
         assert line.x[0] == 0.0
-        assert len(line.x) > 10 * tree["contact"].sizes["approach"]
+        assert len(line.x) > 10 * small["contact"].sizes["approach"]
         assert np.allclose(line.y, constant * (line.x * 1e-6) ** power / unit)
 
 
 def test_gaps_are_told_in_plain_words(tree):
-    entry = contact.FILTER
-    held = entry.variable(tree["contact/filter"].values)
-    gaps = xr.DataTree.from_dict({"contact": xr.Dataset({entry.name: held})})
+    held = contact.FILTER.variable(tree["contact/filter"].values)
+    gaps = xr.DataTree.from_dict({"contact": xr.Dataset({contact.FILTER.name: held})})
     told = "Gaps in the contact filter, fitted magnitude: the samples do not touch in these states, or have"
-    assert missing(gaps, entry).startswith(told)
-    assert missing(xr.DataTree(), entry) == ""
+    assert missing(gaps, contact.FILTER).startswith(told)
+    assert missing(xr.DataTree(), contact.FILTER) == ""
 
 
 # --- the texture
 
 
-def test_heights_of_the_whole_path_are_drawn_beside_the_sample():
-    tree = small()
-    surface = tree["surface"].to_dataset()
-    tree["surface"] = surface.assign_coords(path_height=20 * surface["path_height"])
-    lines = {line.label: line for line in marks("texture_sample", tree)}
-    assert lines["path, whole"].x.min() < -9.0  # µm; no height of the sample is as low
-    assert lines["path, whole"].x.min() < lines["sample"].x.min()
-
-
-def test_colours_of_a_map_leave_out_one_in_a_thousand():
-    tree = small()
-    heights = tree["surface"]["sample_heights"].values
+def test_the_sample_is_drawn_beside_the_heights_of_the_whole_path(small):
+    surface = small["surface"].to_dataset()
+    heights = surface["sample_heights"].values
     usual = np.ptp(np.percentile(heights, [0.1, 99.9]))
-    heights[0, 0] = 1e3 * heights.max()  # a spike
-    (field,) = marks("texture_sample", tree, Field)
-    shown = (field.high - field.low) / field.values.max()
-    assert shown < 2 * usual / heights.max()
-
-
-def test_maps_that_lines_were_laid_out_as_say_so():
-    tree = small()
-    tree["surface"].attrs["across"] = "lines"
+    heights[0, 0] = 1e3 * heights.max()  # a spike: colours leave out one in a thousand
+    small["surface"] = surface.assign_coords(path_height=20 * surface["path_height"])
+    small["surface"].attrs["across"] = "lines"
+    (field,) = marks("texture_sample", small, Field)
+    assert (field.high - field.low) / field.values.max() < 2 * usual / heights.max()
+    lines = {line.label: line for line in marks("texture_sample", small)}
+    assert lines["path, whole"].x.min() < -9.0  # µm; no height of the sample is as low
     for name in ("texture_sample", "texture_path"):
-        assert any(panel.title.endswith("as laid out between lines") for panel in panels(name, tree))
+        assert any(panel.title.endswith("as laid out between lines") for panel in panels(name, small))
 
 
-# --- bands that say little
+# --- bands that say little, and the linear laws that all others are compared with
 
 
-def test_bands_that_say_little_are_shaded():
+@pytest.mark.parametrize("name", SPECTRA)
+def test_bands_that_say_little_or_hold_the_start_are_shaded(name):
     tree, little = uncertain(0.4)
-    edge = tree["spectra/band"].values[little].max() * 10**0.05
-    for name in SPECTRA:
-        for panel in panels(name, tree):
-            (shaded,) = (mark for mark in panel.marks if isinstance(mark, Boxes))
-            assert shaded.right == pytest.approx([edge], rel=1e-6), name
-        assert any(note.text == "says little" for note in marks(name, tree, Note))
-        assert "B T is below 10" in PARTS[name].said(tree)
-    enough, _ = uncertain(0.0)
-    assert not marks("force_bands", enough, Boxes)
-    assert "B T" not in PARTS["force_bands"].said(enough)
-
-
-def test_bands_that_hold_the_start_are_shaded():
-    tree, little = uncertain(0.4)
+    bands = tree["spectra/band"].values
+    edge = bands[little].max() * 10**0.05
+    for panel in panels(name, tree):
+        (shaded,) = (mark for mark in panel.marks if isinstance(mark, Boxes))
+        assert shaded.right == pytest.approx([edge], rel=1e-6)
+    assert any(note.text == "says little" for note in marks(name, tree, Note))
+    assert "B T is below 10" in PARTS[name].said(tree)
     held = np.where(np.arange(little.size) == np.flatnonzero(little)[-1] + 3, 0.3, 0.1)
     tree["spectra"]["start_share"] = xr.Variable("band", held)
-    (centre,) = tree["spectra/band"].values[held > 0.2]
-    for name in SPECTRA:
-        shaded = marks(name, tree, Boxes)[0]
-        assert shaded.right[0] < shaded.left[1] < centre < shaded.right[1]
-        assert "low by more than 1 dB" in PARTS[name].said(tree)
-
-
-# --- the linear laws that all others are compared with
+    shaded = marks(name, tree, Boxes)[0]
+    assert shaded.right[0] < shaded.left[1] < bands[held > 0.2] < shaded.right[1]
+    assert "low by more than 1 dB" in PARTS[name].said(tree)
+    enough, _ = uncertain(0.0)
+    assert not marks(name, enough, Boxes)
+    assert "B T" not in PARTS[name].said(enough)
 
 
 def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
-    part = PARTS["force_bands"]
+    part, spectra = PARTS["force_bands"], tree["spectra"].to_dataset()
     labels = [panel.y.label for panel in panels("force_bands", tree)]
     assert labels[1:] == ["level − linear-filtered / dB", "level − linear / dB"]
     assert len(marks("force_bands", tree, Rules)) == 2  # zero
     columns = part.collect(tree).columns
-    names = list(columns)
-    assert names.index("areal minus linear-filtered [dB]") < names.index("areal minus linear [dB]")
-    spectra = tree["spectra"].to_dataset()
+    own = [name for name in columns if name.startswith("areal minus l")]
+    assert own == ["areal minus linear-filtered [dB]", "areal minus linear [dB]"]
     for law in ("linear-filtered", "linear"):
         expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
         np.testing.assert_allclose(columns[f"areal minus {law} [dB]"], expected)
