@@ -67,16 +67,12 @@ def test_what_it_shows_cannot_run_scripts(result):
     assert "<p><strong>Steel ball on a steel beam.</strong> &lt;script&gt;" in hostile._repr_html_()
 
 
-def test_a_part_of_a_result_is_shown_as_a_tree(result):
-    assert "All data" not in result["rolling"]._repr_html_()
-    assert "All data" not in Result()._repr_html_()
-
-
-def test_it_survives_saving(result, tmp_path):
+def test_it_survives_saving_and_a_part_of_it_is_shown_as_a_tree(result, tmp_path):
     again = asperity.open_result(asperity.save(result, tmp_path / "run.nc"))
     assert type(again) is Result
     assert again.identical(result)
     assert "All data" in again._repr_html_()
+    assert not any("All data" in part._repr_html_() for part in (result["rolling"], Result()))
 
 
 @pytest.fixture
@@ -107,30 +103,26 @@ def test_a_run_shows_a_bar_in_a_notebook_and_takes_it_away(notebook, tmp_path, m
     monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
     asperity.run(CASE)
     assert notebook[0] == notebook[-1] == ""
-    assert any(
-        re.match(r'<progress value="\d+" max="\d+"></progress> .+: \d+ of \d+', bar) for bar in notebook
-    )
+    bar = r'<progress value="\d+" max="\d+"></progress> .+: \d+ of \d+'
+    assert any(re.match(bar, shown) for shown in notebook)
 
 
 def test_a_bar_is_drawn_now_and_then_and_escapes_its_words(notebook):
     with shown_progress(None) as progress:
-        for done in range(1000):
+        for done in range(1001):
             progress(done, 1000, "<b>scan</b>")
-        progress(1000, 1000, "<b>scan</b>")
     assert len(notebook) < 20
     assert "&lt;b&gt;scan&lt;/b&gt;: 1000 of 1000" in notebook[-2]
 
 
-def test_a_progress_of_ones_own_is_the_only_one(notebook):
+def test_elsewhere_nothing_is_shown(notebook, monkeypatch, capsys):
+    """Where another progress is asked for, that is the only one."""
     told = []
     with shown_progress(lambda *step: told.append(step)) as progress:
         progress(1, 2, "scan")
     assert told == [(1, 2, "scan")]
-    assert notebook == []
-
-
-def test_elsewhere_nothing_is_shown(monkeypatch, capsys):
-    monkeypatch.delitem(sys.modules, "IPython", raising=False)
+    monkeypatch.delitem(sys.modules, "IPython")
     with shown_progress(None) as progress:
         progress(1, 2, "scan")
     assert capsys.readouterr() == ("", "")
+    assert notebook == []
