@@ -191,7 +191,6 @@ class Chapter:
     figures: tuple[Figure, ...]
     tables: tuple[Callable[[DataTree], ReportTable | None], ...] = ()
     answers: Callable[[DataTree], Answers | None] | None = None  # what the top of the page says of it
-    summary: tuple[Figure, ...] = ()  # figures of which a summary shows the first that can be drawn
 
 
 def columns_text(columns: Mapping[str, Numbers]) -> str:

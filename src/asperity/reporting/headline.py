@@ -163,21 +163,15 @@ def force_answers(tree: DataTree) -> Answers | None:
 def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
     if main not in data.laws(tree, rolling.CONTACT_LOSS_SHARE):
         return
-    share = float(data.of_law(tree, rolling.CONTACT_LOSS_SHARE, main))
-    told = []
+    entries = (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS)
+    share, count, longest = (float(data.of_law(tree, entry, main)) for entry in entries)
+    value, told = data.in_percent(share), f"lost {'once' if count == 1 else f'{count:.0f} times'}, longest "
+    told += data.engineering(longest, "s")
     if data.law_entry(tree, main).may_pull:
-        value, told = "–", [f"{main} cannot lose it: its force may pull"]
+        value, told = "–", f"{main} cannot lose it: its force may pull"
     elif not share:
-        value, told = "0 %", ["contact is never lost"]
-    else:
-        value = data.in_percent(share)
-        if data.present(tree, rolling.CONTACT_LOSS_EVENTS):
-            count = int(data.of_law(tree, rolling.CONTACT_LOSS_EVENTS, main))
-            told.append(f"lost {'once' if count == 1 else f'{count} times'}")
-        if data.present(tree, rolling.LONGEST_LOSS):
-            longest = float(data.of_law(tree, rolling.LONGEST_LOSS, main))
-            told.append(f"longest {data.engineering(longest, 's')}")
-    yield HeadlineNumber("time without contact", value, ", ".join(told))
+        value, told = "0 %", "contact is never lost"
+    yield HeadlineNumber("time without contact", value, told)
 
 
 def deciding_bands(bands: Numbers, level: Numbers) -> str:

@@ -97,7 +97,11 @@ def figures_page(title: str, summary: str, figures: Sequence[PageFigure], files:
 # --- the page of a result
 
 SUMMARY_FIGURES = 3
-"""That a summary shows."""
+"""That a summary shows, of each chapter the first of these that it has."""
+ON_SHEET = (
+    "radiated_power_bands", "sound_power_bands", "sound_power", "pass_by_level", "acceleration_sensors",
+    "body_acceleration", "force_bands", "roughness", "texture_psd", "texture_path", "texture_sample",
+)  # fmt: skip
 CHANGES = 8
 """Parameters that the top of the page tells of."""
 _OF_A_KEY = re.compile(r"([a-z_]+): (.+)", re.DOTALL)
@@ -180,8 +184,8 @@ def page(
 
     Numbers of the figures, by name, are `collected` unless they were before.
     """
-    firsts = (next((f for f in chapter.summary if f.drawable(tree)), None) for chapter in chapters)
-    on_sheet = [figure for figure in firsts if figure][:SUMMARY_FIGURES]
+    held = ([f for f in drawable_figures(tree, [each]) if f.name in ON_SHEET] for each in chapters)
+    on_sheet = [min(some, key=lambda f: ON_SHEET.index(f.name)) for some in held if some][:SUMMARY_FIGURES]
     shown = [Chapter("summary", "", tuple(on_sheet))] if summary else chapters
     if collected is None:
         collected = {figure.name: figure.collect(tree) for figure in drawable_figures(tree, shown)}

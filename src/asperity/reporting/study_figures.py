@@ -73,8 +73,6 @@ def ensemble_chart(bands: xarray.Dataset, looks: Looks) -> Chart:
 
 # --- an optimised texture
 
-_DASHES = {"before": (1.5, 1.5), "after": ()}
-
 
 @dataclass(frozen=True, eq=False)
 class TextureBands:
@@ -94,38 +92,23 @@ def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mappin
     edges = bands.wavelength / panels.EDGE, bands.wavelength * panels.EDGE
     bounds = np.stack([*edges, bands.lowest, bands.highest])
     left, right, low, high = bounds[:, np.isfinite(bounds).all(axis=0)]
-    allowed = Boxes(left, right, low, high, "allowed", chart.MUTED, 0.15)
     order = np.argsort(edges[0])
     steps = np.stack(edges, axis=1)[order].ravel()  # a level keeps its height within each band
-    texture = [
-        Line(steps, np.repeat(bands.levels[name][order], 2), name, INK, dashes)
-        for name, dashes in _DASHES.items()
-    ]
-    response = [
-        Line(
-            bands.wavelength,
-            levels[name],
-            f"{law}, {name}",
-            colours.get(law, INK),
-            dashes,
-            marker="o",
-            law=law,
-        )
-        for name, dashes in _DASHES.items()
-        for law, levels in bands.heard.items()
-    ]
+    texture: list[Mark] = [Boxes(left, right, low, high, "allowed", chart.MUTED, 0.15)]
+    response: list[Mark] = []
+    for name, dashes in (("before", (1.5, 1.5)), ("after", ())):
+        texture.append(Line(steps, np.repeat(bands.levels[name][order], 2), name, INK, dashes))
+        for law, levels in bands.heard.items():
+            look: dict[str, Any] = {"colour": colours.get(law, INK), "dashes": dashes, "marker": "o"}
+            response.append(Line(bands.wavelength, levels[name], f"{law}, {name}", law=law, **look))
     along = panels.band_axis(np.sort(bands.wavelength), "one-third octave of wavelength", nominal_length)
     speed = float(np.median(bands.wavelength * bands.frequency))
     along = panels.long_waves_left(along, "frequency at which it is passed", speed, "wavelength")
     found = [*bands.levels.values(), bands.lowest, bands.highest]
     above = panels.levels_axis("roughness level / dB re 1 µm", found)
     below = Axis(f"in the band / {data.written_units(units)}")
-    return Chart(
-        (
-            Panel(along, above, (allowed, *texture), height=3.2),
-            Panel(along, below, tuple(response), heard, height=3.2),
-        )
-    )
+    upper = Panel(along, above, tuple(texture), height=3.2)
+    return Chart((upper, Panel(along, below, tuple(response), heard, height=3.2)))
 
 
 # --- what a swept key does
@@ -256,9 +239,8 @@ def _along(found: xarray.DataArray, key: str, place: Mapping[str, Any]) -> Numbe
 
 def _over_places(level: Numbers) -> Numbers:
     """Energy mean of levels at several places."""
-    if level.shape[1] == 1:
-        return level[:, 0]
-    return np.asarray(10.0 * np.log10(np.nanmean(10.0 ** (level / 10.0), axis=1)))
+    one = level.shape[1] == 1
+    return level[:, 0] if one else np.asarray(10.0 * np.log10(np.nanmean(10.0 ** (level / 10.0), axis=1)))
 
 
 def _places(key: xarray.DataArray) -> Numbers:

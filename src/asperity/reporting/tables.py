@@ -118,13 +118,8 @@ def statistics_table(tree: DataTree) -> ReportTable | None:
         number = float(found) if isinstance(found, int | float) else np.nan
         return Cell(data.engineering(number, str(entry.get("unit", ""))), "number")
 
-    columns = {
-        "symbol": "symbol",
-        "meaning": "meaning",
-        "of": "surface",
-        "value": value,
-        "bandwidth": "bandwidth",
-    }
+    columns: dict[str, Any] = {name: name for name in ("symbol", "meaning")}
+    columns |= {"of": "surface", "value": value, "bandwidth": "bandwidth"}
     note = "A statistic of a texture holds for its bandwidth of wavelengths only."
     return listed_table(tree, surface.STATISTICS, ("statistics", "Statistics of the texture"), columns, note)
 
@@ -269,7 +264,6 @@ def loss_table(tree: DataTree) -> ReportTable | None:
     columns = {
         head: number_cells([float(data.of_law(tree, entry, law)) for law in laws], write)
         for entry, (head, write) in LOSSES.items()
-        if data.present(tree, entry)
     }
     pulling = [law for law in laws if law in data.pulling(tree)]
     verb, note = "pulls" if len(pulling) == 1 else "pull", ""

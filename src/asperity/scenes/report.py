@@ -21,40 +21,18 @@ from asperity.scenes.figures import contacts, force, motion, noise, roughness, s
 PAGE, SUMMARY = "report.html", "summary.html"
 OF_OTHERS = "asperity.chapters"
 """Group of entry points under which other packages name chapters of their own."""
-_SOUND = (noise.RADIATED, *noise.NOISE)
 CHAPTERS = (
     Chapter(
         "noise",
         "Rolling noise",
-        _SOUND,
+        (noise.RADIATED, *noise.NOISE),
         (noise.radiated_table, noise.sound_power_table),
         noise.noise_answers,
-        (noise.RADIATED, *noise.NOISE[::-1]),
     ),
-    Chapter(
-        "pass_by",
-        "Pass-by",
-        (noise.PASS_BY,),
-        (noise.pass_by_table,),
-        noise.pass_by_answers,
-        (noise.PASS_BY,),
-    ),
-    Chapter(
-        "acceleration",
-        "Acceleration",
-        motion.ACCELERATION,
-        answers=acceleration_answers,
-        summary=motion.ACCELERATION[:1],
-    ),
-    Chapter("motion", "Motion of the bodies", (motion.BODIES,), summary=(motion.BODIES,)),
-    Chapter(
-        "force",
-        "Contact force",
-        force.FORCE,
-        (tables.loss_table,),
-        headline.force_answers,
-        (force.FORCE_BANDS,),
-    ),
+    Chapter("pass_by", "Pass-by", (noise.PASS_BY,), (noise.pass_by_table,), noise.pass_by_answers),
+    Chapter("acceleration", "Acceleration", motion.ACCELERATION, answers=acceleration_answers),
+    Chapter("motion", "Motion of the bodies", (motion.BODIES,)),
+    Chapter("force", "Contact force", force.FORCE, (tables.loss_table,), headline.force_answers),
     Chapter("contacts", "All contacts", contacts.CONTACTS, (contacts.contacts_table,)),
     Chapter("setup", "Scene", scene.SCENES),
     Chapter(
@@ -62,7 +40,6 @@ CHAPTERS = (
         "Texture",
         (roughness.ROUGHNESS, *texture_figures.TEXTURE),
         (tables.statistics_table, tables.homogeneity_table),
-        summary=(roughness.ROUGHNESS, *texture_figures.TEXTURE[::-1]),
     ),
     Chapter("track", "Track and wheel", (*track.TRACK, track.LOSS_FACTORS)),
     Chapter("rail", "Motion of the rail", motion.RAIL),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import cycle
 from typing import Any
 
@@ -10,10 +11,10 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import INK, MUTED, Axis, Boxes, Line, Mark, Note, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, Axis, Boxes, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
-from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
@@ -36,13 +37,18 @@ def parts_of(tree: DataTree, entry: Entry) -> list[str]:
     return [] if found is None else [str(name) for name in found[entry.dims[1]].values]
 
 
-def by_part(tree: DataTree, entry: Entry, law: str = "") -> dict[str, float]:
-    """Single numbers of a law, by default the main one, by what radiates; what is not known is missing."""
-    if not data.laws(tree, entry):
+def by_part(tree: DataTree, entry: Entry) -> dict[str, float]:
+    """Single numbers of the main law by what radiates; what is not known is missing."""
+    if not (laws := data.laws(tree, entry)):
         return {}
-    levels = data.of_law(tree, entry, law or data.laws(tree, entry)[0])
-    found = zip(parts_of(tree, entry), levels.tolist(), strict=True)
+    found = zip(parts_of(tree, entry), data.of_law(tree, entry, laws[0]).tolist(), strict=True)
     return {name: level for name, level in found if np.isfinite(level)}
+
+
+def _part_columns(tree: DataTree, entry: Entry, levels: Numbers) -> dict[str, list[Cell]]:
+    """Columns of levels (law, part) by what radiates."""
+    parts = zip(parts_of(tree, entry), levels.T, strict=True)
+    return {part: number_cells(level, "{:.1f}") for part, level in parts}
 
 
 def _weighting(band: Entry) -> Any:
@@ -159,10 +165,7 @@ def sound_power_table(tree: DataTree) -> ReportTable | None:
         levels = np.vstack([levels, standard.sel(source=radiating).values])
         name = standard.attrs.get("contact_filter", "")
         note = f" Last row: the same roughness with the contact filter of CNOSSOS-EU itself ({name})."
-    columns = {"law": text_cells(rows)}
-    columns |= {
-        source: number_cells(level, "{:.1f}") for source, level in zip(radiating, levels.T, strict=True)
-    }
+    columns = {"law": text_cells(rows), **_part_columns(tree, STANDARD_A, levels)}
     for law in data.baselines_among(tree, laws):
         over = levels[:, whole] - levels[laws.index(law), whole]
         over[laws.index(law)] = np.nan
@@ -210,9 +213,7 @@ def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
         for series in lines.of(OWN, law=main)
     ]
     standard = _of_parts(lines, STANDARD, main, _OF_STANDARD | {WHOLE: (5, 2)}, weighting)
-    for line in standard:
-        width = 1.6 if line.label.startswith(WHOLE) else 1.3
-        own.append(Line(line.x, line.y, line.label, MUTED, line.dashes, width))
+    own += [replace(line, width=1.6 if line.label.startswith(WHOLE) else 1.3) for line in standard]
     return [panels.band_panel(tree, lines, _POWER, own)]
 
 
@@ -251,12 +252,9 @@ def radiated_table(tree: DataTree) -> ReportTable | None:
     laws = data.laws(tree, OWN_A)
     if not laws:
         return None
-    levels = np.transpose([data.of_law(tree, OWN_A, law) for law in laws])
-    parts = zip(parts_of(tree, OWN_A), levels, strict=True)
-    columns = {"law": text_cells(laws), **{part: number_cells(level, "{:.1f}") for part, level in parts}}
-    over, own, standard = "", by_part(tree, OWN_A, laws[0]), {}
-    if laws[0] in data.laws(tree, STANDARD_A):
-        standard = by_part(tree, STANDARD_A, laws[0])
+    levels = np.array([data.of_law(tree, OWN_A, law) for law in laws])
+    columns, over = {"law": text_cells(laws), **_part_columns(tree, OWN_A, levels)}, ""
+    own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
     if set(BOTH) <= set(own) and "track" in standard:
         both = data.signed(float(energy_sum([own[part] for part in BOTH])) - standard["track"])
         over = f"Rail and sleepers together are {both} dB over the track of CNOSSOS-EU ({laws[0]}). "
@@ -329,16 +327,13 @@ def pass_by_table(tree: DataTree) -> ReportTable | None:
         return None
     *parts, whole = _passing_parts(tree)
     shown = [(law, whole) for law in laws] + [(laws[0], part) for part in parts]
-    columns = {
-        "law": text_cells(law for law, _ in shown),
-        "what radiates": text_cells(part for _, part in shown),
-    }
+    names, radiating = zip(*shown, strict=True)
+    columns = {"law": text_cells(names), "what radiates": text_cells(radiating)}
     for head, entry in SINGLE_NUMBERS.items():
         if data.present(tree, entry):
             found = data.variable_of(tree, entry)
-            columns[head] = number_cells(
-                [float(found.sel(law=law, radiator=part)) for law, part in shown], "{:.1f}"
-            )
+            level = [float(found.sel(law=law, radiator=part)) for law, part in shown]
+            columns[head] = number_cells(level, "{:.1f}")
     note = (
         "Re 20 µPa, SEL in 1 s. L_pAFmax: the largest level, time weighting F. SEL: all of the passage. "
         "L_pAeq,Tp: from when the front of the train is opposite to when its rear is; TEL: all between the "
@@ -367,20 +362,18 @@ def noise_answers(tree: DataTree) -> Answers | None:
     if not own and not standard:
         return None
     lead, *more = [*_by_vibration(tree, own), *_by_label(tree, standard)]
-    told = []
-    if WHOLE in own:
-        held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
-        told.append(("own radiation model", own, f"re 1 pW; {held}, from their computed vibration"))
-    if WHOLE in standard:
-        told.append(
-            (
-                "CNOSSOS-EU",
-                standard,
-                "re 1 pW; track and wheel by its tables, from the computed contact force",
-            )
-        )
-    cards = (HeadlineNumber(f"sound power, {how}", f"{of[WHOLE]:.1f} dB(A)", note) for how, of, note in told)
-    return Answers(lead, " ".join(more), tuple(cards), (_sources_table(own, standard),))
+    held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
+    by_tables = "re 1 pW; track and wheel by its tables, from the computed contact force"
+    models = (
+        ("own radiation model", own, f"re 1 pW; {held}, from their computed vibration"),
+        ("CNOSSOS-EU", standard, by_tables),
+    )
+    cards = tuple(
+        HeadlineNumber(f"sound power, {how}", f"{of[WHOLE]:.1f} dB(A)", note)
+        for how, of, note in models
+        if WHOLE in of
+    )
+    return Answers(lead, " ".join(more), cards, (_sources_table(own, standard),))
 
 
 def _by_vibration(tree: DataTree, own: Mapping[str, float]) -> list[str]:
