@@ -27,28 +27,27 @@ POSITIONS = 21
 class OnDevice(np.ndarray):
     """An array that, as one on a GPU, does not mix with the processor's."""
 
-    @staticmethod
-    def check(values):
-        for value in values:
-            if isinstance(value, (list, tuple)):
-                OnDevice.check(value)
-            elif type(value) is np.ndarray and value.ndim:
-                raise TypeError("an array of the processor met one of the device")
+    @classmethod
+    def plain(cls, value):
+        """What numpy is to work on in its place."""
+        if isinstance(value, (list, tuple)):
+            return type(value)(map(cls.plain, value))
+        if type(value) is np.ndarray and value.ndim:
+            raise TypeError("an array of the processor met one of the device")
+        return value.view(np.ndarray) if isinstance(value, cls) else value
 
     def __array_ufunc__(self, ufunc, method, *inputs, out=(), **options):
-        self.check([*inputs, *out])
-        plain = [np.asarray(v) if isinstance(v, OnDevice) else v for v in inputs]
-        if out:
-            options["out"] = tuple(np.asarray(v) for v in out)
-        return on_device(getattr(ufunc, method)(*plain, **options))
+        options |= {"out": self.plain(out)} if out else {}
+        return on_device(getattr(ufunc, method)(*self.plain(inputs), **options))
+
+    def __array_function__(self, function, types, arguments, options):
+        return on_device(function(*self.plain(arguments), **options))
 
     def __getitem__(self, index):
-        self.check([index])
-        return super().__getitem__(index)
+        return on_device(self.view(np.ndarray)[self.plain(index)])
 
     def __setitem__(self, index, value):
-        self.check([index, value])
-        super().__setitem__(index, value)
+        self.view(np.ndarray)[self.plain(index)] = self.plain(value)
 
 
 def on_device(value):
@@ -56,45 +55,24 @@ def on_device(value):
 
 
 class StrictModule:
-    """The functions of numpy that batches use, all of which CuPy has, on arrays of a device of its own."""
+    """The functions of numpy that batches use, all of which CuPy has, with arrays of a device of its own."""
 
-    MAKING = ("arange", "asarray", "ones", "zeros")
-    USING = (
-        "abs",
-        "argsort",
-        "ascontiguousarray",
-        "clip",
-        "maximum",
-        "minimum",
-        "sqrt",
-        "where",
-        "zeros_like",
-    )
-    int64, inf = np.int64, np.inf
+    NAMES = (
+        "abs", "arange", "argsort", "asarray", "ascontiguousarray", "clip", "maximum", "minimum", "ones",
+        "sqrt", "where", "zeros", "zeros_like",
+    )  # fmt: skip
 
     def __init__(self, largest_batch=10**6):
-        self.largest_batch = largest_batch
-        self.fft = SimpleNamespace(rfft2=self.rfft2, irfft2=self.guarded(np.fft.irfft2))
+        self.largest_batch, self.fft = largest_batch, SimpleNamespace(rfft2=self.rfft2, irfft2=np.fft.irfft2)
 
     def __getattr__(self, name):
-        if name in self.MAKING:
-            return lambda *a, **k: on_device(getattr(np, name)(*a, **k))
-        if name in self.USING:
-            return self.guarded(getattr(np, name))
-        raise AttributeError(name)
+        assert name in self.NAMES
+        return lambda *arguments, **options: on_device(getattr(np, name)(*arguments, **options))
 
     def rfft2(self, field, s):
         if len(field) > self.largest_batch:
             raise MemoryError
-        return self.guarded(np.fft.rfft2)(field, s=s)
-
-    @staticmethod
-    def guarded(function):
-        def call(*arguments, **options):
-            OnDevice.check(arguments)
-            return on_device(function(*arguments, **options))
-
-        return call
+        return np.fft.rfft2(field, s=s)
 
 
 def strict_device(**limits):

@@ -22,10 +22,10 @@ def body(cells=N, spacing=DX, radius=RADIUS):
     return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
 
 
-def loaded(samples):
+def loaded(samples, workers=None):
     datum = -min(first_touch(s, body()).min() for s in samples)
     space = HalfSpace((N, N), DX, MODULUS)
-    return stiffness.stiffness_ensemble(samples, space, body(), APPROACHES, max(datum, 0.0))
+    return stiffness.stiffness_ensemble(samples, space, body(), APPROACHES, max(datum, 0.0), workers=workers)
 
 
 def test_smooth_samples_give_hertz():
@@ -37,7 +37,9 @@ def test_smooth_samples_give_hertz():
 
 def test_rough_stiffness_is_below_hertz_deep_in_and_starts_before_it():
     rng = np.random.default_rng(0)
-    ensemble = loaded([0.1e-6 * rng.standard_normal((N, N)) for _ in range(4)])
+    samples = [0.1e-6 * rng.standard_normal((N, N)) for _ in range(4)]
+    ensemble, alone = (loaded(samples, workers) for workers in (3, 1))
+    assert np.array_equal(ensemble.forces, alone.forces)
     assert ensemble.datum > 0.0
     assert np.all(ensemble.forces[:, APPROACHES + ensemble.datum <= 0.0] == 0.0)
     assert ensemble.mean_force[2] > HERTZ.force(APPROACHES[2])  # mean planes just meeting

@@ -15,7 +15,6 @@ import pytest
 from asperity.contact import HalfSpace
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import ComputationError
-from asperity.reduction.stiffness import stiffness_ensemble
 from asperity.reduction.table import ForceTable, scan_into
 from asperity.reduction.texture import areal_texture
 from asperity.store import Store
@@ -76,23 +75,6 @@ def test_a_table_of_stored_forces_is_that_of_held_ones_until_they_are_cleared_aw
         file.unlink()
     with pytest.raises(ComputationError, match="no longer in the cache"):
         stored.at(at)
-
-
-@pytest.mark.usefixtures("short_blocks")
-def test_workers_change_no_digit_of_scans_and_samples(tmp_path):
-    path, stores = job(400), [Store(tmp_path / n) for n in ("1", "3")]
-    for workers, store in zip((1, 3), stores, strict=True):
-        scan_into(store, path, workers=workers)
-    for one, other in zip(*(store.files() for store in stores), strict=True):
-        assert one.name == other.name
-        with np.load(one) as a, np.load(other) as b:
-            assert all(np.array_equal(a[name], b[name]) for name in ("forces", "counts"))
-    samples = [path.surface.rows(20 * i, 20 * i + N) for i in range(9)]
-    curves = [
-        stiffness_ensemble(samples, path.half_space, path.body, path.approaches, 0.1e-6, workers=w)
-        for w in (1, 3)
-    ]
-    assert np.array_equal(curves[0].forces, curves[1].forces)
 
 
 def peak(work):

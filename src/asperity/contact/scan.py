@@ -293,8 +293,7 @@ class ScanJob:
         return {"forces": found.force, "counts": np.array(counts, dtype=np.int64)}
 
 
-@dataclass(frozen=True, eq=False)
-class SolvedBlock:
+class SolvedBlock(NamedTuple):
     """Solutions at the positions of a block."""
 
     key: str  # name in the store

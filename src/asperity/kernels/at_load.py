@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity.kernels.box import FAR, REACH, Box
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
@@ -92,14 +91,6 @@ def _shift(
     return total, growth, work, clipped
 
 
-@compiled(**INNER, **REASSOCIATE)
-def _sum(values: NDArray) -> float:
-    total = 0.0
-    for q in range(len(values)):
-        total += values[q]
-    return total
-
-
 @compiled(**CALLED)
 def project_at_load(
     b: Box, length: float, level: float, hardness: float, total: float
@@ -123,7 +114,7 @@ def project_at_load(
             if low > -np.inf and high < np.inf:
                 following = 0.5 * (low + high)
             else:  # the bounds hold all cells back
-                reach = 4.0 * reach if reach > 0.0 else total / _sum(b.unit)
+                reach = 4.0 * reach if reach > 0.0 else total / b.unit.sum()
                 following = shift + (reach if missing > 0.0 else -reach)
         shift = following
     return 0.0, 0.0, False

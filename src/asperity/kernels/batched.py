@@ -121,7 +121,7 @@ def solve_batch(
     left out.
     """
     count = len(overlap)
-    iterations, worst = xp.zeros(count, dtype=xp.int64), xp.ones(count) * xp.inf
+    iterations, worst = xp.zeros(count, dtype=np.int64), xp.ones(count) * np.inf
     while True:
         residual = convolve_padded(pressure, task.spectrum, xp) - overlap
         before, worst = worst, _complementarity(pressure, residual, task.hardness, xp)
