@@ -31,7 +31,7 @@ from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels import projected_cg as cg
 from asperity.kernels import scanning
 from asperity.kernels.box import Box
-from asperity.kernels.convolution import Convolution, convolve
+from asperity.kernels.influence import Convolution, convolve
 from asperity.kernels.lanes import width
 from asperity.surfaces.strip import Rows
 

@@ -57,7 +57,7 @@ def mark_free(b: Box, hardness: float, level: float) -> None:
 
 @compiled(**INNER, **REASSOCIATE)
 def balance_load(b: Box, share: float, level: float) -> tuple[float, float]:
-    """Take a share of `unit`, m, off z; return product and change as `preconditioner.precondition` does."""
+    """Take a share of `unit`, m, off z; return product and change as `projected_cg.precondition` does."""
     rho, change, free = 0.0, 0.0, b.masked[REACH * b.pitch :]
     for q in range(len(b.z)):
         z = b.z[q] - share * b.unit[q]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.convolution import whole_vectors, workspace
+from asperity.kernels.influence import whole_vectors, workspace
 from asperity.kernels.lanes import lanes
 from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, compiled
 

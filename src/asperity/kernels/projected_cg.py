@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.at_load import balance_load, find_level, mark_free, project_at_load, rounding
 from asperity.kernels.box import REACH, Box
-from asperity.kernels.convolution import Convolution, convolve, quarter_spectrum
+from asperity.kernels.influence import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
 
 
