@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from asperity.cli import main
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.batched import choose_device, find_device, gpu, processor, solve_batched
+from asperity.contact.batched import choose_device, find_device, gpu, processor
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.batched import convolve_padded, padded_spectrum
@@ -63,7 +63,8 @@ class StrictModule:
     )  # fmt: skip
 
     def __init__(self, largest_batch=10**6):
-        self.largest_batch, self.fft = largest_batch, SimpleNamespace(rfft2=self.rfft2, irfft2=np.fft.irfft2)
+        self.largest_batch, self.largest = largest_batch, 0
+        self.fft = SimpleNamespace(rfft2=self.rfft2, irfft2=np.fft.irfft2)
 
     def __getattr__(self, name):
         assert name in self.NAMES
@@ -72,11 +73,12 @@ class StrictModule:
     def rfft2(self, field, s):
         if len(field) > self.largest_batch:
             raise MemoryError
+        self.largest = max(self.largest, len(field))
         return np.fft.rfft2(field, s=s)
 
 
-def strict_device(**limits):
-    return replace(processor(), xp=StrictModule(**limits), to_host=lambda a: np.array(a))
+def strict_device(memory=2**28, **limits):
+    return replace(processor(memory), xp=StrictModule(**limits), to_host=lambda a: np.array(a))
 
 
 @pytest.fixture(params=["strict numpy", "gpu"])
@@ -89,8 +91,8 @@ def device(request):
     return strict_device()
 
 
-def rolling(n, hardness=None, share=0.35, stride=3):
-    """A ball over a rough surface: the half-space, the surface, and the ball."""
+def rolling(n, hardness=None, share=0.35, stride=3, **details):
+    """Scan of a ball over a rough surface, from no contact at all to a deep one."""
     radius = HERTZ.semi_axes(APPROACH)[0]
     dx = 2 * radius / share / n
     x = (np.arange(n) - n // 2) * dx
@@ -98,90 +100,23 @@ def rolling(n, hardness=None, share=0.35, stride=3):
         (n + stride * (POSITIONS - 1), n), (dx, dx), rms=0.1 * APPROACH, hurst=0.8, longest=1.4 * radius,
         shortest=max(0.36 * radius, 2.5 * dx), seed=1,
     ).heights  # fmt: skip
-    return HalfSpace((n, n), (dx, dx), MODULUS, hardness), heights, np.add.outer(x**2, x**2) / (2 * RADIUS)
-
-
-def problem(*details):
-    """Its half-space and the gaps of all positions."""
-    half_space, heights, body = rolling(*details)
-    return half_space, np.stack([body - heights[3 * m : 3 * m + len(body)] for m in range(POSITIONS)])
-
-
-def batched(half_space, gaps, approaches, device):
-    def some(first, last):
-        return device.xp.asarray(gaps[first:last])
-
-    return solve_batched(half_space, some, len(gaps), np.asarray(approaches), 1e-11, device)
+    body = np.add.outer(x**2, x**2) / (2 * RADIUS)
+    touch = np.sort([(body - heights[m * stride :][:n]).min() for m in range(POSITIONS)])
+    grazing = touch[POSITIONS // 2] + np.array([1e-15, 1e-12])  # while their neighbours do not
+    approaches = [touch[0] - 1e-9, *grazing, *(APPROACH * np.array([0.0, 0.3, 1.0]))]
+    space = HalfSpace((n, n), (dx, dx), MODULUS, hardness)
+    return ScanJob(space, Rows(heights), body, approaches, stride, 1e-11, **{"device": None} | details)
 
 
 @pytest.mark.parametrize(
-    ("n", "hardness", "share"), [(32, None, 0.35), (32, 0.5e9, 0.35), (64, None, 0.35), (32, None, 1.4)]
+    ("n", "hardness", "share", "stride"),
+    [(32, None, 0.35, 1), (32, 0.5e9, 0.35, 3), (64, None, 0.35, 3), (16, None, 1.4, 2)],
 )
-def test_contacts_agree_with_those_solved_one_by_one(device, n, hardness, share):
-    """From none, over those that graze while their neighbours do not, to deep ones; the last are cut off."""
-    half_space, gaps = problem(n, hardness, share)
-    touch = np.sort(gaps.min(axis=(1, 2)))
-    grazing = touch[POSITIONS // 2] + np.array([1e-15, 1e-12])
-    approaches = [touch[0] - 1e-9, *grazing, *(APPROACH * np.array([0.0, 0.3, 1.0]))]
-    found = batched(half_space, gaps, approaches, device)
-    assert found.converged.all()
-    assert not found.force[0].any()
-    assert not found.iterations[0].any()
-    assert 0 < np.count_nonzero(found.force[1]) < POSITIONS
-    for m in range(0, POSITIONS, 4):
-        for i, approach in enumerate(approaches):
-            alone = half_space.solve(gaps[m], approach=float(approach), rtol=1e-11)
-            assert found.force[i, m] == pytest.approx(alone.force, rel=1e-9, abs=0.0)
-            assert found.edge_share[i, m] == pytest.approx(alone.edge_share, rel=1e-8)
-        assert (alone.edge_share > 0.1) == (share > 1.0)
-        assert hardness is None or alone.pressure.max() == hardness
-
-
-def test_batches_follow_the_memory_and_do_not_change_the_forces():
-    half_space, gaps = problem(32)
-    asked, approaches = [], APPROACH * np.array([0.0, 0.5, 1.0])
-
-    def some(first, last):
-        asked.append(last - first)
-        return gaps[first:last]
-
-    whole = solve_batched(half_space, some, POSITIONS, approaches, 1e-11, processor())
-    parts = solve_batched(half_space, some, POSITIONS, approaches, 1e-11, processor(memory=2**21))
-    assert asked[0] == POSITIONS
-    assert max(asked[1:]) < POSITIONS / 2
-    np.testing.assert_allclose(parts.force, whole.force, rtol=1e-12)
-    shrunk = batched(half_space, gaps, approaches, strict_device(largest_batch=4))
-    np.testing.assert_allclose(shrunk.force, whole.force, rtol=1e-12)
-    with pytest.raises(ComputationError, match=r"one contact of .* ran out of memory.*Try: a smaller window"):
-        batched(half_space, gaps, approaches, strict_device(largest_batch=0))
-
-
-def test_what_does_not_converge_is_told(monkeypatch):
-    half_space, gaps = problem(32)
-    monkeypatch.setattr("asperity.contact.batched.MAX_ITERATIONS", 5)
-    found = batched(half_space, gaps, [APPROACH], strict_device())
-    assert not found.converged.any()
-    assert np.all(found.iterations == 5)
-
-
-def test_convolution_is_the_double_sum():
-    rng = np.random.default_rng(0)
-    table, field = rng.standard_normal((6, 5)), rng.standard_normal((3, 6, 5))
-    found = convolve_padded(field, padded_spectrum(table, 6, 5), np)
-    i, j = np.arange(6), np.arange(5)
-    kernel = table[abs(i[:, None] - i)[:, None, :, None], abs(j[:, None] - j)[None, :, None, :]]
-    np.testing.assert_allclose(found, np.einsum("ijkl,bkl->bij", kernel, field), atol=1e-12)
-
-
-@pytest.mark.parametrize(("n", "share", "stride"), [(32, 0.35, 1), (32, 0.35, 3), (16, 1.4, 2)])
-def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(device, monkeypatch, n, share, stride):
+def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(device, monkeypatch, n, hardness, share, stride):
     """The window of 16 cells cuts the contact off; blocks of the device are not taken for the processor's."""
     monkeypatch.setattr("asperity.contact.scan.BATCH", 8)
-    half_space, heights, body = rolling(n, None, share, stride)
-    planes = 0.1 * APPROACH * np.sin(np.arange(POSITIONS))
-    approaches = APPROACH * np.array([-0.2, 0.3, 1.0])
-    job = ScanJob(half_space, Rows(heights), body, approaches, stride, 1e-11, planes, device=None)
-    kept = {}
+    planes, kept = 1e-3 * APPROACH * np.sin(np.arange(POSITIONS)), {}
+    job = rolling(n, hardness, share, stride, planes=planes)
     cache = SimpleNamespace(get=kept.get, put=kept.__setitem__)
     alone = scan_forces(job, cache=cache)
     for _ in range(2):
@@ -191,6 +126,36 @@ def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(device, monkeypatch,
         assert found.counts.iterations > 0
         assert len(kept) == 1 + 3
     assert bool(alone.counts.truncated) == (share > 1.0)
+    assert 0 < np.count_nonzero(alone.forces[:3]) < 3 * POSITIONS
+
+
+def test_batches_follow_the_memory_and_do_not_change_the_forces():
+    job, sizes = rolling(32), []
+    whole = scan_forces(replace(job, device=processor())).forces
+    for device in (strict_device(), strict_device(memory=2**21), strict_device(largest_batch=4)):
+        found = scan_forces(replace(job, device=device))
+        np.testing.assert_allclose(found.forces, whole, rtol=1e-9)
+        sizes.append(device.xp.largest)
+    assert sizes[0] == POSITIONS
+    assert sizes[1] < POSITIONS / 2
+    assert sizes[2] <= 4
+    with pytest.raises(ComputationError, match=r"one contact of .* ran out of memory.*Try: a smaller window"):
+        scan_forces(replace(job, device=strict_device(largest_batch=0)))
+
+
+def test_what_does_not_converge_is_told(monkeypatch):
+    monkeypatch.setattr("asperity.contact.halfspace.MAX_ITERATIONS", 5)
+    counts = scan_forces(replace(rolling(32), approaches=[APPROACH], device=strict_device())).counts
+    assert counts == (POSITIONS, 5 * POSITIONS, POSITIONS, 0)
+
+
+def test_convolution_is_the_double_sum():
+    rng = np.random.default_rng(0)
+    table, field = rng.standard_normal((6, 5)), rng.standard_normal((3, 6, 5))
+    found = convolve_padded(field, padded_spectrum(table, 6, 5), np)
+    i, j = np.arange(6), np.arange(5)
+    kernel = table[abs(i[:, None] - i)[:, None, :, None], abs(j[:, None] - j)[None, :, None, :]]
+    np.testing.assert_allclose(found, np.einsum("ijkl,bkl->bij", kernel, field), atol=1e-12)
 
 
 def no_device():

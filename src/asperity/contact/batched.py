@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array, require, shown
-from asperity.contact.halfspace import MAX_ITERATIONS, HalfSpace, edge_share
+from asperity.contact.halfspace import HalfSpace, edge_share
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import batched
+from asperity.kernels.scanning import TRUNCATED, Block
 
 DEVICES = ("cpu", "gpu")
 """What `device` may be."""
@@ -102,38 +103,19 @@ SMALLEST_BOX = 8
 """Cells along a box, at least: smaller transforms take no less time."""
 
 
-@dataclass(frozen=True, eq=False)
-class SolvedContacts:
-    """Contacts by approach and position, all of shape (n_approaches, n_positions)."""
+def solve_batched(half_space: HalfSpace, block: Block, device: Device) -> None:
+    """Solve the contacts of a block at their approaches, each from the pressure at the approach before.
 
-    force: Array  # N; zero without contact
-    iterations: NDArray[np.int64]  # of conjugate gradients
-    converged: NDArray[np.bool_]  # whether the tolerance was met; true without contact
-    edge_share: Array  # share of the force on the window's outermost cells
-
-
-def solve_batched(
-    half_space: HalfSpace,
-    gaps: Callable[[int, int], DeviceArray],
-    count: int,
-    approaches: Array,
-    rtol: float,
-    device: Device,
-) -> SolvedContacts:
-    """Solve many contacts at increasing approaches (k,), m, each from the pressure at the approach before.
-
-    ``gaps(first, last)`` gives the gaps at zero approach of these of the `count` positions, on the device, m,
-    shape (last − first, nx, ny); `rtol` is as in `HalfSpace.solve`. As many are solved at once as fit, fewer
-    if memory runs out all the same; a `ComputationError` comes if a single contact does not fit.
+    As many are solved at once as fit into the device's memory, fewer if that runs out all the same; a
+    `ComputationError` comes if a single contact does not fit.
     """
-    found = SolvedContacts(*(np.zeros((len(approaches), count), kind) for kind in (float, int, bool, float)))
-    cells = half_space.shape[0] * half_space.shape[1]
+    cells, count, first = half_space.shape[0] * half_space.shape[1], len(block.planes), 0
     size = min(int(MEMORY_SHARE * device.free_memory()) // (8 * FIELDS), LARGEST_TRANSFORM // PADDED) // cells
-    first, size = 0, min(count, max(1, size))
+    size = min(count, max(1, size))
     while first < count:
         last = min(first + size, count)
         try:
-            _solve_some(half_space, gaps(first, last), approaches, rtol, device, found, slice(first, last))
+            found = _solved(half_space, block, slice(first, last), device)
         except device.exhausted as error:
             if size == 1:
                 raise ComputationError(
@@ -141,48 +123,42 @@ def solve_batched(
                     "a smaller window, a coarser grid or the device cpu",
                 ) from error
         else:
+            block.totals[:, first:last], counts = found
+            block.counts[:] += counts
             first = last
             continue
         # outside of the handler, whose traceback keeps the arrays of the failed batch
         device.release()
         size = (size + 1) // 2
-    return found
 
 
-def _solve_some(
-    half_space: HalfSpace,
-    gap: DeviceArray,
-    approaches: Array,
-    rtol: float,
-    device: Device,
-    found: SolvedContacts,
-    positions: slice,
-) -> None:
-    """Solve contacts at all approaches, on boxes as large as the largest overlap, and write what was found.
+def _solved(half_space: HalfSpace, b: Block, positions: slice, device: Device) -> tuple[Array, Any]:
+    """Solve contacts on boxes as large as the largest overlap; return totals and counts as of a block.
 
     Nothing outside of an overlap can carry pressure, so that no solution depends on the size of the box.
     """
     xp, influence = device.xp, half_space.influence
+    rows = xp.arange(positions.start, positions.stop)[:, None] * b.stride + xp.arange(len(b.body))
+    gap = xp.asarray(b.body) + xp.asarray(b.planes[positions])[:, None, None] - xp.asarray(b.rows)[rows]
     pressure, taps = xp.zeros_like(gap), tuple(influence.taps.tolist())
-    for i, approach in enumerate(approaches.tolist()):
+    totals, counts = [], np.zeros(4, dtype=np.int64)
+    for approach in b.approaches.tolist():
         overlapping = gap < approach
         rows, columns = (_cells(overlapping.any(axis=axis), xp) for axis in (2, 1))
         box = (xp.arange(len(gap))[:, None, None], rows[:, :, None], columns[:, None, :])
         overlap, p = approach - gap[box], pressure[box]
-        spectrum = batched.padded_spectrum(influence.table, *p.shape[1:])
-        task = batched.BatchTask(
-            xp.asarray(spectrum), taps, half_space.pressure_cap, influence.softest, MAX_ITERATIONS
-        )
+        spectrum = xp.asarray(batched.padded_spectrum(influence.table, *p.shape[1:]))
+        task = batched.BatchTask(spectrum, taps, b.hardness, influence.softest, b.max_iterations)
         fresh = ~p.any(axis=(1, 2))
         if bool(fresh.any()):
             p = xp.where(fresh[:, None, None], batched.first_guess(overlap, task, xp), p)
-        tolerance = rtol * xp.maximum(overlap.max(axis=(1, 2)), 0.0)
+        tolerance = b.rtol * xp.maximum(overlap.max(axis=(1, 2)), 0.0)
         iterations, worst = batched.solve_batch(overlap, p, tolerance, task, xp)
         pressure[box] = p
-        found.force[i, positions] = device.to_host(p.sum(axis=(1, 2))) * half_space.cell_area
-        found.iterations[i, positions] = device.to_host(iterations)
-        found.converged[i, positions] = device.to_host(worst <= tolerance)
-        found.edge_share[i, positions] = device.to_host(edge_share(pressure))
+        total, missed, cut_off = p.sum(axis=(1, 2)), worst > tolerance, edge_share(pressure) > TRUNCATED
+        totals.append(device.to_host(total))
+        counts += [int(each.sum()) for each in (total > 0.0, iterations, missed, cut_off)]
+    return np.array(totals), counts
 
 
 def _cells(reached: DeviceArray, xp: Any) -> DeviceArray:

@@ -264,10 +264,11 @@ class ScanJob:
     def solve(self, rows: Array, planes: Array) -> dict[str, NDArray[Any]]:
         """Forces of a block from a cold start, N, (k, positions), and its `Counts`, as a cache keeps them."""
         space, stride = self.half_space, self.stride
-        if self.device is not None:
-            return self._solve_batched(rows, planes, self.device)
         block = space.block(rows, self.body, planes, self.approaches, stride, self.rtol, self.single)
-        space.solve_block(block)
+        if self.device is None:
+            space.solve_block(block)
+        else:
+            solve_batched(space, block, self.device)
         return {"forces": block.totals * space.cell_area, "counts": block.counts}
 
     @property
@@ -276,21 +277,6 @@ class ScanJob:
         overlap = self.approaches[-1] - float(first_touch(self.surface, self.body, self.stride).min())
         side = window_for(self.body, self.half_space.spacing, overlap)
         return f"A window of {side * 1e3:.3g} mm holds them."
-
-    def _solve_batched(self, rows: Array, planes: Array, device: Device) -> dict[str, NDArray[Any]]:
-        """All positions of a block at once, approach by approach."""
-        xp = device.xp
-        heights, shape, plane = xp.asarray(rows), xp.asarray(self.body), xp.asarray(planes)
-        window = xp.arange(self.body.shape[0])
-
-        def gaps(first: int, last: int) -> Any:
-            under = heights[xp.arange(first, last)[:, None] * self.stride + window]
-            return shape + plane[first:last, None, None] - under
-
-        found = solve_batched(self.half_space, gaps, len(planes), self.approaches, self.rtol, device)
-        flaws = (~found.converged).sum(), (found.edge_share > TRUNCATED).sum()
-        counts = [np.count_nonzero(found.force), found.iterations.sum(), *flaws]
-        return {"forces": found.force, "counts": np.array(counts, dtype=np.int64)}
 
 
 class SolvedBlock(NamedTuple):
