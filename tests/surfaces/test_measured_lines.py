@@ -58,17 +58,6 @@ def test_two_spikes_on_a_wave_are_counted_and_cut_to_the_wave():
     assert remove_spikes(Profile(10 * WAVE, MM))[1] == 0
 
 
-def test_circle_rests_on_a_point_with_its_own_arc_and_bridges_a_slot_by_its_sagitta_only():
-    heights = np.zeros(401)
-    heights[200] = 30 * UM
-    x = (np.arange(401) - 200) * MM
-    arc = 30 * UM + np.sqrt(np.maximum(0.375**2 - x**2, 0)) - 0.375
-    assert_allclose(roll_over(Profile(heights, MM), 0.375).heights, np.maximum(arc, 0.0), atol=1e-15)
-    slot = np.zeros(401)
-    slot[190:211] = -1.0 * MM  # edges at 189 and 211: 22 mm wide
-    assert_allclose(roll_over(Profile(slot, MM), 0.375).heights.min(), np.sqrt(0.375**2 - 0.011**2) - 0.375)
-
-
 def test_gentle_waves_pass_the_circle_and_larger_ones_rise_higher():
     gentle = Profile(4 * WAVE, MM)  # curvature 0.013/m
     assert_allclose(roll_over(gentle).heights, gentle.heights, atol=1e-12)

@@ -9,6 +9,7 @@ from array import array
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -99,23 +100,19 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
 
 def _encoding(path: Path) -> str:
     """Marked UTF-16, UTF-8, or Latin-1 for what is neither."""
-    decoder = codecs.getincrementaldecoder("utf-8-sig")()
-    encoding = "utf-8-sig"
     with path.open("rb") as file:
         if file.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
             return "utf-16"
         file.seek(0)
-        chunk = None
-        while chunk != b"":
-            chunk = file.read(PIECE)
-            remedy = "Rename the file to the extension of its format."
-            require(b"\x00" not in chunk, path.name, "binary data", "text", remedy)
-            try:
-                decoder.decode(chunk, final=not chunk)
-            except UnicodeDecodeError:
-                decoder.reset()
-                encoding = "latin-1"
-    return encoding
+        binary = any(b"\x00" in chunk for chunk in iter(partial(file.read, PIECE), b""))
+    remedy = "Rename the file to the extension of its format."
+    require(not binary, path.name, "binary data", "text", remedy)
+    with path.open(encoding="utf-8-sig") as text:
+        try:
+            deque(iter(partial(text.read, PIECE), ""), maxlen=0)
+        except UnicodeDecodeError:
+            return "latin-1"
+    return "utf-8-sig"
 
 
 def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
@@ -145,7 +142,7 @@ def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
 def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[str], Array]:
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
     header: list[str] = []
-    marked: list[tuple[int, str, int]] = []  # headings that are numbers but for marks in them, and fields
+    marked: dict[int, tuple[int, str]] = {}  # headings that are numbers but for marks in them, by fields
     values, columns, closed, characters = array("d"), 0, True, 0
     blanks = array("q")  # how many rows stand above each empty line
     for number, text in enumerate(lines, 1):
@@ -160,16 +157,15 @@ def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[st
             header.append(text)
             unmarked = dialect.numbers(text.replace("_", "")) if any(map(str.isdigit, text)) else None
             if unmarked and not comment:
-                marked.append((number, text, len(unmarked)))
+                marked.setdefault(len(unmarked), (number, text))
             characters += len(text)
             received = f"more than {amount(MAX_HEADER)} of text that is no number"
             require(characters <= MAX_HEADER, source, received, "heights as text", _CHECK)
             continue
         if not columns:
             columns = len(row)
-            for line_number, heading, fields in marked:
-                if fields == columns:
-                    raise _no_numbers(line_number, heading, source)
+            if columns in marked:
+                raise _no_numbers(*marked[columns], source)
         if len(row) != columns:
             received = f"{len(row)} values in row {len(values) // columns + 1}"
             allowed = f"{columns}, as in the first row"
@@ -200,20 +196,20 @@ def _no_numbers(number: int, text: str, source: str) -> InputError:
 
 
 def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str) -> list[guards.Surface]:
-    columns, lateral = table.shape[1], []
+    columns, heading = table.shape[1], 'Write it into the heading, as "x (mm)"'
     heights = table[:, -1] if columns in (2, 3) else table
     heights *= hints.heights_in(source, header.get("z"))
     spacing = hints.pixel or ((header["dx"], header["dy"]) if "dx" in header else None)
-    if columns in (2, 3) and spacing is None:
-        heading = 'Write it into the heading, as "x (mm)"'
-        words = ("mm", f"{heading}, or give", f"{heading}.")
-        lateral = [hints.lateral_in(source, header.get(axis), *words) for axis in "xy"[: columns - 1]]
+
+    def lateral(axis: str) -> float:
+        return hints.lateral_in(source, header.get(axis), "mm", f"{heading}, or give", f"{heading}.")
+
     if columns == 2:
         line, step = arrays.line(table[:, 0], heights, source)
-        return [Profile(line, spacing[0] if spacing else step * lateral[0], source)]
+        return [Profile(line, spacing[0] if spacing else step * lateral("x"), source)]
     if columns == 3:
         heights, steps = arrays.rasterised(table[:, 0], table[:, 1], heights, source)
-        spacing = spacing or (steps[0] * lateral[0], steps[1] * lateral[1])
+        spacing = spacing or (steps[0] * lateral("x"), steps[1] * lateral("y"))
     return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
 
 
