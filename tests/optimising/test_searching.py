@@ -1,18 +1,85 @@
-"""The search, on responses that are known in closed form."""
+"""Roughness shared out over wavelengths, and the search for it: closed forms and linear programming."""
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import linprog
 
-from asperity.optimising.allocation import Limits, energy_of, rms_of
+from asperity.errors import ComputationError
+from asperity.optimising.allocation import Limits, Response, energy_of, quietest, rms_of, roughest
 from asperity.optimising.searching import Trial, search
 
 BANDS = 8
 WEIGHT = 10.0 ** np.linspace(-2.0, 2.0, BANDS)
 
 
-def limits(**more):
-    start = np.zeros(BANDS)
-    return Limits(start, start - 30.0, start + 30.0, np.ones(BANDS), **more)
+def limits(n=BANDS, reach=30.0, price=1.0, **more):
+    start = np.zeros(n)
+    return Limits(start, start - reach, start + reach, np.broadcast_to(price, n).astype(float), **more)
+
+
+weights = st.lists(st.floats(-4.0, 4.0), min_size=3, max_size=12).map(lambda x: 10.0 ** np.array(x))
+
+
+@given(weights, st.integers(0, 2**32 - 1))
+@settings(max_examples=30)
+def test_a_limit_gives_each_band_its_share_by_price(weight, seed):
+    """Closed form of the inverse: weight 10^(L/10) = price (E − floor)/Σ price."""
+    price = np.random.default_rng(seed).uniform(0.2, 5.0, len(weight))
+    response = Response(weight, floor=0.3)
+    level = 10.0 * np.log10(0.3 + 7.0)
+    found = roughest(response, limits(len(weight), 100.0, price), level, np.zeros(len(weight)))
+    np.testing.assert_allclose(response.energies(found), price / price.sum() * 7.0, rtol=2e-3)
+    assert response.level(found) == pytest.approx(level, abs=1e-6)
+
+
+@given(weights)
+@settings(max_examples=30)
+def test_a_budget_buys_silence_where_all_bands_are_heard_alike(weight):
+    """Closed form: the geometric mean of all energies is fixed, the sum least where they are equal."""
+    n = len(weight)
+    response = Response(weight, floor=0.0)
+    found = quietest(response, limits(n, 100.0, budget=6.0 * n), np.zeros(n))
+    alike = np.exp(np.mean(np.log(weight))) * 10.0**-0.6
+    np.testing.assert_allclose(response.energies(found), alike, rtol=2e-3)
+
+
+@given(weights, st.floats(0.2, 0.9))
+@settings(max_examples=30)
+def test_a_least_rms_is_borne_where_it_is_heard_least(weight, share):
+    """A linear programme in the energies: the solver of another library has the same level."""
+    n = len(weight)
+    bounds = limits(n, 10.0, rms_at_least=1e-6 * np.sqrt(share * n * 10.0))
+    response = Response(weight, floor=0.0)
+    found = quietest(response, bounds, np.zeros(n))
+    box = list(zip(energy_of(bounds.lowest), energy_of(bounds.highest), strict=True))
+    exact = linprog(weight, A_ub=[-np.ones(n)], b_ub=[-share * n * 10.0], bounds=box)
+    assert exact.success
+    assert response.level(found) == pytest.approx(10.0 * np.log10(exact.fun), abs=0.01)
+    assert rms_of(found) >= bounds.rms_at_least * (1 - 1e-6)
+
+
+def test_a_band_at_its_bound_leaves_the_rest_to_the_others():
+    bounds = limits(3, 100.0, rms_at_most=2e-6)
+    bounds = Limits(bounds.start, bounds.lowest, np.array([-10.0, 100.0, 100.0]), bounds.price)
+    response = Response(np.ones(3), floor=0.0)
+    found = roughest(response, bounds, 0.0, np.zeros(3))
+    np.testing.assert_allclose(response.energies(found), [0.1, 0.45, 0.45], rtol=1e-3)
+
+
+def test_an_rms_that_no_bounds_allow_is_told():
+    with pytest.raises(ComputationError, match="no texture within the limits"):
+        quietest(Response(np.ones(4), 0.0), limits(4, 3.0, rms_at_least=1e-3), np.zeros(4))
+
+
+def test_the_largest_rms_is_kept():
+    response = Response(np.array([1.0, 1e-3, 1e-6]), floor=0.0)
+    found = roughest(response, limits(3, 30.0, rms_at_most=3e-6), 0.0, np.zeros(3))
+    assert rms_of(found) == pytest.approx(3e-6, rel=1e-6)
+
+
+# --- the search, on responses that are known in closed form
 
 
 def rolled(floor=0.0, coupling=0.0, power=1.0, best_lay=1.0):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import warnings
 from collections.abc import Mapping
@@ -191,12 +192,11 @@ def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
     if aim.lateral is not None and before.lateral is None:
         raise InputError("lateral", "bounds for a line, which has no lay", "a surface", "Remove the key.")
     limits = aim.limits(before.levels[before.changed])
-    count = 0
+    numbers = itertools.count(1)
 
     def report(words: str) -> None:
-        nonlocal count
-        count += 1
-        progress(count, count + 1, f"texture {count}: {words}")
+        number = next(numbers)
+        progress(number, number + 1, f"texture {number}: {words}")
 
     def roll(levels: Array, lateral: float | None) -> Trial:
         return _rolled(assignment, measure, before.with_changed(levels, lateral), progress)

@@ -189,7 +189,6 @@ def compute_member(key: str, case: Case) -> dict[str, NDArray[Any]] | Failure:
     """Compute a member, or take what an earlier study has kept of it under its key, `packed`."""
     from asperity.running import run
     from asperity.store import Store
-    from asperity.studies.member import kept, packed
 
     store = Store()
     with _one_at_a_time:
