@@ -9,6 +9,7 @@ import asperity
 from asperity.case.cases import parse_case
 from asperity.laws import names
 from asperity.reference.tracks import iso_3095_decay_rate
+from asperity.scenes.plan import ACCELERATION, measures_of
 from asperity.scenes.track import described_losses, loss_factor_error, relaxed
 from asperity.spectra import nominal_frequency
 from asperity.structures.track import Track
@@ -163,6 +164,17 @@ class TestTrack:
         assert inside.sum() > 50
         change = (power - power.sel(law="linear")).values
         np.testing.assert_allclose(change[inside], force.values[inside], atol=1e-6)
+        standard = spectra[
+            "cnossos_sound_power_level_a"
+        ]  # with its contact filter, which takes some decibels
+        bare = spectra["sound_power_level_a"].sel(law="linear") - standard
+        assert ((bare > 0.0) & (bare < 8.0)).all()
+
+    def test_its_points_are_judged_by_their_acceleration(self, wheel):
+        velocity = wheel["spectra/point_velocity_psd"].sel(law="linear").mean("point")
+        expected = velocity * (2.0 * np.pi * velocity["frequency"]) ** 2 / 1e-6**2
+        measure = measures_of(EVERY["wheel-on-rail"])[ACCELERATION]
+        np.testing.assert_allclose(measure.density(wheel, "linear"), expected, rtol=1e-12)
 
     def test_marks(self, wheel):
         spectra = wheel["spectra"].attrs
