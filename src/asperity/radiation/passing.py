@@ -76,7 +76,9 @@ class _Waves:
         far = self.grid.waves.symmetric_shapes(0.5 * kernel.spacing * (nodes + 1.0))
         self.near = dict(zip((1, -1), near, strict=True))  # (NODES + 1, 2, all f)
         self.far = {side: shapes[..., first_zone] for side, shapes in zip((1, -1), far, strict=True)}
-        self.shares = BarycentricInterpolator(nodes, np.eye(TERMS))
+        at, sign = np.pi * (np.arange(TERMS) + 0.5) / TERMS, (-1.0) ** np.arange(TERMS)
+        weights = sign * np.sin(at)  # in closed form: those that SciPy finds differ from time to time
+        self.shares = BarycentricInterpolator(nodes, np.eye(TERMS), wi=weights)
 
     def sent(self, forces: Array, places: Array) -> dict[int, Complex]:
         """Waves (runs, 2, f) to either side of forces (runs, k), N, at places (k,) from 0 to 1 of a bay."""
