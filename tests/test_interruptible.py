@@ -43,27 +43,28 @@ def test_other_errors_in_callbacks_are_told_as_before():
     assert [lost.exc_type for lost in told] == [ZeroDivisionError]
 
 
+def interrupted_in(work):
+    """Whether an interrupt that comes while this work is done waits for its end."""
+    whole = []
+    with pytest.raises(KeyboardInterrupt), interruptible():  # noqa: PT012
+        work(whole)
+        time.sleep(5.0)
+    return whole == ["done"]
+
+
 def test_an_interrupt_waits_until_a_kernel_is_compiled():
     """Half a compiled function ended the process by signal 11."""
-    whole = []
 
-    def compiles():
+    def compiles(whole):
         signal.raise_signal(signal.SIGINT)
-        whole.append(True)
+        whole.append("done")
 
-    def work():
-        there = {"__name__": "numba.core.compiler", "signal": signal}
-        FunctionType(compiles.__code__, there, closure=compiles.__closure__)()
-        time.sleep(5.0)
-
-    with pytest.raises(KeyboardInterrupt), interruptible():
-        work()
-    assert whole
+    there = {"__name__": "numba.core.compiler", "signal": signal}
+    assert interrupted_in(FunctionType(compiles.__code__, there))
 
 
 def test_an_interrupt_waits_until_a_compiled_module_is_set_up():
     """Half a module of machine code may end the process later."""
-    whole = []
 
     class Loader(ExtensionFileLoader):
         def create_module(self, spec):
@@ -71,13 +72,12 @@ def test_an_interrupt_waits_until_a_compiled_module_is_set_up():
 
         def exec_module(self, module):
             signal.raise_signal(signal.SIGINT)
-            whole.append(module)
+            module.whole.append("done")
 
-    def work():
+    def loads(whole):
         spec = spec_from_file_location("compiled", "compiled.so", loader=Loader("compiled", "compiled.so"))
-        spec.loader.exec_module(module_from_spec(spec))
-        time.sleep(5.0)
+        module = module_from_spec(spec)
+        module.whole = whole
+        spec.loader.exec_module(module)
 
-    with pytest.raises(KeyboardInterrupt), interruptible():
-        work()
-    assert whole
+    assert interrupted_in(loads)

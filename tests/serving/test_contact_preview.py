@@ -22,6 +22,8 @@ def test_smooth_bodies_follow_hertz():
     assert at_load["force"] == pytest.approx(65e3, rel=1e-4)
     assert at_load["approach"] == pytest.approx(78.1e-6, rel=5e-3)
     assert at_load["tangent_stiffness"] == pytest.approx(1.248e9, rel=1e-2)
+    length = (at_load["pressure"] > 0.0).any(axis=1).sum() * sample.spacing[0]
+    assert sample.described()["passing"] == pytest.approx(case_of(SMOOTH).speed / length, rel=0.08)
     for share in (0.3, 0.6, 1.0):
         pressed = sample.at(share)
         assert pressed["force"] == pytest.approx(9.413e10 * pressed["approach"] ** 1.5, rel=1e-2)

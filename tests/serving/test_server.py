@@ -15,7 +15,7 @@ pytest.importorskip("uvicorn", reason="the extra app is not installed")
 from starlette.responses import PlainTextResponse
 
 from asperity.serving import kept, routes
-from asperity.serving.desk import Desk, Refused
+from asperity.serving.desk import Desk, Job, Refused
 from asperity.serving.server import PAGE_POLICY, Guard, new_token
 from command_line import call
 
@@ -143,6 +143,14 @@ def test_questions_that_are_none_are_told_so(server, path, question, status, wor
     assert ask(server, path, question) == (status, words)
 
 
+def test_what_is_announced_too_large_is_refused_at_once(server):
+    status, headers, words = asked(
+        server.app(), "/ask/surfaces?name=vast.npy", "POST", {"content-length": str(2**30)}
+    )
+    assert (status, headers["connection"]) == (413, "close")
+    assert "received 1 GiB or more; allowed: at most 256 MiB" in words
+
+
 @pytest.mark.parametrize("ending", ["html", "svg", "nc"])
 def test_what_may_hold_scripts_is_shown_in_a_sandbox(server, ending):
     folder = run_of(server)
@@ -243,6 +251,18 @@ def test_a_process_that_ends_or_takes_too_long_is_replaced():
     first = asyncio.run(asked())
     assert 'rms = "0.1 um"' in first["toml"]
     assert first["changed"] == "surface.rms 0.1 um"
+
+
+def test_a_run_tells_how_far_it_is_and_how_long_the_rest_of_a_piece_takes(monkeypatch, tmp_path):
+    job, clock = Job(tmp_path), iter([100.0, 104.0, 104.0])
+    monkeypatch.setattr("asperity.serving.desk.time.monotonic", lambda: next(clock))
+    assert job.told()["state"] == "waiting"
+    job.apart = "a process"
+    job.hear(10, 60, "scan")
+    assert job.told()["left"] is None
+    job.hear(30, 60, "scan")
+    far = {"message": "scan", "done": 30, "total": 60, "left": 4.0 * 30 / 20}
+    assert job.told() == {"state": "running", **far}
 
 
 # --- the command

@@ -147,13 +147,14 @@ class Job:
         while "state" not in report and (line := await self.apart.stdout.readline()):
             report = json.loads(line)
             if "state" not in report:
-                self._hear(**report)
+                self.hear(**report)
         code = await self.apart.process.wait()
         if not (self.folder / RESULT).is_file():
             words = f"Its process ended (code {code}). Is there enough memory?"
             write_outcome(self.folder, report.get("state", "failed"), report.get("message", words))
 
-    def _hear(self, done: int, total: int, message: str) -> None:
+    def hear(self, done: int, total: int, message: str) -> None:
+        """Take down what its process reports."""
         if message != self.message:
             self.message, self.first, self.since = message, done, time.monotonic()
         self.done, self.total = done, total
