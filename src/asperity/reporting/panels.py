@@ -158,20 +158,18 @@ def styled(
     for; `look` overrides looks of lines.
     """
     shown = list(lines)
-    if not any(line.law for line in shown):
+    if any(line.law for line in shown):
+        main = main or shown[0].law
+        shown.sort(key=lambda line: line.law == main)
+        looks = [data.law_style(tree, line.law, main) for line in shown]
+        for line, each in zip(shown, looks, strict=True):
+            each |= {"marker": data.law_entry(tree, line.law).marker} if markers else {}
+    else:
         own = [dict(zip(("colour", "dashes", "width", "marker"), line.look, strict=False)) for line in shown]
         sequence = chart.sequence_styles(len(shown))
-        looks = [(one or other) | look for one, other in zip(own, sequence, strict=True)]
-    else:
-        main = main or shown[0].law
-        shown = sorted(shown, key=lambda line: line.law == main)
-        looks = [data.law_style(tree, line.law, main) | look for line in shown]
-        if markers:
-            looks = [
-                {"marker": data.law_entry(tree, line.law).marker} | each
-                for line, each in zip(shown, looks, strict=True)
-            ]
-    return [Line(x, line.values / size, line.label, **each) for line, each in zip(shown, looks, strict=True)]
+        looks = [one or other for one, other in zip(own, sequence, strict=True)]
+    named = zip(shown, looks, strict=True)
+    return [Line(x, line.values / size, line.label, **(each | look)) for line, each in named]
 
 
 def frequency_range(tree: DataTree) -> tuple[float, float]:
@@ -262,10 +260,8 @@ def main_limits(lines: Sequence[Series], pulling: Collection[str]) -> tuple[floa
     ends = [(float(np.nanmin(force)), float(np.nanmax(force))) for force in widening]
     low, high = ends[0]
     room = HEADROOM * (high - low)
-    bottom, top = (
-        min(max(low - room, least) for least, _ in ends),
-        max(min(high + room, most) for _, most in ends),
-    )
+    bottom = min(max(low - room, least) for least, _ in ends)
+    top = max(min(high + room, most) for _, most in ends)
     if low - room <= 0.0 <= high + room:
         bottom, top = min(bottom, 0.0), max(top, 0.0)
     margin = 0.04 * (top - bottom) or 1e-12

@@ -255,8 +255,6 @@ def wav_bytes(samples: Sequence[float] | Array) -> bytes:
     """A mono WAV file, 48 kHz, 16 bits, of samples between −1 and 1."""
     file = io.BytesIO()
     with wave.open(file, "wb") as sound:
-        sound.setnchannels(1)
-        sound.setsampwidth(2)
-        sound.setframerate(RATE)
+        sound.setparams((1, 2, RATE, 0, "NONE", "not compressed"))
         sound.writeframes(np.round(32767 * np.clip(samples, -1.0, 1.0)).astype("<i2").tobytes())
     return file.getvalue()

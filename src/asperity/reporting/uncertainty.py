@@ -42,19 +42,15 @@ def settings_table(tree: DataTree) -> ReportTable | None:
     if not names:
         return None
     changed, limits = (data.words(tree, entry) for entry in (convergence.CHANGE, convergence.LIMIT))
-    size, band, stiffness = (
-        setting_numbers(tree, entry)
-        for entry in (convergence.LARGEST_CHANGE, convergence.LARGEST_BAND, convergence.STIFFNESS_CHANGE)
-    )
+    size, band, stiffness = (setting_numbers(tree, entry) for entry in _CHANGES)
     motion, moved = _largest_motion(tree), data.stored_variable(tree, convergence.MOTION_LEVEL_CHANGE)
-    looks = [["number" + tables.size_look(each, OFF, FAR) for each in sizes] for sizes in (size, motion)]
     change = [f"not changed: {why}" if why else how for how, why in zip(changed, limits, strict=True)]
     columns = {
         "setting": tables.text_cells(names),
         "change": tables.text_cells(change),
-        "force, at most / dB": tables.number_cells(size, "{:.2f}", looks[0]),
+        "force, at most / dB": _size_cells(size),
         "at / Hz": tables.number_cells(band, data.nominal_band),
-        "motion, at most / dB": tables.number_cells(motion, "{:.2f}", looks[1]),
+        "motion, at most / dB": _size_cells(motion),
         "mean stiffness": tables.number_cells(stiffness, lambda share: f"{data.signed(100 * share, 2)} %"),
     }
     what = "nothing recorded" if moved is None else f"the {moved.attrs['quantity']}"
@@ -67,6 +63,14 @@ def settings_table(tree: DataTree) -> ReportTable | None:
         "of a path is chaotic, and any change scatters as much."
     )
     return tables.table("finer_settings", "Settings made finer, one at a time", columns, note)
+
+
+_CHANGES = (convergence.LARGEST_CHANGE, convergence.LARGEST_BAND, convergence.STIFFNESS_CHANGE)
+
+
+def _size_cells(sizes: Numbers) -> list[tables.Cell]:
+    looks = ["number" + tables.size_look(each, OFF, FAR) for each in sizes]
+    return tables.number_cells(sizes, "{:.2f}", looks)
 
 
 def _largest_motion(tree: DataTree) -> Numbers:

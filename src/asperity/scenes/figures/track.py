@@ -240,50 +240,36 @@ _DOTTED: dict[str, Any] = {"dashes": (1.5, 1.5), "width": 1.0}
 def _of_layers(tree: DataTree) -> list[Series]:
     """Stiffness and loss factor of each part of the track, layer by layer."""
     layers, entry = data.words(tree, schema.LAYER), schema.LOSS_FACTOR
-    constants = [
-        Series(
-            f"{layer}, constant loss factor",
-            entry.units,
-            np.full(len(bands), factor),
-            entry,
-            layer,
-            {"layer": layer},
-        )
-        for bands in [data.values(tree, schema.TRACK_BAND)]
-        for layer, factor in zip(layers, data.values(tree, entry), strict=True)
-    ]
-    stiffness = Of(schema.RELAXED_STIFFNESS, "{layer}, stiffness over nominal", "{layer}")(tree)
-    losses = Of(schema.RELAXED_LOSS_FACTOR, "{layer}, loss factor", "{layer}")(tree)
-    found = sorted([*stiffness, *losses, *constants], key=lambda s: layers.index(s.label))
+    found = [*Of(schema.RELAXED_STIFFNESS, "{layer}, stiffness over nominal", "{layer}")(tree)]
+    found += Of(schema.RELAXED_LOSS_FACTOR, "{layer}, loss factor", "{layer}")(tree)
+    for layer, factor in zip(layers, data.values(tree, entry), strict=True):
+        constant = np.full(len(data.values(tree, schema.TRACK_BAND)), factor)
+        name, told = f"{layer}, constant loss factor", {"layer": layer}
+        found.append(Series(name, entry.units, constant, entry, layer, told))
+    found.sort(key=lambda series: layers.index(series.label))
     return [replace(series, look=_LAYERS[layers.index(series.label)]) for series in found]
 
 
-def _loss(tree: DataTree, lines: Lines) -> list[Panel]:
+def _loss(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     """Errors of force and receptance per one-third octave; stiffness and loss factor of each part."""
     bands = panels.band_axis(lines.at)
+    (error,) = (s.values for s in lines.of(_FORCE))
+    edges = lines.at / panels.EDGE, lines.at * panels.EDGE, np.fmin(error, 0.0), np.fmax(error, 0.0)
+    errors: list[Mark] = [chart.Boxes(*edges, "contact force", chart.BLUE, hatch="/")]
+    for s in lines.of(_RAIL):
+        errors.append(Line(lines.at, s.values, "receptance of the rail", chart.MUTED, (6, 1.5), 1.2))
+    errors.append(panels.zero(colour=INK, width=0.8))
+    yield Panel(bands, Axis("error / dB"), tuple(errors), height=2.4)
     nominal = Rules(np.ones(1), "y", **_DOTTED)
     constants = [Rules(s.values[:1], "y", colour=s.look[0], **_DOTTED) for s in lines.of(schema.LOSS_FACTOR)]
-    stiffness, loss = (
-        panels.styled(tree, lines.at, lines.of(entry))
-        for entry in (schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR)
-    )
-    times = panels.log_axis("stiffness / nominal", [nominal.at, *(line.y for line in stiffness)])
-    factor = panels.log_axis("loss factor", [mark.at for mark in constants] + [line.y for line in loss])
-    (error,) = (s.values for s in lines.of(_FORCE))
-    low, high = np.fmin(error, 0.0), np.fmax(error, 0.0)
-    bars = chart.Boxes(
-        lines.at / panels.EDGE, lines.at * panels.EDGE, low, high, "contact force", chart.BLUE, hatch="/"
-    )
-    rail = [
-        Line(lines.at, s.values, "receptance of the rail", chart.MUTED, (6, 1.5), 1.2)
-        for s in lines.of(_RAIL)
-    ]
-    errors: tuple[Mark, ...] = (bars, *rail, panels.zero(colour=INK, width=0.8))
-    return [
-        Panel(bands, Axis("error / dB"), errors, height=2.4),
-        Panel(bands, times, (nominal, *stiffness), height=1.9),
-        Panel(bands, factor, (*constants, *loss), height=1.9),
-    ]
+    of_layers = {
+        "stiffness / nominal": (schema.RELAXED_STIFFNESS, [nominal]),
+        "loss factor": (schema.RELAXED_LOSS_FACTOR, constants),
+    }
+    for label, (entry, rules) in of_layers.items():
+        drawn = panels.styled(tree, lines.at, lines.of(entry))
+        axis = panels.log_axis(label, [*(mark.at for mark in rules), *(line.y for line in drawn)])
+        yield Panel(bands, axis, (*rules, *drawn), height=1.9)
 
 
 def _loss_caption(tree: DataTree) -> str:
