@@ -164,9 +164,7 @@ class TestTrack:
         assert inside.sum() > 50
         change = (power - power.sel(law="linear")).values
         np.testing.assert_allclose(change[inside], force.values[inside], atol=1e-6)
-        standard = spectra[
-            "cnossos_sound_power_level_a"
-        ]  # with its contact filter, which takes some decibels
+        standard = spectra["cnossos_sound_power_level_a"]  # its contact filter takes some decibels
         bare = spectra["sound_power_level_a"].sel(law="linear") - standard
         assert ((bare > 0.0) & (bare < 8.0)).all()
 

@@ -21,7 +21,7 @@ from asperity.reporting.headline import deciding_bands, force_answers, lights
 from asperity.reporting.page import literature
 from asperity.reporting.tables import practice_table, reference_table
 from asperity.reporting.uncertainty import uncertainty_table
-from asperity.scenes.acceleration_answers import acceleration_answers
+from asperity.scenes.figures.motion import acceleration_answers
 from asperity.scenes.report import page_of, report
 from asperity.spectra import a_weighting, nominal_frequency
 

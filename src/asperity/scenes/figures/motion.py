@@ -11,13 +11,15 @@ from xarray import DataTree
 from asperity.reporting import data, panels
 from asperity.reporting.chart import INK, Axis, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures import track
 from asperity.scenes.figures.contacts import tone_rules, tones_words
 from asperity.scenes.figures.force import around_peak
 from asperity.schema import rolling
-from asperity.schema.spectra import FREQUENCY
+from asperity.schema.spectra import BAND, FREQUENCY
+from asperity.spectra import a_weighting, energy_sum
 
 _SPECTRUM = "acceleration PSD / dB re (1 µm/s²)²/Hz", schema.ACCELERATION_REFERENCE**2
 _AT = "x = {sensor:g} m"
@@ -280,3 +282,40 @@ RAIL = (
         (schema.ROLLING_POINT,),
     ),
 )
+
+
+MOST_SENSORS = 6
+"""That are listed."""
+
+
+def acceleration_answers(tree: DataTree) -> Answers | None:
+    """Acceleration at the sensors by the main law: rms, A-weighted level, and the bands that hold it."""
+    main = next(iter(data.laws(tree, schema.ACCELERATION)), None)
+    if main is None or main not in data.laws(tree, schema.ACCELERATION_LEVEL) or not data.present(tree, BAND):
+        return None
+    rms = np.sqrt(np.nanmean(data.of_law(tree, schema.ACCELERATION, main) ** 2, axis=1))
+    levels, bands = data.of_law(tree, schema.ACCELERATION_LEVEL, main), data.values(tree, BAND)
+    known = np.isfinite(levels)
+    loud = [
+        float(energy_sum(level[some] + a_weighting(bands[some]))) if some.any() else np.nan
+        for level, some in zip(levels, known, strict=True)
+    ]
+    weighted = np.array(loud)
+    sensors = data.variable_of(tree, schema.ACCELERATION)["sensor"].values.tolist()
+    places = [f"x = {sensor:g} m" for sensor in sensors]
+    most = int(np.nanargmax(rms))
+    strongest = data.engineering(rms[most], "m/s²")
+    lead = (
+        f"The structure vibrates most at {places[most]}: {strongest} rms, half of "
+        f"its energy in the bands of {deciding_bands(bands, levels[most])}."
+    )
+    note = f"{weighted[most]:.1f} dB(A) re 1 µm/s², at {places[most]}, the most of {len(places)} sensors"
+    shown = np.sort(np.argsort(-np.nan_to_num(rms), kind="stable")[:MOST_SENSORS])
+    columns = {
+        "sensor at": text_cells(places[n] for n in shown),
+        "rms": number_cells(rms[shown], "m/s²"),
+        "A-weighted / dB(A) re 1 µm/s²": number_cells(weighted[shown], "{:.1f}"),
+    }
+    few = f"The {len(shown)} of {len(places)} sensors that vibrate most." if len(shown) < len(places) else ""
+    listed = table("vibration_sensors", "Vibration at the sensors", columns, few)
+    return Answers(lead, numbers=(HeadlineNumber("vibration, rms", strongest, note),), tables=(listed,))
