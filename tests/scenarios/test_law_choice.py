@@ -239,8 +239,7 @@ def test_nothing_is_said_where_the_map_knows_nothing(case):
     found = law_choice.law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)
     assert found is None
     assert "law to take" not in dict(plan(prepared, Work({}, {}, 0, None, 0.0)))
-    flat = WheelOnRail(surface={"smooth": True}, wheel={"flat_depth": "0.3 mm"})
-    assert law_choice.UNMAPPED == flat.laws[0] == "direct"
+    assert law_choice.UNMAPPED == WheelOnRail(surface={"joint_depth": "1 mm"}).laws[0] == "direct"
 
 
 def test_the_map_is_whole():

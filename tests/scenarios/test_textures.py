@@ -228,6 +228,12 @@ def test_rail_and_wheel_add_up_and_the_wheel_repeats_with_its_circumference():
     np.testing.assert_array_equal(wheel[turn:], wheel[:-turn])
     assert found.start + found.before * 1e-3 == pytest.approx(case.start)
     assert not found.parts["rail"].any()
+    accepted = {"smooth": True, "accept_levels": True}
+    bump = Profile(1e-6 * np.exp(-(((np.arange(turn) - 500) / 20.0) ** 2)), 1e-3)
+    found = textures("wheel-on-rail", wheel={"roughness": None, "line": bump}, surface=accepted)
+    assert np.argmax(found.parts["wheel"][found.before :]) == pytest.approx(
+        500, abs=1
+    )  # its first point first
 
 
 def test_a_long_rail_is_never_held_as_a_whole():
@@ -313,34 +319,35 @@ def test_a_record_that_holds_the_start_is_marked():
 # --- what is said of textures that cannot be
 
 METRES = HeightMap(MAP.heights * 1e6, SIDE)
-UNIT = 'Are the heights in µm? Then set height_unit = "um"'
+SLOPE, UNIT = "received heights with an rms slope of ", "Are the heights in µm? Then set"
 REFUSED = [
     ({"file": rough((24, 24))}, "contact.window: received 660 um; allowed: at most the measured map, 480 um"),
     (
         {"file": HeightMap(MAP.heights[:, :30], SIDE), "continuation": "mirror"},
         "surface.continuation: received 0.6 mm across; allowed: a map as wide as",
     ),
-    ({"file": METRES}, "surface.file: received heights with an rms slope of "),
-    ({"file": METRES}, UNIT),
+    ({"file": METRES}, f'surface.file: {SLOPE}*{UNIT} height_unit = "um"'),
     (
         {"file": HeightMap(MAP.heights, 8e-3)},
-        "surface.file: received maps of 1600 mm × 720 mm, 2.9e+09 points at",
+        "surface.file: received maps of 1600 mm × 720 mm, 2.9e+09 points at*Is the pixel in µm, not mm?",
     ),
-    ({"file": HeightMap(MAP.heights, 8e-3)}, "Is the pixel in µm, not mm?"),
     ({"rms": "0.5 mm"}, 'Is rms in µm? Then write it so: rms = "0.5 um".'),
     (
         {"rms": "60 um", "longest": "1 mm", "shortest": "0.5 mm"},
         "um rms within the window; allowed: up to 100 approaches of the bodies, ",
     ),
-    ({"line": LINE}, "surface.line: received 0.004 m; allowed: at least"),
-    ({"line": LINE}, "a longer line, or surface.continuation"),
+    (
+        {"line": LINE},
+        "surface.line: received 0.004 m; allowed: at least*a longer line, or surface.continuation",
+    ),
     (
         {"line": Profile(np.tile(LINE.heights, 20) * 1e6, 4e-5)},
-        "surface.line: received heights with an rms slope of",
+        f'surface.line: {SLOPE}*{UNIT} line_unit = "um"',
     ),
-    ({"line": Profile(np.tile(LINE.heights, 20) * 1e6, 4e-5)}, 'line_unit = "um"'),
-    ({"spectrum": LEVELS, "lateral": 1.0}, "duration: received 0.02 s, a path of "),
-    ({"spectrum": LEVELS, "lateral": 1.0}, "strips from which filters are estimated"),
+    (
+        {"spectrum": LEVELS, "lateral": 1.0},
+        "duration: received 0.02 s, a path of *strips from which filters are estimated",
+    ),
 ]
 
 
@@ -349,4 +356,4 @@ def test_what_cannot_be_is_refused(surface, message):
     keys = {"contact": {"sample_length": "30 mm"}} if "spectrum" in surface else {"ball": {"load": "5 N"}}
     with pytest.raises(InputError) as caught:
         prepared(surface=surface, laws=["hertz" if "line" in surface else "areal"], **keys)
-    assert message in str(caught.value)
+    assert all(part in str(caught.value) for part in message.split("*"))

@@ -273,7 +273,6 @@ def test_what_is_wrong_with_bodies_and_structures_is_told(tmp_path):
             {"body": BOGIE | {"flat_depth": 1e-4, "flat_contacts": [3]}, "over": "plane"},
             r"flat_contacts: received 3; allowed: numbers up to 2",
         ),
-        ({"body": BOGIE | short | {"roughness": "disc"}, "over": "plane"}, "both roughness and line"),
         (
             {"over": "plane", "noise": {"wheel_width": 0.14}},
             r"noise: .*rolled over a plane.*over = \"track\"",

@@ -138,11 +138,6 @@ def test_loss_factors_err_as_the_kernel_does(error):
             assert levels[0] - levels[1] == pytest.approx(found[band], abs=0.03)
 
 
-def test_a_causal_track_errs_not_at_all():
-    found = lost(Track.named("nordborg", rail_loss_factor=0.0))
-    assert not np.any([found.force, found.rail])
-
-
 def test_a_large_error_is_warned_of_with_a_remedy_and_a_small_one_is_not(error):
     with pytest.warns(LossFactorWarning) as caught:
         warn_of_loss_factors(error)
