@@ -123,7 +123,7 @@ def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(device, monkeypatch,
         found = scan_forces(replace(job, device=device), cache=cache)
         np.testing.assert_allclose(found.forces, alone.forces, rtol=1e-9)
         assert found.counts._replace(iterations=0) == alone.counts._replace(iterations=0)
-        assert found.counts.iterations > 0
+        assert 0 < found.counts.iterations < 1.15 * alone.counts.iterations
         assert len(kept) == 1 + 3
     assert bool(alone.counts.truncated) == (share > 1.0)
     assert 0 < np.count_nonzero(alone.forces[:3]) < 3 * POSITIONS
