@@ -17,15 +17,6 @@ RADIUS, GROOVE = 6.35e-3, 0.52 * 12.7e-3  # ball and groove of a bearing 209
 INNER, OUTER = 26.15e-3, -38.85e-3  # its raceways: pitch radius 32.5 mm less and plus the ball's
 
 
-def test_sphere_is_exact():
-    hertz, delta = Hertz(2.0, 3.0, 3.0), 0.01
-    a = math.sqrt(3.0 * delta)
-    assert hertz.semi_axes(delta) == pytest.approx((a, a), rel=1e-12)
-    assert hertz.force(delta) == pytest.approx(4 / 3 * 2.0 * math.sqrt(3.0) * delta**1.5, rel=1e-12)
-    assert hertz.tangent_stiffness(delta) == pytest.approx(2 * 2.0 * a, rel=1e-12)
-    assert hertz.peak_pressure(delta) == pytest.approx(2 * 2.0 * a / (math.pi * 3.0), rel=1e-12)
-
-
 @given(st.floats(0.02, 0.999999), st.floats(1e-6, 1e-3))
 def test_turning_the_bodies_swaps_the_axes_and_approach_inverts_force(ratio, delta):
     along, across = Hertz(1e11, 1.0, ratio), Hertz(1e11, ratio, 1.0)
