@@ -3,32 +3,27 @@
 import os
 import shutil
 import subprocess
-import sys
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from program import LONG, RUN, goes_on, left, outcome, prepared, same
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there is no such limit")
+resource = pytest.importorskip("resource", reason="there is no such limit")
 
 SIZES = [2**k for k in range(12, 22)] if LONG else [20_000, 300_000]
 SMOOTH = 'kind = "ball-on-beam"\nduration = "5 ms"\nlaws = ["hertz"]\n[surface]\nspectrum = "iso3095"\n'
 
 
 def limited(size):
-    def limit():
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-
-    return limit
+    """Let a program write no file that is larger."""
+    return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))}
 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_files_that_may_not_grow(undisturbed, tmp_path, size):
     folder = prepared(tmp_path)
-    code, told = outcome(folder, *RUN, preexec_fn=limited(size))
+    code, told = outcome(folder, *RUN, **limited(size))
     assert code in (0, 3)
     assert code == 0 or "could not be written (files may not grow as large here)" in told
     assert left(folder) == []
@@ -45,7 +40,7 @@ def test_an_earlier_run_stays_as_it_was(undisturbed, tmp_path):
     for name in ("report.html", "force_history.csv", "force_history.svg"):
         (folder / "out" / name).write_text("earlier")
     before = contents(folder / "out")
-    code, told = outcome(folder, *RUN, "--again", preexec_fn=limited(100_000))
+    code, told = outcome(folder, *RUN, "--again", **limited(100_000))
     assert code == 3
     assert f"{Path('out', 'run.nc')} could not be written" in told
     assert contents(folder / "out") == before
