@@ -71,7 +71,7 @@ def test_what_was_computed_is_printed(computed):
     told, warned = words_of(computed.said.stdout), computed.said.stderr
     assert "Study of 8 seed × 2 ball.load" in warned
     for text in (
-        "8 values of seed",
+        "mean ± standard deviation over 8 values of seed",
         "ball.load [N]",
         "contact loss",
         "hertz-filtered",

@@ -58,18 +58,24 @@ def test_all_surfaces_together_have_a_limit(tmp_path, monkeypatch):
     assert len(uploaded(tmp_path)) == 1
 
 
-@pytest.mark.parametrize("apart", [60.0, 0.005], ids=["stalled", "slow"])
-def test_an_upload_that_stalls_is_not_waited_for(tmp_path, monkeypatch, apart):
+@pytest.mark.parametrize("apart", [60.0, 0.005, 0.0], ids=["stalled", "slow", "fast"])
+def test_an_upload_is_waited_for_while_it_comes(tmp_path, monkeypatch, apart):
     """Neither one that sends nothing more, nor one that sends next to nothing for ever."""
     monkeypatch.setattr(kept, "STALLED", 0.05)
 
     async def slowly():
-        for _ in range(200):
-            yield b"x"
-            await asyncio.sleep(apart)
+        for _ in range(40):
+            yield b"x" * (1 if apart else 2000)
+            await asyncio.sleep(apart or 0.005)
 
+    def upload():
+        return asyncio.run(receive(tmp_path, "x", None, slowly(), 100_000))
+
+    if not apart:  # longer than it may stall, at more than the slowest rate
+        assert upload().stat().st_size == 80_000
+        return
     with pytest.raises(InputError, match=r"nothing more for 0 s, or less than 20 KiB in a second"):
-        asyncio.run(receive(tmp_path, "x", None, slowly(), 100_000))
+        upload()
     assert list(tmp_path.iterdir()) == []
 
 
