@@ -193,6 +193,9 @@ def test_a_spectrum_is_a_line_without_lateral_and_a_surface_with_it():
     assert (line.surface.has_line, line.surface.has_samples) == (True, False)
     assert surface.laws == asperity.BallOnBeam(surface={"rms": "1 um"}).laws
     assert "laws" not in surface.given()
+    by_level = ({"spectrum": LEVELS, "level": f"{level} dB"} for level in (0, 20))
+    low, high = (textures(surface=each, laws=["hertz"]) for each in by_level)
+    np.testing.assert_allclose(high.line, 10.0 * low.line, rtol=1e-9)
 
 
 def test_levels_of_a_rail_are_those_of_its_spectrum():
