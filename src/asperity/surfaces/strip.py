@@ -6,6 +6,7 @@ import tempfile
 import threading
 import weakref
 from collections.abc import Callable, Hashable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import IO, Any, Protocol
 
@@ -26,8 +27,7 @@ class Fields:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._in_file: dict[Hashable, tuple[int, int]] = {}  # offset in the file, bytes, and ny
-        self._in_memory: dict[Hashable, Array] = {}
+        self._held: dict[Hashable, Array | tuple[int, int]] = {}  # or offset in the file, bytes, and ny
         self._file: IO[bytes] | None = None
         self._close: Callable[[], object] = lambda: None
         self._length = 0  # of the file, bytes
@@ -38,12 +38,13 @@ class Fields:
         They take memory for as long as they are held.
         """
         with self._lock:
-            if name not in self._in_file and name not in self._in_memory:
+            if name not in self._held:
                 self._put(name, make())
-            if name in self._in_memory:
-                return self._in_memory[name][first:stop]
+            held = self._held[name]
+            if isinstance(held, np.ndarray):
+                return held[first:stop]
             assert self._file is not None
-            offset, columns = self._in_file[name]
+            offset, columns = held
             # mapped: a position in the file would be shared with forked processes
             start, shape = offset + 8 * columns * first, (stop - first, columns)
             return np.memmap(self._file, np.float64, "r", start, shape)
@@ -51,25 +52,23 @@ class Fields:
     @property
     def nbytes(self) -> int:
         """Bytes that are held in memory."""
-        return sum(heights.nbytes for heights in self._in_memory.values())
+        return sum(held.nbytes for held in self._held.values() if isinstance(held, np.ndarray))
 
     def _put(self, name: Hashable, heights: Array) -> None:
         size = heights.nbytes
         full = self._length + size > BYTES_KEPT or self.nbytes + size > BYTES_IN_MEMORY
-        if full and len(self._in_file) + len(self._in_memory) >= FEWEST:
+        if full and len(self._held) >= FEWEST:
             self._close()
-            self._in_file, self._in_memory, self._file, self._length = {}, {}, None, 0
-        try:
+            self._held, self._file, self._length = {}, None, 0
+        self._held[name] = heights
+        with suppress(OSError):
             if self._file is None:
                 self._file = tempfile.TemporaryFile(prefix="asperity-")  # noqa: SIM115  closed below
                 self._close = weakref.finalize(self, self._file.close)
             self._file.seek(self._length)
             self._file.write(np.ascontiguousarray(heights).data)
             self._file.flush()
-        except OSError:
-            self._in_memory[name] = heights
-        else:
-            self._in_file[name] = self._length, heights.shape[1]
+            self._held[name] = self._length, heights.shape[1]
             self._length += size
 
 
