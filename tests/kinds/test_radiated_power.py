@@ -20,7 +20,7 @@ CASE = {
     "wheel": {"roughness": "disc"},
     "track": {"name": "uic60"},
     "contact": {"spacing": "1 mm"},
-    "numerics": {"highest_frequency": "4 kHz", "poles": 60},
+    "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
 }
 MODES = np.array(
     [  # frequency, damping ratio, modal mass, nodal diameters, axial, radial
