@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1
@@ -14,10 +15,11 @@ from scipy.ndimage import correlate1d
 from asperity.arguments import Array, Complex, finite_array
 from asperity.progress import Progress
 from asperity.structures.moving_kernel import ZONES, HatResponse, MovingKernel, lagrange_weights
+from asperity.threads import in_order
 
 NODES = 24
 """Places of the force in a bay near the point; between them responses are interpolated by a cubic."""
-TERMS = 16
+TERMS = 12
 """Places of the force in a bay further away, where responses are smooth; one polynomial goes through them."""
 DIFFERENCE = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
 
@@ -49,14 +51,19 @@ def passed_points(
     passed = [_Point(waves, place, taps) for place in places]
     displacement = np.zeros((len(places), len(forces), count))
     bays = range(math.floor(first), math.floor(first + stride * (count - 1)) + 1)
-    for bay in bays:
+
+    def by_forces_in(bay: int) -> tuple[slice, list[Array]]:
         begin, end = (min(max(0, math.ceil((at - first) / stride)), count) for at in (bay, bay + 1))
         within, acting = first + stride * np.arange(begin, end) - bay, forces[:, begin:end]
-        sent, until = waves.sent(acting, within), min(end + taps, count)
-        for point, moved in zip(passed, displacement, strict=True):
-            moved[:, begin:until] += point.moved(bay, acting, within, sent)[:, : until - begin]
+        sides = {point.side(bay) for point in passed} - {0}
+        sent, until = waves.sent(acting, within, sides), min(end + taps, count)
+        moved = [point.moved(bay, acting, within, sent)[:, : until - begin] for point in passed]
+        return slice(begin, until), moved
+
+    for done, (steps, moved) in enumerate(in_order(by_forces_in, bays), 1):
+        displacement[..., steps] += moved
         if progress is not None:
-            progress(bay + 1 - bays.start, len(bays), "the rail at the points passed")
+            progress(done, len(bays), "the rail at the points passed")
     displacement = displacement.swapaxes(0, 1)
     padded = np.pad(displacement, ((0, 0), (0, 0), (3, 3)), mode="reflect", reflect_type="odd")
     velocity = correlate1d(padded, DIFFERENCE / kernel.time_step)[..., 3:-3]
@@ -80,11 +87,11 @@ class _Waves:
         weights = sign * np.sin(at)  # in closed form: those that SciPy finds differ from time to time
         self.shares = BarycentricInterpolator(nodes, np.eye(TERMS), wi=weights)
 
-    def sent(self, forces: Array, places: Array) -> dict[int, Complex]:
-        """Waves (runs, 2, f) to either side of forces (runs, k), N, at places (k,) from 0 to 1 of a bay."""
+    def sent(self, forces: Array, places: Array, sides: Iterable[int]) -> dict[int, Complex]:
+        """Waves (runs, 2, f) to some sides of forces (runs, k), N, at places (k,) from 0 to 1 of a bay."""
         window = np.exp(-self.grid.shift * self.grid.time_step * np.arange(len(places)))
         spectra = rfft(forces[:, None] * (self.shares(2.0 * places - 1.0).T * window), 2 * self.grid.taps)
-        return {side: np.einsum("rxf,xjf->rjf", spectra, shapes) for side, shapes in self.far.items()}
+        return {side: np.einsum("rxf,xjf->rjf", spectra, self.far[side]) for side in sides}
 
 
 class _Point:
@@ -98,12 +105,15 @@ class _Point:
         self.felt = {1: amplitude * shapes.incoming(at), -1: amplitude * shapes.outgoing(at)}  # m, (2, f)
         self.responses = {bay: self._hats(bay)[:, :taps] for bay in (-1, 0, 1)}
 
+    def side(self, bay: int) -> int:
+        """1 if waves from a bay come from the right, −1 from the left, 0 if it is near."""
+        return 0 if bay - self.bay in self.responses else 1 if bay > self.bay else -1
+
     def moved(self, bay: int, forces: Array, places: Array, sent: dict[int, Complex]) -> Array:
         """Displacement here, m, (runs, n), by the forces in a bay and the waves that they send out."""
-        distance = bay - self.bay
-        if distance in self.responses:
+        side, distance = self.side(bay), bay - self.bay
+        if not side:
             return _convolved(forces, self.responses[distance], places * NODES)
-        side = 1 if distance > 0 else -1
         received = self._received(side, abs(distance))[:, : self.waves.grid.taps + 1]
         return self.waves.grid.response(np.einsum("rjf,jf->rf", sent[side], received))
 
