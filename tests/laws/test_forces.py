@@ -83,6 +83,10 @@ def test_laws_follow_the_texture_by_hertz():
     for law in (Shifted(HERTZ, ALIKE), Areal(HERTZ, ALIKE), HertzLaw(K, ALIKE)):
         assert_allclose(force(law, POSITIONS, WORKING), followed, rtol=1e-12)
     assert_allclose(force(HertzLaw(K), POSITIONS, WORKING), LOAD, rtol=1e-12)
+    plane = StateTexture.unfiltered(np.full(400, 0.2e-6), SPACING)
+    planes = [force(law, POSITIONS, WORKING) for law in (HertzLaw(K, TEXTURE, plane=plane), LAWS[4])]
+    assert_allclose(planes[0], force(Shifted(HERTZ, TEXTURE, plane=plane), POSITIONS, WORKING), rtol=1e-12)
+    assert np.abs(planes[0] - planes[1]).max() > 0.01 * LOAD
     held = K * (5e-6 - TEXTURE.at(POSITIONS)[:, -1]) ** 1.5  # beyond the last state
     assert_allclose(force(Shifted(HERTZ, TEXTURE), POSITIONS, 5e-6), held, rtol=1e-12)
 

@@ -67,7 +67,7 @@ CASES = {
     "smooth": (ball_on_beam, law(0.0)),
     "yielding asperities": (ball_on_beam, law(0.05e-6, hardness=0.4e9)),
     "losses of contact": (ball_on_beam, law(0.05e-6, 2e-6)),
-    "damped": (ball_on_beam, law(0.05e-6, damping=50.0)),
+    "damped": (ball_on_beam, law(0.05e-6, damping=2e3)),
     "damped, with losses": (ball_on_beam, law(0.05e-6, 2e-6, damping=50.0)),
     "wheel": (wheel_on_rail, law(5e-6, wheel=True)),
     "wheel, with losses": (wheel_on_rail, law(5e-6, 200e-6, wheel=True)),

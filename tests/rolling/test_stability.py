@@ -149,6 +149,14 @@ def test_what_alternating_forces_meet_is_that_of_masses_springs_and_long_runs(po
     ground = ground_of(RailBetween(poles, {}), Path(np.zeros((1, 2)), 56.0, RAIL_STEP), np.zeros(0))
     least = min(row @ (-1.0) ** np.arange(row.size) for row in poles.kernel.weights)
     assert (ground.alternating, ground.thrown) == (pytest.approx(least, rel=1e-12), 0.0)
+    assert ground.limit == ("the passing of sleepers v/L", pytest.approx(56.0 / 0.6), 20.0)
+
+
+def test_the_contact_resonance_is_that_of_a_mass_on_springs_in_series():
+    h, mass, stiffness, soft = 1e-5, 0.5, np.array([2e7]), 3e-8
+    found = steps.contact_resonance(stiffness, h**2 / (6 * mass) + soft, soft - h**2 / (12 * mass), h)
+    expected = np.sqrt(1.0 / (1.0 / stiffness + soft) / mass) / (2 * np.pi)
+    np.testing.assert_allclose(found, expected, rtol=1e-4)
 
 
 def test_modes_too_fast_for_the_step_answer_statically():
