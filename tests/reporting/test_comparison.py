@@ -11,8 +11,9 @@ from report_reading import own_scripts
 from report_tree import report_tree
 
 import asperity
+from asperity.reporting.chart import Boxes
 from asperity.reporting.comparison import MAIN, working_filter
-from asperity.reporting.comparison_page import summary
+from asperity.reporting.comparison_page import compared_sections, summary
 from asperity.scenes.comparing import comparison_of, names_of
 from asperity.spectra import a_weighted_total
 
@@ -57,6 +58,7 @@ def test_a_run_does_not_differ_from_itself(first):
     assert summary(found).startswith("The cases are the same. b against a, ")
     force = first["rolling/contact_force"]
     np.testing.assert_array_equal(found.table["peak_force"][0], force.max("time"))
+    np.testing.assert_allclose(found.table["rms_force"][0], force.std("time"))
     np.testing.assert_array_equal(found.table["contact_loss_share"][0], first["rolling/contact_loss_share"])
 
 
@@ -86,10 +88,14 @@ def test_accelerometers_count_by_their_energy_mean_and_chance_is_that_of_each_ru
     level = np.full(first["spectra/acceleration_level"].shape, 90.0)
     level[:, 1] = 100.0
     told = np.full(first["spectra/level_deviation"].shape, 0.4)
-    table = asperity.compare(first, changed(first, "spectra", acceleration_level=level, level_deviation=told))
+    found = comparison_of([first, changed(first, "spectra", acceleration_level=level, level_deviation=told)])
+    table, drawn = found.table, compared_sections(found)[3].blocks[0].chart
     expected = 10 * np.log10((1e10 + 4e9) / 5)
     np.testing.assert_allclose(table["acceleration_level"][1], expected, rtol=1e-12)
     np.testing.assert_allclose(table["level_deviation"][1], 0.4)
+    (chance,) = (mark for mark in drawn.panels[1].marks if isinstance(mark, Boxes))
+    own = first["spectra/level_deviation"].values
+    np.testing.assert_allclose(chance.high, np.sqrt(own**2 + 0.4**2))
 
 
 def test_stiffness_twice_as_large_is_six_decibels(first):
