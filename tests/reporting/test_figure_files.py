@@ -122,6 +122,9 @@ def test_the_same_numbers_make_the_same_file(format, begin):
 def test_a_surface_is_drawn(heights, spacing, tmp_path):
     chart = surface_chart(heights, spacing)
     assert write_chart(chart, "<b>", tmp_path / "s.png").stat().st_size > 10_000
+    if heights.size > 2000:  # drawn from the normal distribution
+        normal = chart.panels[1].marks[-1]
+        assert np.trapezoid(normal.y, normal.x) == pytest.approx(1.0, abs=0.01)
     reached = chart.panels[2].marks[0].y[[0, -1]] * height_scale(heights)[0]  # by none, and by all
     assert reached == pytest.approx([np.nanmax(heights), np.nanmin(heights)])
 
