@@ -263,6 +263,7 @@ def test_motion_is_compared_with_practice_from_when_the_wheel_passes(tree):
         steps = (at - float(rolling["time"][0])) / float(rolling["time"][1] - rolling["time"][0])
         assert steps == pytest.approx(np.round(steps), abs=1e-3)
         assert at[0] <= passed <= at[-1]
+        assert rules_of(tree, "rail_velocity", panel=n) == [0.0]
     assert {line.label for line in marks_of(tree, "rail_velocity", Line)} == {"areal", "linear-filtered"}
 
 
