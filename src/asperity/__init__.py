@@ -1,7 +1,5 @@
 """What roughness does when things roll: rough 3-D contact, reduced, rolled and heard."""
 
-from __future__ import annotations
-
 import importlib
 from typing import Any
 

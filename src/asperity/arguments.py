@@ -1,7 +1,5 @@
 """What Python callers may hand over: numbers, arrays and paths, or a message that says what came instead."""
 
-from __future__ import annotations
-
 import difflib
 import math
 import numbers

@@ -1,7 +1,5 @@
 """A run again with each setting made finer: what that changes, in a group of its result and a sentence."""
 
-from __future__ import annotations
-
 import json
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Files are written completely or not at all, sealed where damage must show, and in a folder of one's own."""
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import os

@@ -1,7 +1,5 @@
 """Ctrl-C, and the signals with which systems end a program, as one kind of interrupt."""
 
-from __future__ import annotations
-
 import _thread
 import signal
 import sys

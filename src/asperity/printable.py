@@ -1,7 +1,5 @@
 """Text of others, made fit to be shown: a name is read, it controls nothing."""
 
-from __future__ import annotations
-
 import unicodedata
 
 _UNSEEN = ("Cc", "Cf", "Cs", "Zl", "Zp")

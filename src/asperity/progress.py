@@ -1,7 +1,5 @@
 """Progress of long work on standard error: what is done, how far it is and how long it will take."""
 
-from __future__ import annotations
-
 import sys
 import threading
 import time

@@ -1,7 +1,5 @@
 """Foreign files are opened in a sandbox: a process with limits of time and memory, which may hang or end."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import os

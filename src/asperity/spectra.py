@@ -5,8 +5,6 @@ in wavelength are those in wavenumber read backwards, since both have their cent
 10^(1/10) of the SI unit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What has been computed once is kept: a content-addressed cache on disk."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """The one place that writes to the terminal: names are shown as text, and nobody has to listen."""
 
-from __future__ import annotations
-
 import codecs
 import errno
 import json

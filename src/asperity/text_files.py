@@ -1,7 +1,5 @@
 """Text files: what people have written is read, in UTF-8 or as PowerShell writes it; tables are written."""
 
-from __future__ import annotations
-
 import codecs
 import csv
 import io

@@ -1,7 +1,5 @@
 """Threads: how many one computation takes, so that several beside each other do not take too many."""
 
-from __future__ import annotations
-
 import os
 import threading
 from collections import deque

@@ -1,7 +1,5 @@
 """Unit strings, at the door only: everything behind it is SI floats."""
 
-from __future__ import annotations
-
 import math
 import re
 from functools import lru_cache

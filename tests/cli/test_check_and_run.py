@@ -175,7 +175,7 @@ def test_a_check_shows_the_track_the_run_in_and_what_loss_factors_do_to_the_forc
         "mm down, nominally 0.343 mm",
     ):
         assert text in words_of(outcome.stdout)
-    assert "nothing that answers after a force only has the loss factor 2 of the ballast" in outcome.stderr
+    assert "Nothing that answers after a force only has the loss factor 2 of the ballast" in outcome.stderr
     Path("viscous.toml").write_text(f'{RAIL}[track]\nname = "nordborg"\nrail_loss_factor = 0.0\n')
     assert "loss factors" not in call("check", "viscous.toml").stdout
 

@@ -1,7 +1,5 @@
 """The case: what a person says of a scene, each key declared once; presets, one file and one line each."""
 
-from __future__ import annotations
-
 PRESETS: dict[str, str] = {
     "ball-on-beam": "asperity.case.ball_on_beam.BallOnBeam",
     "wheel-on-rail": "asperity.case.wheel_on_rail.WheelOnRail",

@@ -1,7 +1,5 @@
 """A ball rolls over a rough beam: a preset of the scene."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from asperity.case.body import Rolling

@@ -1,7 +1,5 @@
 """Bodies roll, one or many, over any structure: the scene with all its choices."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Cases of any kind: from files, texts and mappings; and as a commented text."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import os

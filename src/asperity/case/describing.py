@@ -1,7 +1,5 @@
 """Keys and values of a case told: as a list for people, as a file that reads the same, as a commented one."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence

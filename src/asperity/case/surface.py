@@ -1,7 +1,5 @@
 """What is rolled over, as texture: measured maps and lines, synthesised roughness, defects on top."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """Tables that a case names, as text with columns or as netCDF: what they hold, read in SI and checked."""
 
-from __future__ import annotations
-
 import math
 import re
 from array import array

@@ -1,7 +1,5 @@
 """TOML as text: what a person wrote is read, and what a case says is written."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """A wheel rolls on a rail of infinite length: a preset of the scene."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import ClassVar
 

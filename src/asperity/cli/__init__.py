@@ -1,7 +1,5 @@
 """The command line. Its help imports nothing heavy: every command imports what it needs when it runs."""
 
-from __future__ import annotations
-
 import importlib.util
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Finds a texture into a folder: its case, its bands as table and on a page, the runs before and after."""
 
-from __future__ import annotations
-
 import json
 from contextlib import suppress
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Options that several commands have, and what a shell completes in their words."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any

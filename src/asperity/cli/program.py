@@ -1,7 +1,5 @@
 """The program around its commands: errors and exit codes, documents for programs, help with examples."""
 
-from __future__ import annotations
-
 import gc
 import inspect
 import io

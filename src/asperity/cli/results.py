@@ -1,7 +1,5 @@
 """What is made of finished runs: reports, figures, comparisons, sounds; and what is kept between runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Computes a study into a folder: its table, means and band over seeds, a page of figures; and prints it."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext, suppress

@@ -1,7 +1,5 @@
 """What a measured file holds, in words, as numbers and as a picture: size, statistics, spectra and limits."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """Three-dimensional contact: the half-space solver and Hertz's closed forms."""
 
-from __future__ import annotations
-
 import importlib
 from typing import TYPE_CHECKING, Any
 

@@ -1,7 +1,5 @@
 """Scans in batches on a GPU: the device, its memory, and the contacts that share it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Smooth bodies in contact: Hertz in closed form, and bodies that conform, as a ball in its groove."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import dataclass

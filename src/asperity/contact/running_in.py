@@ -1,7 +1,5 @@
 """Running-in: a body rolled over a surface whose asperities flow, which lowers them for good."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass
 from functools import partial

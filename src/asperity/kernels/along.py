@@ -1,7 +1,5 @@
 """What lies along a path, compiled: splines, and waves by angle addition."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from asperity.kernels.options import CALLED, LOOP, compiled

@@ -1,7 +1,5 @@
 """What a contact solution does to keep a load: the sum of the pressure, whose multiplier is the approach."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from asperity.kernels.box import FAR, REACH, Box

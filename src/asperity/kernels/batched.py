@@ -5,8 +5,6 @@ is compiled and nothing leaves the device but a few counts. The iteration of eac
 `projected_cg.solve` at a given approach.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ They lie flat, row after row, with some idle columns behind each row: nothing ov
 pressure acts, and loops need not know where a row ends.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Pressures to start from, continued from those of the last contacts."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -4,8 +4,6 @@ A batch is a flat array (n, 2, lanes): n values of each column, real parts, then
 transforms that sort themselves, called Stockham's; radices 2, 3, 4 and 5.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

@@ -3,8 +3,6 @@
 Boxes have a free boundary without padding: by a quarter turn, what wraps around becomes imaginary.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any, NamedTuple
 

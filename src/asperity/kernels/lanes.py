@@ -5,8 +5,6 @@ rows might overlap. A vector holds eight numbers, sixteen in single precision; p
 registers use several.
 """
 
-from __future__ import annotations
-
 import operator
 from typing import Any
 

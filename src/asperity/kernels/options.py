@@ -16,8 +16,6 @@ compilation are needed, which numba does not document. They are tested with numb
 that is allowed and the newest there is. Where one is missing plain `numba.njit` serves, which a warning says.
 """
 
-from __future__ import annotations
-
 import hashlib
 import pickle
 import re

@@ -1,7 +1,5 @@
 """Piecewise cubics, compiled: monotone interpolation, and evaluation."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

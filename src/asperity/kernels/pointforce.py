@@ -1,7 +1,5 @@
 """The moving point force, compiled: three forms that cover all laws made of state functions."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

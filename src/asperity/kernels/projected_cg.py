@@ -1,7 +1,5 @@
 """Approximate inverse of the influence of pressure, as a short stencil on a set of cells."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

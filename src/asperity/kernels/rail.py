@@ -4,8 +4,6 @@ A *channel* goes from the contact where a force acts to one that feels it, and c
 their distance, by poles or scattered. Contacts too far apart have none.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Contacts of a body moved along a surface, each from those before it: from the gap to the pressure."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

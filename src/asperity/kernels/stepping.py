@@ -7,8 +7,6 @@ the coordinates of structure and bodies, so that the cost grows with the number 
 Laws that Python evaluates go through the same loops (`roll`, `solve_contacts`, `solve_law`), not compiled.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

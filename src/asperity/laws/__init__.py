@@ -6,8 +6,6 @@ stepper (`asperity.kernels.pointforce.Prepared`) or for stepping from Python (`S
 imports compiled code before it is needed.
 """
 
-from __future__ import annotations
-
 from asperity.laws.areal import Areal
 from asperity.laws.direct import Direct
 from asperity.laws.hertz import HertzLaw

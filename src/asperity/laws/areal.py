@@ -1,7 +1,5 @@
 """`areal`: the force follows the texture averaged over the contact area."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from asperity.laws import shifted, spec

@@ -1,7 +1,5 @@
 """Laying laws out on a path: a force curve that follows a texture, or a table."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -1,7 +1,5 @@
 """The laws by name: those that come with the program, a line each, and those registered from Python."""
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Iterable, Mapping
 

@@ -1,7 +1,5 @@
 """How much roughness each band of wavelengths may bear, where each adds to the response in proportion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple

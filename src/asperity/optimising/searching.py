@@ -1,7 +1,5 @@
 """Searching the texture: the response to each band is found by rolling, the best levels by SciPy."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ All sources are incoherent, radiate evenly in all directions and stand on reflec
 p² = W ρc Q/(4π d²) with Q = 2 at a distance d. They lie in the middle of the track.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

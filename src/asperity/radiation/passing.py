@@ -1,7 +1,5 @@
 """Motion of the rail at fixed points while the wheel passes them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """Sound power of rail and sleepers from vibration along the track."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """How fast each mode of a wheel moves in a run, from the spectra of its contact force and of its motion."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

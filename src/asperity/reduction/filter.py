@@ -1,7 +1,5 @@
 """The contact filter: how much of a line texture reaches the contact force, by wavenumber and state."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

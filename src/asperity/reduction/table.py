@@ -1,7 +1,5 @@
 """The scanned force of a path, kept on disk in blocks, to look forces up in."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

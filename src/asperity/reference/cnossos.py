@@ -5,8 +5,6 @@ and rail (table G-1), contact filter (table G-2), transfer of track and vehicle 
 power (table G-3), as ``cnossos.toml`` holds them. Wavelengths and frequencies are nominal one-third octaves.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

@@ -5,8 +5,6 @@ names that stand in cases; ``linear-remington``, ``linear-dprs`` and ``linear-cn
 practice in front of the linear contact of smooth bodies.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Named elastic materials, each with its source."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from asperity.arguments import one_of, positive, real

@@ -1,7 +1,5 @@
 """Named sets of track parameters, each value with its source; least decay rate for tests of vehicles."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -1,7 +1,5 @@
 """A figure as numbers: panels with axes and marks, which the page and matplotlib draw alike."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import cycle

@@ -1,7 +1,5 @@
 """What differs between runs: keys of their cases, levels, stiffness, filters, in one dataset."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

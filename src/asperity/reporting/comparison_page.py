@@ -1,7 +1,5 @@
 """The page of a comparison: its tables, its figures, and what it says in short."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Figures of the contact: pressure, force and stiffness, filters."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Looking into a result tree: what is there, or nothing; and its numbers in words."""
 
-from __future__ import annotations
-
 import colorsys
 import json
 import math

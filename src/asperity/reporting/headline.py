@@ -1,7 +1,5 @@
 """The first screen of a page: what the reader asked, in numbers, and one light for validity."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Pages: templates, figures as they take them, and the page of a result."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Axes and panels of the field: spectra, one-third octaves, time; with what says little shaded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any

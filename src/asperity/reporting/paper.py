@@ -1,7 +1,5 @@
 """Figures as files, for papers and notebooks: what matplotlib draws of a chart."""
 
-from __future__ import annotations
-
 import io
 import warnings
 from collections.abc import Sequence

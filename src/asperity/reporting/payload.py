@@ -1,7 +1,5 @@
 """Arrays in little room, for a browser to unpack: each once, in steps, in levels, or in single precision."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """Sound pressure beside the track while a vehicle passes, from its sound power and its contact force."""
 
-from __future__ import annotations
-
 import io
 import os
 import re

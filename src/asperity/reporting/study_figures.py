@@ -1,7 +1,5 @@
 """Figures of studies, seeds and optimised textures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Tables of a page, declared by their columns; and those that all kinds of case share."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial

@@ -1,7 +1,5 @@
 """How sure a result is: convergence, chance, and what is not known."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Advancing bodies on their contacts to the end of the path: compiled or from Python, resumable."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -19,8 +19,6 @@ times the alternating one less that of the contact; a rigid contact then returns
 such masses; an endless rail carries impacts away.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable, Sequence
 from typing import Any

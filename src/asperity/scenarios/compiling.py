@@ -1,7 +1,5 @@
 """Compilation of the kernels ahead of the work, so that the first run says what it waits for."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Which laws suit a case: where it lies on the law accuracy map, and what they are off by there."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass

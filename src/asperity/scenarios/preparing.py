@@ -1,7 +1,5 @@
 """What comes before the work: all that a case needs, what is wrong with it, and what the run will take."""
 
-from __future__ import annotations
-
 import math
 import time
 import warnings

@@ -1,7 +1,5 @@
 """Textures of one body along a path: maps and lines read from files, and strips from band levels."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A case made finer setting by setting, on the same surface: a finer or wider texture thinned or cut."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Running-in of a case: its textures after passes in which asperities have yielded."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -1,7 +1,5 @@
 """The scene of a case: what rolls, what it is rolled over, where both are looked at; and its linear force."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol

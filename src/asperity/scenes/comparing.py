@@ -1,7 +1,5 @@
 """Runs beside each other: what differs between their cases and results, as data, page and table."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from pathlib import Path

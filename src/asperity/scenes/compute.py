@@ -1,7 +1,5 @@
 """A case of any kind is computed: from textures to the motion of what rolls and of what is rolled over."""
 
-from __future__ import annotations
-
 import json
 import time
 import warnings

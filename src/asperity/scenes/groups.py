@@ -1,7 +1,5 @@
 """The groups of a result that no rolling changes: textures with their statistics, and the reduced contact."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace

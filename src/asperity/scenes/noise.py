@@ -1,7 +1,5 @@
 """Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from typing import Any

@@ -1,7 +1,5 @@
 """What a run will look at, in words; how finely its bodies are resolved; what its textures are judged by."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Are samples and path one population, is one stiffness enough, does the direction matter? Answers in dB."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """The report of a run of any scene: its chapters, the page, and the numbers of its figures."""
 
-from __future__ import annotations
-
 import os
 from functools import cache
 from importlib.metadata import entry_points

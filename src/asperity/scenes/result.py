@@ -1,7 +1,5 @@
 """The result of a case of any kind, laid out as labelled groups: each observer adds what it sees."""
 
-from __future__ import annotations
-
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """What the result of a scene may hold beside what all results hold: each with which results have it."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from asperity.schema import Attribute, Entry, entry

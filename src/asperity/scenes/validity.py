@@ -1,7 +1,5 @@
 """Is a case inside the range in which its laws are known to hold? Number and limit of each, and a verdict."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

@@ -1,7 +1,5 @@
 """The reduced contact: force and stiffness of its states, filters, pressure at the working load."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from asperity.schema import Attribute, Entry, entry

@@ -1,7 +1,5 @@
 """How far a result depends on how finely it was computed."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from asperity.schema import Attribute, entry

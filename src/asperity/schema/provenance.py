@@ -1,7 +1,5 @@
 """What was computed, by what and how: attributes of the root and of the group scenario."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from asperity.schema import Attribute

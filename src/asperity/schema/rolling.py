@@ -1,7 +1,5 @@
 """The run in time: force and approach by law and contact, loss of contact."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from asperity.schema import Attribute, entry

@@ -1,7 +1,5 @@
 """The run over frequency: force by law, and how far the laws are from each other."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from asperity.schema import Entry, entry

@@ -1,7 +1,5 @@
 """What is rolled over: textures, their statistics and spectra."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from asperity.schema import Attribute, entry

@@ -1,7 +1,5 @@
 """The page with its forms, which are made from the schemas of kinds of case, and what is typed into them."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

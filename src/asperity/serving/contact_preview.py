@@ -1,7 +1,5 @@
 """A contact to play with: one sample of a case's surface under its body, pressed by hand."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What the page keeps on disk: runs and surfaces, each in a folder of its own that is named at random."""
 
-from __future__ import annotations
-
 import asyncio
 import hashlib
 import json

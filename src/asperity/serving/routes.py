@@ -1,7 +1,5 @@
 """What the page asks of its server, address by address."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections.abc import AsyncIterator

@@ -1,7 +1,5 @@
 """What the page shows of runs: force and texture to watch, figures and sounds; and several side by side."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -4,8 +4,6 @@ The page listens on this machine alone. Other programs and users of the machine,
 the same browser, can reach it there all the same; they know no token, and their headers tell the guard.
 """
 
-from __future__ import annotations
-
 import os
 import secrets
 import socket

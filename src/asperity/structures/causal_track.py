@@ -6,8 +6,6 @@ lets the stiffness grow, by 2η/π per neper of frequency. The stiffnesses of th
 the track with constant loss factors, in each one-third octave.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Modes from a universal file: datasets 55 (modes), 15 or 2411 (nodes) and 164 (units), through pyuff."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path

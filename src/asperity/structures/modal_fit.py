@@ -1,7 +1,5 @@
 """Vector fitting: common poles of many responses, and their residues."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from functools import partial

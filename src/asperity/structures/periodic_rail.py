@@ -1,7 +1,5 @@
 """The exact receptance of a rail on periodic supports."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

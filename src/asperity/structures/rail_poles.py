@@ -1,7 +1,5 @@
 """The rail as a bank of poles: the moving kernel in a form that costs the same at any length."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Mapping

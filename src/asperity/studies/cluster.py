@@ -1,7 +1,5 @@
 """A Dask cluster as the place where the members of a study are computed, and whether it still answers."""
 
-from __future__ import annotations
-
 import logging
 import time
 from collections.abc import Iterator

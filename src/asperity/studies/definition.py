@@ -1,7 +1,5 @@
 """What a study computes: one case, and lists or ranges of values for some of its keys."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

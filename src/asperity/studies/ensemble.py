@@ -1,7 +1,5 @@
 """Members of a study that differ by chance alone: their mean, and the band in which one more lies."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray
 from scipy import stats

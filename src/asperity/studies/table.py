@@ -1,7 +1,5 @@
 """One table of all members of a study: swept keys as dimensions, rows and columns, what is shown of it."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """One-third-octave levels in wavelength, dB re 1 µm: those of surfaces, and surfaces that have given ones."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

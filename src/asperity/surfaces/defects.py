@@ -1,7 +1,5 @@
 """Defects of wheel and rail as lines, heights positive out of the body: corrugation, flat, dipped joint."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

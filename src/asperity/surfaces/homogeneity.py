@@ -1,7 +1,5 @@
 """Is the texture the same everywhere, and does it have a direction?"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What a synthesised surface shares with measured maps: the distribution of heights and their correlation."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial

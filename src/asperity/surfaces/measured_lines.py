@@ -3,8 +3,6 @@
 Later editions of the standard have not been compared.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Sequence

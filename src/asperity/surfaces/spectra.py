@@ -1,7 +1,5 @@
 """Spectra and correlation of maps and lines, and whether they are the same everywhere."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Roughness parameters of maps, lines and strips of any length, and the material ratio curve."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise

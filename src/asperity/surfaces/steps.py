@@ -1,7 +1,5 @@
 """What is done to a measured surface once it is read, in one order: cut, form, filters, direction."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

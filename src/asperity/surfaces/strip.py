@@ -1,7 +1,5 @@
 """Heights along a path, asked for in pieces; generated ones stay in a temporary file, and fill no memory."""
 
-from __future__ import annotations
-
 import tempfile
 import threading
 import weakref

@@ -1,7 +1,5 @@
 """Textures that are made: records continued, self-affine surfaces, likenesses of maps, and long strips."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal

@@ -1,7 +1,5 @@
 """Figures of the forces of all contacts: one beside the other, and their sum."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figures of the contact force: in time, in lines and in one-third octaves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Figures of motion: of a structure, of bodies, of wheel and rail at the contact, of the rail passed by."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Rolling noise: sound power from the vibration itself and by CNOSSOS-EU, and the pass-by."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import cycle

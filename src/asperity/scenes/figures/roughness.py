@@ -1,7 +1,5 @@
 """Roughness of rail and wheel in bands of wavelength, on the axes that rail acoustics uses."""
 
-from __future__ import annotations
-
 import numpy as np
 from xarray import DataTree
 

@@ -1,7 +1,5 @@
 """The scene: a ball on its beam, bodies on their path, a wheel on its track; and the contact from above."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

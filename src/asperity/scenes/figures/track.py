@@ -1,7 +1,5 @@
 """Figures of the track: receptances, decay rate, moving kernel, loss factors; and what it marks in others."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any

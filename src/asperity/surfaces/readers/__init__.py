@@ -1,7 +1,5 @@
 """Reading measured surfaces: the format is found from the first bytes, then from the extension."""
 
-from __future__ import annotations
-
 import warnings
 import zipfile
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """Bare arrays, ``.npy`` and ``.npz``, never unpickled; and points on a line or a grid as arrays."""
 
-from __future__ import annotations
-
 import io
 import math
 from pathlib import Path

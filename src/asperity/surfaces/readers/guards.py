@@ -1,7 +1,5 @@
 """Guards at the door: every file is treated as hostile until its claims are checked against its bytes."""
 
-from __future__ import annotations
-
 import math
 import zipfile
 from collections.abc import Callable, Iterator, Sequence

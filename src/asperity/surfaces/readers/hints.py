@@ -1,7 +1,5 @@
 """What a user may say about a file of heights, and how that is written where the user stands."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager

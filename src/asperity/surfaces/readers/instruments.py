@@ -1,7 +1,5 @@
 """Formats that libraries parse are read in a sandbox: see `asperity.sandbox`."""
 
-from __future__ import annotations
-
 import importlib
 import warnings
 from collections.abc import Callable

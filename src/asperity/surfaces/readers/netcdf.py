@@ -1,7 +1,5 @@
 """NetCDF-4 through h5netcdf."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """SDF, the surface data file of ISO 25178-71: ASCII (``aISO-1.0``) and binary (``bISO-1.0``)."""
 
-from __future__ import annotations
-
 import math
 import re
 import struct

@@ -1,7 +1,5 @@
 """X3P, the XML and binary container of ISO 25178-72 (earlier ISO 5436-2)."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 import zipfile
