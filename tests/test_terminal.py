@@ -18,7 +18,7 @@ WRITERS = {
     "terminal.py",
     "progress.py",  # bars; its words go through `printable`
     "sandbox.py",  # answers to the process that asked
-    "desk.py",
+    "worker_processes.py",
     "__main__.py",  # before anything can be imported
 }
 posix = pytest.mark.skipif(sys.platform == "win32", reason="streams are closed otherwise there")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity import BallOnBeam, Bodies, HeightMap, Hertz, WheelOnRail
-from asperity.case.chosen import NominalPatch, rounded
+from asperity.case.chosen_lengths import NominalPatch, rounded
 from asperity.errors import CaseError, InputError
 from asperity.running import prepare_case
 from asperity.studies.definition import study_of

@@ -1,8 +1,8 @@
 """Sound of a rigid section that moves up and down in free air, by boundary elements in two dimensions.
 
 Collocation with constant elements, e^{+iωt}; points inside the section at which the pressure has to be zero
-make the solution unique (H. A. Schenck, J. Acoust. Soc. Am. 44 (1968) 41-58). Checked in `test_track_sound.py`
-against the oscillating cylinder.
+make the solution unique (H. A. Schenck, J. Acoust. Soc. Am. 44 (1968) 41-58).
+Checked in `test_track_sound.py` against the oscillating cylinder.
 """
 
 import math

@@ -10,8 +10,8 @@ from report_tree import report_tree
 from asperity.results import save
 from asperity.scenes.notebook import Result
 from asperity.schema.rolling import POSITION
-from asperity.serving.apart import answered
 from asperity.serving.run_view import STRETCH, _about_long_waves, compared_runs, numbered_names, viewed_run
+from asperity.serving.worker import answered
 
 
 @pytest.fixture(scope="module")

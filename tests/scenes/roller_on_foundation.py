@@ -11,7 +11,7 @@ import numpy as np
 
 from asperity.case.body import STIFFNESS, Rolling
 from asperity.case.form import section
-from asperity.case.over import RolledOver
+from asperity.case.rolled_over import RolledOver
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NumericsKeys
 from asperity.parameters import Choice, MaterialOrName, key

@@ -14,9 +14,9 @@ pytest.importorskip("uvicorn", reason="the extra app is not installed")
 
 from starlette.responses import PlainTextResponse
 
-from asperity.serving import kept, routes
-from asperity.serving.desk import Desk, Job, Refused
+from asperity.serving import routes, stored_runs
 from asperity.serving.server import PAGE_POLICY, Guard, new_token
+from asperity.serving.worker_processes import Job, Questions, Refused
 from command_line import call
 
 TOKEN, PORT = "a-token", 8000
@@ -111,8 +111,8 @@ def server(tmp_path, monkeypatch):
             (tmp_path / "comparisons" / arguments["folder"][-16:]).mkdir(parents=True)
         return {"toml": "kind = 'x'", "changed": "", "asked": question}
 
-    for desk in (found.contacts, found.files):
-        monkeypatch.setattr(desk, "ask", told)
+    for questions in (found.contacts, found.files):
+        monkeypatch.setattr(questions, "ask", told)
     return found
 
 
@@ -123,7 +123,7 @@ def ask(server, path, question=None):
 
 
 def run_of(server):
-    return server.runs / kept.keep_run(server.runs, "kind = 'x'", kind="x", name="a", changed="")
+    return server.runs / stored_runs.keep_run(server.runs, "kind = 'x'", kind="x", name="a", changed="")
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_what_may_hold_scripts_is_shown_in_a_sandbox(server, ending):
 
 
 def test_a_run_that_a_full_queue_refuses_is_not_kept(server, monkeypatch):
-    monkeypatch.setattr("asperity.serving.desk.MOST_WAITING", -1)
+    monkeypatch.setattr("asperity.serving.worker_processes.MOST_WAITING", -1)
     status, words = ask(server, "/ask/runs", {"kind": "ball-on-beam", "values": {}})
     assert status == 422
     assert "runs that wait" in words
@@ -226,26 +226,26 @@ def test_a_process_that_ends_or_takes_too_long_is_replaced():
     good = {"kind": "ball-on-beam", "values": {"surface.rms": "0.1 um"}, "surfaces": "/nowhere"}
 
     async def asked():
-        desk = Desk(60.0)
+        questions = Questions(60.0)
         try:
-            first = await desk.ask("check", **good)
-            desk.apart.process.kill()
+            first = await questions.ask("check", **good)
+            questions.worker.process.kill()
             with pytest.raises(Refused, match="ended the process"):
-                await desk.ask("check", **good)
-            assert await desk.ask("check", **good) == first
+                await questions.ask("check", **good)
+            assert await questions.ask("check", **good) == first
             for wrong, message in (
                 ({"values": {"speed": "fast", "surface.rms": "0.1 um"}}, "speed: received 'fast'"),
                 ({"kind": "none"}, "kind: received 'none'"),
                 ({"surfaces": 1}, "The program failed with TypeError"),
             ):
                 with pytest.raises(Refused, match=message):
-                    await desk.ask("check", **good | wrong)
-            desk.seconds = 0.0
+                    await questions.ask("check", **good | wrong)
+            questions.seconds = 0.0
             with pytest.raises(Refused, match="takes more than 0 s"):
-                await desk.ask("check", **good)
-            assert desk.apart is None
+                await questions.ask("check", **good)
+            assert questions.worker is None
         finally:
-            await desk.end()
+            await questions.end()
         return first
 
     first = asyncio.run(asked())
@@ -255,9 +255,9 @@ def test_a_process_that_ends_or_takes_too_long_is_replaced():
 
 def test_a_run_tells_how_far_it_is_and_how_long_the_rest_of_a_piece_takes(monkeypatch, tmp_path):
     job, clock = Job(tmp_path), iter([100.0, 104.0, 104.0])
-    monkeypatch.setattr("asperity.serving.desk.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("asperity.serving.worker_processes.time.monotonic", lambda: next(clock))
     assert job.told()["state"] == "waiting"
-    job.apart = "a process"
+    job.worker = "a process"
     job.hear(10, 60, "scan")
     assert job.told()["left"] is None
     job.hear(30, 60, "scan")

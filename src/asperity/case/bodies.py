@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from asperity.case.body import Rolling
 from asperity.case.form import section
-from asperity.case.over import BeamKeys, RolledOver, StructureKeys, TrackKeys
+from asperity.case.rolled_over import BeamKeys, RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
 from asperity.errors import InputError

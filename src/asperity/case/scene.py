@@ -9,11 +9,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from asperity.case.body import Rolling
-from asperity.case.chosen import NominalPatch, chosen_lengths
+from asperity.case.chosen_lengths import NominalPatch, chosen_lengths
 from asperity.case.content import described_value
 from asperity.case.describing import in_toml, parameters, refused
 from asperity.case.form import Inner, Section, section
-from asperity.case.over import RolledOver, TrackKeys
+from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.surface import INDEX, POSITION, Surface
 from asperity.case.toml import toml_text

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
 from asperity.case.body import DAMPING
 from asperity.case.form import Section
-from asperity.case.over import FREQUENCY
+from asperity.case.rolled_over import FREQUENCY
 from asperity.case.surface import LENGTH, POSITION
 from asperity.case.tables import TableFile, read_ratios
 from asperity.errors import InputError

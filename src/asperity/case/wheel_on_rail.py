@@ -7,7 +7,7 @@ import numpy as np
 
 from asperity.case.body import OF_SEVERAL, Rolling
 from asperity.case.form import section
-from asperity.case.over import TrackKeys
+from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case, time_step_on_grid
 from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.surface import Surface

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.chosen import with_chosen
+from asperity.case.chosen_lengths import with_chosen
 from asperity.case.scene import Case
 from asperity.contact.batched import find_device
 from asperity.contact.scan import FILTER_SHARE, ScanJob, rtol_for, scan_forces

@@ -19,7 +19,7 @@ from asperity.case.toml import toml_value
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
-from asperity.serving.kept import LARGEST_UPLOAD
+from asperity.serving.stored_runs import LARGEST_UPLOAD
 
 LONGEST_VALUE = 2000
 """Characters of one value: more than any list of a case needs."""

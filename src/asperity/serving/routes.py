@@ -18,9 +18,9 @@ from asperity.case.toml import LARGEST_CASE
 from asperity.errors import AsperityError
 from asperity.reporting.chart import colour_variables
 from asperity.reporting.payload import chart_script, chart_style
-from asperity.serving import kept
+from asperity.serving import stored_runs
 from asperity.serving.case_form import page_text
-from asperity.serving.desk import Desk, Jobs, Refused
+from asperity.serving.worker_processes import Jobs, Questions, Refused
 
 CONTACT_SECONDS, FILE_SECONDS = 60.0, 120.0
 """Time that a contact, and a file, may take, s."""
@@ -45,7 +45,7 @@ class Server:
         self.surfaces, self.runs = folder / "surfaces", folder / "runs"
         self.comparisons = folder / "comparisons"
         self.jobs = Jobs()
-        self.contacts, self.files = Desk(CONTACT_SECONDS), Desk(FILE_SECONDS)
+        self.contacts, self.files = Questions(CONTACT_SECONDS), Questions(FILE_SECONDS)
 
     @asynccontextmanager
     async def alive(self, app: Starlette) -> AsyncIterator[None]:
@@ -139,48 +139,48 @@ class Server:
 
     async def fill_from_run(self, request: Request) -> Response:
         """Read the case of a run into the form."""
-        return await self._of_contacts("fill", text=kept.case_of_run(self._run(request)))
+        return await self._of_contacts("fill", text=stored_runs.case_of_run(self._run(request)))
 
     # --- surfaces
 
     async def list_surfaces(self, request: Request) -> Response:
         """List surfaces that were uploaded."""
-        return JSONResponse(kept.uploaded(self.surfaces))
+        return JSONResponse(stored_runs.uploaded(self.surfaces))
 
     async def take_surface(self, request: Request) -> Response:
         """Receive a surface, and keep it if anybody can read it."""
         size = request.headers.get("content-length", "")
         announced = int(size) if size.isascii() and size.isdigit() and len(size) < LONGEST_SIZE else None
         name = request.query_params.get("name", "")
-        file = await kept.receive(self.surfaces, name, announced, request.stream())
+        file = await stored_runs.receive(self.surfaces, name, announced, request.stream())
         try:
             told = await self.files.ask("examine", path=str(file))
         except BaseException:
-            kept.remove_kept(file.parent)
+            stored_runs.remove_kept(file.parent)
             raise
         return JSONResponse(told | {"id": file.parent.name, "name": file.name})
 
     async def clear_surfaces(self, request: Request) -> Response:
         """Delete the surfaces that no run uses; tell which are left."""
-        kept.remove_unnamed(self.surfaces, self.runs)
-        return JSONResponse(kept.uploaded(self.surfaces))
+        stored_runs.remove_unnamed(self.surfaces, self.runs)
+        return JSONResponse(stored_runs.uploaded(self.surfaces))
 
     # --- runs
 
     def _run(self, request: Request) -> Path:
         """Folder of the run that a path names."""
-        folder = kept.folder_of(self.runs, request.path_params["run"])
+        folder = stored_runs.folder_of(self.runs, request.path_params["run"])
         if folder is None:
             raise HTTPException(404, "There is no such run.")
         return folder
 
     def _far(self, folder: Path) -> dict[str, Any]:
         """What a run is, and how far."""
-        return kept.told_of(folder) | self.jobs.told(folder.name)
+        return stored_runs.told_of(folder) | self.jobs.told(folder.name)
 
     async def list_runs(self, request: Request) -> Response:
         """List all runs, the latest first."""
-        found = map(self._far, kept.kept_in(self.runs))
+        found = map(self._far, stored_runs.kept_in(self.runs))
         return JSONResponse(sorted(found, key=lambda run: str(run["created"]), reverse=True))
 
     async def start_run(self, request: Request) -> Response:
@@ -189,11 +189,11 @@ class Server:
         form, name = _form(found), str(found.get("name", ""))
         told = await self.contacts.ask("check", **form, surfaces=str(self.surfaces))
         facts = {"kind": form["kind"], "name": name, "changed": told["changed"]}
-        identifier = kept.keep_run(self.runs, told["toml"], **facts)
+        identifier = stored_runs.keep_run(self.runs, told["toml"], **facts)
         try:
             self.jobs.start(self.runs / identifier)
         except AsperityError:  # too many wait: it is not kept as one that was begun
-            kept.remove_kept(self.runs / identifier)
+            stored_runs.remove_kept(self.runs / identifier)
             raise
         return JSONResponse({"id": identifier})
 
@@ -203,7 +203,7 @@ class Server:
 
     async def view(self, request: Request) -> Response:
         """Send what there is to be seen of a run that is done."""
-        path = self._run(request) / kept.RESULT
+        path = self._run(request) / stored_runs.RESULT
         return JSONResponse(await self.files.ask("view", path=str(path)))
 
     async def cancel(self, request: Request) -> Response:
@@ -214,7 +214,7 @@ class Server:
     async def go_on(self, request: Request) -> Response:
         """Roll a run that ended too early; what of it is finished is not computed again."""
         folder = self._run(request)
-        if not (folder / kept.RESULT).is_file():
+        if not (folder / stored_runs.RESULT).is_file():
             self.jobs.start(folder)
         return await self.state(request)
 
@@ -222,7 +222,7 @@ class Server:
         """End a run, and delete all of it."""
         folder = self._run(request)
         await self.jobs.cancel(folder.name)
-        kept.remove_kept(folder)
+        stored_runs.remove_kept(folder)
         return JSONResponse({})
 
     async def send_file(self, request: Request) -> Response:
@@ -231,8 +231,8 @@ class Server:
         The report is written when it is asked for first.
         """
         folder, name = self._run(request), request.path_params["name"]
-        result = folder / kept.RESULT
-        if name == kept.REPORT and result.is_file() and not (folder / name).is_file():
+        result = folder / stored_runs.RESULT
+        if name == stored_runs.REPORT and result.is_file() and not (folder / name).is_file():
             await self.files.ask("report", path=str(result))
         return _handed_out(folder, name)
 
@@ -240,19 +240,19 @@ class Server:
 
     def _compared(self, request: Request) -> tuple[str, dict[str, Any]]:
         """What is kept of the runs that a question names, and their paths and names, in their order."""
-        found = [kept.folder_of(self.runs, each) for each in request.query_params.getlist("run")]
+        found = [stored_runs.folder_of(self.runs, each) for each in request.query_params.getlist("run")]
         folders = [folder for folder in found if folder is not None]
         if not 2 <= len(folders) <= MOST_COMPARED:
             raise HTTPException(400, f"Two to {MOST_COMPARED} runs can be compared.")
-        identifier = kept.identifier_of_runs([folder.name for folder in folders])
-        names = [str(kept.told_of(folder)["name"]) for folder in folders]
-        return identifier, {"paths": [str(folder / kept.RESULT) for folder in folders], "names": names}
+        identifier = stored_runs.identifier_of_runs([folder.name for folder in folders])
+        names = [str(stored_runs.told_of(folder)["name"]) for folder in folders]
+        return identifier, {"paths": [str(folder / stored_runs.RESULT) for folder in folders], "names": names}
 
     async def compare(self, request: Request) -> Response:
         """Show runs beside each other."""
         identifier, runs = self._compared(request)
         told = await self.files.ask("compare", **runs)
-        return JSONResponse(told | {"page": f"comparisons/{identifier}/{kept.COMPARISON}"})
+        return JSONResponse(told | {"page": f"comparisons/{identifier}/{stored_runs.COMPARISON}"})
 
     async def send_comparison_file(self, request: Request) -> Response:
         """Send the page of a comparison, written when it is asked for with its runs; or its table."""
@@ -261,15 +261,15 @@ class Server:
             identifier, runs = self._compared(request)
             if identifier == wanted:
                 await self.files.ask("comparison", **runs, folder=str(root / identifier))
-                for folder in kept.kept_in(root)[MOST_COMPARISONS:]:
-                    kept.remove_kept(folder)
-        return _handed_out(kept.folder_of(root, wanted), request.path_params["name"])
+                for folder in stored_runs.kept_in(root)[MOST_COMPARISONS:]:
+                    stored_runs.remove_kept(folder)
+        return _handed_out(stored_runs.folder_of(root, wanted), request.path_params["name"])
 
 
 async def _told(request: Request, error: Exception) -> Response:
     """What is wrong with the input, as an answer that the page shows."""
     errors = error.errors if isinstance(error, Refused) else [str(error)]
-    if isinstance(error, kept.TooLarge):
+    if isinstance(error, stored_runs.TooLarge):
         return JSONResponse({"errors": errors}, 413, {"connection": "close"})
     return JSONResponse({"errors": errors}, 422)
 
@@ -300,7 +300,7 @@ def _form(found: dict[str, Any]) -> dict[str, Any]:
 
 def _handed_out(folder: Path | None, name: str) -> Response:
     """A file of a run or a comparison, to be looked at or taken away."""
-    file = None if folder is None else kept.file_of_run(folder, name)
+    file = None if folder is None else stored_runs.file_of_run(folder, name)
     if folder is None or file is None:
         raise HTTPException(404, "There is no such file.")
     policy = {"content-security-policy": REPORT_POLICY} if file.suffix in (".html", ".svg") else {}

@@ -22,7 +22,7 @@ from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
 from asperity.scenes.report import report
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
-from asperity.serving.kept import SOUNDS
+from asperity.serving.stored_runs import SOUNDS
 
 PIECE = 20_000
 """Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""

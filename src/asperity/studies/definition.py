@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from asperity.arguments import require, shown
 from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
-from asperity.case.chosen import shared_lengths
+from asperity.case.chosen_lengths import shared_lengths
 from asperity.case.content import case_key, content, described_value, file_digest, holds_memory
 from asperity.case.describing import CaseKey, entry_of, value_in_toml
 from asperity.case.scene import Case

@@ -38,7 +38,7 @@ from asperity.files import alone_in
 from asperity.parameters import Origin
 from asperity.progress import Progress
 from asperity.sandbox import MEMORY, end_with_parent, limit_process
-from asperity.serving import kept
+from asperity.serving import stored_runs
 from asperity.serving.case_form import case_data, form_values
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.readers import read_surface
@@ -67,7 +67,7 @@ _pressed: OrderedDict[str, PressedSample] = OrderedDict()
 
 def _case(kind: str, values: dict[str, object], surfaces: str) -> Case:
     root = Path(surfaces)
-    data = case_data(kind, values, lambda identifier: kept.surface_named(root, identifier))
+    data = case_data(kind, values, lambda identifier: stored_runs.surface_named(root, identifier))
     return case_of(data, Origin("the case", root, units=True))
 
 
@@ -84,7 +84,10 @@ def read_case_file(text: str, surfaces: str) -> Told:
     root = Path(surfaces)
     data = read_toml(text, "case", "the case")
     case_of(data, Origin("the case", root, units=True))
-    return {"kind": data["kind"], "values": form_values(data, lambda path: kept.identifier_of(root, path))}
+    return {
+        "kind": data["kind"],
+        "values": form_values(data, lambda path: stored_runs.identifier_of(root, path)),
+    }
 
 
 def press_form(kind: str, values: dict[str, object], surfaces: str, share: float | None, whole: bool) -> Told:
@@ -128,11 +131,11 @@ def examined(path: str) -> Told:
 
 
 _QUESTIONS = {
-    "check": "apart.read_form",
-    "fill": "apart.read_case_file",
-    "press": "apart.press_form",
-    "prepare to press": "apart.prepare_to_press",
-    "examine": "apart.examined",
+    "check": "worker.read_form",
+    "fill": "worker.read_case_file",
+    "press": "worker.press_form",
+    "prepare to press": "worker.prepare_to_press",
+    "examine": "worker.examined",
     "prepare to show": "run_view.prepare_to_show",
     "view": "run_view.viewed_run",
     "compare": "run_view.compared_runs",
@@ -143,7 +146,7 @@ _QUESTIONS = {
 
 
 def answer_all() -> None:
-    """Answer what comes on standard input until it ends, as the process that `desk.Desk` starts."""
+    """Answer what comes on standard input until it ends, in the process of a `Questions`."""
     answers, questions = _own_output(), SimpleQueue[str | None]()
     with suppress(OSError, ValueError):
         limit_process(MEMORY)
@@ -186,7 +189,7 @@ def _why(error: Exception, memory: str) -> str:
 
 
 def roll_run() -> None:
-    """Roll the case in the folder that is the last argument, as the process that `desk.Jobs` starts."""
+    """Roll the case in the folder that is the last argument, in a process of `Jobs`."""
     told, message, last = _own_output(), "", 0.0
     end_with_parent()
     if hasattr(os, "nice"):
@@ -217,11 +220,11 @@ def _roll(folder: Path, progress: Progress) -> None:
     with alone_in(folder), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # those on the physics stand in the result
         progress(0, 1, "preparing")
-        tree = run(prepare_case(load_case(folder / kept.CASE), "the case"), progress=progress)
+        tree = run(prepare_case(load_case(folder / stored_runs.CASE), "the case"), progress=progress)
         progress(0, 1, "writing")
         with suppress(InputError):  # nothing to listen to
-            listen(tree, folder / kept.SOUNDS)
-        save(tree, folder / kept.RESULT)
+            listen(tree, folder / stored_runs.SOUNDS)
+        save(tree, folder / stored_runs.RESULT)
 
 
 # --- lines of JSON

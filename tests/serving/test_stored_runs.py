@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
-from asperity.serving import kept
-from asperity.serving.apart import examined
-from asperity.serving.kept import TooLarge, keep_run, receive, told_of, uploaded
+from asperity.serving import stored_runs
+from asperity.serving.stored_runs import TooLarge, keep_run, receive, told_of, uploaded
+from asperity.serving.worker import examined
 
 
 async def pieces(*parts):
@@ -27,9 +27,9 @@ def test_a_file_is_kept_under_a_name_that_nobody_guesses(tmp_path):
     assert file.read_bytes() == b"one two"
     assert file.name == "beam.npy"
     assert uploaded(tmp_path) == [{"id": file.parent.name, "name": "beam.npy"}]
-    assert kept.surface_named(tmp_path, file.parent.name) == file
-    assert kept.identifier_of(tmp_path, str(file)) == file.parent.name
-    assert kept.identifier_of(tmp_path, "/etc/passwd") is None
+    assert stored_runs.surface_named(tmp_path, file.parent.name) == file
+    assert stored_runs.identifier_of(tmp_path, str(file)) == file.parent.name
+    assert stored_runs.identifier_of(tmp_path, "/etc/passwd") is None
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_what_is_not_taken_leaves_nothing(tmp_path, parts, announced, error, mes
 
 
 def test_all_surfaces_together_have_a_limit(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept, "LARGEST_TOTAL", 100)
+    monkeypatch.setattr(stored_runs, "LARGEST_TOTAL", 100)
     received(tmp_path, b"x" * 60)
     for announced in (50, None):
         with pytest.raises(TooLarge, match=r"allowed: 100 bytes of them\. Delete those that no run uses"):
@@ -61,7 +61,7 @@ def test_all_surfaces_together_have_a_limit(tmp_path, monkeypatch):
 @pytest.mark.parametrize("apart", [60.0, 0.005, 0.0], ids=["stalled", "slow", "fast"])
 def test_an_upload_is_waited_for_while_it_comes(tmp_path, monkeypatch, apart):
     """Neither one that sends nothing more, nor one that sends next to nothing for ever."""
-    monkeypatch.setattr(kept, "STALLED", 0.05)
+    monkeypatch.setattr(stored_runs, "STALLED", 0.05)
 
     async def slowly():
         for _ in range(40):
@@ -98,7 +98,7 @@ def test_an_upload_is_waited_for_while_it_comes(tmp_path, monkeypatch, apart):
     ],
 )
 def test_names_lead_nowhere_else(name, safe):
-    assert kept.safe_name(name) == safe
+    assert stored_runs.safe_name(name) == safe
 
 
 def test_a_map_is_described_and_what_it_lacks_is_asked_for(tmp_path):
@@ -129,15 +129,15 @@ def test_what_is_no_identifier_names_no_folder(tmp_path, identifier):
     """Nor does a link."""
     (tmp_path / ("0" * 16)).mkdir()
     (tmp_path / ("1" * 16)).symlink_to("/etc")
-    assert kept.folder_of(tmp_path, identifier) is None
-    assert kept.kept_in(tmp_path) == [kept.folder_of(tmp_path, "0" * 16)]
+    assert stored_runs.folder_of(tmp_path, identifier) is None
+    assert stored_runs.kept_in(tmp_path) == [stored_runs.folder_of(tmp_path, "0" * 16)]
 
 
 def test_a_run_tells_what_became_of_it(tmp_path):
     folder = tmp_path / keep_run(tmp_path, "kind = 'x'", kind="x", name="  my \x1b run ", changed="a 1")
     assert told_of(folder)["state"] == "interrupted"  # nobody knows
     assert told_of(folder)["name"] == "my \\x1b run"
-    kept.write_outcome(folder, "failed", "why")
+    stored_runs.write_outcome(folder, "failed", "why")
     assert (told_of(folder)["state"], told_of(folder)["message"]) == ("failed", "why")
     (folder / "run.nc").write_bytes(b"x")
     assert told_of(folder)["state"] == "done"
@@ -154,5 +154,5 @@ def test_only_results_of_a_run_are_handed_out(tmp_path, name):
     for file in ("run.json", "outcome.json", "run.nc"):
         (tmp_path / file).write_text("x")
     (tmp_path / "link.nc").symlink_to("run.nc")
-    assert kept.file_of_run(tmp_path, name) is None
-    assert kept.file_of_run(tmp_path, "run.nc") == tmp_path / "run.nc"
+    assert stored_runs.file_of_run(tmp_path, name) is None
+    assert stored_runs.file_of_run(tmp_path, "run.nc") == tmp_path / "run.nc"

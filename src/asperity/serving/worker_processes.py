@@ -17,11 +17,11 @@ from typing import Any
 from asperity.errors import InputError
 from asperity.files import discard
 from asperity.interrupts import no_interrupt_for_children
-from asperity.serving.kept import OUTCOME, RESULT, write_outcome
+from asperity.serving.stored_runs import OUTCOME, RESULT, write_outcome
 
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
-    "from asperity.serving.apart import {function}; {function}()"
+    "from asperity.serving.worker import {function}; {function}()"
 )
 LONGEST_ANSWER = 2**27  # bytes
 BACK = 2.0
@@ -38,8 +38,8 @@ class Refused(Exception):
         super().__init__("; ".join(errors))
 
 
-class Apart:
-    """A function of `apart` in a process of its own, which Ctrl-C does not reach."""
+class WorkerProcess:
+    """A function of `worker` in a process of its own, which Ctrl-C does not reach."""
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         assert process.stdin is not None
@@ -47,7 +47,7 @@ class Apart:
         self.process, self.stdin, self.stdout = process, process.stdin, process.stdout
 
     @classmethod
-    async def start(cls, function: str, *words: str) -> Apart:
+    async def start(cls, function: str, *words: str) -> WorkerProcess:
         """Start it."""
         code, pipe = _START.format(function=function), asyncio.subprocess.PIPE
         with no_interrupt_for_children():
@@ -72,24 +72,24 @@ class Apart:
 # --- questions
 
 
-class Desk:
+class Questions:
     """One process that answers questions, one after the other, each in so many seconds."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
-        self.apart: Apart | None = None
+        self.worker: WorkerProcess | None = None
         self._turn = asyncio.Lock()
 
     async def ask(self, question: str, **arguments: Any) -> dict[str, Any]:
-        """Ask a question of `apart`, and wait for the answer; `Refused` says why there is none."""
+        """Ask a question of `worker`, and wait for the answer; `Refused` says why there is none."""
         line = json.dumps({"question": question, **arguments}).encode() + b"\n"
         async with self._turn:
-            if self.apart is None or self.apart.process.returncode is not None:
-                self.apart = await Apart.start("answer_all")
+            if self.worker is None or self.worker.process.returncode is not None:
+                self.worker = await WorkerProcess.start("answer_all")
             try:
-                self.apart.stdin.write(line)
-                await self.apart.stdin.drain()
-                answer = await asyncio.wait_for(self.apart.stdout.readline(), self.seconds)
+                self.worker.stdin.write(line)
+                await self.worker.stdin.drain()
+                answer = await asyncio.wait_for(self.worker.stdout.readline(), self.seconds)
             except TimeoutError:
                 await self.end()
                 words = f"This takes more than {self.seconds:.0f} s. Run it with 'asperity run'."
@@ -109,9 +109,9 @@ class Desk:
 
     async def end(self) -> None:
         """End the process."""
-        if self.apart is not None:
-            await self.apart.end()
-            self.apart = None
+        if self.worker is not None:
+            await self.worker.end()
+            self.worker = None
 
 
 # --- runs
@@ -123,7 +123,7 @@ class Job:
 
     folder: Path
     task: asyncio.Task[None] | None = None
-    apart: Apart | None = None
+    worker: WorkerProcess | None = None
     message: str = ""
     done: int = 0
     total: int = 1
@@ -132,7 +132,7 @@ class Job:
 
     def told(self) -> dict[str, Any]:
         """How far it is."""
-        if self.apart is None:
+        if self.worker is None:
             return {"state": "waiting", "message": "waits for the run before it"}
         spent, rest = time.monotonic() - self.since, self.total - self.done
         known = self.done > self.first and rest > 0
@@ -143,12 +143,12 @@ class Job:
     async def roll(self) -> None:
         """Roll it, and keep what became of it."""
         discard(self.folder / OUTCOME)
-        self.apart, report = await Apart.start("roll_run", str(self.folder)), {}
-        while "state" not in report and (line := await self.apart.stdout.readline()):
+        self.worker, report = await WorkerProcess.start("roll_run", str(self.folder)), {}
+        while "state" not in report and (line := await self.worker.stdout.readline()):
             report = json.loads(line)
             if "state" not in report:
                 self.hear(**report)
-        code = await self.apart.process.wait()
+        code = await self.worker.process.wait()
         if not (self.folder / RESULT).is_file():
             words = f"Its process ended (code {code}). Is there enough memory?"
             write_outcome(self.folder, report.get("state", "failed"), report.get("message", words))
@@ -187,8 +187,8 @@ class Jobs:
             async with self._turn:
                 await job.roll()
         finally:
-            if job.apart is not None:
-                await job.apart.end()
+            if job.worker is not None:
+                await job.worker.end()
             self._jobs.pop(job.folder.name, None)
 
     async def cancel(self, identifier: str) -> None:
