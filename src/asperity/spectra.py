@@ -144,9 +144,10 @@ def chance_and_start(
 
     Of the force per height (p, f) at places and frequencies, of centres (b,), Hz, and of a record, s, that
     begins `settled`, s, after vibration did. The mean square of a force that begins at zero grows as the
-    integral of ``|g|²``: the share is what is still to come, as a mean over the record. The mean square over a
-    record T of a force with the correlation R(τ) has a relative variance of ``∫|R|²(1 − |τ|/T) dτ/(T R(0)²)``;
-    its inverse is the number of independent values, bandwidth times T for noise that is white in the band.
+    integral of ``|g|²``: the share is what is still to come, as a mean over the record. The mean square over
+    a record T of a force with the correlation R(τ) has a relative variance of
+    ``∫|R|²(1 − |τ|/T) dτ/(T R(0)²)``; its inverse is the number of independent values, bandwidth
+    times T for noise that is white in the band.
     """
     numbers, shares = np.empty((2, len(centres)))
     for band, centre in enumerate(centres):
