@@ -98,6 +98,7 @@ def test_a_study_needs_no_cache(small, tmp_path):
     assert len((folder / "runs" / "study" / "study.csv").read_text().splitlines()) == 4
 
 
+@pytest.mark.long
 def test_nothing_can_be_written_anywhere(tmp_path):
     """A read-only home, and no folder for temporary files: files stand where folders should."""
     folder = prepared(tmp_path, case=SMOOTH.replace("ball-on-beam", "wheel-on-rail"))

@@ -56,7 +56,9 @@ def study(folder, address):
 
 
 @posix
-@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP], ids=["dies", "hangs"])
+@pytest.mark.parametrize(
+    "end", [signal.SIGKILL, pytest.param(signal.SIGSTOP, marks=pytest.mark.long)], ids=["dies", "hangs"]
+)
 def test_a_scheduler_that_is_lost_half_way(served, tmp_path, end):
     scheduler, address = served
     with study(tmp_path, address) as running:

@@ -6,7 +6,9 @@ from drawn import assert_accessible, assert_readable, pages_of
 from asperity.case import PRESETS
 
 
-@pytest.fixture(params=list(PRESETS))
+@pytest.fixture(
+    params=[pytest.param(kind, marks=[pytest.mark.long] * (kind == "bodies")) for kind in PRESETS]
+)
 def address(request, reports):
     """A report of each kind."""
     return (reports[request.param] / "report.html").as_uri()

@@ -43,7 +43,7 @@ def prepared_of(case=CASE, spacing="10 um", **keys):
 
 @IGNORED
 @pytest.mark.usefixtures("own_cache")
-@pytest.mark.parametrize("spacing", ["10 um", "6 um"])
+@pytest.mark.parametrize("spacing", ["10 um", pytest.param("6 um", marks=pytest.mark.long)])
 def test_sizes_and_states_are_those_of_the_run(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
     prepared = prepared_of(spacing=spacing, duration="2 ms")

@@ -15,7 +15,9 @@ from asperity.cli import main
 
 
 @pytest.mark.usefixtures("cache_of_module")  # the ball's scans are those of the bodies
-@pytest.mark.parametrize("kind", PRESETS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.long] * (kind == "bodies")) for kind in PRESETS]
+)
 def test_what_new_prints_runs_with_all_checks_in_range(kind):
     tree = asperity.run(parse_case(template(kind)))
     assert [w for w in json.loads(tree.attrs["warnings"]) if w["grade"] != "note"] == []

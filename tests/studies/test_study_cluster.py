@@ -33,6 +33,7 @@ def workers_of(scheduler):
         return set(client.run(os.getpid).values())
 
 
+@pytest.mark.long
 def test_a_study_survives_a_killed_worker(scheduler, monkeypatch):
     """Members share the scan of the path, whichever worker solves a block, and have the digits of here."""
     Path("rough.toml").write_text(ROUGH.replace("20 ms", "8 ms"))
