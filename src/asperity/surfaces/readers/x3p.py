@@ -64,6 +64,7 @@ class _Record:
     source: str
 
     def surfaces(self) -> list[guards.Surface]:
+        """All maps or profiles of the record, one for each layer, in m."""
         axes = [self._axis(name) for name in ("CX", "CY", "CZ")]
         self._check_rotation()
         shape = layers, _, columns = self._shape()
