@@ -156,7 +156,7 @@ def test_the_contact_resonance_is_that_of_a_mass_on_springs_in_series():
     h, mass, stiffness, soft = 1e-5, 0.5, np.array([2e7]), 3e-8
     found = steps.contact_resonance(stiffness, h**2 / (6 * mass) + soft, soft - h**2 / (12 * mass), h)
     expected = np.sqrt(1.0 / (1.0 / stiffness + soft) / mass) / (2 * np.pi)
-    np.testing.assert_allclose(found, expected, rtol=1e-4)
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
 def test_modes_too_fast_for_the_step_answer_statically():
