@@ -12,7 +12,7 @@ from ledger import Check
 from asperity.reference.materials import contact_modulus, material
 from asperity.structures.beam import Beam, Support, SupportedBeam
 from asperity.structures.body import Ball, carriage, chain
-from asperity.structures.track import Relaxation
+from asperity.structures.support import Relaxation
 from asperity.structures.wheel import Wheel
 
 STEEL = material("steel")

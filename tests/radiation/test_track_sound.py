@@ -21,7 +21,7 @@ TOP = SleeperTop(length=2.6, width=0.25)
 
 
 def sleeper_per_rail(track, omega):
-    pad, ballast = (each.stiffness(omega) for each in (track.support.pad, track.support.ballast))
+    pad, ballast = (each.stiffness(omega) for each in track.support.elements[::2])
     return pad / (pad + ballast - track.sleeper_mass * omega**2)
 
 

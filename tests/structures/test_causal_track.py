@@ -115,8 +115,8 @@ def test_what_is_causal_stays_as_it_is_and_what_is_not_keeps_its_nominal_track()
     assert causal_track(causal) is causal
     assert causal.nominal == NORDBORG
     omega = 2.0 * np.pi * np.array([10.0, 100.0, 1000.0])
-    np.testing.assert_allclose(NORDBORG.support.pad.stiffness(omega), 300e6 * (1.0 + 0.15j))
-    np.testing.assert_allclose(NORDBORG.support.ballast.stiffness(omega), 150e6 * (1.0 + 0.4j))
+    np.testing.assert_allclose(NORDBORG.support.elements[0].stiffness(omega), 300e6 * (1.0 + 0.15j))
+    np.testing.assert_allclose(NORDBORG.support.elements[-1].stiffness(omega), 150e6 * (1.0 + 0.4j))
 
 
 def test_a_fit_is_kept_whatever_the_name_of_the_track(tmp_path, monkeypatch):

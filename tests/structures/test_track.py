@@ -11,13 +11,12 @@ from scipy.linalg import toeplitz
 from asperity import Track
 from asperity.errors import InputError
 from asperity.reference.tracks import TRACKS
+from asperity.structures.support import Relaxation, relaxing
 from asperity.structures.track import (
     EN_15461_BAYS,
-    Relaxation,
     decay_rate,
     decay_rate_en15461,
     decay_rate_of_responses,
-    relaxing,
 )
 
 BENDING, MASS, SPACING = 4.725e6, 60.0, 0.6

@@ -131,7 +131,7 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
     bay = _Bay(track, frequency)
     above = bay.waves.outgoing(0.0)
     total = bay.over_bays(above[:, None] * above.conj()[None, :])
-    return 2.0 * np.abs(track.support.sleeper_motion(bay.omega)) ** 2 * bay.mean(total, force)
+    return 2.0 * track.support.sleeper_square(bay.omega) * bay.mean(total, force)
 
 
 def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:

@@ -2,7 +2,7 @@
 
 No material has one stiffness and one loss factor at all frequencies: by Kramers and Kronig a loss factor η
 lets the stiffness grow, by 2η/π per neper of frequency. The stiffnesses of the causal track relax
-(`asperity.structures.track`), such that the contact force of a wheel is as nearly as possible that on
+(`asperity.structures.support`), such that the contact force of a wheel is as nearly as possible that on
 the track with constant loss factors, in each one-third octave.
 """
 
@@ -18,7 +18,8 @@ from scipy.linalg import block_diag
 from asperity.arguments import Array, Complex
 from asperity.spectra import third_octave_bands
 from asperity.store import Cache, content_key, made
-from asperity.structures.track import Relaxation, Relaxations, Track, relaxing
+from asperity.structures.support import Relaxation, relaxing
+from asperity.structures.track import Relaxations, Track
 
 LOWEST, HIGHEST = 5.0, 5000.0
 """One-third octaves over which the contact force is fitted, Hz."""

@@ -13,24 +13,8 @@ from asperity.errors import InputError
 from asperity.parameters import Number, Quantity, keys_of, parameter
 from asperity.reference.tracks import named_track
 from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
-
-
-@dataclass(frozen=True)
-class Relaxation:
-    """Stiffness relative to a nominal one: a spring beside Maxwell elements (springs in line with dampers).
-
-    K(ω)/k = static + Σ_j strength_j iω/(iω + 2π f_j). It is analytic in the lower half-plane, hence causal,
-    and Im K >= 0 at all ω > 0, hence passive.
-    """
-
-    static: float  # of the spring, zero or more: the stiffness at rest
-    # of the Maxwell elements, zero or more: what each adds well above its frequency
-    strengths: tuple[float, ...]
-    frequencies: tuple[float, ...]  # at which they dissipate most, Hz
-
-    def at(self, omega: ArrayLike) -> Complex:
-        """Stiffness relative to the nominal one at angular frequencies, rad/s, with Im ω <= 0."""
-        return relaxing(omega, self.frequencies) @ np.array([self.static, *self.strengths])
+from asperity.structures.rail import Rail
+from asperity.structures.support import Chain, ConstantLoss, Relaxation, RigidMass, Spring
 
 
 @dataclass(frozen=True)
@@ -40,137 +24,6 @@ class Relaxations:
     rail: Relaxation | None = None  # of its bending (and shear) stiffness
     pad: Relaxation | None = None
     ballast: Relaxation | None = None
-
-
-def relaxing(omega: ArrayLike, frequencies: ArrayLike) -> Complex:
-    """Stiffnesses (..., 1 + j) of a spring, 1, and of Maxwell elements of unit strength, iω/(iω + 2π f_j).
-
-    Angular frequency (...), rad/s; frequencies f_j (j,), Hz.
-    """
-    rate = 1j * np.asarray(omega, dtype=complex)[..., None]
-    elements = rate / (rate + 2.0 * np.pi * np.asarray(frequencies, dtype=float))
-    return np.concatenate([np.ones_like(rate), elements], axis=-1)
-
-
-@dataclass(frozen=True)
-class ConstantLoss:
-    """Stiffness relative to a nominal one, 1 + iη, with one loss factor at all frequencies: not causal."""
-
-    factor: float | None
-    static = 1.0
-
-    def at(self, omega: ArrayLike) -> Complex:
-        """Stiffness relative to the nominal one."""
-        return np.asarray(1.0 + 1j * (self.factor or 0.0))
-
-
-@dataclass(frozen=True)
-class Spring:
-    """A stiffness over frequency: with losses of its own, and a viscous damper beside it."""
-
-    nominal: float  # N/m
-    losses: ConstantLoss | Relaxation
-    damping: float  # N s/m
-
-    def stiffness(self, omega: ArrayLike) -> Complex:
-        """Dynamic stiffness, N/m, at angular frequencies, rad/s, as of `SleeperSupport`."""
-        rate = 1j * np.asarray(omega, dtype=complex)
-        return self.nominal * self.losses.at(omega) + rate * self.damping
-
-    @property
-    def static(self) -> float:
-        """Stiffness at rest, N/m."""
-        return self.nominal * self.losses.static
-
-
-@dataclass(frozen=True)
-class Rail:
-    """A rail without supports: Euler-Bernoulli, or with shear stiffness and rotary inertia Timoshenko."""
-
-    bending_stiffness: float  # E I, N m²
-    mass_per_length: float  # m', kg/m
-    losses: ConstantLoss | Relaxation  # of both stiffnesses
-    shear_stiffness: float | None = None  # S = G A κ, N
-    rotary_inertia: float | None = None  # ρ I, kg m
-
-    def waves(self, omega: Complex) -> tuple[Complex, Complex]:
-        """Receptance of a free infinite rail as a sum of two waves, G_0(x) = sum_i A_i exp(-i k_i |x|).
-
-        Wavenumbers k_i, rad/m, Im k_i <= 0, and amplitudes A_i, m/N, both (2, f), at angular frequencies
-        (f,), rad/s, with positive real part or in the lower half-plane.
-
-        Residues of the wavenumber spectrum (1 + (EI k^2 - rho I omega^2)/S)/(EI (k^2 - k_1^2)(k^2 - k_2^2))
-        at the roots of EI k^4 - omega^2 (rho I + m' EI/S) k^2 - m' omega^2 (1 - rho I omega^2/S) = 0.
-        """
-        relative, mass = self.losses.at(omega), self.mass_per_length
-        bending = self.bending_stiffness * relative
-        if self.shear_stiffness is None or self.rotary_inertia is None:
-            k = np.sqrt(omega) * (mass / bending) ** 0.25
-            scale = 1.0 / (4.0 * bending * k**3)
-            return np.stack([k, -1j * k]), np.stack([-1j * scale, -scale])
-        shear, inertia = self.shear_stiffness * relative, self.rotary_inertia
-        difference = inertia - mass * bending / shear
-        root = omega * np.sqrt(omega**2 * difference**2 + 4.0 * bending * mass)
-        first = omega**2 * (inertia + mass * bending / shear) + root
-        product = -mass * omega**2 * (1.0 - inertia * omega**2 / shear)  # of the roots, times EI
-        squares = np.stack([first / (2.0 * bending), 2.0 * product / first])
-        k = np.sqrt(squares)
-        k = np.where(k.imag > 0.0, -k, k)
-        rotation = (bending * squares + shear - inertia * omega**2) / shear
-        return k, -1j * rotation / (2.0 * k * bending * (squares - squares[::-1]))
-
-    def pinned_frequency(self, length: float) -> float:
-        """Lowest natural frequency, Hz, if it is simply supported at equal distances, m, without losses.
-
-        The frequency at which k = pi/length solves the dispersion relation.
-        """
-        k, bending, mass = np.pi / length, self.bending_stiffness, self.mass_per_length
-        if self.shear_stiffness is None or self.rotary_inertia is None:
-            return float(k**2 * np.sqrt(bending / mass) / (2.0 * np.pi))
-        shear, inertia = self.shear_stiffness, self.rotary_inertia
-        middle = mass + (inertia + mass * bending / shear) * k**2
-        root = np.sqrt(middle**2 - 4.0 * mass * inertia / shear * bending * k**4)
-        return float(np.sqrt(2.0 * bending * k**4 / (middle + root)) / (2.0 * np.pi))
-
-    @property
-    def static(self) -> tuple[float, float]:
-        """Bending stiffness at rest, N m², and shear compliance, 1/N."""
-        rest, shear = self.losses.static, self.shear_stiffness
-        return self.bending_stiffness * rest, 1.0 / (shear * rest) if shear else 0.0
-
-
-@dataclass(frozen=True)
-class SleeperSupport:
-    """Support of a rail: a pad on a rigid half sleeper on ballast."""
-
-    pad: Spring
-    sleeper_mass: float  # kg
-    ballast: Spring
-
-    def stiffness(self, omega: ArrayLike) -> Complex:
-        """Dynamic stiffness under the rail, N/m, at angular frequencies, rad/s.
-
-        K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2); omega has a positive real part or, if causal,
-        is in the lower half-plane.
-        """
-        pad, below = self._layers(omega)
-        return pad * below / (pad + below)
-
-    def sleeper_motion(self, omega: ArrayLike) -> Complex:
-        """Displacement of the sleeper per displacement of the rail above it, K_p/(K_p + K_b - m_s ω²)."""
-        pad, below = self._layers(omega)
-        return pad / (pad + below)
-
-    def _layers(self, omega: ArrayLike) -> tuple[Complex, Complex]:
-        """Of the pad, and of what is below it, N/m."""
-        mass = self.sleeper_mass * np.asarray(omega, dtype=complex) ** 2
-        return self.pad.stiffness(omega), self.ballast.stiffness(omega) - mass
-
-    @property
-    def static(self) -> float:
-        """Stiffness at rest, N/m."""
-        pad, ballast = self.pad.static, self.ballast.static
-        return pad * ballast / (pad + ballast)
 
 
 _VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
@@ -374,11 +227,11 @@ class Track:
         return Rail(self.bending_stiffness, self.mass_per_length, self._losses("rail"), *section)
 
     @property
-    def support(self) -> SleeperSupport:
+    def support(self) -> Chain:
         """What the rail lies on at each sleeper."""
         pad = Spring(self.pad_stiffness, self._losses("pad"), self.pad_damping or 0.0)
         ballast = Spring(self.ballast_stiffness, self._losses("ballast"), self.ballast_damping or 0.0)
-        return SleeperSupport(pad, self.sleeper_mass, ballast)
+        return Chain((pad, RigidMass(self.sleeper_mass), ballast))
 
     @property
     def is_causal(self) -> bool:
@@ -400,7 +253,7 @@ class Track:
         return bool(self._is_lossy or self.pad_damping or self.ballast_damping)
 
     def waves(self, omega: ArrayLike) -> PeriodicWaves:
-        """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `SleeperSupport`.
+        """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `Chain`.
 
         Without any damping the outgoing wave is that of a damping which vanishes. An `InputError` says if the
         frequency is so high that a wave decays by more than exp(-200) in one bay.

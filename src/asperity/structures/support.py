@@ -1,0 +1,263 @@
+"""What a rail lies on: elements below one another, each with a dynamic stiffness, down to rigid ground."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from asperity.arguments import Array, Complex
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """Stiffness relative to a nominal one: a spring beside Maxwell elements (springs in line with dampers).
+
+    K(ω)/k = static + Σ_j strength_j iω/(iω + 2π f_j). It is analytic in the lower half-plane, hence causal,
+    and Im K >= 0 at all ω > 0, hence passive.
+    """
+
+    static: float  # of the spring, zero or more: the stiffness at rest
+    # of the Maxwell elements, zero or more: what each adds well above its frequency
+    strengths: tuple[float, ...]
+    frequencies: tuple[float, ...]  # at which they dissipate most, Hz
+
+    def at(self, omega: ArrayLike) -> Complex:
+        """Stiffness relative to the nominal one at angular frequencies, rad/s, with Im ω <= 0."""
+        return relaxing(omega, self.frequencies) @ np.array([self.static, *self.strengths])
+
+
+def relaxing(omega: ArrayLike, frequencies: ArrayLike) -> Complex:
+    """Stiffnesses (..., 1 + j) of a spring, 1, and of Maxwell elements of unit strength, iω/(iω + 2π f_j).
+
+    Angular frequency (...), rad/s; frequencies f_j (j,), Hz.
+    """
+    rate = 1j * np.asarray(omega, dtype=complex)[..., None]
+    elements = rate / (rate + 2.0 * np.pi * np.asarray(frequencies, dtype=float))
+    return np.concatenate([np.ones_like(rate), elements], axis=-1)
+
+
+@dataclass(frozen=True)
+class ConstantLoss:
+    """Stiffness relative to a nominal one, 1 + iη, with one loss factor at all frequencies: not causal."""
+
+    factor: float | None
+    static = 1.0
+
+    def at(self, omega: ArrayLike) -> Complex:
+        """Stiffness relative to the nominal one."""
+        return np.asarray(1.0 + 1j * (self.factor or 0.0))
+
+
+class Element(Protocol):
+    """One of the things between rail and ground; `below` is the stiffness under it, None on rigid ground."""
+
+    def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
+        """Dynamic stiffness at its top, N/m, at angular frequencies, rad/s; None if it cannot move."""
+
+    def passed(self, omega: ArrayLike, below: Complex | None) -> Complex:
+        """Displacement of its lower end per displacement of its top."""
+
+    def spread(self, omega: ArrayLike, below: Complex | None) -> Array | float:
+        """Mean square displacement over its length per square of that at its top."""
+
+    def resting(self, below: float | None) -> float | None:
+        """Stiffness at its top at rest, N/m."""
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A stiffness over frequency: with losses of its own, and a viscous damper beside it."""
+
+    nominal: float  # N/m
+    losses: ConstantLoss | Relaxation
+    damping: float  # N s/m
+
+    def stiffness(self, omega: ArrayLike) -> Complex:
+        """Dynamic stiffness, N/m, at angular frequencies, rad/s, as of `Chain`."""
+        rate = 1j * np.asarray(omega, dtype=complex)
+        return self.nominal * self.losses.at(omega) + rate * self.damping
+
+    @property
+    def static(self) -> float:
+        """Stiffness at rest, N/m."""
+        return self.nominal * self.losses.static
+
+    def on(self, omega: ArrayLike, below: Complex | None) -> Complex:
+        """In line with what is below."""
+        own = self.stiffness(omega)
+        return own if below is None else own * below / (own + below)
+
+    def passed(self, omega: ArrayLike, below: Complex | None) -> Complex:
+        """As two springs in line share it."""
+        own = self.stiffness(omega)
+        return np.zeros_like(own) if below is None else own / (own + below)
+
+    def spread(self, omega: ArrayLike, below: Complex | None) -> float:
+        """All of it moves as its top."""
+        return 1.0
+
+    def resting(self, below: float | None) -> float:
+        """In line with what is below."""
+        own = self.static
+        return own if below is None else own * below / (own + below)
+
+
+@dataclass(frozen=True)
+class RigidMass:
+    """A mass that moves as a whole: a sleeper, a block, ballast."""
+
+    mass: float  # kg
+
+    def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
+        """Less its inertia."""
+        return None if below is None else below - self.mass * np.asarray(omega, dtype=complex) ** 2
+
+    def passed(self, omega: ArrayLike, below: Complex | None) -> Complex:
+        """All."""
+        return np.ones(np.shape(omega), complex)
+
+    def spread(self, omega: ArrayLike, below: Complex | None) -> float:
+        """All of it moves as its top."""
+        return 1.0
+
+    def resting(self, below: float | None) -> float | None:
+        """That of what is below."""
+        return below
+
+
+@dataclass(frozen=True)
+class BendingSleeper:
+    """Half of a free Euler-Bernoulli beam that lies, all along, on what is below; both rails press alike.
+
+    B w'''' + (s − μω²) w = F δ(x − a) and its mirror image, with mass μ and stiffness s below per length, and
+    seats a from the middle. Solved in closed form: the waves of the seats on an endless beam, and those that
+    the free ends throw back. Without shear and rotary inertia, which lower the higher natural frequencies.
+    """
+
+    mass: float  # of the half, kg
+    length: float  # of the whole sleeper, m
+    bending_stiffness: float  # B, N m²
+    seat_distance: float  # 2 a, m
+
+    def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
+        """Inverse of the receptance at the seat."""
+        return None if below is None else 1.0 / self._waves(omega, below).at(0.5 * self.seat_distance)
+
+    def passed(self, omega: ArrayLike, below: Complex | None) -> Complex:
+        """All, under the seat; elsewhere as `spread` says."""
+        return np.ones(np.shape(omega), complex)
+
+    def spread(self, omega: ArrayLike, below: Complex | None) -> Array | float:
+        """By Gauss's rule from the middle to the seat, and from there to the end."""
+        if below is None:
+            return 1.0
+        waves, seat, half = self._waves(omega, below), 0.5 * self.seat_distance, 0.5 * self.length
+        most = float(np.abs(waves.wavenumber).max(initial=0.0))
+        node, weight = np.polynomial.legendre.leggauss(8 + math.ceil(most * half))
+        total = np.zeros(np.shape(omega))
+        for begin, length in ((0.0, seat), (seat, half - seat)):
+            for at, share in zip(0.5 * (node + 1.0), 0.5 * weight, strict=True):
+                total += length * share * np.abs(waves.at(begin + length * at)) ** 2
+        return np.asarray(total / half / np.abs(waves.at(seat)) ** 2)
+
+    def resting(self, below: float | None) -> float | None:
+        """Inverse of the deflection of the seat under a force that stays."""
+        if below is None:
+            return None
+        at_rest = self._waves(np.zeros(()), np.asarray(complex(below)))
+        return float(1.0 / at_rest.at(0.5 * self.seat_distance).real)
+
+    def _waves(self, omega: ArrayLike, below: Complex) -> _SleeperWaves:
+        half = 0.5 * self.length
+        stiffness = (below - self.mass * np.asarray(omega, dtype=complex) ** 2) / half
+        return _SleeperWaves(stiffness, self.bending_stiffness, half, 0.5 * self.seat_distance)
+
+
+class _SleeperWaves:
+    """Displacement of a half beam under a unit force at its seat, and at the mirror image of that.
+
+    Stiffness per length less inertia, s − μω², N/m², in the upper half-plane: all exponentials decay. The
+    amplitudes of what the end throws back follow from w'' = w''' = 0 there.
+    """
+
+    def __init__(self, stiffness: Complex, bending: float, half: float, seat: float) -> None:
+        k = np.exp(-0.25j * np.pi) * (stiffness / bending) ** 0.25
+        self.wavenumber, self.half, self.seat = k, half, seat
+        self.scale = 1.0 / (4.0 * bending * k**3)
+        near, far = half - seat, half + seat
+        running, fading = (np.exp(-each * k * near) + np.exp(-each * k * far) for each in (1j, 1.0))
+        moment, shear = self.scale * (1j * running - fading), self.scale * (running + fading)
+        turn, fall = np.exp(-2j * k * half), np.exp(-2.0 * k * half)
+        both = 1j * (1.0 - turn) * (1.0 + fall) - (1.0 + turn) * (1.0 - fall)
+        self.running = ((1.0 + fall) * shear - (1.0 - fall) * moment) / both
+        self.fading = ((1.0 + turn) * shear - 1j * (1.0 - turn) * moment) / both
+
+    def at(self, x: float) -> Complex:
+        """Displacement at a distance from the middle, m/N."""
+        found = np.zeros_like(self.scale)
+        for distance in (abs(x - self.seat), x + self.seat):
+            running, fading = (np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
+            found = found - self.scale * (1j * running + fading)
+        for distance in (self.half - x, self.half + x):
+            running, fading = (np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
+            found = found + self.running * running + self.fading * fading
+        return found
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Support of a rail: elements from the rail down to rigid ground, first of them a spring.
+
+    Angular frequencies, rad/s, have a positive real part or, if all is causal, are in the lower half-plane.
+    """
+
+    elements: tuple[Element, ...]
+
+    def stiffness(self, omega: ArrayLike) -> Complex:
+        """Dynamic stiffness under the rail, N/m.
+
+        Of a pad on a rigid sleeper on ballast K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2).
+        """
+        below = None
+        for element in reversed(self.elements):
+            below = element.on(omega, below)
+        assert below is not None
+        return below
+
+    def squares(self, omega: ArrayLike) -> list[tuple[Array, Array]]:
+        """Mean squares of how each element moves, and of how much it is squeezed, per square of the rail's.
+
+        Two (f,) for each; over the length of a sleeper that bends, for itself and all that lies under it.
+        """
+        stiffnesses: list[Complex | None] = [None]
+        for element in reversed(self.elements[1:]):
+            stiffnesses.append(element.on(omega, stiffnesses[-1]))
+        moved, over, found = np.ones(np.shape(omega), complex), np.ones(np.shape(omega)), []
+        for element, below in zip(self.elements, reversed(stiffnesses), strict=True):
+            passed, over = moved * element.passed(omega, below), over * element.spread(omega, below)
+            found.append((over * np.abs(moved) ** 2, over * np.abs(moved - passed) ** 2))
+            moved = passed
+        return found
+
+    def sleeper_square(self, omega: ArrayLike) -> Array:
+        """Mean square displacement of the sleeper per square of the rail's above it; zero without one.
+
+        Of a pad on a rigid sleeper on ballast it is that of K_p/(K_p + K_b - m_s ω²).
+        """
+        for element, (square, _) in zip(self.elements, self.squares(omega), strict=True):
+            if not isinstance(element, Spring):
+                return square
+        return np.zeros(np.shape(omega))
+
+    @property
+    def static(self) -> float:
+        """Stiffness at rest, N/m."""
+        below = None
+        for element in reversed(self.elements):
+            below = element.resting(below)
+        assert below is not None
+        return below
