@@ -1,5 +1,7 @@
 """The exact receptance of a rail on periodic supports."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +29,15 @@ class PeriodicWaves:
     wavenumbers: Complex  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
     weights: Complex  # (2, 2, f), share of the free wave i in wave j, axes (i, j, f)
     spacing: float  # distance of the supports L, m
+    bays = 1  # after which the track repeats
+
+    def bay(self, number: int) -> PeriodicWaves:
+        """Itself, as every bay: `asperity.structures.cell_waves.CellWaves` has others."""
+        return self
+
+    def carried(self, first: int, last: int) -> Complex:
+        """Change of each wave (2, f) from one bay to another one, in either direction."""
+        return self.multipliers ** abs(last - first)
 
     def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= L, m: phi_lambda(x), scaled."""
@@ -91,13 +102,7 @@ def periodic_waves(
     of the residues at its roots.
     """
     phase = wavenumbers * spacing
-    if np.abs(phase.imag).max(initial=0.0) > _LARGEST_EXPONENT:
-        raise InputError(
-            "decay of a rail wave over one bay (neper)",
-            f"{np.abs(phase.imag).max():.4g}",
-            f"at most {_LARGEST_EXPONENT:g}",
-            "Lower the highest frequency, in a case numerics.highest_frequency.",
-        )
+    refuse_decay(phase.imag)
     sine, cosine = np.sin(phase), np.cos(phase)
     unit = 1j * amplitudes * sine  # a_i per support stiffness
     (c_1, c_2), (u_1, u_2) = cosine, unit
@@ -114,6 +119,17 @@ def periodic_waves(
     coefficients = -2.0 / (slope * (c - c[::-1]) * (multipliers - 1.0 / multipliers))
     weights = 1j * amplitudes[:, None] * (cosine[::-1, None] - c)
     return PeriodicWaves(multipliers, coefficients, wavenumbers, weights, spacing)
+
+
+def refuse_decay(exponent: Array) -> None:
+    """Refuse waves of a rail that decay by more than exp(-200) over a bay, of which exponents are given."""
+    if (largest := np.abs(exponent).max(initial=0.0)) > _LARGEST_EXPONENT:
+        raise InputError(
+            "decay of a rail wave over one bay (neper)",
+            f"{largest:.4g}",
+            f"at most {_LARGEST_EXPONENT:g}",
+            "Lower the highest frequency, in a case numerics.highest_frequency.",
+        )
 
 
 def static_receptance(stiffness: float, shear: float, support: float, spacing: float, x: float) -> float:

@@ -1,0 +1,285 @@
+"""The exact receptance of a rail on supports that repeat after a cell of many, none of them alike.
+
+The free rail carries two waves each way; a support is a point force that scatters them. All that is computed
+decays: what a stretch reflects and lets through (never what it would take to undo it), the reflection of
+half a track by doubling the cell, and from there waves that are carried from support to support.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from asperity.arguments import Array, Complex
+from asperity.structures.periodic_rail import refuse_decay
+
+_TRANSMITTED = 1e-9  # amplitude through half a track, from which on its end is not felt: squared it is 1e-18
+_DOUBLINGS = 64
+
+
+@dataclass(frozen=True, eq=False)
+class CellWaves:
+    """The two Floquet waves of a rail whose supports repeat after a cell, at each frequency.
+
+    It answers as `asperity.structures.periodic_rail.PeriodicWaves` for a stretch of the track, by default the
+    cell from its first support on: G(x|x0) = sum_j multipliers_j**p outgoing(xi)_j incoming(x0)_j. `bay` is
+    the same for one of equal parts of the cell; waves change their scale from support to support, so that
+    none leaves the range of doubles in a long cell.
+
+    Between two supports a wave is sum_i forth_i exp(-i k_i xi) + back_i exp(-i k_i (l - xi)), l the distance
+    of the supports.
+    """
+
+    wavenumbers: Complex  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
+    edges: Array  # (n + 1,), places of the supports, from zero, and the end of the cell, m
+    decaying: Complex  # (n, 2, 2, 2, f), waves that decay: axes (span, forth or back, i, wave, f)
+    growing: Complex  # (n, 2, 2, 2, f), waves that grow, m/N
+    steps: Complex  # (n, 2, f), change of scale from a span to the next
+    start: float  # of the stretch, m
+    spacing: float  # its length, m
+    bays: int = 1  # equal parts of the cell
+
+    @property
+    def coefficients(self) -> Complex:
+        """One (2, f): the growing waves hold them."""
+        return np.ones_like(self.wavenumbers)
+
+    @cached_property
+    def multipliers(self) -> Complex:
+        """Change of each wave over the stretch (2, f)."""
+        return self._carried(self._span(0.0)[0], self._span(self.spacing)[0])
+
+    def bay(self, number: int) -> CellWaves:
+        """One of the equal parts of the cell, counted from the first support; it goes on in the next cell."""
+        length = self.edges[-1] / self.bays
+        return replace(self, start=number % self.bays * length, spacing=length)
+
+    def carried(self, first: int, last: int) -> Complex:
+        """Change of each wave (2, f) from one of the equal parts to another one, in either direction."""
+        length = self.edges[-1] / self.bays
+        ends = sorted((first, last))
+        return self._carried(*(replace(self, start=end * length)._span(0.0)[0] for end in ends))
+
+    def outgoing(self, x: float) -> Complex:
+        """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= spacing, m."""
+        return self.symmetric_shapes(np.array([x]))[0][0]
+
+    def incoming(self, x: float) -> Complex:
+        """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= spacing, m, in m/N."""
+        return self.symmetric_shapes(np.array([x]))[1][0]
+
+    def symmetric_shapes(self, places: Array) -> tuple[Complex, Complex]:
+        """Shapes at any places (p,), m, two of (p, 2, f): of the decaying waves and of the growing ones."""
+        first, _ = self._span(0.0)
+        reach = self.start + float(np.max(places)) - self._edge(first)
+        refuse_decay(self.wavenumbers.imag * reach)
+        shapes: list[list[Complex]] = [[], []]
+        for x in places:
+            span, _ = at = self._span(float(x))
+            scale = self._carried(first, span)
+            shapes[0].append(scale * self._shape(self.decaying, *at))
+            shapes[1].append(self._shape(self.growing, *at) / scale)
+        return np.array(shapes[0]), np.array(shapes[1])
+
+    def shapes_at_nodes(self, count: int) -> tuple[Complex, Complex]:
+        """As `symmetric_shapes`, at the ends of so many equal parts of the stretch."""
+        return self.symmetric_shapes(np.linspace(0.0, self.spacing, count + 1))
+
+    def receptance(self, x: float, x0: float) -> Complex:
+        """Displacement at `x` per force at `x0`, (f,), m/N; positions from the first support, m."""
+        whole = replace(self, start=0.0)
+        first, last = whole._span(min(x, x0)), whole._span(max(x, x0))
+        waves = self._shape(self.decaying, *last) * self._shape(self.growing, *first)
+        return np.sum(waves * self._carried(first[0], last[0]), axis=0)
+
+    def _span(self, x: float) -> tuple[int, float]:
+        """Number of the span at a place of the stretch, counted on through the cells, and the place in it."""
+        cell, place = divmod(self.start + x, self.edges[-1])
+        inside = min(int(np.searchsorted(self.edges, place, side="right")) - 1, len(self.steps) - 1)
+        return int(cell) * len(self.steps) + inside, place - self.edges[inside]
+
+    def _edge(self, span: int) -> float:
+        cell, inside = divmod(span, len(self.steps))
+        return float(cell * self.edges[-1] + self.edges[inside])
+
+    def _carried(self, first: int, last: int) -> Complex:
+        """Change of each wave (2, f) from one span to a later one."""
+        cells, rest = divmod(last - first, len(self.steps))
+        around = np.prod(self.steps, axis=0) ** cells if cells else np.ones_like(self.steps[0])
+        for span in range(first, first + rest):
+            around = around * self.steps[span % len(self.steps)]
+        return around
+
+    def _shape(self, waves: Complex, span: int, place: float) -> Complex:
+        """Waves (2, f) at a place in a span, in its own scale."""
+        inside = span % len(self.steps)
+        ends = np.array([place, self.edges[inside + 1] - self.edges[inside] - place])
+        return np.einsum("eif,eijf->jf", np.exp(-1j * ends[:, None, None] * self.wavenumbers), waves[inside])
+
+
+def cell_waves(
+    wavenumbers: Complex, amplitudes: Complex, supports: Complex, lengths: Array, bays: int = 1
+) -> CellWaves:
+    """Floquet waves of a rail on n supports that repeat, from the receptance of the free rail.
+
+    As `asperity.structures.periodic_rail.periodic_waves`, which is the same for n = 1: wavenumbers k_i,
+    rad/m, and amplitudes A_i, m/N, of G_0(x) = sum_i A_i exp(-i k_i |x|), (2, f), and dynamic stiffnesses
+    (n, f), N/m, each followed by a distance to the next (n,), m. Frequencies have a positive real part or
+    lie in the lower half-plane. An `InputError` says if a free wave decays by more than exp(-200) from one
+    support to the next.
+
+    At a support a force F = -K w sends A_i F both ways. With the reflection Q of all that is behind it, b = Q
+    a, this makes a = (I - g A y^T) a' of the amplitudes a' before it, y^T = 1^T (I + Q), g = K/(1 + K y^T A),
+    and the reflection before it Q - g (I + Q) A y^T. Growing waves are those of the other half of the track
+    whose bilinear concomitant sum_i (a_i b'_i - b_i a'_i)/A_i with the decaying wave of their number is one,
+    and zero with the other.
+    """
+    refuse_decay(wavenumbers.imag * np.max(lengths))
+    decays = np.exp(-1j * wavenumbers * np.asarray(lengths)[:, None, None])  # (n, 2, f)
+    right = _half(amplitudes, supports, decays)
+    left = _half(amplitudes, supports[::-1], np.roll(decays, 1, axis=0)[::-1]).reflection[::-1]
+    forth, steps = _waves(amplitudes, supports, decays, right)
+    back = np.einsum("nijf,njlf->nilf", np.roll(right.reflection, -1, axis=0), decays[:, :, None] * forth)
+    unit = amplitudes[:, None]
+    paired = forth / unit - np.einsum("nlif,nljf->nijf", left, back * decays[:, :, None] / unit)  # (n, i, j)
+    dual = np.stack([_inverse(each.swapaxes(0, 1)) for each in paired])
+    grown = np.stack([np.einsum("nijf,njlf->nilf", left, dual), dual / decays[:, :, None]], axis=1)
+    edges = np.concatenate([[0.0], np.cumsum(lengths)])
+    decaying = np.stack([forth, back], axis=1)
+    return CellWaves(wavenumbers, edges, decaying, grown, steps, 0.0, float(edges[-1]), bays)
+
+
+class _Half(NamedTuple):
+    """Half a track, that looks forwards, before each of its supports."""
+
+    reflection: Complex  # (n, 2, 2, f), before each support
+    force: Complex  # (n, f), g
+    felt: Complex  # (n, 2, f), y
+
+
+def _half(amplitudes: Complex, supports: Complex, decays: Complex) -> _Half:
+    """Half a track, from supports (n, f) and how waves decay behind each (n, 2, f)."""
+    cell = _scattering(amplitudes, supports, decays)
+    for _ in range(_DOUBLINGS):
+        if np.abs(cell[1]).max(initial=0.0) < _TRANSMITTED:
+            break
+        cell = _joined(cell, cell)
+    reflection = cell[0]
+    found: list[tuple[Complex, Complex, Complex]] = []
+    for support, decay in zip(supports[::-1], decays[::-1], strict=True):
+        behind = decay[:, None] * reflection * decay
+        felt = 1.0 + behind.sum(axis=0)
+        force = support / (1.0 + support * np.sum(felt * amplitudes, axis=0))
+        sent = amplitudes + np.einsum("ijf,jf->if", behind, amplitudes)
+        reflection = behind - force * sent[:, None] * felt
+        found.append((reflection, force, felt))
+    return _Half(*(np.stack(each) for each in zip(*found[::-1], strict=True)))
+
+
+_Scattering = tuple[Complex, Complex, Complex, Complex]
+"""Of a stretch, (2, 2, f) each: reflected from the left, sent right, sent left, reflected from the right."""
+
+
+def _scattering(amplitudes: Complex, supports: Complex, decays: Complex) -> _Scattering:
+    """Scattering of a cell, each support followed by a span."""
+    one = np.eye(2)[:, :, None]
+    cell: _Scattering | None = None
+    for support, decay in zip(supports, decays, strict=True):
+        force = support / (1.0 + support * amplitudes.sum(axis=0))
+        turned = -force * amplitudes[:, None] * np.ones((1, 2, 1))
+        passed = one + turned
+        span = turned, decay[:, None] * passed, passed * decay, decay[:, None] * turned * decay
+        cell = span if cell is None else _joined(cell, span)
+    assert cell is not None
+    return cell
+
+
+def _joined(one: _Scattering, two: _Scattering) -> _Scattering:
+    """Scattering of two stretches in a row (Redheffer's star product)."""
+    (r1, t1, u1, v1), (r2, t2, u2, v2) = one, two
+    identity = np.eye(2)[:, :, None]
+    right = _times(_inverse(identity - _times(v1, r2)), t1)
+    left = _times(_inverse(identity - _times(r2, v1)), u2)
+    return (
+        r1 + _times(u1, _times(r2, right)),
+        _times(t2, right),
+        _times(u1, left),
+        v2 + _times(t2, _times(v1, left)),
+    )
+
+
+def _times(a: Complex, b: Complex) -> Complex:
+    return np.einsum("ijf,jkf->ikf", a, b)
+
+
+def _inverse(a: Complex) -> Complex:
+    """Inverse of (2, 2, f)."""
+    determinant = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
+    return np.array([[a[1, 1], -a[0, 1]], [-a[1, 0], a[0, 0]]]) / determinant
+
+
+def _waves(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half) -> tuple[Complex, Complex]:
+    """Amplitudes (n, i, wave, f) of the decaying waves behind each support, and their steps (n, wave, f).
+
+    The slower wave is carried forwards, the faster backwards: so rounding dies away.
+    """
+    count, one = len(supports), np.eye(2)[:, :, None]
+    behind = np.arange(1, count + 1) % count  # the support behind each span
+    outer = amplitudes[:, None] * right.felt[:, None]  # (n, 2, 2, f)
+    through = (one - right.force[:, None, None] * outer)[behind]
+    undone = (one + supports[:, None, None] * outer)[behind]
+
+    def forwards(span: int, waves: Complex) -> Complex:
+        return _times(through[span], decays[span][:, None] * waves)
+
+    def backwards(span: int, waves: Complex) -> Complex:
+        return decays[span][::-1, None] * _times(undone[span], waves)  # times the decay of both waves
+
+    there, return_ = one + 0j * decays[0], one + 0j * decays[0]
+    for span in range(count):
+        there = _normed(forwards(span, there))[0]
+        return_ = _normed(backwards(count - 1 - span, return_))[0]
+    slow = _range_without(there, _smaller_eigenvalue(there))
+    own = np.sum(slow.conj() * np.einsum("ijf,jf->if", return_, slow), axis=0)
+    fast = _range_without(return_, own)
+    found, steps = np.zeros((count, 2, 2, slow.shape[-1]), complex), np.zeros_like(decays)
+    found[0, :, 0], found[0, :, 1] = slow, fast
+    for span in range(count):
+        moved = forwards(span, found[span, :, :1])[:, 0]
+        if span + 1 < count:
+            moved, steps[span, 0] = _normed(moved)
+            found[span + 1, :, 0] = moved
+        else:
+            steps[span, 0] = np.sum(slow.conj() * moved, axis=0)
+    for span in range(count - 1, -1, -1):
+        moved = backwards(span, found[behind[span], :, 1:])[:, 0]
+        if span:
+            found[span, :, 1], change = _normed(moved)
+        else:
+            change = np.sum(fast.conj() * moved, axis=0)
+        steps[span, 1] = np.prod(decays[span], axis=0) / change
+    return found, steps
+
+
+def _normed(values: Complex) -> tuple[Complex, Complex]:
+    """Values (..., f) over their norm, and the norm (f,)."""
+    norm = np.sqrt(np.sum(np.abs(values) ** 2, axis=tuple(range(values.ndim - 1))))
+    return values / norm, norm.astype(complex)
+
+
+def _smaller_eigenvalue(a: Complex) -> Complex:
+    """Eigenvalue (f,) of (2, 2, f) of the smaller modulus."""
+    mean, product = 0.5 * (a[0, 0] + a[1, 1]), a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
+    root = np.sqrt((0.5 * (a[0, 0] - a[1, 1])) ** 2 + a[0, 1] * a[1, 0])
+    larger = mean + np.where(np.real(root * mean.conj()) < 0.0, -root, root)
+    return product / larger
+
+
+def _range_without(a: Complex, eigenvalue: Complex) -> Complex:
+    """Unit eigenvector (2, f) of (2, 2, f) for the other eigenvalue: the larger column of A - lambda I."""
+    columns = a - eigenvalue * np.eye(2)[:, :, None]
+    larger = np.sum(np.abs(columns) ** 2, axis=0).argmax(axis=0)
+    return _normed(np.take_along_axis(columns, larger[None, None], axis=1)[:, 0])[0]

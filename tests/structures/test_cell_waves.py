@@ -1,0 +1,104 @@
+"""Waves of a cell of many bays: against one bay, long direct sums, its mirror image and energy."""
+
+import numpy as np
+import pytest
+
+from asperity.errors import InputError
+from asperity.structures.cell_waves import CellWaves, cell_waves
+from asperity.structures.track import Track
+
+TIMOSHENKO = {"shear_stiffness": 243e6, "rotary_inertia": 0.24}
+PAIRS = [(0.0, 0.0), (0.3, 0.3), (0.1, 0.5), (0.6, 0.2), (13.3, 0.25), (0.31, -8.21), (59.9, 59.7)]
+
+
+def drawn(track: Track, omega: np.ndarray, count: int, seed: int = 1) -> CellWaves:
+    """Waves of a cell whose supports and distances are drawn."""
+    draw, support = np.random.default_rng(seed), track.support.stiffness(omega)
+    supports = support * draw.uniform(0.3, 2.0, (count, 1))
+    return cell_waves(*track.rail.waves(omega), supports, draw.uniform(0.5, 0.7, count), count)
+
+
+@pytest.mark.parametrize("section", [{}, TIMOSHENKO])
+@pytest.mark.parametrize("shift", [0.0, 33.0])
+@pytest.mark.parametrize("count", [1, 2, 7, 100])
+def test_equal_bays_answer_as_one(section: dict[str, float], shift: float, count: int) -> None:
+    track = Track.named("x2000", **section)
+    omega = np.concatenate([np.geomspace(30.0, 3e4, 40), np.linspace(4e4, 5e5, 10)]) - 1j * shift
+    one, support = track.waves(omega), track.support.stiffness(omega)
+    cell = cell_waves(*track.rail.waves(omega), np.array([support] * count), np.full(count, 0.6), count)
+    for x, x0 in PAIRS:
+        assert cell.receptance(x, x0) == pytest.approx(one.receptance(x, x0), rel=1e-9, abs=1e-200)
+    slowest = np.abs(one.multipliers).max(axis=0)
+    assert np.abs(cell.multipliers).max(axis=0) == pytest.approx(slowest**count, rel=1e-10)
+    assert np.abs(cell.bay(count - 1).multipliers).max(axis=0) == pytest.approx(slowest, rel=1e-10)
+
+
+def test_it_is_the_sum_over_very_many_supports() -> None:
+    track = Track.named("x2000", rail_loss_factor=0.05, **TIMOSHENKO)
+    omega, count, cells = 2.0 * np.pi * np.array([90.0, 700.0, 1100.0, 4000.0]), 3, 120
+    cell = drawn(track, omega.astype(complex), count)
+    (k, a), draw = track.rail.waves(omega.astype(complex)), np.random.default_rng(1)
+    supports = np.tile(track.support.stiffness(omega) * draw.uniform(0.3, 2.0, (count, 1)), (cells, 1))
+    lengths = np.tile(draw.uniform(0.5, 0.7, count), cells)
+    at = np.concatenate([[0.0], np.cumsum(lengths)])[:-1] - cells // 2 * lengths[:count].sum()
+    for n in range(omega.size):
+
+        def free(x: np.ndarray, n: int = n) -> np.ndarray:
+            return np.sum(a[:, n] * np.exp(-1j * k[:, n] * np.abs(x)[..., None]), axis=-1)
+
+        held = np.diag(1.0 / supports[:, n]) + free(at[:, None] - at)
+        for x, x0 in [(0.2, 0.2), (-1.0, 0.9), (2.5, 0.0)]:
+            found = free(np.array(x - x0)) - free(x - at) @ np.linalg.solve(held, free(at - x0))
+            assert cell.receptance(x, x0)[n] == pytest.approx(found, rel=1e-9)
+
+
+def test_the_mirror_image_answers_alike() -> None:
+    track, omega = Track.named("x2000", **TIMOSHENKO), np.geomspace(60.0, 2e5, 60).astype(complex)
+    draw, waves = np.random.default_rng(3), track.rail.waves(omega)
+    supports = track.support.stiffness(omega) * draw.uniform(0.3, 2.0, (5, 1))
+    lengths = draw.uniform(0.5, 0.7, 5)
+    cell = cell_waves(*waves, supports, lengths)
+    mirrored = cell_waves(*waves, np.roll(supports[::-1], 1, axis=0), lengths[::-1])
+    for x, x0 in [(0.2, 0.2), (1.4, 0.3), (-3.0, 4.4)]:
+        assert mirrored.receptance(-x, -x0) == pytest.approx(cell.receptance(x, x0), rel=1e-12, abs=1e-30)
+
+
+def test_a_stretch_of_it_answers_like_one_bay() -> None:
+    cell = drawn(Track.named("x2000"), np.geomspace(60.0, 2e5, 30) - 10j, 5)
+    length = cell.spacing / cell.bays
+    here, there = cell.bay(1), cell.bay(4)
+    for x, x0 in [(0.1, 0.2), (0.55, 0.0), (0.3, 0.59)]:
+        carried = cell.carried(1, 9)
+        seen = np.sum(there.outgoing(x) * carried * here.coefficients * here.incoming(x0), axis=0)
+        exact = cell.receptance(9 * length + x, length + x0)
+        assert seen == pytest.approx(exact, rel=1e-10, abs=1e-60)
+    nodes = np.linspace(0.0, length, 5)
+    for of_nodes, of_places in zip(here.shapes_at_nodes(4), here.symmetric_shapes(nodes), strict=True):
+        assert of_nodes == pytest.approx(of_places, rel=1e-12)
+    assert cell.carried(9, 1) == pytest.approx(
+        np.prod([cell.bay(n).multipliers for n in range(1, 9)], axis=0)
+    )
+
+
+def test_power_into_the_rail_is_what_its_supports_dissipate() -> None:
+    omega, count = 2.0 * np.pi * np.geomspace(60.0, 1500.0, 25), 4
+    track = Track.named("x2000", rail_loss_factor=0.0, **TIMOSHENKO)
+    draw, waves = np.random.default_rng(1), drawn(track, omega.astype(complex), count)
+    supports = track.support.stiffness(omega) * draw.uniform(0.3, 2.0, (count, 1))
+    force, cells = 0.37, 300
+    moved = np.array(
+        [
+            [waves.receptance(x + c * waves.spacing, force) for x in waves.edges[:-1]]
+            for c in range(-cells, cells)
+        ]
+    )
+    dissipated = np.sum(supports.imag * np.abs(moved) ** 2, axis=(0, 1))
+    assert dissipated == pytest.approx(-waves.receptance(force, force).imag, rel=1e-9)
+
+
+def test_waves_lost_between_two_supports_are_refused() -> None:
+    with pytest.raises(InputError, match="at most 200"):
+        drawn(Track.named("x2000"), np.array([1e9 + 0j]), 2)
+    cell = drawn(Track.named("x2000"), np.array([2e5 + 0j]), 30)
+    with pytest.raises(InputError, match="at most 200"):
+        cell.outgoing(cell.spacing)
