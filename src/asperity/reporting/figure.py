@@ -198,8 +198,9 @@ def columns_text(columns: Mapping[str, Numbers]) -> str:
 
     A missing number (NaN) is an empty field.
     """
-    numbers = (np.asarray(column, dtype=float).tolist() for column in columns.values())
-    return csv_text(list(columns), zip(*numbers, strict=True))
+    table = [np.asarray(column, dtype=float).tolist() for column in columns.values()]
+    fields = ([repr(number) if number == number else "" for number in column] for column in table)
+    return csv_text(list(columns), []) + "".join(f"{','.join(row)}\n" for row in zip(*fields, strict=True))
 
 
 def write_columns(columns: Mapping[str, Numbers], path: Path) -> Path:
