@@ -26,7 +26,7 @@ class Relaxations:
     ballast: Relaxation | None = None
 
 
-_VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
+VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
 _STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
 _LOSS = Number(at_least=0, at_most=5)
 _RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies between"
@@ -260,7 +260,7 @@ class Track:
         """
         omega = np.atleast_1d(np.asarray(omega, dtype=complex))
         if not self.is_damped:
-            omega = omega * (1.0 - _VANISHING_DAMPING * 1j)
+            omega = omega * (1.0 - VANISHING_DAMPING * 1j)
         return periodic_waves(*self.rail.waves(omega), self.support.stiffness(omega), self.sleeper_spacing)
 
     def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> Complex:

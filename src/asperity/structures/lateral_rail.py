@@ -1,0 +1,383 @@
+"""The rail sideways: lateral bending and torsion on periodic supports, solved exactly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from asperity.arguments import Array, Complex, finite_array, positive
+from asperity.errors import InputError
+from asperity.parameters import Quantity, keys_of, parameter
+from asperity.structures.periodic_rail import refuse_decay
+from asperity.structures.support import BendingSleeper, Element, RigidMass
+from asperity.structures.track import VANISHING_DAMPING, Track
+
+# UIC 60 as in the program rolland: E = 210 GPa, G = 80.769 GPa, A = 76.7 cm², I_z = 512.7 cm⁴, J = 221.2 cm⁴,
+# I_p = 3550 cm⁴, lateral κ = 0.538, centre of twist 33 mm below the centroid, foot 81 mm below it
+_YOUNG, _SHEAR, _AREA, _DENSITY = 210e9, 80.769e9, 76.7e-4, 60.2 / 76.7e-4
+THIRD = 1.0 / 3.0
+"""Lateral stiffness of a pad over its vertical one."""
+POLISHED = 2
+"""Steps of Newton's on the roots of the dispersion relation."""
+_RAILS = "rails lie between"
+_LENGTH = "1 mm to 1 m: rails lie between"
+
+
+@dataclass(frozen=True)
+class LateralRail:
+    """How a rail resists sideways, beside what a `Track` says of it: UIC 60 by default.
+
+    It bends by Timoshenko and twists by St Venant about its centre of twist, which moves centroid, head and
+    foot.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive.
+
+    Notes
+    -----
+    Its section keeps its form: that above about 1.5 kHz head and foot move against each other, as the web
+    bends (T. X. Wu and D. J. Thompson, J. Acoust. Soc. Am. 106 (1999) 1369), is left out, and so is
+    restrained warping.
+    """
+
+    bending_stiffness: float = parameter(
+        Quantity("N m^2", above=0),
+        "1.08 MN m^2",
+        "lateral bending stiffness of the rail",
+        f"100 N m^2 to 1 GN m^2: {_RAILS}",
+        default=_YOUNG * 5.127e-6,
+    )
+    shear_stiffness: float = parameter(
+        Quantity("N", above=0, infinite=True),
+        "333 MN",
+        'lateral shear stiffness of the rail, "inf" for Euler-Bernoulli',
+        f"1 kN to 1 TN: {_RAILS}",
+        default=_SHEAR * _AREA * 0.538,
+    )
+    rotary_inertia: float = parameter(
+        Quantity("kg m", at_least=0),
+        "0.04 kg m",
+        "rotary inertia of the rail per length in lateral bending",
+        f"1e-6 kg m to 1000 kg m: {_RAILS}",
+        default=_DENSITY * 5.127e-6,
+    )
+    torsional_stiffness: float = parameter(
+        Quantity("N m^2", above=0),
+        "179 kN m^2",
+        "torsional stiffness of the rail, G J",
+        f"10 N m^2 to 1 GN m^2: {_RAILS}",
+        default=_SHEAR * 2.212e-6,
+    )
+    polar_inertia: float = parameter(
+        Quantity("kg m", above=0),
+        "0.28 kg m",
+        "polar inertia of the rail per length about its centroid",
+        f"1e-6 kg m to 1000 kg m: {_RAILS}",
+        default=_DENSITY * 3.55e-5,
+    )
+    head_height: float = parameter(
+        Quantity("m", above=0),
+        "124 mm",
+        "height of the top of the rail above its centre of twist",
+        _LENGTH,
+        default=0.124,
+    )
+    foot_depth: float = parameter(
+        Quantity("m", at_least=0),
+        "48 mm",
+        "depth of the bottom of the rail below its centre of twist",
+        _LENGTH,
+        default=0.048,
+    )
+    centroid_height: float = parameter(
+        Quantity("m"),
+        "33 mm",
+        "height of the rail's centroid above its centre of twist",
+        "-1 m to 1 m: rails lie between",
+        default=0.033,
+    )
+
+    def __post_init__(self) -> None:
+        for name, key in keys_of(type(self), "").items():
+            try:
+                key.kind(getattr(self, name))
+            except InputError as error:
+                raise error.about(f"{name.replace('_', ' ')} of the rail sideways") from None
+
+    @property
+    def height(self) -> float:
+        """From the bottom of the foot to the top of the head, m."""
+        return self.head_height + self.foot_depth
+
+    @property
+    def head(self) -> Array:
+        """What moves the head sideways (2,): 1 by the motion of the centre of twist, m by twist."""
+        return np.array([1.0, self.head_height])
+
+    @property
+    def foot(self) -> Array:
+        """What moves the foot sideways (2,), as `head`."""
+        return np.array([1.0, -self.foot_depth])
+
+    def free_waves(self, omega: Complex, mass: float, losses: Complex) -> FreeWaves:
+        """Waves of the rail without supports at angular frequencies (f,), rad/s, as of `Track.waves`.
+
+        Mass per length, kg/m; stiffness relative to the nominal one, (f,) or a scalar.
+
+        With q = k², t = EI q − ρI ω² and p = 1 + t/S, the answer to a harmonic force and torque along the
+        rail is [[p (GJ q − I ω²), p m' e ω²], [p m' e ω², q t − p m' ω²]]/Δ(q), Δ the cubic (q t − p m' ω²)
+        (GJ q − I ω²) − p (m' e ω²)², I the polar inertia about the centre of twist and e the height of the
+        centroid above it. Each root is a wave, and its residue has one shape.
+        """
+        square, e = omega**2, self.centroid_height
+        bending, torsion = self.bending_stiffness * losses, self.torsional_stiffness * losses
+        soft = self.bending_stiffness / self.shear_stiffness  # EI/S, m²: both lose alike
+        turning, rotary = (self.polar_inertia + mass * e**2) * square, self.rotary_inertia * square
+        moved, coupled = mass * square, mass * e * square
+        rest = 1.0 - rotary * soft / bending  # p = rest + soft q
+        along = -(rotary + moved * soft)  # q t − p m' ω² = bending q² + along q − moved rest
+        cubic = np.broadcast_arrays(
+            torsion * bending,
+            torsion * along - turning * bending,
+            -torsion * moved * rest - turning * along - coupled**2 * soft,
+            rest * (turning * moved - coupled**2),
+        )
+        q, slope = _roots(np.stack(cubic))
+        shear = rest + soft * q
+        lateral, cross = shear * (torsion * q - turning), shear * coupled
+        twist = q * (bending * q + along) - moved * rest
+        bends = np.abs(lateral * turning) >= np.abs(twist * moved)
+        larger = np.where(bends, lateral, twist)
+        one, ratio = np.ones_like(q), cross / larger
+        k = np.sqrt(q)
+        k = np.where(k.imag > 0.0, -k, k)
+        shapes = np.stack([np.where(bends, one, ratio), np.where(bends, ratio, one)])
+        return FreeWaves(k, shapes, -0.5j * larger / (k * slope))
+
+
+@dataclass(frozen=True, eq=False)
+class FreeWaves:
+    """Receptance of a free infinite rail, sum over i of amplitude_i shape_i shape_iᵀ exp(−i k_i |x|)."""
+
+    wavenumbers: Complex  # (3, f), k_i, rad/m, Im k_i <= 0
+    shapes: Complex  # (2, 3, f), motion of the centre of twist, and twist, rad/m: one of both is 1
+    amplitudes: Complex  # (3, f), m/N where the first is 1, else rad/(N m)
+
+
+def _roots(cubic: Complex) -> tuple[Complex, Complex]:
+    """Roots (3, f) of cubics (4, f), of the third degree first, and the slopes there."""
+    companion = np.zeros((cubic.shape[1], 3, 3), dtype=complex)
+    companion[:, 0] = -(cubic[1:] / cubic[0]).T
+    companion[:, 1, 0] = companion[:, 2, 1] = 1.0
+    root = np.asarray(np.linalg.eigvals(companion).T, dtype=complex)
+    for _ in range(POLISHED):
+        root = root - np.polyval(cubic[:, None], root) / np.polyval(_derived(cubic), root)
+    return root, np.asarray(np.polyval(_derived(cubic), root), dtype=complex)
+
+
+def _derived(cubic: Complex) -> Complex:
+    return (cubic[:3] * np.array([3.0, 2.0, 1.0])[:, None])[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class LateralWaves:
+    """The three Floquet waves of a rail that bends sideways and twists on equal supports, L apart.
+
+    Motion is that of the centre of twist, m, and twist, rad; forces on them are N and N m. With
+    0 <= x0 <= L and x = p L + xi >= x0, the motion at x per force at x0 is sum_j coefficients_j
+    multipliers_j**p outgoing(xi)_j incoming(x0)_jᵀ.
+    """
+
+    multipliers: Complex  # (3, f), the change of wave j over one bay, |λ_j| < 1
+    coefficients: Complex  # (3, f)
+    wavenumbers: Complex  # (3, f), k_i of the free rail, rad/m
+    weights: Complex  # (2, 3, 3, f), motion by the free wave i in wave j, axes (motion, i, j, f)
+    spacing: float  # L, m
+
+    def outgoing(self, x: float) -> Complex:
+        """Shapes (2, 3, f) of the waves that decay towards growing x, 0 <= x <= L, m."""
+        return self._of(self.spacing - x) + self.multipliers * self._of(x)
+
+    def incoming(self, x: float) -> Complex:
+        """Shapes (2, 3, f) of the waves that grow towards growing x, 0 <= x <= L, m."""
+        return self._of(self.spacing - x) + self._of(x) / self.multipliers
+
+    def _of(self, x: float) -> Complex:
+        return np.asarray(np.einsum("aijf,if->ajf", self.weights, np.sin(self.wavenumbers * x)))
+
+    def receptance(self, x: float, x0: float) -> Complex:
+        """Motion at `x` per force at `x0`, (2, 2, f); positions from any support, m."""
+        first, last = min(x, x0), max(x, x0)
+        start, end = np.floor(first / self.spacing), np.floor(last / self.spacing)
+        to = self.outgoing(last - end * self.spacing) * self.coefficients * self.multipliers ** (end - start)
+        found = np.einsum("ajf,bjf->abf", to, self.incoming(first - start * self.spacing))
+        return np.asarray(found if x >= x0 else found.swapaxes(0, 1))
+
+
+def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralWaves:
+    """Floquet waves of a rail on supports of dynamic stiffness K (2, 2, f), spacing m apart.
+
+    An `InputError` says if a free wave decays by more than exp(−200) in one bay.
+
+    With the multiplier λ and c = (λ + 1/λ)/2 of a wave, the reactions r λ^n of the supports send out the
+    free waves i α_i a_i (a_iᵀ r)/(cos k_i L − c) [sin k_i(L − x) + λ sin k_i x], and answer their motion:
+    with z_i for the factor of a_i [ ], cos k_i L z_i + i α_i Σ_l a_iᵀ K a_l sin k_l L z_l = c z_i, an
+    eigenvalue problem of three. The superposition of all supports is the sum of the residues at its roots,
+    −2/((λ − 1/λ) Σ_i z_i² sin k_i L/(i α_i)), as in `asperity.structures.periodic_rail` for one motion.
+    """
+    phase, amplitude = free.wavenumbers * spacing, 1j * free.amplitudes
+    refuse_decay(phase.imag)
+    sine, shapes = np.sin(phase), free.shapes
+    matrix = np.einsum("if,aif,abf,blf,lf->fil", amplitude, shapes, support, shapes, sine, optimize=True)
+    matrix += np.einsum("if,il->fil", np.cos(phase), np.eye(3))
+    c, z = np.linalg.eig(matrix)
+    c, z = c.T, np.moveaxis(z, 0, -1)  # (j, f), (i, j, f)
+    root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
+    multipliers = 1.0 / np.where(np.real(root * np.conj(c)) < 0.0, c - root, c + root)
+    square = np.sum(z**2 * (sine / amplitude)[:, None], axis=0)
+    coefficients = -2.0 / ((multipliers - 1.0 / multipliers) * square)
+    return LateralWaves(multipliers, coefficients, free.wavenumbers, shapes[:, :, None] * z, spacing)
+
+
+@dataclass(frozen=True)
+class LateralTrack:
+    """A `Track` sideways: its rail on pads and half sleepers that move sideways in the ballast.
+
+    Parameters
+    ----------
+    track : Track
+        Its mass per length, losses, sleepers and spacing hold sideways, too.
+    rail : LateralRail
+    pad_stiffness, pad_roll_stiffness : float, optional
+        Of a pad, N/m sideways, and N m against roll of the rail; by default a third of the vertical one, as
+        in an example of the program rolland (40 beside 120 MN/m), and k_p b²/12 of an even pad as wide as
+        the foot.
+    ballast_stiffness : float, optional
+        Of the ballast under half a sleeper, N/m; by default the vertical one, as in the same example.
+    foot_width : float
+        b, m.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive.
+
+    Notes
+    -----
+    Pads and ballast lose as they do vertically, by the same share at every frequency. Sleepers move sideways
+    as rigid bodies and do not roll.
+
+    Examples
+    --------
+    >>> from asperity import Track
+    >>> from asperity.structures.lateral_rail import LateralTrack
+    >>> head = LateralTrack(Track.named("uic60")).receptance([100.0, 1000.0], 0.3, 0.3)
+    >>> bool(abs(head[0]) > abs(head[1]))
+    True
+    """
+
+    track: Track
+    rail: LateralRail = LateralRail()
+    pad_stiffness: float | None = None
+    pad_roll_stiffness: float | None = None
+    ballast_stiffness: float | None = None
+    foot_width: float = 0.15
+
+    def __post_init__(self) -> None:
+        positive("width of the rail's foot (m)", self.foot_width)
+        for name, unit in (
+            ("pad_stiffness", "N/m"),
+            ("pad_roll_stiffness", "N m"),
+            ("ballast_stiffness", "N/m"),
+        ):
+            if (value := getattr(self, name)) is not None:
+                positive(f"lateral {name.replace('_', ' ')} ({unit})", value)
+
+    def support(self, omega: ArrayLike) -> Complex:
+        """Dynamic stiffness of a support (2, 2, f) at angular frequencies (f,), rad/s, as of `Track.waves`.
+
+        That of the chain of springs and masses below, on the foot, and the pad's stiffness against roll.
+        """
+        vertical, even = self.track, self.foot_width**2 / 12.0
+        pad, *others = vertical.support.elements
+        softer = _share(self.ballast_stiffness, vertical.ballast_stiffness, 1.0)
+        below: Complex | None = None
+        for element in reversed(others):
+            if isinstance(element, RigidMass | BendingSleeper):
+                below = RigidMass(element.mass).on(omega, below)
+            else:
+                below = _in_line(softer * _alone(element, omega), below)
+        own = _alone(pad, omega)
+        sideways = _in_line(own * _share(self.pad_stiffness, vertical.pad_stiffness, THIRD), below)
+        found = np.multiply.outer(np.outer(self.rail.foot, self.rail.foot), sideways)
+        found[1, 1] += own * _share(self.pad_roll_stiffness, vertical.pad_stiffness, even)
+        return np.asarray(found)
+
+    def waves(self, omega: ArrayLike) -> LateralWaves:
+        """The three waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
+        omega = np.atleast_1d(np.asarray(omega, dtype=complex))
+        if not self.track.is_damped:
+            omega = omega * (1.0 - VANISHING_DAMPING * 1j)
+        free = self.rail.free_waves(omega, self.track.mass_per_length, self.track.rail.losses.at(omega))
+        return lateral_waves(free, self.support(omega), self.track.sleeper_spacing)
+
+    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> Complex:
+        """Lateral displacement of the head at `x` per lateral force on the head at `x0`.
+
+        Parameters
+        ----------
+        frequency : array_like (f,)
+            Hz, positive. Time factor exp(+iωt).
+        x, x0 : float
+            m from a sleeper.
+
+        Returns
+        -------
+        ndarray (f,) of complex
+            m/N. Exact for the infinite track.
+        """
+        return self.at_contact(frequency, x, x0, 0.0)[1, 1]
+
+    def at_contact(self, frequency: ArrayLike, x: float, x0: float, place: float) -> Complex:
+        """Receptances of the head at a place across it, (2, 2, f), m/N, without vertical bending.
+
+        Displacement at `x`, vertical and lateral, per vertical and lateral force at `x0`, both at a `place` m
+        from the middle, positive towards the field side; downwards, and towards the field side. A vertical
+        force off the middle twists the rail.
+        """
+        motion = self.waves(_angular(frequency)).receptance(x, x0)
+        moved = contact_shapes(self.rail, place)
+        return np.asarray(np.einsum("ma,abf,nb->mnf", moved, motion, moved))
+
+    def decay_rate(self, frequency: ArrayLike) -> Array:
+        """Decay rate (f,), dB/m, of the wave that reaches farthest, −20 lg|λ|/L; frequencies (f,), Hz."""
+        largest = np.abs(self.waves(_angular(frequency)).multipliers).max(axis=0)
+        return np.asarray(-20.0 * np.log10(largest) / self.track.sleeper_spacing)
+
+
+def _alone(spring: Element, omega: ArrayLike) -> Complex:
+    own = spring.on(omega, None)
+    assert own is not None
+    return own
+
+
+def _share(stiffness: float | None, vertical: float, usual: float) -> float:
+    return usual if stiffness is None else stiffness / vertical
+
+
+def _in_line(own: Complex, below: Complex | None) -> Complex:
+    return own if below is None else own * below / (own + below)
+
+
+def contact_shapes(rail: LateralRail, place: float) -> Array:
+    """What moves the contact down and sideways (2, 2), by rows, as `LateralRail.head`; place m."""
+    return np.stack([[0.0, place], rail.head])
+
+
+def _angular(frequency: ArrayLike) -> Array:
+    at = finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0)
+    return 2.0 * np.pi * np.atleast_1d(at)

@@ -1,0 +1,196 @@
+"""The rail sideways: against superposed supports, the vertical rail, beams on elastic layers, and energy."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from asperity import Track
+from asperity.errors import InputError
+from asperity.structures.lateral_rail import LateralRail, LateralTrack
+
+UIC60 = Track.named("uic60")
+LOSSY = Track.named("nordborg-loss-factor", rail_loss_factor=0.1)
+RAIL = LateralRail()
+FREQUENCIES = np.array([40.0, 250.0, 700.0, 2000.0, 5000.0])
+EULER = LateralRail(shear_stiffness=math.inf, rotary_inertia=0.0)
+STRAIGHT = replace(RAIL, centroid_height=0.0, foot_depth=0.0)  # bends and twists by itself
+
+
+def free_receptance(track, omega, x):
+    """Of the rail without supports at distances (n,), (n, 2, 2, f)."""
+    free = track.rail.free_waves(omega, track.track.mass_per_length, track.track.rail.losses.at(omega))
+    run = np.exp(-1j * free.wavenumbers * np.abs(x)[:, None, None])
+    return np.einsum("if,aif,bif,nif->nabf", free.amplitudes, free.shapes, free.shapes, run)
+
+
+@pytest.mark.parametrize("place", [(0.1, 0.1), (0.35, 1.9), (1.5, 0.05)])
+def test_the_waves_are_the_superposition_of_many_supports(place):
+    """A linear system of the reactions of 121 supports; 12 dB/m and more outside the last of them."""
+    track, (x, x0), reach = LateralTrack(LOSSY), place, 60
+    omega, bay = 2.0 * np.pi * FREQUENCIES[1:] + 0j, LOSSY.sleeper_spacing
+    at = bay * np.arange(-reach, reach + 1)
+    stiffness = track.support(omega)
+    between = free_receptance(track, omega, (at[:, None] - at).ravel())
+    count, expected = len(at), np.empty((2, 2, len(omega)), complex)
+    sent, heard = (free_receptance(track, omega, at - each) for each in (x0, x))
+    for line in range(len(omega)):
+        answer = between[..., line].reshape(count, count, 2, 2) @ stiffness[..., line]
+        system = np.eye(2 * count) + answer.transpose(0, 2, 1, 3).reshape(2 * count, -1)
+        moved = np.linalg.solve(system, sent[..., line].reshape(-1, 2)).reshape(count, 2, 2)
+        reaction = stiffness[..., line] @ moved
+        direct = free_receptance(track, omega[[line]], np.array([x - x0]))[0, ..., 0]
+        expected[..., line] = direct - np.sum(heard[..., line] @ reaction, axis=0)
+    found = track.waves(omega).receptance(x, x0)
+    assert np.all(np.abs(found - expected).max(axis=(0, 1)) < 2e-6 * np.abs(expected).max(axis=(0, 1)))
+
+
+@pytest.mark.parametrize(("shear", "rotary"), [(math.inf, 0.0), (3e8, 0.04)], ids=["Euler", "Timoshenko"])
+def test_bending_alone_is_that_of_the_vertical_rail(shear, rotary):
+    rail = replace(STRAIGHT, shear_stiffness=shear, rotary_inertia=rotary)
+    sideways = LateralTrack(UIC60, rail, pad_stiffness=60e6, ballast_stiffness=50e6)
+    softer, below = 60e6 / UIC60.pad_stiffness, 50e6 / UIC60.ballast_stiffness
+    vertical = replace(
+        UIC60,
+        bending_stiffness=rail.bending_stiffness,
+        shear_stiffness=shear if rotary else None,
+        rotary_inertia=rotary or None,
+        pad_stiffness=60e6,
+        pad_damping=softer * UIC60.pad_damping,
+        ballast_stiffness=50e6,
+        ballast_damping=below * UIC60.ballast_damping,
+    )
+    for x, x0 in ((0.2, 0.2), (0.3, 1.3), (7.0, 0.1)):
+        motion = sideways.waves(2.0 * np.pi * FREQUENCIES).receptance(x, x0)
+        assert_allclose(motion[0, 0], vertical.receptance(FREQUENCIES, x, x0), rtol=1e-11)
+        assert_allclose(motion[0, 1], 0.0, atol=1e-30)
+
+
+def test_torsion_alone_is_that_of_a_bar_on_springs():
+    """cosh of the change over one bay, cos kL + K/(2 GJ k) sin kL; pinned where it is stiff."""
+    track = LateralTrack(UIC60, STRAIGHT, pad_roll_stiffness=4e5)
+    omega, bay = 2.0 * np.pi * FREQUENCIES, UIC60.sleeper_spacing
+    torsion = RAIL.torsional_stiffness * (1.0 + 1j * UIC60.rail_loss_factor)
+    k = omega * np.sqrt(RAIL.polar_inertia / torsion)
+    roll = 4e5 * (1.0 + 1j * omega * UIC60.pad_damping / UIC60.pad_stiffness)
+    expected = np.cos(k * bay) + roll / (2.0 * torsion * k) * np.sin(k * bay)
+    multipliers = track.waves(omega).multipliers
+    found = 0.5 * (multipliers + 1.0 / multipliers)
+    assert_allclose(np.abs(found / expected - 1.0).min(axis=0), 0.0, atol=1e-11)
+    stiff = LateralTrack(UIC60, STRAIGHT, pad_roll_stiffness=1e12)
+    pinned = math.sqrt(RAIL.torsional_stiffness / RAIL.polar_inertia) / (2.0 * bay)
+    low, high = (
+        abs(stiff.waves(2.0 * np.pi * f).receptance(0.3, 0.3)[1, 1, 0]) for f in (pinned, 0.9 * pinned)
+    )
+    assert low > 8.0 * high
+
+
+def test_decay_rates_are_those_of_a_beam_on_an_elastic_layer():
+    """Of a short bay: det(K(k) + K_s/L) = 0, by the polynomial of its dispersion relation."""
+    short = replace(LOSSY, sleeper_spacing=0.02, sleeper_mass=150.0 / 30.0, rail_loss_factor=0.02)
+    track = LateralTrack(short, pad_stiffness=100e6 / 30, pad_roll_stiffness=5e5 / 30, ballast_stiffness=1e7)
+    for f in (100.0, 400.0, 1500.0):
+        omega = 2.0 * np.pi * f
+        layer = track.support(np.array([omega]))[..., 0] / short.sleeper_spacing
+        loss, mass, e = 1.0 + 0.02j, short.mass_per_length, RAIL.centroid_height
+        shear, poly = RAIL.shear_stiffness * loss, np.polynomial.polynomial.Polynomial
+        turn = poly([shear - RAIL.rotary_inertia * omega**2, 0, RAIL.bending_stiffness * loss])  # of slopes
+        side = poly([layer[0, 0] - mass * omega**2, 0, shear])
+        twist = poly(
+            [layer[1, 1] - (RAIL.polar_inertia + mass * e**2) * omega**2, 0, RAIL.torsional_stiffness * loss]
+        )
+        cross = layer[0, 1] - mass * e * omega**2
+        dispersion = (side * turn - poly([0, 0, shear**2])) * twist - cross**2 * turn
+        least = np.abs(dispersion.roots().imag).min()
+        assert track.decay_rate(f)[0] == pytest.approx(8.685889638 * least, rel=2e-3)
+
+
+def test_power_sent_into_the_track_is_dissipated_in_rail_and_supports():
+    """Im(u* f) = Σ u* Im K u + η ∫ EI |v''|² + GJ |φ'|², Euler-Bernoulli, force at mid-span."""
+    rail = EULER
+    track, bay, reach, half = LateralTrack(LOSSY, rail), LOSSY.sleeper_spacing, 120, 0.3
+    omega, force = 2.0 * np.pi * np.array([120.0, 600.0, 1500.0]), rail.head
+    waves = track.waves(omega)
+
+    def answer(x):
+        return np.einsum("abf,b->af", waves.receptance(x, half), force)
+
+    sent = -np.imag(force @ answer(half))
+    at = np.array([answer(n * bay) for n in range(1, reach)])
+    supports = 2.0 * np.einsum("naf,abf,nbf->f", at.conj(), track.support(omega).imag, at).real
+    amplitude = waves.coefficients * np.einsum("ajf,a->jf", waves.incoming(half), force)
+    k, node, weight = waves.wavenumbers, *np.polynomial.legendre.leggauss(40)
+
+    def energy(begin, end, decay):
+        total = np.zeros(3)
+        for x, share in zip(0.5 * (begin + end) + 0.5 * (end - begin) * node, weight, strict=True):
+            bent = [-(k**2) * np.sin(k * z) for z in (bay - x, x)]
+            turned = [-k * np.cos(k * (bay - x)), k * np.cos(k * x)]
+            v, phi = (
+                np.einsum("ijf,if->jf", waves.weights[axis], far)
+                + waves.multipliers * np.einsum("ijf,if->jf", waves.weights[axis], near)
+                for axis, (far, near) in enumerate((bent, turned))
+            )
+            squares = [abs(np.sum(amplitude * decay * each, axis=0)) ** 2 for each in (v, phi)]
+            total += (
+                0.5
+                * (end - begin)
+                * share
+                * np.array([rail.bending_stiffness, rail.torsional_stiffness])
+                @ squares
+            )
+        return total
+
+    bays = [(half if n == 0 else 0.0, bay, waves.multipliers**n) for n in range(reach)]
+    bending = 2.0 * LOSSY.rail_loss_factor * sum(energy(*each) for each in bays)
+    assert_allclose(supports + bending, sent, rtol=1e-9)
+    assert np.all(bending > 1e-3 * sent)
+    assert np.all(supports > 1e-3 * sent)
+
+
+def test_answers_are_reciprocal():
+    track = LateralTrack(UIC60)
+    there = track.at_contact(FREQUENCIES, 0.17, 4.3, 0.01)
+    assert_allclose(there, track.at_contact(FREQUENCIES, 4.3, 0.17, 0.01).swapaxes(0, 1), rtol=1e-12)
+    assert_allclose(track.receptance(FREQUENCIES, 0.17, 4.3), there[1, 1], rtol=1e-13)
+
+
+def test_a_vertical_force_in_the_middle_does_not_move_the_rail_sideways():
+    found = LateralTrack(UIC60).at_contact(FREQUENCIES, 0.3, 0.3, 0.0)
+    assert np.all(found[0] == 0.0)
+    assert np.all(found[:, 0] == 0.0)
+    off = LateralTrack(UIC60).at_contact(FREQUENCIES, 0.3, 0.3, 0.01)
+    twist = LateralTrack(UIC60).waves(2.0 * np.pi * FREQUENCIES).receptance(0.3, 0.3)
+    assert_allclose(off[0, 0], 1e-4 * twist[1, 1], rtol=1e-12)
+    assert_allclose(off[1, 0], 0.01 * (twist[0, 1] + RAIL.head_height * twist[1, 1]), rtol=1e-12)
+
+
+def test_rigid_supports_hold_the_rail_and_softer_pads_let_its_head_move():
+    held = LateralTrack(UIC60, pad_stiffness=1e14, pad_roll_stiffness=1e14, ballast_stiffness=1e14)
+    assert np.abs(held.waves(2.0 * np.pi * FREQUENCIES).receptance(0.0, 0.0)).max() < 1e-12
+    soft, stiff = (
+        abs(LateralTrack(UIC60, pad_stiffness=each).receptance(10.0, 0.3, 0.3)[0]) for each in (5e7, 1e8)
+    )
+    assert soft > 1.02 * stiff
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: LateralRail(bending_stiffness=0.0), "bending stiffness of the rail sideways: received 0"),
+        (lambda: LateralRail(torsional_stiffness=math.nan), "torsional stiffness of the rail sideways"),
+        (lambda: LateralRail(rotary_inertia=-1.0), "rotary inertia of the rail sideways: received -1"),
+        (lambda: LateralTrack(UIC60, pad_stiffness=0.0), r"lateral pad stiffness \(N/m\): received 0"),
+        (lambda: LateralTrack(UIC60, foot_width=-0.1), "width of the rail's foot"),
+        (lambda: LateralTrack(UIC60).decay_rate(0.0), r"frequency \(Hz\): received 0.0; allowed: finite pos"),
+        (
+            lambda: LateralTrack(replace(UIC60, sleeper_spacing=30.0), EULER).decay_rate(9e3),
+            "decay of a rail wave over",
+        ),
+    ],
+)
+def test_bad_questions_are_refused(call, message):
+    with pytest.raises(InputError, match=message):
+        call()
