@@ -1,0 +1,219 @@
+"""Outline of the section of a solid of revolution: a closed polygon beside the axis, and a mesh inside it."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.arguments import Array, finite_array, require
+from asperity.errors import ComputationError, InputError
+
+MOST_POINTS = 2000
+FINENESS = 0.25
+"""Size of the triangles over the mean thickness of the section, twice its area over its circumference."""
+BLUNT = 0.01
+"""By which part of that size an outline may be straightened."""
+MOST_SPLITS = 12
+"""Times that edges of an outline are halved until triangles meet them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles of six nodes in the section of a solid of revolution."""
+
+    nodes: Array  # (k, 2), radius and axial place, m
+    triangles: NDArray[np.int64]  # (e, 6), corners, then the middles of the sides 01, 12 and 20
+    edges: NDArray[np.int64]  # (b, 3), of the outline, one behind the other: first, middle and last node
+
+
+def checked_outline(points: ArrayLike, what: str = "outline of the section") -> Array:
+    """Outline (n, 2), radius and axial place, m, as it is meshed: closed, counterclockwise, each point once.
+
+    Raises
+    ------
+    InputError
+        If it has too few points or too many, leaves the axis to the other side, crosses itself, or is as
+        large or small as no wheel is.
+    """
+    allowed = f"3 to {MOST_POINTS} points, radius and axial place"
+    given = finite_array(what, points, allowed, shape=(None, 2))
+    repeated = (given == np.roll(given, 1, axis=0)).all(axis=1)
+    outline = given[~repeated]
+    require(3 <= len(outline) <= MOST_POINTS, what, f"{len(outline)} different points", allowed)
+    least, largest = outline[:, 0].min(), np.abs(outline).max()
+    received, allowed = f"a radius of {least * 1e3:.4g} mm", "radii above 0, from the axis"
+    require(least > 0.0, what, received, allowed, "Columns are radius and axial place.")
+    received, allowed = f"a point {largest:.4g} m away", "wheels of 1 mm to 5 m"
+    require(1e-3 <= largest <= 5.0, what, received, allowed, "Is the unit of the coordinates right?")
+    if (crossing := _crossing(outline)) is not None:
+        first, second = (f"({r * 1e3:.4g} mm, {z * 1e3:.4g} mm)" for r, z in outline[list(crossing)])
+        received = f"edges from {first} and from {second} that touch"
+        raise InputError(what, received, "an outline that goes round once", "List its points in order.")
+    return outline if _doubled_area(outline) > 0.0 else outline[::-1]
+
+
+def _doubled_area(outline: Array) -> float:
+    (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
+    return float(np.sum(r * z2 - r2 * z))
+
+
+def volume_of(outline: Array) -> float:
+    """Volume of the solid of revolution in an outline, m³: 2π ∫ r dA (Pappus)."""
+    (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
+    return float(abs(np.sum((r + r2) * (r * z2 - r2 * z))) * np.pi / 3.0)
+
+
+def _crossing(outline: Array) -> tuple[int, int] | None:
+    """Numbers of the first two edges that meet, other than at the point between neighbours."""
+    count, to = len(outline), np.roll(outline, -1, axis=0)
+
+    def side(a: Array, b: Array, c: Array) -> Array:
+        """Side of the lines from a to b on which points c lie."""
+        along, away = b - a, c - a
+        area = along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
+        return np.sign(np.where(np.abs(area) < 1e-12 * np.abs(outline).max() ** 2, 0.0, area))
+
+    a, b = outline[:, None], to[:, None]
+    apart = side(a, b, outline) * side(a, b, to) > 0.0
+    low, high = np.minimum(outline, to), np.maximum(outline, to)
+    boxes = ((low[:, None] <= high) & (high[:, None] >= low)).all(axis=-1)
+    meet = boxes & ~(apart | apart.T)
+    number = np.arange(count)
+    meet[number, number] = False
+    for one, other in ((number, (number + 1) % count), ((number + 1) % count, number)):
+        meet[one, other] = False  # neighbours share a point
+    doubled = np.sum((to - outline) * (np.roll(to, -1, axis=0) - to), axis=1)
+    back = (side(outline, to, np.roll(to, -1, axis=0)) == 0.0) & (doubled < 0.0)
+    found = np.argwhere(meet)
+    if back.any():
+        return int(np.argmax(back)), int(np.argmax(back) + 1) % count
+    return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
+
+
+def mean_thickness(outline: Array) -> float:
+    """Twice the area of a section over its circumference, m."""
+    length = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T).sum()
+    return float(abs(_doubled_area(outline)) / length)
+
+
+def mesh_of(outline: Array, size: float | None = None, kept: ArrayLike = ()) -> Mesh:
+    """Mesh the section in a checked outline by triangles of about a size, m.
+
+    By default `FINENESS` times its mean thickness. Points of the outline closer to a straight line than a
+    hundredth of this are left out, but those whose numbers are `kept`.
+    """
+    step = FINENESS * mean_thickness(outline) if size is None else size
+    around = _divided(_straightened(outline, BLUNT * step, np.atleast_1d(np.asarray(kept, dtype=int))), step)
+    inner = _lattice(around, step)
+    for _ in range(MOST_SPLITS):
+        corners = np.vstack([around, inner])
+        triangles = _triangles(corners, around)
+        missing = _missing_edges(triangles, len(around))
+        if not missing.any():
+            break
+        middles = 0.5 * (around + np.roll(around, -1, axis=0))
+        at = np.flatnonzero(missing) + 1
+        around = np.insert(around, at, middles[missing], axis=0)
+    area = 0.5 * np.sum(_areas(corners[triangles]))
+    if missing.any() or abs(area / (0.5 * _doubled_area(around)) - 1.0) > 1e-9:
+        raise ComputationError(
+            "the section could not be meshed", "Draw its outline with fewer sharp corners."
+        )
+    return _quadratic(corners, triangles, len(around))
+
+
+def _straightened(outline: Array, tolerance: float, kept: NDArray[np.int64]) -> Array:
+    """Leave out points within a tolerance, m, of the line between others (Ramer, Douglas and Peucker)."""
+    far = int(np.argmax(np.hypot(*(outline - outline[0]).T)))
+    stay = np.zeros(len(outline) + 1, dtype=bool)
+    corners = sorted({0, far, len(outline), *kept.tolist()})
+    closed, spans = np.vstack([outline, outline[:1]]), list(pairwise(corners))
+    while spans:
+        first, last = spans.pop()
+        stay[[first, last]] = True
+        if last - first < 2:
+            continue
+        away = _distances(closed[first + 1 : last], closed[[first]], closed[[last]])[:, 0]
+        if away.max() > tolerance:
+            split = first + 1 + int(np.argmax(away))
+            spans += [(first, split), (split, last)]
+    return outline[stay[:-1]]
+
+
+def _divided(outline: Array, step: float) -> Array:
+    """Divide the edges of an outline into pieces of at most a length, m."""
+    to = np.roll(outline, -1, axis=0)
+    pieces = np.ceil(np.hypot(*(to - outline).T) / step * (1.0 - 1e-9)).astype(int)
+    parts = [
+        a + (b - a) * np.arange(count)[:, None] / count
+        for a, b, count in zip(outline, to, pieces, strict=True)
+    ]
+    return np.vstack(parts)
+
+
+def _lattice(around: Array, step: float) -> Array:
+    """Points of a lattice of equilateral triangles inside an outline, away from it."""
+    low, high = around.min(axis=0), around.max(axis=0)
+    rows = np.arange(low[1], high[1], 0.5 * np.sqrt(3.0) * step)
+    columns = np.arange(low[0], high[0] + step, step)
+    r = columns + 0.5 * step * (np.arange(len(rows)) % 2)[:, None]
+    points = np.stack([r, np.broadcast_to(rows[:, None], r.shape)], axis=-1).reshape(-1, 2)
+    points = points[_inside(points, around)]
+    near = _distances(points, around, np.roll(around, -1, axis=0)).min(axis=1, initial=np.inf)
+    return points[near > 0.6 * step]
+
+
+def _inside(points: Array, around: Array) -> NDArray[np.bool_]:
+    """Whether points (n, 2) lie inside: an odd number of edges on the way out."""
+    (r, z), (r2, z2) = around.T, np.roll(around, -1, axis=0).T
+    at = points[:, 1:]
+    spanned = (z > at) != (z2 > at)
+    beyond = r + (at - z) * (r2 - r) / np.where(z2 == z, 1.0, z2 - z) > points[:, :1]
+    return np.asarray(np.sum(spanned & beyond, axis=1) % 2 == 1)
+
+
+def _distances(points: Array, a: Array, b: Array) -> Array:
+    """Distances of points (n, 2) from the straight pieces from a to b (m, 2), (n, m)."""
+    along = b - a
+    square = np.maximum(np.sum(along**2, axis=1), 1e-300)
+    share = np.clip(np.sum((points[:, None] - a) * along, axis=-1) / square, 0.0, 1.0)
+    return np.asarray(np.linalg.norm(points[:, None] - a - share[..., None] * along, axis=-1))
+
+
+def _areas(corners: Array) -> Array:
+    """Twice the areas of triangles (e, 3, 2), positive if they are counterclockwise."""
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+
+
+def _triangles(corners: Array, around: Array) -> NDArray[np.int64]:
+    """Triangles of Delaunay that lie inside an outline, counterclockwise (e, 3)."""
+    from scipy.spatial import Delaunay
+
+    found = Delaunay(corners).simplices.astype(np.int64)
+    area = _areas(corners[found])
+    found = np.where((area < 0.0)[:, None], found[:, ::-1], found)
+    flat = np.abs(area) < 1e-9 * np.abs(area).max()
+    return found[~flat & _inside(corners[found].mean(axis=1), around)]
+
+
+def _missing_edges(triangles: NDArray[np.int64], count: int) -> NDArray[np.bool_]:
+    """Which edges of an outline of so many points are no side of one triangle."""
+    sides = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    start = np.arange(count)
+    there = {(int(a), int(b)) for a, b in sides[(sides < count).all(axis=1)]}
+    return np.array([(int(a), (int(a) + 1) % count) not in there for a in start])
+
+
+def _quadratic(corners: Array, triangles: NDArray[np.int64], around: int) -> Mesh:
+    """Put a node in the middle of each side; edges of the outline are those of the first corners."""
+    sides = np.stack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]], axis=1)
+    known, number = np.unique(np.sort(sides, axis=2).reshape(-1, 2), axis=0, return_inverse=True)
+    middle = len(corners) + number.reshape(-1, 3)
+    nodes = np.vstack([corners, 0.5 * corners[known].sum(axis=1)])
+    start = np.arange(around)
+    ends = np.stack([start, (start + 1) % around], axis=1)
+    place = {(int(a), int(b)): i for i, (a, b) in enumerate(known)}
+    on_edges = np.array([len(corners) + place[(min(a, b), max(a, b))] for a, b in ends.tolist()])
+    return Mesh(nodes, np.hstack([triangles, middle]), np.stack([ends[:, 0], on_edges, ends[:, 1]], axis=1))

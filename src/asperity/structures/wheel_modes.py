@@ -1,0 +1,296 @@
+"""Modes of a wheel as its contact and the air around it feel them: from its section, at rest or turning."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.arguments import Array, finite_array, positive, real
+from asperity.errors import InputError
+from asperity.reference.materials import Material
+from asperity.store import Cache, content_key, made
+from asperity.structures.outline import Mesh, checked_outline, mesh_of
+
+FORMAT = 1
+"""Of modes that are kept: raise it where their computation changes."""
+BEYOND = 1.25
+"""Modes are sought up to this multiple of the highest frequency of the spectra."""
+DAMPING = (1e-3, 1e-2, 1e-4)
+"""Damping ratios of 0, 1, and 2 and more nodal diameters, as usual in the literature on railway wheels."""
+MOST_DIAMETERS = 40
+TREAD_DEPTH = 0.010
+"""By which the radius of the tread may differ from that at the running circle, m: not the flange."""
+SEAT = 1e-3
+"""By which radii of the seat on the axle may differ, m."""
+SILENT = 1e-4
+"""Share of its largest motion on the tread below which a mode does not answer to a force."""
+
+
+@dataclass(frozen=True, eq=False)
+class WheelModes:
+    """Modes of a wheel beside its rigid motion, mass-normalised, by a force at the bottom of its tread.
+
+    Parameters
+    ----------
+    natural_frequencies : ndarray (p,)
+        Undamped, Hz.
+    damping_ratios : ndarray (p,)
+    nodal_diameters : ndarray (p,) of int
+        n.
+    places : ndarray (k,)
+        Across the tread, rising, m from the running circle, positive away from the flange.
+    radial, axial : ndarray (p, k)
+        Displacement there where the force acts, outwards and away from the flange, kg^(−1/2).
+    disc : ndarray (p,)
+        Root mean square of the axial velocity over both sides of a disc of the wheel's radius, per modal
+        velocity, kg^(−1/2).
+    tread : ndarray (p,)
+        The same of the radial velocity over the tread.
+
+    Notes
+    -----
+    The modal answer to a radial force F_r and an axial one F_a at one place is
+    ``q = (radial F_r + axial F_a) / (ω₀² − ω² + 2iζω₀ω)``, and the displacements there are ``radial q`` and
+    ``axial q``: receptances are reciprocal.
+    """
+
+    natural_frequencies: Array
+    damping_ratios: Array
+    nodal_diameters: NDArray[np.int64]
+    places: Array
+    radial: Array
+    axial: Array
+    disc: Array
+    tread: Array
+
+    @classmethod
+    def from_table(cls, table: ArrayLike) -> "WheelModes":
+        """Modes by the table that `table` makes (p, 6): radial ones, in the middle of the tread alone."""
+        frequency, ratio, mass, diameters, disc, tread = np.asarray(table, dtype=float).T
+        shape = mass**-0.5
+        none = np.zeros((len(mass), 1))
+        number, place = diameters.astype(np.int64), np.zeros(1)
+        return cls(frequency, ratio, number, place, shape[:, None], none, disc * shape, tread * shape)
+
+    def at(self, place: float = 0.0) -> tuple[Array, Array]:
+        """Radial and axial displacement (p,) each, kg^(−1/2), at a place, m from the running circle.
+
+        Raises
+        ------
+        InputError
+            If the place is off the tread.
+        """
+        low, high = float(self.places[0]), float(self.places[-1])
+        allowed = f"{low * 1e3:.4g} mm to {high * 1e3:.4g} mm, the tread"
+        where = real("place of the contact (m)", place, allowed, at_least=low, at_most=high)
+        if len(self.places) == 1:
+            return self.radial[:, 0], self.axial[:, 0]
+        right = int(np.clip(np.searchsorted(self.places, where), 1, len(self.places) - 1))
+        share = (where - self.places[right - 1]) / (self.places[right] - self.places[right - 1])
+        both = [
+            (1.0 - share) * each[:, right - 1] + share * each[:, right] for each in (self.radial, self.axial)
+        ]
+        return both[0], both[1]
+
+    def table(self, place: float = 0.0) -> Array:
+        """Table of modes as `wheel.modes` of a case takes it (s, 6), of a contact at a place, m.
+
+        Frequency, Hz, damping ratio, modal mass, kg, number of nodal diameters, and rms axial velocity of the
+        disc and rms radial velocity of the tread, both per radial velocity at the contact. Modes that do not
+        answer radially there are left out.
+        """
+        radial = np.abs(self.at(place)[0])
+        largest = np.maximum(np.abs(self.radial).max(axis=1), np.abs(self.axial).max(axis=1))
+        heard = radial > SILENT * largest
+        shape = radial[heard]
+        columns = (self.natural_frequencies[heard], self.damping_ratios[heard], shape**-2.0)
+        numbers = (self.nodal_diameters[heard], self.disc[heard] / shape, self.tread[heard] / shape)
+        return np.column_stack([*columns, *numbers])
+
+    def damped(self, ratios: Sequence[float], added: float = 0.0, added_from: int = 2) -> "WheelModes":
+        """With damping ratios of 0, 1 and so on nodal diameters, the last of all beyond.
+
+        Wheel dampers add a ratio to modes of `added_from` and more nodal diameters.
+        """
+        given = finite_array(
+            "damping ratios", ratios, "above 0, below 1", shape=(None,), above=0.0, below=1.0
+        )
+        own = given[np.minimum(self.nodal_diameters, len(given) - 1)]
+        own = own + np.where(self.nodal_diameters >= added_from, added, 0.0)
+        if (own >= 1.0).any():
+            raise InputError("damping ratio with dampers", f"{own.max():.4g}", "below 1")
+        return replace(self, damping_ratios=own)
+
+    def turning(self, angular_speed: float) -> "WheelModes":
+        """Modes in the frame of the contact, over which the wheel turns, rad/s.
+
+        A mode with n nodal diameters is two waves around the wheel, which the turning carries: its answer
+        h(t) to an impulse becomes h(t) cos(nΩt), that of two modes of damped frequencies ω_d ± nΩ with the
+        same decay and the modal masses 2mω_d/(ω_d ± nΩ). Each of them is a wave, which moves all of the
+        circumference alike: its rms is √2 that of a standing one per displacement at the contact. Left out:
+        centrifugal and Coriolis forces, of the order of Ω/ω_d.
+
+        Raises
+        ------
+        InputError
+            If the wheel turns faster than a wave runs around it.
+        """
+        split = self.nodal_diameters > 0
+        part = np.repeat(np.arange(len(split)), np.where(split, 2, 1))
+        sign = np.concatenate([[-1.0, 1.0] if two else [0.0] for two in split] or [[]])
+        of = {
+            name: getattr(self, name)[part]
+            for name in ("nodal_diameters", "radial", "axial", "disc", "tread")
+        }
+        natural, ratio = 2.0 * np.pi * self.natural_frequencies[part], self.damping_ratios[part]
+        decay, damped = ratio * natural, natural * np.sqrt(1.0 - ratio**2)
+        moved = damped + sign * of["nodal_diameters"] * angular_speed
+        if (slow := moved <= 0.0).any():
+            received = f"faster than a wave of a mode of {of['nodal_diameters'][slow][0]} nodal diameters"
+            raise InputError("turning of the wheel", received, "slower ones", "Roll more slowly.")
+        undamped = np.hypot(moved, decay)
+        scale = np.where(sign == 0.0, 1.0, np.sqrt(0.5 * moved / damped))
+        wave = np.where(sign == 0.0, 1.0, np.sqrt(2.0))
+        return WheelModes(
+            undamped / (2.0 * np.pi),
+            decay / undamped,
+            of["nodal_diameters"],
+            self.places,
+            scale[:, None] * of["radial"],
+            scale[:, None] * of["axial"],
+            wave * scale * of["disc"],
+            wave * scale * of["tread"],
+        )
+
+
+def wheel_modes(
+    outline: ArrayLike,
+    material: Material,
+    highest_frequency: float,
+    *,
+    size: float | None = None,
+    cache: Cache | None = None,
+) -> WheelModes:
+    """Modes of a wheel up to a frequency, Hz, held where it sits on its axle, by finite elements.
+
+    Parameters
+    ----------
+    outline : array_like (n, 2)
+        Its section: radius and axial place, m, the latter from the running circle, positive away from the
+        flange. The points of smallest radius are the seat.
+    material : Material
+    highest_frequency : float
+        Hz.
+    size : float, optional
+        Of the triangles, m.
+    cache : Cache, optional
+        Keeps the modes.
+
+    Returns
+    -------
+    WheelModes
+        By frequency, with damping ratios of `DAMPING`; torsion of n = 0 left out.
+
+    Raises
+    ------
+    InputError
+        If the outline is none of a wheel.
+    """
+    section = checked_outline(outline)
+    highest = positive("highest frequency (Hz)", highest_frequency)
+    section, circle = with_running_circle(section)
+
+    def make() -> dict[str, Array]:
+        return _found(mesh_of(section, size, circle), section[circle, 0], material, highest)
+
+    numbers = [material.youngs_modulus, material.poisson_ratio, material.density, highest, size]
+    key = content_key("wheel-modes", FORMAT, section, numbers)
+    found = make() if cache is None else made(cache, key, make)
+    order = np.argsort(found["frequency"], kind="stable")
+    names = ("radial", "axial", "disc", "tread")
+    shapes = {name: found[name][order] for name in names}
+    number, none = found["n"][order].astype(np.int64), np.zeros(len(order))
+    return WheelModes(found["frequency"][order], none, number, found["places"], **shapes).damped(DAMPING)
+
+
+def with_running_circle(outline: Array) -> tuple[Array, int]:
+    """Outline with a point on the running circle, at the axial place 0 and the largest radius; its number."""
+    (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
+    over = np.flatnonzero((np.minimum(z, z2) <= 0.0) & (np.maximum(z, z2) >= 0.0) & (z != z2))
+    if not len(over):
+        received = f"axial places of {z.min() * 1e3:.4g} mm to {z.max() * 1e3:.4g} mm"
+        allowed = "places on both sides of the running circle, at 0 mm"
+        raise InputError("outline of the section", received, allowed, "Count them from there.")
+    radius = r[over] - z[over] * (r2 - r)[over] / (z2 - z)[over]
+    edge, largest = int(over[np.argmax(radius)]), float(radius.max())
+    for number in (edge, (edge + 1) % len(outline)):
+        if abs(outline[number, 1]) < 1e-6:
+            return outline, number
+    return np.insert(outline, edge + 1, (largest, 0.0), axis=0), edge + 1
+
+
+def _found(mesh: Mesh, radius: float, material: Material, highest: float) -> dict[str, Array]:
+    """Modes of all numbers of nodal diameters, one behind the other."""
+    from asperity.structures.revolved import natural_modes
+
+    seat = mesh.nodes[:, 0] <= mesh.nodes[:, 0].min() + SEAT
+    if seat.sum() < 3:  # an edge has three nodes
+        received, remedy = "one point nearest to the axis", "Let an edge have the smallest radius."
+        raise InputError("outline of the section", received, "a seat along the axis", remedy)
+    tread, edges = _tread(mesh, radius)
+    held = np.repeat(seat[:, None], 3, axis=1)
+    parts: list[tuple[Array, ...]] = []
+    for n in range(MOST_DIAMETERS + 1):
+        frequency, shape = natural_modes(mesh, n, material, highest, held)
+        if n > 1 and not len(frequency):
+            break
+        around = 1.0 if n == 0 else np.sqrt(0.5)
+        disc = around * np.sqrt(_over_disc(mesh, shape[..., 2])) / radius
+        rolled = around * np.sqrt(_mean_square(mesh, edges, shape[..., 0]))
+        parts.append(
+            (
+                frequency,
+                np.full(len(frequency), float(n)),
+                disc,
+                rolled,
+                *np.moveaxis(shape[:, tread, ::2], -1, 0),
+            )
+        )
+    columns = [np.concatenate(each) for each in zip(*parts, strict=True)]
+    names = ("frequency", "n", "disc", "tread", "radial", "axial")
+    return dict(zip(names, columns, strict=True)) | {"places": mesh.nodes[tread, 1]}
+
+
+def _tread(mesh: Mesh, radius: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Nodes of the tread by rising axial place, and its edges."""
+    r, z = mesh.nodes.T
+    first, last = mesh.edges[:, 0], mesh.edges[:, 2]
+    outer = (z[last] > z[first]) & (np.abs(r[mesh.edges] - radius) <= TREAD_DEPTH).all(axis=1)
+    start = int(np.argmin(np.hypot(r[first] - radius, z[first])))
+    count = len(outer)
+    kept = []
+    for step, at in ((1, start), (-1, start - 1)):
+        while outer[at % count]:
+            kept.append(at % count)
+            at += step
+    edges = mesh.edges[kept]
+    nodes = np.unique(edges)
+    return nodes[np.argsort(z[nodes])], edges
+
+
+_SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
+
+
+def _over_disc(mesh: Mesh, axial: Array) -> Array:
+    """Integral of the square of axial shapes (p, k) over both sides, per π: ∫ u² r |dr|, (p,)."""
+    r = mesh.nodes[mesh.edges, 0]
+    weight = _SIMPSON * r * np.abs(r[:, 2] - r[:, 0])[:, None]
+    return np.asarray(np.einsum("peb,eb->p", axial[:, mesh.edges] ** 2, weight))
+
+
+def _mean_square(mesh: Mesh, edges: NDArray[np.int64], radial: Array) -> Array:
+    """Mean square of radial shapes (p, k) along edges, over their axial places (p,)."""
+    z = mesh.nodes[edges, 1]
+    weight = _SIMPSON * np.abs(z[:, 2] - z[:, 0])[:, None]
+    return np.asarray(np.einsum("peb,eb->p", radial[:, edges] ** 2, weight) / weight.sum())

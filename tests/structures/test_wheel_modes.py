@@ -1,0 +1,244 @@
+"""Wheels from their drawing: outlines, places across the tread, damping, turning, and the table of modes."""
+
+import numpy as np
+import pytest
+
+from asperity.errors import InputError
+from asperity.reference.materials import MATERIALS
+from asperity.reference.wheels import SECTIONS
+from asperity.store import Store
+from asperity.structures.outline import checked_outline, mesh_of, volume_of
+from asperity.structures.wheel import Wheel
+from asperity.structures.wheel_modes import DAMPING, SILENT, WheelModes, wheel_modes
+from asperity.structures.wheel_section import WheelSection
+
+STEEL, RADIUS = MATERIALS["steel"], 0.46
+SQUARE = [[0.1, -0.05], [0.2, -0.05], [0.2, 0.05], [0.1, 0.05]]
+
+
+@pytest.fixture(scope="module")
+def modes():
+    return wheel_modes(WheelSection.named("curved-web").outline(RADIUS), STEEL, 2500.0, size=0.02)
+
+
+def one_mode(n=3, frequency=2000.0, ratio=1e-3):
+    row = np.array([[frequency, ratio, 250.0, n, 0.5, 0.7]])
+    return WheelModes.from_table(row)
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+def test_named_sections_are_meshed_whole(name):
+    outline = checked_outline(WheelSection.named(name).outline(RADIUS))
+    mesh = mesh_of(outline)
+    corner = mesh.nodes[mesh.triangles[:, :3]]
+    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    area = 0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    assert (area > 0.0).all()
+    volume = 2.0 * np.pi * np.sum(area * corner[:, :, 0].mean(axis=1))
+    assert volume == pytest.approx(volume_of(outline), rel=2e-3)  # fillets are straightened
+    assert 250.0 < STEEL.density * volume < 450.0
+
+
+def test_a_mesh_follows_the_outline_whatever_its_order_and_its_points():
+    corners, share = np.array(SQUARE), np.arange(50)[:, None] / 50
+    fine = np.vstack(
+        [a + (b - a) * share for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    )
+    for outline in (SQUARE, SQUARE[::-1], [*SQUARE, SQUARE[0]], fine):
+        mesh = mesh_of(checked_outline(outline))
+        around = mesh.nodes[mesh.edges[:, 0]]
+        assert len(mesh.edges) == pytest.approx(4 * 8, abs=4)
+        assert (mesh.edges[:, 2] == np.roll(mesh.edges[:, 0], -1)).all()
+        (r, z), (r2, z2) = around.T, np.roll(around, -1, axis=0).T
+        assert 0.5 * np.sum(r * z2 - r2 * z) == pytest.approx(0.01)
+
+
+def test_edges_that_triangles_do_not_meet_are_halved():
+    """Along a thin web points of both sides stand against each other: a whole mesh needs more of them."""
+    upper = [[0.1, 0.1], [0.2, 0.1], [0.2, 0.002], [0.237, 0.0015], [0.3, 0.002], [0.3, 0.1], [0.4, 0.1]]
+    outline = checked_outline(upper + [[r, -z] for r, z in upper[::-1] if r != 0.237])
+    step = 0.03
+    length = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T)
+    mesh = mesh_of(outline, step)
+    assert len(mesh.edges) > np.ceil(length / step).sum()
+    corner = mesh.nodes[mesh.triangles[:, :3]]
+    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    area = 0.5 * np.sum(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
+    assert area == pytest.approx(0.5 * np.sum(r * z2 - r2 * z), rel=2e-3)
+
+
+BAD = {
+    "two points": (SQUARE[:2], "2 different points"),
+    "crossing": ([SQUARE[0], SQUARE[2], SQUARE[1], SQUARE[3]], "that touch"),
+    "back on itself": ([*SQUARE[:2], [0.3, 0.0], [0.2, -0.05], *SQUARE[2:]], "that touch"),
+    "over the axis": ([[-0.1, 0.0], [0.2, -0.05], [0.2, 0.05]], "a radius of -100 mm"),
+    "on the axis": ([[0.0, 0.0], [0.2, -0.05], [0.2, 0.05]], "a radius of 0 mm"),
+    "millimetres as metres": (np.array(SQUARE) * 1e3, "a point 200 m away"),
+    "tiny": (np.array(SQUARE) * 1e-3, "a point 0.0002 m away"),
+    "not finite": ([[0.1, 0.0], [np.nan, 0.0], [0.2, 0.1]], "received nan"),
+    "too many": (np.random.default_rng(1).uniform(0.1, 0.2, (3000, 2)), "3000 different points"),
+    "beside the running circle": (np.array(SQUARE) + np.array([0.0, 0.1]), "axial places of 50 mm to 150 mm"),
+    "no seat": ([[0.1, 0.0], [0.2, -0.05], [0.2, 0.05]], "one point nearest to the axis"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("outline", "received"), BAD.values(), ids=BAD)
+def test_outlines_that_are_none_are_refused(outline, received):
+    with pytest.raises(InputError) as error:
+        wheel_modes(outline, STEEL, 1000.0)
+    assert received in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "received"),
+    [
+        ({"hub_radius": 0.5}, "radii of 0.0925, 0.5"),
+        ({"web_thickness": 0.2}, "a web wider"),
+        ({"rim_width": 0.06}, "a rim of 0.06 m"),
+        ({"flange_thickness": 0.05}, "a rim of 0.135 m"),
+    ],
+)
+def test_dimensions_that_do_not_fit_are_refused(changes, received):
+    with pytest.raises(InputError, match=received):
+        WheelSection.named("curved-web", **changes).outline(RADIUS)
+
+
+def test_a_wheel_has_its_modes_by_frequency_with_the_usual_damping(modes):
+    assert (np.diff(modes.natural_frequencies) >= 0.0).all()
+    assert set(modes.nodal_diameters[:4]) == {0, 1, 2, 3}
+    expected = [DAMPING[min(n, 2)] for n in modes.nodal_diameters]
+    assert modes.damping_ratios == pytest.approx(expected)
+    quieter = modes.damped((2e-3, 3e-3), added=0.01, added_from=2)
+    assert quieter.damping_ratios == pytest.approx(
+        [(2e-3, 3e-3, 0.013)[min(n, 2)] for n in modes.nodal_diameters]
+    )
+
+
+def test_the_tread_is_that_beside_the_flange(modes):
+    assert modes.places[[0, -1]] == pytest.approx([-0.022, 0.065], abs=5e-3)
+    assert 0.0 in modes.places
+    assert modes.at(0.0)[0] == pytest.approx(modes.radial[:, np.flatnonzero(modes.places == 0.0)[0]])
+    for place in (-0.07, 0.066, np.nan):
+        with pytest.raises(InputError, match="the tread"):
+            modes.at(place)
+
+
+def test_modes_that_do_not_answer_in_the_middle_answer_beside_it():
+    """A section that is its own mirror image has modes whose tread tilts."""
+    half = [[0.1, 0.08], [0.15, 0.08], [0.15, 0.015], [0.4, 0.015], [0.4, 0.06], [0.46, 0.06]]
+    outline = np.vstack([half, (np.array(half) * [1.0, -1.0])[::-1]])
+    modes = wheel_modes(outline, STEEL, 2000.0, size=0.02)
+    radial, axial = modes.at(0.0)
+    tilting = np.abs(radial) < 1e-2 * np.abs(axial)
+    assert 3 <= tilting.sum() < len(tilting)
+    assert len(modes.table(0.03)) == len(tilting)
+    aside = np.abs(modes.at(0.03)[0])
+    assert (aside > SILENT * np.abs(axial))[tilting].all()
+    assert modes.at(-0.03)[0][~tilting] == pytest.approx(modes.at(0.03)[0][~tilting], rel=0.02)
+    assert modes.at(-0.03)[0][tilting] == pytest.approx(-modes.at(0.03)[0][tilting], rel=0.02)
+
+
+def test_sound_of_a_rigid_motion_is_that_of_the_disc():
+    """A ring on a soft web moves along as a whole, and the web by less than half of it."""
+    below = [[0.05, -0.0005], [0.1, -0.0005], [0.1, -0.05], [0.3, -0.05]]
+    modes = wheel_modes(below + [[r, -z] for r, z in below[::-1]], STEEL, 100.0, size=0.02)
+    axial = int(np.flatnonzero(modes.nodal_diameters == 0)[0])
+    mass = STEEL.density * np.pi * (0.3**2 - 0.1**2) * 0.1
+    assert modes.at(0.0)[1][axial] ** -2.0 == pytest.approx(mass, rel=0.01)
+    ring, web = ((outer**2 - inner**2) / 0.3**2 / mass for outer, inner in ((0.3, 0.1), (0.1, 0.05)))
+    assert ring < modes.disc[axial] ** 2 < ring + 0.5 * web
+    assert modes.tread[axial] < 0.01 * modes.disc[axial]
+
+
+def test_the_table_says_all_of_a_contact(modes):
+    again = WheelModes.from_table(modes.table())
+    assert again.table() == pytest.approx(modes.table(), rel=1e-12)
+    place = 0.02
+    table, radial = modes.table(place), modes.at(place)[0]
+    frequency = np.linspace(100.0, 2500.0, 301)
+    omega, natural = 2.0 * np.pi * frequency[:, None], 2.0 * np.pi * modes.natural_frequencies
+    answer = np.sum(radial**2 / (natural**2 - omega**2 + 2j * modes.damping_ratios * natural * omega), axis=1)
+    answer = answer - 1.0 / (600.0 * omega[:, 0] ** 2)
+    found = Wheel(600.0, 65e3, *table.T[:3]).receptance(frequency)
+    assert found == pytest.approx(answer, rel=1e-6)
+
+
+def test_modes_are_kept(modes, tmp_path):
+    outline = np.array(SQUARE)
+    store = Store(tmp_path)
+    first = wheel_modes(outline, STEEL, 9000.0, cache=store)
+    (kept,) = store.files()
+    again = wheel_modes(outline, STEEL, 9000.0, cache=store)
+    assert (first.table() == again.table()).all()
+    wheel_modes(outline * 1.01, STEEL, 9000.0, cache=store)
+    assert len(store.files()) == 2
+    assert kept.exists()
+
+
+# --- turning
+
+
+def receptance(modes, frequency):
+    """Radial receptance of the modes alone."""
+    omega, natural = 2.0 * np.pi * np.asarray(frequency)[:, None], 2.0 * np.pi * modes.natural_frequencies
+    answers = 1.0 / (natural**2 - omega**2 + 2j * modes.damping_ratios * natural * omega)
+    return answers @ modes.at()[0] ** 2
+
+
+@pytest.mark.parametrize("ratio", [1e-4, 0.05])
+def test_a_turning_wheel_answers_by_the_mean_of_shifted_receptances(ratio):
+    """D. J. Thompson, Railway Noise and Vibration (2009): α(ω) = ½ [α_n(ω + nΩ) + α_n(ω − nΩ)]."""
+    speed, n, modes = 120.0, 3, one_mode(ratio=ratio)
+    frequency = np.linspace(1700.0, 2300.0, 601)
+    shift = n * speed / (2.0 * np.pi)
+    mean = 0.5 * (receptance(modes, frequency + shift) + receptance(modes, frequency - shift))
+    assert receptance(modes.turning(speed), frequency) == pytest.approx(mean, rel=1e-9)
+
+
+def test_a_turning_wheel_in_time_and_what_radiates():
+    """Impulses on a wheel that turns below them: it has two standing modes, cos nφ and sin nφ."""
+    speed, n, ratio, modes = 150.0, 2, 2e-3, one_mode(n=2, frequency=800.0, ratio=2e-3)
+    rng, step = np.random.default_rng(4), 1e-5
+    time = np.arange(60_000) * step
+    hits, force = rng.integers(0, 20_000, 30), rng.standard_normal(30)
+    natural = 2.0 * np.pi * 800.0
+    damped = natural * np.sqrt(1.0 - ratio**2)
+    by_cosine, by_sine = np.zeros_like(time), np.zeros_like(time)
+    for hit, strength in zip(hits, force, strict=True):
+        since = time[hit:] - time[hit]
+        answer = strength * np.exp(-ratio * natural * since) * np.sin(damped * since) / (250.0 * damped)
+        by_cosine[hit:] += answer * np.cos(n * speed * time[hit])
+        by_sine[hit:] += answer * np.sin(n * speed * time[hit])
+    phase = n * speed * time
+    contact = by_cosine * np.cos(phase) + by_sine * np.sin(phase)
+    turning = modes.turning(speed)
+    waves = np.zeros((2, len(time)))
+    for wave, frequency, own in zip(waves, turning.natural_frequencies, turning.damping_ratios, strict=True):
+        omega = 2.0 * np.pi * frequency
+        ringing = omega * np.sqrt(1.0 - own**2)
+        for hit, strength in zip(hits, force, strict=True):
+            since = time[hit:] - time[hit]
+            wave[hit:] += strength * np.exp(-own * omega * since) * np.sin(ringing * since) / ringing
+    shape = turning.at()[0]
+    assert (shape**2) @ waves == pytest.approx(contact, abs=1e-9 * np.abs(contact).max())
+    # mean square around the tread: of the standing modes, and of waves by their rms
+    around = 0.5 * np.mean(by_cosine**2 + by_sine**2) * (2.0 * 0.7**2)
+    assert np.sum(turning.tread**2 * shape**2 * np.mean(waves**2, axis=1)) == pytest.approx(around, rel=0.01)
+
+
+def test_modes_without_nodal_diameters_do_not_turn_and_none_turns_without_speed(modes):
+    still = modes.turning(0.0)
+    assert len(still.natural_frequencies) == len(modes.nodal_diameters) + np.sum(modes.nodal_diameters > 0)
+    frequency = np.linspace(100.0, 2400.0, 101)
+    assert receptance(still, frequency) == pytest.approx(receptance(modes, frequency), rel=1e-9)
+    breathing = modes.nodal_diameters == 0
+    moved = modes.turning(200.0)
+    alike = moved.nodal_diameters == 0
+    assert moved.natural_frequencies[alike] == pytest.approx(modes.natural_frequencies[breathing], rel=1e-12)
+    assert moved.disc[alike] == pytest.approx(modes.disc[breathing])
+
+
+def test_a_wheel_that_outruns_its_waves_is_refused():
+    with pytest.raises(InputError, match="faster than a wave of a mode of 3 nodal diameters"):
+        one_mode().turning(5000.0)
