@@ -212,6 +212,10 @@ class MissingSourceWarning(PhysicsWarning):
     """Something that radiates sound is not described well enough to compute its part."""
 
 
+class MeasuredTrackWarning(PhysicsWarning):
+    """What was measured on a track contradicts the track that was computed."""
+
+
 class MissingPointsWarning(PhysicsWarning):
     """A measured surface has points without a height."""
 

@@ -4,6 +4,7 @@ import codecs
 import csv
 import io
 import math
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -15,6 +16,10 @@ from asperity.printable import printable
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _FORMULA = ("=", "+", "-", "@")
 """First characters of what spreadsheets take for a formula, and would compute or even run."""
+
+
+_APART = re.compile(r",\s")
+"""A comma that is no decimal mark."""
 
 
 def read_text(
@@ -69,15 +74,18 @@ def lines_in(content: str) -> Iterator[str]:
 def lines_of_cells(content: str) -> Iterator[tuple[int, list[str]]]:
     """Cells of each line of a table that holds any, with its number.
 
-    They are apart by comma, semicolon (with decimal commas) or white space; text from '#' on is left out.
+    They are apart by semicolon or tab, both with decimal commas, by comma, or by white space. Text from '#'
+    on is left out, and so are separators at the end, as spreadsheets write them.
     """
     for number, line in enumerate(lines_in(content), start=1):
-        text = line.partition("#")[0].strip()
-        separator = next((mark for mark in (";", ",") if mark in text), None)
-        if separator == ";":
+        text = line.partition("#")[0].strip().rstrip(";, \t")
+        tabs = "\t" in text and not _APART.search(text)
+        separator = ";" if ";" in text else "\t" if tabs else "," if "," in text else None
+        if separator in (";", "\t"):
             text = text.replace(",", ".")
         if text:
-            yield number, [cell.strip() for cell in text.split(separator)]
+            cells = [cell.strip() for cell in text.split(separator)]
+            yield number, [cell for cell in cells if cell] if tabs else cells
 
 
 def number_in(text: str | bytes) -> float:

@@ -14,7 +14,8 @@ _NUMBER = re.compile(
 # Names, single-digit powers, products and quotients: nothing that takes the unit library long.
 _POWER = r"(?:(?:\^|\*\*)?-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"[A-Za-zµμΩ°%]+{_POWER}(?:\s*[ */·]\s*[A-Za-zµμΩ°%]+{_POWER})*")
-_IN_BRACKETS = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
+_IN_BRACKETS = re.compile(r"[(\[]((?:[^()\[\]]|\([^()\[\]]*\))*)[)\]]")
+_NUMERATOR, _DENOMINATOR = re.compile(r"^\(([^()]*)\)(?=/)"), re.compile(r"/ ?\(([^()]*)\)")
 _LONGEST = 40  # characters
 _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit have 70
 
@@ -123,9 +124,15 @@ def unit_in(text: str) -> str:
 
 
 def unit_in_brackets(heading: str) -> str:
-    """Unit that the heading of a column names, ``"cm"`` of ``"wavelength (cm)"``; empty without one."""
+    """Unit that the heading of a column names, ``"cm"`` of ``"wavelength (cm)"``; empty without one.
+
+    Without brackets of its own: ``"m/s/N"`` of ``"mobility [(m/s)/N]"``, ``"m/N/s"`` of ``"Y (m/(N s))"``.
+    """
     match = _IN_BRACKETS.search(heading)
-    return " ".join(match[1].split()) if match else ""
+    unit = _NUMERATOR.sub(r"\1", " ".join(match[1].split())) if match else ""
+    return _DENOMINATOR.sub(
+        lambda below: "/" + re.sub(r" ?[ *·] ?", "/", below[1].strip().replace("Ns", "N s")), unit
+    )
 
 
 def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -> str:

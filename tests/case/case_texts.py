@@ -23,6 +23,9 @@ def write_files(folder):
     """Write the files that the cases here name into a folder, most of them without sense."""
     (folder / "levels.csv").write_text(LEVELS)
     (folder / "ratios.csv").write_text("frequency (kHz), ratio\n0.1, 0.01\n1, 0.8\n")
+    rates = "f (Hz); vertical (dB/m); lateral (dB/m)\n100; 4,5; 0,5\n125; 4; 0,5\n200; 5; 0,4\n"
+    (folder / "rates.csv").write_text(rates)
+    (folder / "mobility.csv").write_text("f (Hz), size (m/(N s))\n100, 1e-5\n200, 2e-5\n400, 1e-5\n")
     modes = "frequency (Hz), ratio, mass (kg)\n2000, 1e-4, 300\n3100, 1e-4, 250\n"
     (folder / "modes.csv").write_text(modes)
     rows = "".join(f"{100 * n}, {-1e-9 / n:.3g}, -1e-11\n" for n in range(1, 30))

@@ -109,6 +109,7 @@ GIVEN = {
         pad_stiffness = "250 MN/m" | pad_damping = "20 kN s/m" | sleeper_mass = "140 kg"
         ballast_stiffness = "100 MN/m" | ballast_loss_factor = 0.4 | sleeper_spacing = "0.65 m"
         rail_profile = "rail.csv" | points = ["9 m", "9.325 m"]
+        decay_rates = "rates.csv" | mobility = "mobility.csv"
         [contact] spacing = "0.4 mm" | window = "16 mm"
         [numerics] highest_frequency = "4 kHz" | time_step = "20 us" | kernel = "poles" | poles = 80
         [noise] track_pad = "soft" | wheel_transfer = "920 mm" | axles = 4 | rail_radiation = "ratios.csv"

@@ -61,7 +61,12 @@ def on_track(entry):
     )
 
 
-NOWHERE = ("calls them nothing else", "of several contacts", "contacts at equal distances")
+NOWHERE = (
+    "calls them nothing else",
+    "of several contacts",
+    "contacts at equal distances",
+    "measured on the track",
+)
 OTHERS = {
     "ball-on-beam": (*NOWHERE, "over a track", "of a wheel", "loss factors", "poles", "law linear", "train"),
     "wheel-on-rail": (*NOWHERE, "of a ball", "accelerometers"),

@@ -13,8 +13,9 @@ from asperity.arguments import Array
 from asperity.case.body import INERTIA, MASS
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
+from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
-from asperity.case.tables import RECEPTANCES, read_table
+from asperity.case.tables import RECEPTANCES, TableFile, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
     Choice,
@@ -225,6 +226,20 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "positions at which the motion of the rail is recorded while it is passed, from a sleeper at 0 m",
         "over a sleeper and at mid-span in the middle of the run",
         "0 m to 100 km: tracks are rolled over for less",
+    )
+    decay_rates: Path | Array | None = optional(
+        TableFile(columns=(2, 3), read=read_decay_rates),
+        "decay_rates.csv",
+        "measured decay rates (EN 15461), which the sound power of rail and sleepers then follows, not the "
+        "motion: one-third octave (Hz), vertical and, if it is there, lateral rate (dB/m)",
+        "those of this track",
+    )
+    mobility: Path | Array | None = optional(
+        TableFile(columns=(2, 3), read=read_mobility),
+        "mobility.csv",
+        "measured point mobility of the rail at mid-span, likewise: frequency (Hz), magnitude or real and "
+        "imaginary part ((m/s)/N; in a file also of an accelerance or receptance, by its unit)",
+        "that of this track",
     )
 
     @property

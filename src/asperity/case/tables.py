@@ -157,7 +157,7 @@ def read_mode_shapes(table: TableSource) -> Array | None:
 def read_ratios(table: TableSource) -> tuple[Array, Array]:
     """Read radiation ratios (n,) over rising frequencies (n,), Hz, all above zero."""
     frequency, ratio = read_table(table, RATIOS).T
-    _refuse_disorder(table, frequency)
+    refuse_disorder(table, frequency)
     if (ratio <= 0).any():
         received = f"a radiation ratio of {ratio[ratio <= 0][0]:g}"
         raise InputError(name_of(table), received, "greater than 0")
@@ -172,11 +172,12 @@ def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
     frequency, real, imaginary = read_table(table, RECEPTANCE).T
     if frequency.size < FEWEST_LINES:
         raise InputError(name_of(table), f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
-    _refuse_disorder(table, frequency)
+    refuse_disorder(table, frequency)
     return frequency, real + 1j * imaginary
 
 
-def _refuse_disorder(table: TableSource, frequency: Array) -> None:
+def refuse_disorder(table: TableSource, frequency: Array) -> None:
+    """Refuse frequencies, Hz, that do not rise, or are not above zero."""
     if frequency[0] <= 0 or (np.diff(frequency) <= 0).any():
         raise InputError(name_of(table), "frequencies that do not rise", "rising frequencies, all above 0 Hz")
 

@@ -19,7 +19,8 @@ from asperity.reference import cnossos
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
-from asperity.schema import Values, spectra
+from asperity.scenes.measured import measured_track
+from asperity.schema import Entry, Values, spectra
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
 from asperity.structures.track import Track, decay_rate
 from asperity.surfaces.bands import band_levels_of
@@ -252,21 +253,32 @@ def radiation(computed: Computed) -> Values:
     case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
     edges = band / HALF_BAND, band * HALF_BAND
     power = np.maximum(band_energies(computed.frequency, _radiated(computed), *edges), 0.0)
-    power = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
-    if silent != "computed":
-        power[:, 2] = np.nan
     wheels = 2.0 * case.axles / len(computed.scene.offsets)  # for each that was rolled
-    with np.errstate(divide="ignore"):
-        level = 10.0 * np.log10(wheels * power / PICOWATT)
-    total = a_weighted_total(level, band)
+
+    def laid_out(power: Array, levels: Entry, totals: Entry) -> Values:
+        whole = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
+        if silent != "computed":
+            whole[:, 2] = np.nan
+        with np.errstate(divide="ignore"):
+            level = 10.0 * np.log10(wheels * whole / PICOWATT)
+        total = totals.variable(a_weighted_total(level, band), wheel=silent)
+        return {levels: levels.variable(level, wheel=silent), totals: total}
+
+    beside: Values = {}
+    longer: ArrayLike = 1.0
+    if (found := measured_track(computed)) is not None:
+        beside = laid_out(power, schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWER_LEVEL_A)
+        own, louder, longer = found
+        beside |= own
+        power[:, :2] *= louder
     # the length 8.686/Δ of the decay is the mean of those over a band
     within = 10.0 ** (0.1 * (np.arange(9) - 4.0) / 9.0)
     lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * within)
     return {
         schema.RADIATOR: RADIATORS,
-        schema.RADIATED_POWER_LEVEL: schema.RADIATED_POWER_LEVEL.variable(level, wheel=silent),
-        schema.RADIATED_POWER_LEVEL_A: schema.RADIATED_POWER_LEVEL_A.variable(total, wheel=silent),
-        schema.BAND_DECAY_RATE: 1.0 / np.mean(lengths, axis=1),
+        **laid_out(power, schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A),
+        schema.BAND_DECAY_RATE: 1.0 / np.mean(lengths, axis=1) / longer,
+        **beside,
     }
 
 

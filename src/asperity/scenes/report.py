@@ -13,7 +13,7 @@ from asperity.files import together, write_bytes
 from asperity.reporting import contact_figures, headline, tables, texture_figures, uncertainty
 from asperity.reporting.figure import Chapter, Figure, figure_format, write_columns, write_figures
 from asperity.reporting.page import drawable_figures, page
-from asperity.scenes.figures import contacts, force, motion, noise, roughness, scene, track
+from asperity.scenes.figures import contacts, force, measured, motion, noise, roughness, scene, track
 
 PAGE, SUMMARY = "report.html", "summary.html"
 OF_OTHERS = "asperity.chapters"
@@ -38,7 +38,7 @@ CHAPTERS = (
         (roughness.ROUGHNESS, *texture_figures.TEXTURE),
         (tables.statistics_table, tables.homogeneity_table),
     ),
-    Chapter("track", "Track and wheel", (*track.TRACK, track.LOSS_FACTORS)),
+    Chapter("track", "Track and wheel", (*track.TRACK, track.LOSS_FACTORS), (measured.measured_table,)),
     Chapter("rail", "Motion of the rail", motion.RAIL),
     Chapter("energy", "Energy", (), (motion.energy_table,)),
     Chapter(

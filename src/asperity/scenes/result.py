@@ -19,7 +19,7 @@ from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenes import noise, schema, track, validity
+from asperity.scenes import measured, noise, schema, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
 from asperity.scenes.population import answers
@@ -71,10 +71,12 @@ def computed_result(
         if schema.SOUND_POWER_LEVEL_A in over_frequency:
             power = in_bands[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
             found += noise.findings_of_labels(case)
+        found += (of_measured := measured.findings_of_measured(in_bands))
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
         sources += (*scene.over.sources, cnossos.CITATION)
         noise.warn_of_silence(case)
         track.warn_of_loss_factors(losses)
+        measured.warn_of_contradictions(of_measured)
     warn_of_findings(found)
     textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)
     numerics = [{"name": name, "value": value} for name, value in _numerics(computed, choice, losses)]

@@ -189,6 +189,28 @@ RADIATED_POWER_LEVEL_A = _radiated("radiated_power_level_a(law, radiator)", "dB(
 _DECAY = "decay rate of the rail, of the mean length in the band"
 BAND_DECAY_RATE = _rail_spectra("band_decay_rate(band)", "dB/m", _DECAY)
 
+_MEASURED = "where something was measured on the track"
+_beside = partial(_spectra, condition=_MEASURED, missing="it was not measured in these bands")
+MEASURED_DECAY_RATE = _beside("measured_decay_rate(band)", "dB/m", "decay rate, measured")
+_LATERAL = "lateral decay rate, measured: it is shown, and nothing follows from it"
+MEASURED_LATERAL_DECAY_RATE = _beside(
+    "measured_lateral_decay_rate(band)", "dB/m", _LATERAL, condition=f"{_MEASURED}, laterally"
+)
+_EXPECTED = "decay rate that EN 15461 finds on the computed track"
+EXPECTED_DECAY_RATE = _beside("expected_decay_rate(band)", "dB/m", _EXPECTED)
+_MOBILITY = "point mobility of the rail at mid-span, rms in the band"
+MEASURED_MOBILITY = _beside("measured_mobility(band)", "(m/s)/N", f"{_MOBILITY}, measured")
+EXPECTED_MOBILITY = _beside("expected_mobility(band)", "(m/s)/N", f"{_MOBILITY}, of the computed track")
+_CHANGE = "level of a linear contact force on what was measured over that on the computed track"
+MEASURED_FORCE_CHANGE = _beside("measured_force_change(band)", "dB", _CHANGE)
+_CHANGE = "sound power level of rail and sleepers with what was measured over that of the computed track"
+MEASURED_POWER_CHANGE = _beside("measured_power_change(band)", "dB", _CHANGE)
+_unmeasured = partial(_radiated, condition=_MEASURED)
+_POWER = "sound power level from vibration of the computed track, of all axles"
+UNMEASURED_POWER_LEVEL = _unmeasured("unmeasured_power_level(law, radiator, band)", "dB re 1 pW", _POWER)
+_POWER = "A-weighted sound power level from vibration of the computed track, over the bands computed"
+UNMEASURED_POWER_LEVEL_A = _unmeasured("unmeasured_power_level_a(law, radiator)", "dB(A) re 1 pW", _POWER)
+
 _tone = partial(Attribute, "spectra", condition=_TRACK)
 _PASSING = "speed over the distance of the sleepers"
 SLEEPER_PASSING_FREQUENCY = _tone("sleeper_passing_frequency", "Hz", _PASSING)

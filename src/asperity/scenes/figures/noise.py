@@ -20,6 +20,8 @@ from asperity.spectra import a_weighting, energy_sum
 
 OWN, OWN_A = schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A
 """Sound power from the vibration that was computed, by radiator."""
+UNMEASURED, UNMEASURED_A = schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWER_LEVEL_A
+"""The same without what was measured on the track, where something was."""
 STANDARD, STANDARD_A = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A
 """The same by CNOSSOS-EU, from tables by label, by source."""
 PASSING = schema.PASS_BY_LEVEL
@@ -194,6 +196,16 @@ def silence(tree: DataTree) -> str:
     return f"The wheel's part is missing, and the total is that of rail and sleepers: {reason}."
 
 
+def with_measured(tree: DataTree) -> str:
+    """Say that what was measured on the track is in the sound power; nothing where nothing was."""
+    if not data.present(tree, UNMEASURED_A):
+        return ""
+    return (
+        "Rail and sleepers follow what was measured on the track, in the bands in which it was: the table "
+        '"Track: measured against computed" says by how much.'
+    )
+
+
 def _standard_there(tree: DataTree) -> Iterator[Series]:
     """What CNOSSOS-EU has in the bands of the vibration."""
     for series in Of(STANDARD, "{source} by CNOSSOS-EU, {law}", "{source}, CNOSSOS-EU")(tree):
@@ -210,6 +222,9 @@ def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
         Line(lines.at, series.values + weighting, series.label, *_LOOKS.get(series.label, ()))
         for series in lines.of(OWN, law=main)
     ]
+    for series in lines.of(UNMEASURED, law=main, radiator="rail"):
+        look = chart.VERMILLION, (1.5, 1.5), 1.3
+        own.append(Line(lines.at, series.values + weighting, "rail, nothing measured", *look))
     standard = _of_parts(lines, STANDARD, main, _OF_STANDARD | {WHOLE: (5, 2)}, weighting)
     own += [replace(line, width=1.6 if line.label.startswith(WHOLE) else 1.3) for line in standard]
     return [panels.band_panel(tree, lines, _POWER, own)]
@@ -221,6 +236,7 @@ def _own_caption(tree: DataTree) -> str:
         "two rails moves them and their sleepers along the whole track, and each part radiates by its "
         "radiation ratio.",
         silence(tree),
+        with_measured(tree),
     ]
     if data.laws(tree, STANDARD):
         told.append(
@@ -238,6 +254,7 @@ RADIATED = Figure(
         _weighting(BAND),
         panels.products(BAND_TIME_PRODUCT),
         Of(OWN, "{radiator}, {law}", "{radiator}"),
+        Of(UNMEASURED, "{radiator} without what was measured, {law}", "{radiator}", optional=True),
         _standard_there,
     ),
     _own_bands,
@@ -251,12 +268,17 @@ def radiated_table(tree: DataTree) -> ReportTable | None:
     if not laws:
         return None
     levels = np.array([data.of_law(tree, OWN_A, law) for law in laws])
-    columns, over = {"law": text_cells(laws), **_part_columns(tree, OWN_A, levels)}, ""
+    rows = list(laws)
+    if beside := data.laws(tree, UNMEASURED_A):
+        rows = [f"{law}, track as measured" for law in laws] + [f"{law}, all computed" for law in beside]
+        levels = np.vstack([levels, [data.of_law(tree, UNMEASURED_A, law) for law in beside]])
+    columns, over = {"law": text_cells(rows), **_part_columns(tree, OWN_A, levels)}, ""
     own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
     if set(BOTH) <= set(own) and "track" in standard:
         both = data.signed(float(energy_sum([own[part] for part in BOTH])) - standard["track"])
         over = f"Rail and sleepers together are {both} dB over the track of CNOSSOS-EU ({laws[0]}). "
-    note = f"dB(A) re 1 pW, over the bands that were computed. {over}{silence(tree)}"
+    told = " ".join(filter(None, [silence(tree), with_measured(tree)]))
+    note = f"dB(A) re 1 pW, over the bands that were computed. {over}{told}"
     return table("radiated_power_table", "Sound power from vibration, A-weighted", columns, note)
 
 
@@ -361,9 +383,11 @@ def noise_answers(tree: DataTree) -> Answers | None:
         return None
     lead, *more = [*_by_vibration(tree, own), *_by_label(tree, standard)]
     held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
+    plain = by_part(tree, UNMEASURED_A).get(WHOLE)
+    beside = "" if plain is None else f"; track as measured, {plain:.1f} dB(A) if all is computed"
     by_tables = "re 1 pW; track and wheel by its tables, from the computed contact force"
     models = (
-        ("own radiation model", own, f"re 1 pW; {held}, from their computed vibration"),
+        ("own radiation model", own, f"re 1 pW; {held}, from their computed vibration{beside}"),
         ("CNOSSOS-EU", standard, by_tables),
     )
     cards = tuple(

@@ -11,6 +11,7 @@ from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, Axis, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.scenes import schema
+from asperity.scenes.figures.measured import MEASURED, over_bands
 from asperity.schema import rolling
 
 # --- marks of the track: its natural frequencies, the passing of sleepers
@@ -82,6 +83,12 @@ RECEPTANCES = (
     Of(schema.RECEPTANCE_SUPPORT_PHASE, "receptance_support phase", *_SUPPORT),
     Of(schema.WHEEL_RECEPTANCE, "", "wheel", (chart.GREEN, (6, 1.5, 1.5, 1.5))),
     Of(schema.CONTACT_RECEPTANCE, "", "contact spring", (chart.MUTED, (1.5, 1.5))),
+)
+_MOBILITY = over_bands(schema.MEASURED_MOBILITY, schema.RECEPTANCE_MIDSPAN)
+
+
+_LATERAL = over_bands(
+    schema.MEASURED_LATERAL_DECAY_RATE, schema.DECAY_RATE, (chart.MUTED, (), 1.4), f"{MEASURED}, lateral"
 )
 
 
@@ -192,7 +199,7 @@ TRACK = (
         "receptance",
         "Receptance of rail, wheel and contact",
         Of(schema.TRACK_FREQUENCY),
-        RECEPTANCES,
+        (*RECEPTANCES, _MOBILITY),
         _receptance,
         _receptance_caption,
         any_of=tuple(each.entry for each in RECEPTANCES if each.entry.units != "rad"),
@@ -210,6 +217,8 @@ TRACK = (
                 (chart.VERMILLION, (6, 1.5), 1.2),
             ),
             Of(schema.DECAY_RATE_LIMIT, "", "lower limit, ISO 3095", (INK, (4, 2), 1.4)),
+            over_bands(schema.MEASURED_DECAY_RATE, schema.DECAY_RATE),
+            _LATERAL,
         ),
         _decay,
         _decay_caption,

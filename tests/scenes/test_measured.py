@@ -1,0 +1,127 @@
+"""What was measured beside what was computed: in sound power, figures, tables and warnings of a run."""
+
+import json
+
+import numpy as np
+import pytest
+
+from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.radiation.measured_track import HammerTest
+from asperity.scenes.figures.measured import MEASURED, measured_table
+from asperity.scenes.figures.noise import RADIATED, noise_answers, radiated_table
+from asperity.scenes.figures.track import TRACK
+
+CASE = {
+    "laws": ["linear"],
+    "duration": "0.2 s",
+    "settling": "0.1 s",
+    "surface": {"spectrum": "iso3095"},
+    "wheel": {"roughness": "disc"},
+    "track": {"name": "uic60"},
+    "contact": {"spacing": "1 mm"},
+    "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
+}
+BAND = 1000.0 * 10.0 ** (np.arange(-8, 6) / 10.0)  # 160 Hz to 3.15 kHz
+
+
+@pytest.fixture(scope="module")
+def plain(runs):
+    return runs(WheelOnRail(**CASE))
+
+
+def own_data(case):
+    """What a hammer finds on the track of a case, as tables."""
+    own = HammerTest.of_track(case.track_model(), BAND)
+    mobility = own.mobility.ravel()
+    columns = own.frequency.ravel(), mobility.real, mobility.imag
+    return np.column_stack([BAND, own.decay_rate]), np.column_stack(columns)
+
+
+def with_track(**keys):
+    return WheelOnRail(**CASE | {"track": CASE["track"] | keys})
+
+
+def warned(tree):
+    return [
+        w["message"] for w in json.loads(tree.attrs["warnings"]) if w["category"] == "MeasuredTrackWarning"
+    ]
+
+
+def test_own_data_fed_back_change_nothing(plain, runs):
+    rates, mobility = own_data(WheelOnRail(**CASE))
+    tree = runs(with_track(decay_rates=rates, mobility=mobility))
+    for name in ("radiated_power_level", "band_decay_rate"):
+        np.testing.assert_allclose(tree["spectra"][name], plain["spectra"][name], rtol=1e-9)
+    np.testing.assert_array_equal(
+        tree["spectra/unmeasured_power_level"], plain["spectra/radiated_power_level"]
+    )
+    assert not warned(tree)
+    inside = np.isfinite(tree["spectra/measured_power_change"].values)
+    assert inside.sum() == len(BAND)
+    np.testing.assert_allclose(tree["spectra/measured_power_change"][inside], 0.0, atol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def damped(runs):
+    """Four times the decay of the computed track from 500 Hz to 1 kHz, with rates sideways."""
+    rates, _ = own_data(WheelOnRail(**CASE))
+    some = np.column_stack([rates[5:9, 0], 4.0 * rates[5:9, 1], np.full(4, 0.5)])
+    return runs(with_track(decay_rates=some))
+
+
+def test_four_times_the_decay_takes_six_decibels_of_rail_and_sleepers(plain, damped):
+    inside = (plain["spectra/band"] > 490) & (plain["spectra/band"] < 1010)
+    lost = plain["spectra/radiated_power_level"] - damped["spectra/radiated_power_level"]
+    for part in ("rail", "sleepers", "total"):
+        np.testing.assert_allclose(lost.sel(radiator=part)[0, inside], 20.0 * np.log10(2.0), rtol=1e-9)
+        np.testing.assert_array_equal(lost.sel(radiator=part)[0, ~inside], 0.0)
+    shorter = damped["spectra/band_decay_rate"] / plain["spectra/band_decay_rate"]
+    np.testing.assert_allclose(shorter, np.where(inside, 4.0, 1.0))
+    np.testing.assert_array_equal(damped["rolling/contact_force"], plain["rolling/contact_force"])
+    heard = plain["pass_by/sound_exposure_level"] - damped["pass_by/sound_exposure_level"]
+    np.testing.assert_allclose(heard.sel(radiator="rail")[0, inside], 20.0 * np.log10(2.0), rtol=1e-9)
+
+
+def test_a_contradiction_is_warned_of_with_its_bands(damped):
+    (message,) = warned(damped)
+    assert "measured decay rate over that of the computed track, farthest from 1: 4 (" in message
+    assert "see 500 Hz, 630 Hz, 800 Hz, 1 kHz. Fit pads, ballast and losses of [track]" in message
+
+
+def test_the_report_shows_both(damped):
+    table = radiated_table(damped)
+    assert [row[0].text for row in table.rows] == ["linear, track as measured", "linear, all computed"]
+    measured, computed = (float(row[-1].text) for row in table.rows)
+    assert computed > measured + 1.0
+    card = noise_answers(damped).numbers[0]
+    assert card.value == f"{measured:.1f} dB(A)"
+    assert f"track as measured, {computed:.1f} dB(A) if all is computed" in card.note
+    assert "rail, nothing measured" in {
+        mark.label for mark in RADIATED.laid_out(damped).panels[0].marks if hasattr(mark, "label")
+    }
+    beside = measured_table(damped)
+    assert beside.head == [
+        "band",
+        "decay rate, measured / (dB/m)",
+        "computed",
+        "lateral, measured",
+        "rail and sleepers / dB",
+    ]
+    assert [(row[0].text, row[-1].text) for row in beside.rows] == [
+        (f, "−6.0") for f in ("500", "630", "800", "1k")
+    ]
+    decay = next(figure for figure in TRACK if figure.name == "decay_rate").collect(damped)
+    shown = {line.label: line.values for line in decay.lines}
+    inside = np.isfinite(shown[MEASURED])
+    np.testing.assert_allclose(decay.at[inside][[0, -1]], [447.0, 1122.0], rtol=0.01)
+    assert set(shown[f"{MEASURED}, lateral"][inside]) == {0.5}
+
+
+def test_a_mobility_is_drawn_as_the_receptance_that_it_is(runs):
+    _, mobility = own_data(WheelOnRail(**CASE))
+    tree = runs(with_track(mobility=np.column_stack([mobility[:, 0], np.hypot(*mobility[:, 1:].T)])))
+    drawn = TRACK[0].collect(tree)
+    lines = {line.label: line.values for line in drawn.lines if line.units == "m/N"}
+    ratio = lines[MEASURED] / lines["rail, mid-span"]
+    assert 0.8 < np.nanmedian(ratio) < 1.25
+    assert "linear force / dB" in measured_table(tree).head
