@@ -186,6 +186,16 @@ class _Bay:
         return np.asarray(self.omega**2 * np.average(values, axis=0, weights=weights))
 
 
+def dipole_ratio(frequency: Array, dipole_area: float, width: float) -> Array:
+    """Radiation ratio of a rigid section that oscillates (f,): that of a cylinder with the same two limits.
+
+    At low frequency the line dipole of an area, m², which the section and the air that goes with it displace;
+    at high frequency plane faces of a width, m, together, from which the ratio counts.
+    """
+    radius = (dipole_area**2 / (4.0 * np.pi * width)) ** (1.0 / 3.0)
+    return cylinder(wavenumber(frequency) * radius)
+
+
 STEEL_DENSITY = 7850.0
 """kg/m³; with the mass per length of a rail, the area of its section."""
 
@@ -249,8 +259,7 @@ class RailSection:
         if self.table is not None:
             at, ratio = self.table
             return np.asarray(np.exp(np.interp(np.log(f), np.log(at), np.log(ratio))))
-        radius = (self.dipole_area**2 / (4.0 * np.pi * self.radiating_width)) ** (1.0 / 3.0)
-        return cylinder(wavenumber(f) * radius)
+        return dipole_ratio(f, self.dipole_area, self.radiating_width)
 
     def power_per_force(self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
         """Sound power of the whole rail per mean square force on it, (f,), W/N², at frequencies (f,), Hz.

@@ -49,19 +49,32 @@ def modal_velocity_psd(
 
 def _line_means(wheel: Wheel, frequency: Array, compliance: Array) -> Array:
     """Mean of ω²|α_i|²/(|α₀|² + |α_W|²) over each line (p + 1, f), with every resonance resolved."""
-    step = frequency[1] - frequency[0]
-    edges = np.concatenate([frequency - 0.5 * step, frequency[-1:] + 0.5 * step])
-    edges[0] = max(edges[0], 1e-3 * step)
-    at = [edges, frequency]
-    for natural, ratio in zip(wheel.natural_frequencies, wheel.damping_ratios, strict=True):
-        reach = np.arcsinh(2.0 * step / (ratio * natural))
-        at.append(natural * (1.0 + ratio * np.sinh(np.linspace(-reach, reach, POINTS))))
-    fine = np.unique(np.clip(np.concatenate(at), edges[0], edges[-1]))
+    fine, edges = fine_lines(frequency, wheel.natural_frequencies, wheel.damping_ratios)
     omega = 2.0 * np.pi * fine
     flexible = modal_answers(fine, wheel.natural_frequencies, wheel.damping_ratios) / wheel.modal_masses
     each = np.column_stack([-1.0 / (wheel.mass * omega**2), flexible]).T
     other = np.interp(fine, frequency, compliance) ** 2
     value = omega**2 * np.abs(each) ** 2 / (other + np.abs(each.sum(axis=0)) ** 2)
+    return line_means(value, fine, edges)
+
+
+def fine_lines(frequency: Array, natural: Array, damping: Array) -> tuple[Array, Array]:
+    """Frequencies that resolve every resonance, and the edges of lines (f + 1,) among them, Hz.
+
+    Lines (f,), Hz, above zero, uniform and rising; natural frequencies, Hz, and damping ratios (p,).
+    """
+    step = frequency[1] - frequency[0]
+    edges = np.concatenate([frequency - 0.5 * step, frequency[-1:] + 0.5 * step])
+    edges[0] = max(edges[0], 1e-3 * step)
+    at = [edges, frequency]
+    for own, ratio in zip(natural, damping, strict=True):
+        reach = np.arcsinh(2.0 * step / (ratio * own))
+        at.append(own * (1.0 + ratio * np.sinh(np.linspace(-reach, reach, POINTS))))
+    return np.unique(np.clip(np.concatenate(at), edges[0], edges[-1])), edges
+
+
+def line_means(value: Array, fine: Array, edges: Array) -> Array:
+    """Mean over each line (n, f) of values (n, k) at the frequencies of `fine_lines`."""
     area = 0.5 * (value[:, 1:] + value[:, :-1]) * np.diff(fine)
     summed = np.concatenate([np.zeros((len(value), 1)), np.cumsum(area, axis=1)], axis=1)
     return np.diff(summed[:, np.searchsorted(fine, edges)], axis=1) / np.diff(edges)
