@@ -20,6 +20,7 @@ _HOME = {
     "Track": "structures.track",
     "Wheel": "structures.wheel",
     "compare": "scenes.comparing",
+    "effects": "studies.effects",
     "laws": "laws",
     "listen": "reporting.sound",
     "material": "reference.materials",
@@ -32,6 +33,7 @@ _HOME = {
     "run": "running",
     "save": "results",
     "study": "studies.running",
+    "what_helps": "studies.effects",
 }
 """Module of each public name; the cases of each kind come beside them."""
 

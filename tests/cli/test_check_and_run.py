@@ -81,16 +81,16 @@ INCOMPLETE = {
 @pytest.mark.parametrize("what", INCOMPLETE)
 def test_a_run_that_is_not_whole_is_none(out, what):
     case = load_case("small.toml")
-    assert earlier_result(case, out, report=True, converge=False) is not None
+    assert earlier_result(case, out, report=True, more=()) is not None
     INCOMPLETE[what](out)
-    assert earlier_result(case, out, report=True, converge=False) is None
+    assert earlier_result(case, out, report=True, more=()) is None
 
 
 def test_a_run_of_another_program_or_without_convergence_is_computed(out, monkeypatch):
     case = load_case("small.toml")
-    assert earlier_result(case, out, report=False, converge=True) is None
+    assert earlier_result(case, out, report=False, more=["convergence"]) is None
     monkeypatch.setattr("asperity.__version__", "9")
-    assert earlier_result(case, out, report=False, converge=False) is None
+    assert earlier_result(case, out, report=False, more=()) is None
 
 
 def test_a_run_is_another_where_a_file_that_it_names_holds_something_else():

@@ -156,8 +156,8 @@ def test_help_lists_every_command_with_a_whole_sentence():
 @pytest.mark.parametrize(
     ("words", "completions"),
     [
-        ("new ", {"ball-on-beam", "wheel-on-rail", "bodies", "study", "optimisation"}),
-        ("new w", {"wheel-on-rail"}),
+        ("new ", {"ball-on-beam", "wheel-on-rail", "bodies", "study", "what-helps", "optimisation"}),
+        ("new w", {"wheel-on-rail", "what-helps"}),
         ("new --law sh", {"shifted", "shifted-unfiltered"}),
         ("compare --law dir", {"direct"}),
         ("study absent.toml --vary track.n", {"track.name="}),
@@ -179,7 +179,7 @@ def test_a_shell_is_told_how_to_complete(shell):
 
 def test_what_a_shell_asks_is_answered():
     asked = {"_ASPERITY_COMPLETE": "bash_complete", "COMP_WORDS": "asperity new w", "COMP_CWORD": "2"}
-    assert program(**asked).stdout.split() == ["plain,wheel-on-rail"]
+    assert program(**asked).stdout.split() == ["plain,wheel-on-rail", "plain,what-helps"]
 
 
 # --- new

@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from asperity.cli.studying import varied
 from asperity.running import run
 from asperity.spectra import a_weighting
-from command_line import SMALL, call, words_of
+from asperity.studies.definition import load_study
+from command_line import RAIL, SMALL, call, words_of
 
 FILTERED = SMALL.replace('["hertz", "linear"]', '["hertz", "linear", "hertz-filtered", "linear-filtered"]')
 FILTERED += 'level = "-20 dB"\n[contact]\nspacing = "10 um"\nwindow = "0.4 mm"\n'
@@ -215,3 +217,55 @@ def test_a_study_of_which_all_members_fail_has_failed():
     assert told.splitlines()[-1].startswith("Error: all 2 members failed, the first one so: ")
     assert told.strip().endswith("Try: one of them with 'asperity run'.")
     assert "Traceback" not in told
+
+
+VARIANTS = """
+case = "small.toml"
+[sweep]
+"ball.load" = ["5 N", "10 N"]
+[sweep.variant."twice as fast"]
+speed = "times 2"
+[sweep.variant."calm"]
+surface.level = "minus 20 dB"
+[sweep.variant."=so already"]
+speed = "times 1"
+"""
+
+
+def test_variants_are_told_by_what_they_do():
+    """A table and bars for each place on the other keys, in words, in a file and for programs."""
+    Path("study.toml").write_text(VARIANTS)
+    outcome = call(*AGAIN)
+    told = words_of(outcome.stdout)
+    assert "What each change does, the quietest first, ball.load = 5 N" in told
+    assert "=so already – Left out: nothing changes: the case is so already." in told
+    assert "Failed" not in outcome.stderr
+    found = columns("out/effects.csv")
+    assert found["variant"] == ["calm", "twice as fast", "'=so already"] * 2
+    assert found["place"][::3] == ["ball.load = 5 N", "ball.load = 10 N"]
+    assert (numbers(found["effect [dB]"])[[0, 3]] < -10.0).all()
+    assert [text.split(" dB ")[1] for text in found["in words"][:2]] == ["down.", "up."]
+    page = Path("out/study.html").read_text(encoding="utf-8")
+    assert re.findall('<figure id="(.*?)" class="chart">', page) == [
+        "effects-1",
+        "effects-2",
+        "key-ball.load",
+    ]
+    assert 'id="effects-table-2"' in page
+    again = json.loads(call(*AGAIN, "--json").stdout)
+    assert again["effects"]["columns"] == list(found)
+    assert again["effects"]["rows"][2][3] is None
+    assert again["sweep"]["variant"]["calm"] == {"surface.level": "minus 20 dB"}
+    Path("study.toml").write_text(VARIANTS.replace("20 dB", "10 dB"))
+    assert "the study.nc of another study" in call(*AGAIN, code=2).stderr
+
+
+def test_the_ready_list_is_a_study_and_needs_a_track():
+    Path("rail.toml").write_text(RAIL)
+    said = call("new", "what-helps").stdout
+    Path("helps.toml").write_text(said.replace("case.toml", "rail.toml"))
+    listed = load_study("helps.toml").sweep
+    assert varied(Path("rail.toml"), ["seed = 1, 2, 3"], helps=True).sweep == listed
+    for command in ("run", "study"):
+        told = call(command, "small.toml", "--what-helps", code=2).stderr
+        assert "what helps: received a ball-on-beam case; allowed: a case over a track" in told

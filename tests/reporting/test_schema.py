@@ -14,7 +14,17 @@ from asperity.scenes.report import CHAPTERS, figures_of
 from asperity.schema import UNKNOWN, VERSION, convergence
 
 SOURCE = Path(asperity.__file__).parent
-GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track", "pass_by", "convergence")
+GROUPS = (
+    "scenario",
+    "surface",
+    "contact",
+    "rolling",
+    "spectra",
+    "track",
+    "pass_by",
+    "convergence",
+    "effects",
+)
 
 
 def schema_of(tree):
@@ -85,6 +95,7 @@ def test_conditions_of_small_runs_cover_the_schema(real_runs):
     homogeneity = {f"surface/{name}" for name in ("homogeneity_p", "tile_rms", "tile_variation")}
     homogeneity |= {"surface/tile_variation_expected"}  # of measured maps
     asked = {entry.path for entry in contents_of(convergence)[0]}  # written by tests/test_convergence.py
+    asked |= {e.path for e in contents_of(schema)[0] if e.group == schema.EFFECT.group}  # by tests/studies
     assert absent["ball-on-beam"] == homogeneity | asked
     absent_of_wheel = {"spectra/force_level_difference_to_reference"}
     absent_of_wheel |= {f"pass_by/{name}" for name in ("pass_by_equivalent_level", "transit_exposure_level")}
@@ -125,6 +136,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
         for part in chapter.figures:
             elsewhere = any(on_track(e) for e in part.needs) if not track else chapter.name == "acceleration"
             elsewhere |= chapter.name == "contacts" and not several
+            elsewhere |= part.name == "what_helps"  # where it is asked
             elsewhere |= part.name == ("force_piece" if track else "force_peak")
             assert (part.name in drawn) != elsewhere, part.name
 

@@ -21,7 +21,7 @@ Document = dict[str, Any]
 
 def templates() -> tuple[str, ...]:
     """List what 'asperity new' can write."""
-    return (*PRESETS, "study", "optimisation")
+    return (*PRESETS, "study", "what-helps", "optimisation")
 
 
 @click.group(cls=Program, document=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -97,16 +97,19 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     asperity new bodies --law areal --law linear > case.toml
     # many cases: lists of values for some keys
     asperity new study > study.toml
+    # what helps against noise: a list of changes, for one's own to be added
+    asperity new what-helps > helps.toml
     # the quietest texture of a case, within bounds
     asperity new optimisation > aim.toml
     """
     from asperity.case.cases import not_a_kind, template
     from asperity.optimising.definition import assignment_template
     from asperity.studies.definition import TEMPLATE
+    from asperity.studies.effects import ready_list
 
     if kind not in templates():
         raise not_a_kind(kind, templates())
-    others = {"study": lambda: TEMPLATE, "optimisation": assignment_template}
+    others = {"study": lambda: TEMPLATE, "what-helps": ready_list, "optimisation": assignment_template}
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 
@@ -212,6 +215,7 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
 @options.run_folder
 @options.report
 @options.converge
+@options.what_helps
 @options.device
 @options.again
 @options.overwrite("the run of another case")
@@ -227,6 +231,8 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     asperity run case.toml
     # and how far grid, window, time step … matter
     asperity run case.toml -o runs/stiff --converge
+    # and what would make it quieter, of a track
+    asperity run case.toml --what-helps
     # what it found, for a script
     asperity run case.toml --json | jq .verdict
     """
@@ -246,6 +252,7 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
     "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
 )
+@options.what_helps
 @click.option(
     "--show",
     multiple=True,
@@ -258,7 +265,9 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
 @click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
 @options.overwrite("another study")
 @options.device
-def study(study: Path, vary: tuple[str, ...], directory: Path | None, **choices: Any) -> Document:
+def study(
+    study: Path, vary: tuple[str, ...], what_helps: bool, directory: Path | None, **choices: Any
+) -> Document:
     """Compute a case for every combination of the values of some keys, into one table.
 
     Writes study.csv and study.nc: band levels, dB(A), peak force and lost contact of every law, the sound of
@@ -278,13 +287,15 @@ def study(study: Path, vary: tuple[str, ...], directory: Path | None, **choices:
     asperity study case.toml --vary "speed = 80..300 km/h, 6 steps"
     # equal ratios; one quantity as a column and a figure
     asperity study case.toml --vary "contact.spacing = 5..20 um, 3 ratios" --show working_stiffness
+    # what helps? One table, split by source
+    asperity study case.toml --what-helps
     # a study file, on four processes
     asperity study study.toml -o runs/grid --workers 4
     """
     from asperity.cli.studying import run_study, varied
     from asperity.studies.definition import load_study
 
-    definition = varied(study, vary) if vary else load_study(study)
+    definition = varied(study, vary, helps=what_helps) if vary or what_helps else load_study(study)
     return run_study(definition, directory or Path("runs") / study.stem, **choices)
 
 

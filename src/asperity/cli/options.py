@@ -30,6 +30,11 @@ converge = click.option(
     is_flag=True,
     help="Compute again with each setting made finer: grid, window, samples, …, and say what that changes.",
 )
+what_helps = click.option(
+    "--what-helps",
+    is_flag=True,
+    help="Over a track: what pads, roughness, speed … do to the sound of rail, sleepers and wheel.",
+)
 
 
 def overwrite(what: str) -> Any:

@@ -7,6 +7,7 @@ import json
 import os
 import re
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from asperity.scenarios.preparing import PreparedCase, ScanSize
 
 RESULT, PAGE = "run.nc", "report.html"
+CONVERGENCE, EFFECTS = "convergence", "effects"
+"""Groups of a result that are computed if they are asked for."""
 READING = "reading and laying out the case"
 ANNOUNCED = 1_000_000  # contact solutions of a scan that is announced before it starts
 _LINKED = re.compile(r'href="([\w.-]+\.(?:csv|svg))"')
@@ -40,6 +43,7 @@ def run_case(
     source: str = "case",
     report: bool = True,
     converge: bool = False,
+    what_helps: bool = False,
     again: bool = False,
     overwrite: bool = False,
 ) -> dict[str, Any]:
@@ -57,6 +61,8 @@ def run_case(
         Whether the page and the CSVs are written.
     converge : bool
         Whether it is computed again with each of its settings made finer, once its own results are written.
+    what_helps : bool
+        Whether variants of it are computed then, too, that say what makes it quieter.
     again : bool
         Whether it is computed even if the folder holds its run.
     overwrite : bool
@@ -67,16 +73,20 @@ def run_case(
     InputError
         If the case cannot be computed, or its results not go into `directory`.
     """
-    tree = None
+    tree, more = None, [name for name, asked in ((CONVERGENCE, converge), (EFFECTS, what_helps)) if asked]
+    if what_helps:
+        from asperity.studies.effects import what_helps as plan
+
+        plan(case)  # refuses a case over no track
     if not again and os.path.lexists(directory / RESULT):
-        tree = earlier_result(case, directory, report=report, converge=converge)
+        tree = earlier_result(case, directory, report=report, more=more)
     computed = tree is None
     if tree is None:
         refuse_full(case, directory)
         with files.alone_in(directory):
             if not overwrite:
                 refuse_other(case, directory)
-            tree = _run_alone(case, directory, source, report=report, converge=converge)
+            tree = _run_alone(case, directory, source, report=report, more=more)
     else:
         _warn(tree)
         remark("Nothing to do: this case has been run, with the same files and program (--again runs it).")
@@ -107,8 +117,8 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
     return prepared
 
 
-def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> DataTree:
-    """Compute a case and write its results, while no other run does into this folder."""
+def _run_alone(case: Case, directory: Path, source: str, *, report: bool, more: Sequence[str]) -> DataTree:
+    """Compute a case, and more groups, and write its results, while no other run does into this folder."""
     from asperity.running import run
 
     began, compiled, name = time.monotonic(), COMPILATION.seconds, name_of_run(case)
@@ -119,14 +129,20 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, conver
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name
     _warn(tree)
-    if not converge:
+    if CONVERGENCE not in more:
         del prepared  # what it holds is not needed beside what is written
     _write(tree, directory, report=report)
-    if converge:
+    if CONVERGENCE in more:
         from asperity.convergence import with_convergence
 
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)
+        _write(tree, directory, report=report)
+    if EFFECTS in more:
+        from asperity.studies.effects import with_effects
+
+        with progress_bar() as progress:
+            tree = with_effects(case, tree, progress)
         _write(tree, directory, report=report)
     spent, compiling = time.monotonic() - began, COMPILATION.seconds - compiled
     told = f", of which {duration(compiling)} compiled {COMPILATION.functions} functions" if compiling else ""
@@ -223,8 +239,8 @@ def band_summaries(tree: DataTree) -> dict[str, Any]:
 # --- the run of an earlier time
 
 
-def earlier_result(case: Case, directory: Path, *, report: bool, converge: bool) -> DataTree | None:
-    """The result of this case that a folder holds, with all that is asked for; else None."""
+def earlier_result(case: Case, directory: Path, *, report: bool, more: Sequence[str]) -> DataTree | None:
+    """The result of this case that a folder holds, with all that is asked for, more groups too; else None."""
     from asperity.results import read_result
 
     file, page, name = directory / RESULT, directory / PAGE, name_of_run(case)
@@ -235,7 +251,7 @@ def earlier_result(case: Case, directory: Path, *, report: bool, converge: bool)
     except InputError:
         return None
     same = tree.attrs.get(provenance.RUN.name) == name
-    return tree if same and (not converge or "convergence" in tree.children) else None
+    return tree if same and set(more) <= set(tree.children) else None
 
 
 def _is_whole(page: Path, result: Path) -> bool:

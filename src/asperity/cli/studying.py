@@ -3,30 +3,36 @@
 import json
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext, suppress
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray
 
 from asperity import files
 from asperity.arguments import shown
-from asperity.errors import InputError
+from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
 from asperity.reporting import study_figures
-from asperity.reporting.data import read_entries
+from asperity.reporting.data import read_entries, typed_words
 from asperity.reporting.page import PageFigure, figures_page
+from asperity.reporting.tables import ReportTable
 from asperity.results import attributes_of, save
+from asperity.scenes.figures.effects import Effects, effects_caption, effects_chart, effects_table
 from asperity.studies import table as tables
 from asperity.studies.definition import Study, separated, study_of
-from asperity.studies.ensemble import FEWEST, SCATTER, mean_and_scatter, prediction_band
+from asperity.studies.effects import effects, what_helps
+from asperity.studies.ensemble import FEWEST, SCATTER, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES, names_kept
+from asperity.studies.variants import VARIANT
 from asperity.terminal import line_width, remark, say, say_table
 from asperity.text_files import write_csv
 
-SEED = "seed"
-"""The key by which members differ by chance alone."""
 RESULTS, TABLE, MEANS, BAND, PAGE = "study.nc", "study.csv", "study_mean.csv", "ensemble.csv", "study.html"
+EFFECTS = "effects.csv"
 MOST_ROWS = 60  # that are printed; the file has all of them
 FOLDED = 14  # characters of a line of a heading
 WIDTH = 200  # characters of a line where standard output is no terminal
@@ -65,28 +71,36 @@ def run_study(
         several = table.sizes.get(SEED, 0)
         means = mean_and_scatter(table) if several > 1 else None
         band = prediction_band(table) if several >= FEWEST else None
-        print_table(table if means is None else means, asked or tables.USUAL, asked=bool(asked))
+        told = effects_of(table)
+        for words, found in told:
+            _print_effects(words, found)
+        if asked or not told:
+            print_table(table if means is None else means, asked or tables.USUAL, asked=bool(asked))
         for name in (name for name in asked if name not in table):
             reason = names_kept()[name] or "are no bands to add up"
             say(f"{name}: no member has it; there {reason}", err=True)
-        _print_messages(table)
-        written = _write(directory, table, means, band, asked)
-    told = table[[name for name in asked if name in table]].assign_attrs(table.attrs) if asked else table
-    heading, rows = tables.columns_of(told, bands=bool(asked))
+        _print_messages(table, left_out=bool(told))
+        written = _write(directory, table, means, band, told, asked)
+    chosen = table[[name for name in asked if name in table]].assign_attrs(table.attrs) if asked else table
+    heading, rows = tables.columns_of(chosen, bands=bool(asked))
     return {
         "sweep": study.sweep,
         "members": int(table["completed"].size),
         "completed": int(table["completed"].sum()),
         "columns": heading,
         "rows": rows,
+        **({"effects": dict(zip(("columns", "rows"), _listed(told), strict=True))} if told else {}),
         "warnings": json.loads(table.attrs["warnings"]),
         "failures": json.loads(table.attrs["failures"]),
         "files": written,
     }
 
 
-def varied(case: Path, words: Sequence[str]) -> Study:
-    """Make a study of a case from the words of the command line, each ``KEY=VALUE, VALUE, …``."""
+def varied(case: Path, words: Sequence[str], *, helps: bool = False) -> Study:
+    """Make a study of a case from the words of the command line, each ``KEY=VALUE, VALUE, …``.
+
+    With the ready list of what helps, if it is asked for.
+    """
     sweep: dict[str, list[Any]] = {}
     for word in words:
         name, mark, values = (part.strip() for part in word.partition("="))
@@ -97,7 +111,7 @@ def varied(case: Path, words: Sequence[str]) -> Study:
             received = f"{name} more than once"
             raise InputError("--vary", received, "each key once", "Put all values behind one.")
         sweep[name] = [_value(each) for each in separated(values)]
-    return study_of(case, sweep)
+    return what_helps(case, sweep) if helps else study_of(case, sweep)
 
 
 def _value(word: str) -> Any:
@@ -134,6 +148,7 @@ def _write(
     table: xarray.Dataset,
     means: xarray.Dataset | None,
     band: xarray.Dataset | None,
+    told: Sequence[tuple[str, Effects]],
     asked: Sequence[str],
 ) -> dict[str, Path]:
     """Write all that there is of a study, in place of an earlier one, and say where; return files by name."""
@@ -150,10 +165,14 @@ def _write(
             notes["ensemble"] = f"\n{band.attrs['meaning']}"
             axes = [str(name) for name in band["force_level"].dims if name not in ("law", "band")]
             write_csv(new / BAND, *tables.long_columns(band, [*axes, "law", "band"]))
-        if figures := _figures(table, means, band, asked or tables.USUAL_IN_FIGURES):
+        if told:
+            names["effects"] = EFFECTS
+            write_csv(new / EFFECTS, *_listed(told))
+        blocks = [*_blocks(told), *_figures(table, means, band, asked or tables.USUAL_IN_FIGURES)]
+        if blocks:
             names["page"] = PAGE
-            files.write_bytes(new / PAGE, _page(table, figures, list(names)).encode())
-        for name in {MEANS, BAND, PAGE} - set(names.values()):  # of an earlier study
+            files.write_bytes(new / PAGE, _page(table, blocks, list(names)).encode())
+        for name in {MEANS, BAND, EFFECTS, PAGE} - set(names.values()):  # of an earlier study
             files.discard(directory / name)
     for what, name in names.items():
         label = {"mean": "Means", "ensemble": "Seeds"}.get(what, what.capitalize())
@@ -161,18 +180,19 @@ def _write(
     return {what: directory / name for what, name in names.items()}
 
 
-def _page(table: xarray.Dataset, figures: Sequence[PageFigure], written: Sequence[str]) -> str:
+def _page(table: xarray.Dataset, blocks: Sequence[PageFigure | ReportTable], written: Sequence[str]) -> str:
     """The page of a study, with the files that lie beside it."""
     swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
     done, count = int(table["completed"].sum()), table["completed"].size
     summary = swept if done == count else f"{swept}; {done} of {count} members completed"
     offered = {
+        "effects": ("effects (CSV)", EFFECTS),
         "table": ("table (CSV)", TABLE),
         "mean": ("means over seeds (CSV)", MEANS),
         "ensemble": ("band over seeds (CSV)", BAND),
         "results": ("results (netCDF)", RESULTS),
     }
-    return figures_page("Study", summary, figures, dict(offered[what] for what in offered if what in written))
+    return figures_page("Study", summary, blocks, dict(offered[what] for what in offered if what in written))
 
 
 def _figures(
@@ -188,15 +208,59 @@ def _figures(
         scatter = means[deviations].rename({name: name.removesuffix(SCATTER) for name in deviations})
     figures = []
     for key in json.loads(table.attrs["sweep"]):
-        if drawn.sizes.get(key, 0) > 1:
+        if drawn.sizes.get(key, 0) > 1 and key != VARIANT:
             chart = study_figures.key_chart(drawn, scatter, key, looks, names)
             caption = study_figures.key_caption(drawn, scatter, key)
             figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart))
-    if band is not None:
+    if band is not None and VARIANT not in band.dims:
         chart = study_figures.ensemble_chart(band, looks)
         words = "Contact force over the seeds", str(band.attrs["meaning"])
         figures.append(PageFigure("ensemble", *words, chart, BAND))
     return figures
+
+
+# --- what each variant does
+
+
+def effects_of(table: xarray.Dataset) -> list[tuple[str, Effects]]:
+    """Effects of the variants of a study, for each place on its other axes, named; none without variants."""
+    if VARIANT not in table.dims:
+        return []
+    found = effects(table)
+    others = [key for key in json.loads(table.attrs["sweep"]) if key in found.dims and key != VARIANT]
+    told = []
+    for place in list(product(*(range(found.sizes[key]) for key in others)))[: study_figures.MOST_PANELS]:
+        at = dict(zip(others, place, strict=True))
+        words = ", ".join(f"{key} = {typed_words(table[key])[n]}" for key, n in at.items())
+        told.append((words, Effects.of(found.isel(at))))
+    return told
+
+
+def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[PageFigure | ReportTable]:
+    """Bars and table of what each variant does."""
+    for n, (words, of) in enumerate(told, 1):
+        title = f"What helps, {words}" if words else "What helps?"
+        yield PageFigure(f"effects-{n}", title, effects_caption(of), effects_chart(of), EFFECTS)
+        yield replace(effects_table(of), name=f"effects-table-{n}")
+
+
+def _listed(told: Sequence[tuple[str, Effects]]) -> tables.Rows:
+    """Heading and rows of all effects."""
+    columns = (f"{what} {part}".strip() for part in told[0][1].parts for what in ("effect", "±"))
+    heading = ["place", VARIANT, *(f"{column} [dB]" for column in columns), "in words"]
+    rows: list[list[object]] = [
+        [words, name, *np.stack([of.effect[n], of.error[n]], axis=1).ravel().tolist(), of.words(n)]
+        for words, of in told
+        for n, name in enumerate(of.variants)
+    ]
+    return heading, rows
+
+
+def _print_effects(words: str, of: Effects) -> None:
+    """Print what each variant does."""
+    found = effects_table(of)
+    rows = [[cell.text for cell in row] for row in found.rows]
+    say_table(f"{found.title}{f', {words}' if words else ''}", found.head, rows, width=WIDTH)
 
 
 # --- what is printed
@@ -256,13 +320,15 @@ def _side_by_side(needs: Sequence[int], columns: Sequence[int], keys: int) -> It
     yield block
 
 
-def _print_messages(table: xarray.Dataset) -> None:
-    """Print what members met, each kind of warning and failure once."""
+def _print_messages(table: xarray.Dataset, *, left_out: bool) -> None:
+    """Print what members met, each kind of warning and failure once, but for cases that were left out."""
     count = table["completed"].size
     for warning in json.loads(table.attrs["warnings"]):
         grade = warning.get("grade", "warning").capitalize()
         say(f"{grade} ({warning['members']} of {count} members): {warning['message']}", err=True)
     for failure in json.loads(table.attrs["failures"]):
+        if left_out and failure["error"] == CaseError.__name__:
+            continue  # the table of effects says so
         names = failure["members"]
         say(f"Failed ({len(names)} of {count} members): {failure['message']}", err=True, lines=True)
         for name in names[:MOST_NAMED]:

@@ -84,12 +84,15 @@ def page_template(name: str) -> Template:
     return environment.get_template(name)
 
 
-def figures_page(title: str, summary: str, figures: Sequence[PageFigure], files: Mapping[str, str]) -> str:
-    """A page of figures as one self-contained HTML text, with links to files beside it, by what they are."""
+def figures_page(
+    title: str, summary: str, blocks: Sequence[PageFigure | ReportTable], files: Mapping[str, str]
+) -> str:
+    """A page of figures and tables as one self-contained HTML text, with links to files by what they are."""
+    figures = (block for block in blocks if isinstance(block, PageFigure))
     marks = (mark for figure in figures for panel in figure.chart.panels for mark in panel.marks)
     colours = data.page_colours(mark.colour for mark in marks if isinstance(mark, Line) and mark.law)
-    told = {"title": title, "summary": summary, "version": __version__, "files": files, "figures": figures}
-    return whole_page("figures.html.jinja", figures, colours, **told)
+    told = {"title": title, "summary": summary, "version": __version__, "files": files, "blocks": blocks}
+    return whole_page("figures.html.jinja", blocks, colours, **told)
 
 
 # --- the page of a result
@@ -212,7 +215,7 @@ def page(
         created=data.moment(data.stated(tree, provenance.CREATED)),
         seed="" if seed is None else seed,
         case=data.stated(tree, provenance.CASE) or "",
-        converged=bool(setting_names(tree)),
+        asked=" --converge" * bool(setting_names(tree)) + " --what-helps" * ("effects" in tree.children),
         kind=kind or "",
         literature=literature(tree),
         origins=_origins(tree),

@@ -13,7 +13,17 @@ from asperity.files import together, write_bytes
 from asperity.reporting import contact_figures, headline, tables, texture_figures, uncertainty
 from asperity.reporting.figure import Chapter, Figure, figure_format, write_columns, write_figures
 from asperity.reporting.page import drawable_figures, page
-from asperity.scenes.figures import contacts, force, measured, motion, noise, roughness, scene, track
+from asperity.scenes.figures import (
+    contacts,
+    effects,
+    force,
+    measured,
+    motion,
+    noise,
+    roughness,
+    scene,
+    track,
+)
 
 PAGE, SUMMARY = "report.html", "summary.html"
 OF_OTHERS = "asperity.chapters"
@@ -27,6 +37,7 @@ CHAPTERS = (
         noise.noise_answers,
     ),
     Chapter("pass_by", "Pass-by", (noise.PASS_BY,), (noise.pass_by_table,), noise.pass_by_answers),
+    Chapter("effects", "What helps?", (effects.WHAT_HELPS,), (effects.what_helps_table,)),
     Chapter("acceleration", "Acceleration", motion.ACCELERATION, answers=motion.acceleration_answers),
     Chapter("motion", "Motion of the bodies", (motion.BODIES,)),
     Chapter("force", "Contact force", force.FORCE, (tables.loss_table,), headline.force_answers),

@@ -257,6 +257,23 @@ RECEIVER_HEIGHT = _place("receiver_height", "m", "above the rail head", _TRACK)
 FRONT_TIME = _place("front_time", "s", "at which the front of the train is opposite: Tp begins", _LENGTH)
 REAR_TIME = _place("rear_time", "s", "at which its rear is opposite: Tp ends", _LENGTH)
 
+# --- what helps
+
+_effects = partial(entry, "effects", condition="where it was asked what helps")
+_changed = partial(_effects, missing=f"the case cannot take this change; or {SILENT}")
+EFFECT_VARIANT = _effects("variant", "1", "what is changed of the case")
+EFFECT_RADIATOR = _effects("radiator", "1", "what radiates by its vibration")
+_A, _OF_A = RADIATED_POWER_LEVEL_A, "level with the change less that of the case as it is"
+EFFECT_LEVEL = _changed("level(radiator)", _A.units, _A.long_name)
+EFFECT = _changed("effect(variant, radiator)", "dB", _OF_A)
+_HALF = "half the 95 % confidence interval of the effect, by its scatter over the seeds"
+EFFECT_ERROR = _effects(
+    "effect_error(variant, radiator)", "dB", _HALF, missing="it has fewer than two seeds, or no effect"
+)
+LEFT_OUT = _effects("left_out(variant)", "1", "why the change was left out; empty where it was not")
+EFFECT_LAW = Attribute("effects", "law", "text", "contact law", EFFECT.condition)
+EFFECT_SEEDS = Attribute("effects", "seeds", "1", "over which effects are averaged", EFFECT.condition)
+
 _TOTAL = {"radiator": "total"}
 KEPT: dict[Entry, dict[str, str]] = {
     ACCELERATION_LEVEL: {},

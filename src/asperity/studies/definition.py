@@ -4,7 +4,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -17,13 +17,13 @@ from asperity.arguments import require, shown
 from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
 from asperity.case.chosen_lengths import shared_lengths
 from asperity.case.content import case_key, content, described_value, file_digest, holds_memory
-from asperity.case.describing import CaseKey, entry_of, value_in_toml
+from asperity.case.describing import CaseKey, entry_of
 from asperity.case.scene import Case
 from asperity.case.toml import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin
-from asperity.reference.materials import Material
 from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
+from asperity.studies.variants import VARIANT, VariantAxis, as_in_toml, flat, variant_axis
 from asperity.units import factor, unit_in
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
@@ -98,6 +98,9 @@ case = "case.toml"
 speed = ["20 m/s", "56 m/s"]    # or a range: "80..300 km/h, 6 steps", both ends among the 6 values
 seed = "1..3"                   # every whole number; "6 ratios" in place of steps: equal ratios
 # "contact.spacing" = ["4 um", "8 um"]
+# [sweep.variant."light and slow"]  # named changes of several keys, each compared with the case as it is:
+# speed = "times 0.8"             # times, plus or minus what it has, or any value
+# wheel.load = "50 kN"
 """
 
 
@@ -113,6 +116,16 @@ class SweptAxis:
     def name(self) -> str:
         """The key with its section, as ``"contact.spacing"``."""
         return self.entry.dotted
+
+    @property
+    def meaning(self) -> str:
+        """What the key is."""
+        return self.entry.key.meaning
+
+    @property
+    def told(self) -> list[Any]:
+        """The values as they stand in TOML."""
+        return list(self.written)
 
     @property
     def units(self) -> str:
@@ -158,7 +171,7 @@ class Study:
 
     data: dict[str, Any]  # keys and values of the case, sections as dicts
     origin: Origin  # where they come from
-    axes: tuple[SweptAxis, ...]  # the keys that are swept
+    axes: tuple[SweptAxis | VariantAxis, ...]  # the keys that are swept, and named changes
 
     @property
     def text(self) -> str:
@@ -171,9 +184,9 @@ class Study:
         return tuple(len(axis.values) for axis in self.axes)
 
     @property
-    def sweep(self) -> dict[str, list[Any]]:
-        """Swept keys with their values as they stand in TOML."""
-        return {axis.name: list(axis.written) for axis in self.axes}
+    def sweep(self) -> dict[str, Any]:
+        """Swept keys with their values, and named changes, as they stand in TOML."""
+        return {axis.name: axis.told for axis in self.axes}
 
     def members(self) -> list[Member]:
         """List all cases; the last key varies fastest. A `CaseError` says that none is valid.
@@ -195,10 +208,22 @@ class Study:
     ) -> Member:
         values = {axis.name: axis.written[i] for axis, i in zip(self.axes, index, strict=True)}
         try:
-            case = case_of(_with_values(self.data, values), self.origin).with_(**shared)
+            case = self._case(values).with_(**shared)
         except CaseError as error:
             return Member(index, values, None, error, "")
         return Member(index, values, case, None, case_key("member", FORMAT, case, of_file=digest_of))
+
+    def _case(self, values: Mapping[str, Any]) -> Case:
+        """The case with values of the swept keys, and with what a variant changes of that."""
+        data = _with_values(self.data, {key: value for key, value in values.items() if key != VARIANT})
+        case = case_of(data, self.origin)
+        for axis in self.axes:
+            if isinstance(axis, VariantAxis) and (keys := axis.keys(values[VARIANT], case)):
+                changed = case_of(_with_values(data, keys), self.origin)
+                if changed == case:
+                    raise CaseError(values[VARIANT], ["nothing changes: the case is so already"])
+                return changed
+        return case
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
@@ -259,15 +284,19 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | 
         example = 'Write [sweep] and below it, for instance, speed = ["20 m/s", "56 m/s"].'
         raise CaseError(str(source), [str(InputError("sweep", received, "a key with its values", example))])
     errors: list[InputError] = []
-    axes: dict[str, SweptAxis] = {}
-    for dotted, values in _flat(sweep):
+    axes: dict[str, SweptAxis | VariantAxis] = {}
+    for dotted, values in flat(sweep):
         if len(axes) + len(errors) >= MOST_KEYS:
             errors.append(InputError("sweep", "more keys", f"at most {MOST_KEYS} keys"))
             break
         try:
             remedy = "Put all values into one list."
             require(dotted not in axes, dotted, "the key more than once", "each key once", remedy)
-            axes[dotted] = _axis(data.get("kind"), dotted, values, origin)
+            if dotted == VARIANT:
+                axes[dotted], found = variant_axis(case_class(data.get("kind")), values, origin)
+                errors += [error.about(f"sweep.{error.what}") for error in found]
+            else:
+                axes[dotted] = _axis(data.get("kind"), dotted, values, origin)
         except InputError as error:
             errors.append(error if error.what == "kind" else error.about(f"sweep.{error.what}"))
     lengths = [len(axis.values) for axis in axes.values()]
@@ -278,15 +307,6 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | 
     if errors:
         raise CaseError(str(source), list(dict.fromkeys(map(str, errors))))
     return Study(data, origin, tuple(axes.values()))
-
-
-def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]]:
-    """Keys with their sections, written as ``"a.b" =``, ``a.b =`` or below [sweep.a]."""
-    for name, values in sweep.items():
-        if isinstance(values, Mapping) and not section:
-            yield from _flat(values, f"{name}.")
-        else:
-            yield f"{section}{name}", values
 
 
 def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxis:
@@ -311,14 +331,8 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
         told = json.dumps(content(found))
         require(told not in read, dotted, f"{shown(value)} more than once", "each value once")
         read[told] = found
-    written = (_in_toml(value, found, entry) for value, found in zip(values, read.values(), strict=True))
+    written = (as_in_toml(value, found, entry) for value, found in zip(values, read.values(), strict=True))
     return SweptAxis(entry, tuple(written), tuple(read.values()))
-
-
-def _in_toml(value: Any, found: Any, entry: CaseKey) -> Any:
-    """A swept value as it would stand in a file: as it was given, but for numbers in SI."""
-    bare = isinstance(value, int | float | np.generic | Material) and not isinstance(value, bool)
-    return value_in_toml(found, entry.key) if bare else value
 
 
 def _with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,6 +8,8 @@ from asperity.arguments import real, shown
 from asperity.errors import InputError
 from asperity.results import variable
 
+SEED = "seed"
+"""The key by which members differ by chance alone."""
 SHARE = 0.8
 """Probability with which the band holds one more member."""
 FEWEST = 3
@@ -18,7 +20,7 @@ BANDED = ("dB", "N")
 """Beginnings of the units of what has a band: levels, and means and rms of forces."""
 
 
-def prediction_band(table: xarray.Dataset, over: str = "seed", share: float = SHARE) -> xarray.Dataset:
+def prediction_band(table: xarray.Dataset, over: str = SEED, share: float = SHARE) -> xarray.Dataset:
     """Mean of the members of a study, and the band in which one more of them lies.
 
     Parameters
@@ -102,7 +104,7 @@ def _band(name: str, values: xarray.DataArray, over: str, share: float) -> dict[
     }
 
 
-def mean_and_scatter(table: xarray.Dataset, over: str = "seed") -> xarray.Dataset:
+def mean_and_scatter(table: xarray.Dataset, over: str = SEED) -> xarray.Dataset:
     """Mean of the members of a study, and how they scatter.
 
     Parameters

@@ -38,7 +38,7 @@ def tabulated(
     ordered = [(member.index, results[member.index]) for member in members if member.index in results]
     coordinates = _coordinates([table for _, table in ordered])
     variables: dict[str, xarray.Variable] = {
-        axis.name: variable(axis.name, axis.coordinate, axis.units, axis.entry.key.meaning, **axis.typed)
+        axis.name: variable(axis.name, axis.coordinate, axis.units, axis.meaning, **axis.typed)
         for axis in study.axes
     }
     variables |= coordinates

@@ -179,7 +179,7 @@ def sound_power_table(tree: DataTree) -> ReportTable | None:
 
 # --- from the vibration itself
 
-_LOOKS: dict[str, tuple[Any, ...]] = {
+LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of each part
     "rail": (chart.VERMILLION, (), 1.3, "o"),
     "sleepers": (chart.GREEN, (), 1.3, "s"),
     "wheel": (chart.BLUE, (), 1.3, "^"),
@@ -219,7 +219,7 @@ def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
     """A-weighted sound power of the main law per one-third octave, by what radiates, beside CNOSSOS-EU."""
     main, (weighting,) = data.laws(tree, OWN)[0], (series.values for series in lines.of(BAND))
     own = [
-        Line(lines.at, series.values + weighting, series.label, *_LOOKS.get(series.label, ()))
+        Line(lines.at, series.values + weighting, series.label, *LOOKS.get(series.label, ()))
         for series in lines.of(OWN, law=main)
     ]
     for series in lines.of(UNMEASURED, law=main, radiator="rail"):

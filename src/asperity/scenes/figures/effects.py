@@ -1,0 +1,161 @@
+"""What helps: what named changes of a case do to what radiates, as bars, as a table and in words."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray
+from xarray import DataTree
+
+from asperity.reporting import chart, data, panels
+from asperity.reporting.chart import INK, Axis, Boxes, Chart, Mark, Numbers, Panel
+from asperity.reporting.figure import Figure, Lines, Series
+from asperity.reporting.tables import Cell, ReportTable, table, text_cells
+from asperity.scenes import schema
+from asperity.scenes.figures.noise import LOOKS, WHOLE
+
+HEARD = 0.05
+"""Change of a level, dB, below which none is told."""
+
+
+@dataclass(frozen=True, eq=False)
+class Effects:
+    """Effects of variants on the parts of what is heard, from `asperity.effects`."""
+
+    variants: list[str]
+    left_out: list[str]  # why, by variant
+    parts: list[str]  # what radiates, the whole first; one without a name of any other level
+    level: Numbers  # of the case as it is (p,)
+    effect: Numbers  # dB (v, p)
+    error: Numbers  # half of its confidence interval, dB (v, p)
+    what: str  # level it is
+    units: str
+    law: str
+    seeds: int
+
+    @classmethod
+    def of(cls, found: xarray.Dataset) -> "Effects":
+        """Take them from a dataset whose only dimensions are variants and parts; what is unknown goes."""
+        effect, level = found[schema.EFFECT.name], found[schema.EFFECT_LEVEL.name]
+        names = [str(name) for name in found[level.dims[0]].values] if level.dims else [""]
+        known = np.isfinite(np.atleast_1d(level.values))
+        order = [n for n in (-1, *range(len(names) - 1)) if known[n]]  # the whole is the last
+        shape = (len(effect), len(names))
+        return cls(
+            [str(name) for name in found[schema.EFFECT_VARIANT.name].values],
+            [str(reason) for reason in found[schema.LEFT_OUT.name].values],
+            [names[n] for n in order],
+            np.atleast_1d(level.values)[order],
+            effect.values.reshape(shape)[:, order],
+            found[schema.EFFECT_ERROR.name].values.reshape(shape)[:, order],
+            str(level.attrs["long_name"]),
+            data.written_units(str(level.attrs["units"])),
+            str(found.attrs[schema.EFFECT_LAW.name]),
+            int(found.attrs[schema.EFFECT_SEEDS.name]),
+        )
+
+    def words(self, number: int) -> str:
+        """Say what a variant does: ``"Rail 2.1 dB down, sleepers 1.0 dB up."``"""
+        if self.left_out[number]:
+            return f"Left out: {self.left_out[number]}."
+        effect, error = self.effect[number], self.error[number]
+        sure = np.isfinite(effect) & (np.abs(effect) >= HEARD) & ~(np.abs(effect) <= error)
+        order = sorted(np.flatnonzero(sure).tolist(), key=lambda n: -abs(effect[n]))
+        told = [
+            f"{self.parts[n]} {abs(effect[n]):.1f} {'down' if effect[n] < 0.0 else 'up'}".strip()
+            for n in order
+            if len(self.parts) == 1 or self.parts[n] != WHOLE
+        ]
+        told[:1] = [re.sub(r"(\d) ", r"\1 dB ", each) for each in told[:1]]
+        before, after = (self._loudest(level) for level in (self.level, self.level + effect))
+        then = f"; loudest then: {after}" if after != before else ""
+        sentence = ", ".join(told) or "no change that is sure"
+        return f"{sentence[:1].upper()}{sentence[1:]}{then}."
+
+    def _loudest(self, level: Numbers) -> str:
+        parts = [(each, name) for each, name in zip(level, self.parts, strict=True) if name != WHOLE]
+        return max(parts)[1] if parts else ""
+
+
+def effects_chart(of: Effects) -> Chart:
+    """Bars: what each variant does to each part, with its confidence interval."""
+    shown = [n for n, reason in enumerate(of.left_out) if not reason]
+    thickness = 0.8 / len(of.parts)
+    marks: list[Mark] = [panels.zero("x", INK)]
+    for p, (part, hatch) in enumerate(zip(of.parts, chart.HATCHES, strict=False)):
+        y = np.arange(len(shown), dtype=np.float64) + (p - (len(of.parts) - 1) / 2) * thickness
+        effect, error = of.effect[shown, p], np.nan_to_num(of.error[shown, p])
+        left, right, half = np.minimum(effect, 0.0), np.maximum(effect, 0.0), 0.43 * thickness
+        marks.append(Boxes(left, right, y - half, y + half, part, LOOKS.get(part, (INK,))[0], hatch=hatch))
+        marks.append(Boxes(effect - error, effect + error, y, y, edge=INK))
+    along = Axis("change of the level / dB")
+    words = panels.words_axis([of.variants[n] for n in shown], down=True)
+    return Chart((Panel(along, words, tuple(marks), height=0.8 + len(shown) * (0.2 + 0.14 * len(of.parts))),))
+
+
+def effects_caption(of: Effects) -> str:
+    """Say what the bars are, and how sure."""
+    sure = "Of one texture, the same in all runs; with several seeds it is known how sure a difference is."
+    if of.seeds > 1:
+        sure = (
+            f"Means over {of.seeds} seeds, each difference within one texture; lines: their confidence "
+            "intervals of 95 % (Student's t)."
+        )
+    return f"{of.what} of {of.law} with each change, less that of the case as it is. {sure}"
+
+
+def effects_table(of: Effects) -> ReportTable:
+    """What each variant does, the quietest first, in numbers and in words."""
+    as_it_is = [f"{level:.1f}" for level in of.level]
+    columns = {"change": text_cells(["as it is", *of.variants], "name")}
+    for p, part in enumerate(of.parts):
+        cells = [_cell(*pair) for pair in zip(of.effect[:, p], of.error[:, p], strict=True)]
+        columns[part or "level"] = [Cell(as_it_is[p], "number"), *cells]
+    loudest = of._loudest(of.level)
+    first = f"Loudest: {loudest}." if loudest else ""
+    columns["in words"] = text_cells([first, *(of.words(n) for n in range(len(of.variants)))])
+    note = f"As it is: {of.units}; below, differences in dB. In grey and in brackets: not surely any change."
+    return table("effects", "What each change does, the quietest first", columns, note)
+
+
+def _cell(effect: float, error: float) -> Cell:
+    if not np.isfinite(effect):
+        return Cell("–", "number")
+    text = data.signed(effect) + (f" ± {error:.1f}" if np.isfinite(error) else "")
+    return Cell(f"({text})", "number faint") if abs(effect) <= error else Cell(text, "number")
+
+
+# --- in the report of a run
+
+
+def _of_run(tree: DataTree) -> Effects:
+    return Effects.of(tree[schema.EFFECT.group].to_dataset())
+
+
+def _columns(tree: DataTree) -> Iterator[Series]:
+    """One row: a column for each variant and part."""
+    of = _of_run(tree)
+    for name, effect in zip(of.variants, of.effect, strict=True):
+        for part, value in zip(of.parts, effect, strict=True):
+            yield Series(f"{name}: {part}", "dB", np.array([value]), schema.EFFECT)
+
+
+def what_helps_table(tree: DataTree) -> ReportTable | None:
+    """What each change does, if it was asked."""
+    return effects_table(_of_run(tree)) if data.present(tree, schema.EFFECT) else None
+
+
+def _draw(tree: DataTree, lines: Lines) -> Chart:
+    return effects_chart(_of_run(tree))
+
+
+WHAT_HELPS = Figure(
+    "what_helps",
+    "What helps?",
+    None,
+    (_columns,),
+    _draw,
+    lambda tree: effects_caption(_of_run(tree)),
+    (schema.EFFECT,),
+)

@@ -1,0 +1,196 @@
+"""What each variant of a case does to a level: its difference to the case as it is, and how sure that is."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Collection, Mapping
+from importlib import resources
+from typing import Any
+
+import numpy as np
+import xarray
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.arguments import one_of, shown
+from asperity.case.cases import as_case
+from asperity.case.rolled_over import TrackKeys
+from asperity.case.scene import Case
+from asperity.case.toml import read_toml
+from asperity.errors import InputError
+from asperity.progress import Progress
+from asperity.scenes import schema
+from asperity.schema import Entry, spectra
+from asperity.studies.definition import Study, study_of
+from asperity.studies.ensemble import SEED
+from asperity.studies.variants import AS_IT_IS, VARIANT
+
+SEEDS = 3
+"""Textures by which the ready list says how sure its effects are: that of the case, and the next."""
+CONFIDENCE = 0.95
+
+
+def ready_list() -> str:
+    """The study of what helps, as a commented text."""
+    return resources.files(__package__).joinpath("what_helps.toml").read_text(encoding="utf-8")
+
+
+def what_helps(
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Mapping[str, Any] | None = None
+) -> Study:
+    """Make the study that answers what makes a case over a track quieter.
+
+    Parameters
+    ----------
+    case : path, mapping or case object
+        The case, as `asperity.run` takes it.
+    sweep : mapping of str to list, optional
+        Further keys, as `asperity.study` takes them; ``"seed"`` in place of the usual three.
+
+    Returns
+    -------
+    Study
+        Of the main law of the case, of its seed and the next two, and of variants of it: pads, roughness,
+        speed, …, as ``asperity new what-helps`` lists them. `asperity.study` computes it, `effects` reads it.
+
+    Raises
+    ------
+    InputError
+        If the case is wrong, or rolls over no track.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> plan = asperity.what_helps(asperity.WheelOnRail(surface={"spectrum": "iso3095"}))
+    >>> sorted(plan.sweep), plan.sweep["variant"]["a fifth slower"]
+    (['seed', 'variant'], {'speed': 'times 0.8'})
+    """
+    given = as_case(case)
+    if not isinstance(given.rolled_over, TrackKeys):
+        raise InputError("what helps", f"a {given.kind} case", "a case over a track, which is heard")
+    listed = read_toml(ready_list(), "study", "what_helps.toml")["sweep"][VARIANT]
+    own = {"wheel": given.ROLLING}  # of bodies, the section is called otherwise
+    variants = {name: {own.get(key, key): keys[key] for key in keys} for name, keys in listed.items()}
+    seeds = [given.seed + more for more in range(SEEDS)]
+    asked: dict[str, Any] = {SEED: seeds, VARIANT: variants, **(sweep or {})}
+    return study_of(given.with_(laws=given.laws[:1]), asked)
+
+
+def with_effects(case: Case, result: DataTree, progress: Progress | None = None) -> DataTree:
+    """Compute what helps a case, and add it to the result of its run."""
+    from asperity.studies.running import study
+
+    tree = DataTree(result.to_dataset(inherit=False), children=result.children)
+    tree[schema.EFFECT.group] = DataTree(effects(study(what_helps(case), progress=progress)))
+    return tree
+
+
+def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
+    """What each variant of a study does to a level, the quietest first.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        From `asperity.study`, of variants; with several seeds, they say how sure the effects are.
+    quantity : str, optional
+        An A-weighted level of the table; by default the sound power of rail, sleepers and wheel, or the
+        contact force.
+
+    Returns
+    -------
+    xarray.Dataset
+        By `variant`, of the main law: `effect`, dB, the level less that of the case as it is, of the same
+        seed, mean over the seeds; `effect_error`, dB, half of its confidence interval of 95 %; `left_out`,
+        why there is none; and `level` of the case as it is. Other swept keys and what radiates are further
+        dimensions.
+
+    Raises
+    ------
+    InputError
+        If the table has no variants, or no such quantity.
+
+    Notes
+    -----
+    Each variant rolls over the textures of the case as it is, so that chance is in both and the scatter of
+    the difference is small: with n seeds the error is t s/√n, s its standard deviation over the seeds and
+    Student's t for n − 1 degrees of freedom.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> slower = {"half as fast": {"speed": "times 0.5"}}
+    >>> with ThreadPoolExecutor(1) as here:
+    ...     table = asperity.study(case, {"variant": slower}, executor=here)
+    >>> found = asperity.effects(table)
+    >>> found["effect"].dims, bool(found["effect"].sel(variant="half as fast") < 0.0)
+    (('variant',), True)
+    """
+    if not isinstance(table, xarray.Dataset) or VARIANT not in table.dims:
+        received = list(map(str, table.dims)) if isinstance(table, xarray.Dataset) else shown(table)
+        raise InputError("table of the study", received, f'one with the dimension "{VARIANT}"')
+    names = [
+        name for name, each in table.data_vars.items() if str(each.attrs.get("units")).startswith("dB(A)")
+    ]
+    usual = [
+        name
+        for name in (schema.RADIATED_POWER_LEVEL_A.name, f"{spectra.FORCE_LEVEL.name}_a")
+        if name in names
+    ]
+    held = table[one_of("quantity", quantity or usual[0], map(str, names))]
+    law = str(table["law"].values[0])
+    held = held.sel(law=law, drop=True) if "law" in held.dims else held
+    base = held.sel({VARIANT: AS_IT_IS}, drop=True)
+    change = held.transpose(VARIANT, ...).drop_sel({VARIANT: AS_IT_IS}) - base
+    several = [SEED] if SEED in change.dims else []
+    effect, level = change.mean(several), base.mean(several)
+    found = {
+        schema.EFFECT: effect,
+        schema.EFFECT_ERROR: _error(change) if several else effect * np.nan,
+        schema.LEFT_OUT: _left_out(table, effect),
+    }
+    told = xarray.Dataset(
+        {entry.name: each.assign_attrs(_attributes(entry)) for entry, each in found.items()},
+        attrs={schema.EFFECT_LAW.name: law, schema.EFFECT_SEEDS.name: table.sizes.get(SEED, 1)},
+    )
+    told[schema.EFFECT_LEVEL.name] = level.assign_attrs(_attributes(schema.EFFECT_LEVEL) | held.attrs)
+    return told.isel({VARIANT: _order(effect, json.loads(table.attrs["sweep"]))})
+
+
+def _attributes(entry: Entry) -> dict[str, str]:
+    held = {"units": entry.units, "long_name": entry.long_name}
+    return held | {"missing": entry.missing} if entry.missing else held
+
+
+def _error(change: xarray.DataArray) -> xarray.DataArray:
+    """Half of the confidence interval of a mean over the seeds; NaN of fewer than two."""
+    from scipy import stats
+
+    count = change.notnull().sum(SEED)
+    n = count.where(count >= 2)
+    reach = stats.t.ppf(0.5 * (1.0 + CONFIDENCE), n - 1)
+    return change.std(SEED, ddof=1) * reach / np.sqrt(n)
+
+
+def _left_out(table: xarray.Dataset, effect: xarray.DataArray) -> xarray.DataArray:
+    """Why each variant has no effect; empty where it has one."""
+    failures = json.loads(table.attrs["failures"])
+    known = effect.notnull().any([dim for dim in effect.dims if dim != VARIANT])
+    reasons = [
+        ""
+        if here
+        else next(
+            (f["message"] for f in failures for m in f["members"] if f"{VARIANT} = {name}," in f"{m},"), ""
+        )
+        for name, here in zip(effect[VARIANT].values, known.values, strict=True)
+    ]
+    return xarray.DataArray(reasons, dims=VARIANT)
+
+
+def _order(effect: xarray.DataArray, sweep: Collection[str]) -> NDArray[np.int64]:
+    """Places of the variants by what they do to the whole, the last of the parts; mean over other keys."""
+    parts = {dim: -1 for dim in effect.dims if dim not in sweep}
+    return np.argsort(
+        effect.isel(parts).mean([d for d in sweep if d in effect.dims and d != VARIANT]).values, kind="stable"
+    )

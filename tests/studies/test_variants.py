@@ -1,0 +1,302 @@
+"""Named changes of a case, what they do to what is heard, and how sure that is."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from executors import BALL, Here
+from scipy import stats
+
+import asperity
+from asperity.case.cases import parse_case
+from asperity.errors import CaseError, InputError
+from asperity.scenes import schema
+from asperity.scenes.figures.effects import Effects, effects_chart, effects_table
+from asperity.studies.definition import load_study, study_of
+from asperity.studies.effects import effects, what_helps, with_effects
+from asperity.studies.variants import AS_IT_IS
+from small_cases import changed
+
+TRACK = {"pad_stiffness": "400 MN/m", "pad_damping": "8 kN s/m"}
+RAIL = changed(
+    "wheel-on-rail",
+    laws=["linear"],
+    duration="0.1 s",
+    settling="40 ms",
+    track=TRACK,
+    contact={"spacing": "2 mm"},
+    numerics={"highest_frequency": "2 kHz", "poles": 40},
+)
+VARIANTS = {
+    "soft": {"track.pad_stiffness": "times 0.25", "track.pad_damping": "times 0.25"},
+    "smooth": {"surface.level": "minus 5 dB", "wheel": {"roughness_level": "minus 5 dB"}},
+    "discs": {"wheel.roughness": "disc instead of cast-iron"},
+    "slow": {"speed": "times 0.8"},
+}
+
+
+def values_of(case, changes, *names):
+    """Values of keys of a case that is changed; None where it cannot be."""
+    study = study_of(case, {"variant": {"new": changes}})
+    member = study.members()[1]
+    if member.case is None:
+        return member.error.errors
+    found = []
+    for section, _, name in (each.rpartition(".") for each in names):
+        found.append(getattr(getattr(member.case, section) if section else member.case, name))
+    return found
+
+
+# --- what is changed
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "expected"),
+    [
+        ("times 0.5", "track.pad_stiffness", 200e6),
+        ("times 2", "track.pad_damping", 16e3),
+        ("times 0.8", "speed", 0.8 * 56.0),
+        ("plus 40 MN/m", "track.pad_stiffness", 440e6),
+        ("minus 40 MN/m", "track.pad_stiffness", 360e6),
+        ("minus 5 dB", "surface.level", -5.0),
+        ("plus 1.5 dB", "wheel.roughness_level", 1.5),
+        ("times 0.5", "track.sleeper_spacing", 0.5 * asperity.Track.named("x2000").sleeper_spacing),
+        ("minus 0.05", "track.rail_loss_factor", None),
+        (250e6, "track.pad_stiffness", 250e6),
+        ("250 MN/m", "track.pad_stiffness", 250e6),
+        ("cast-iron instead of disc", "wheel.roughness", ["cast-iron"]),
+        ("plus 1", "noise.vehicles", ["the case has no noise.vehicles, which goes with vehicle_length"]),
+        ("disc instead of composite", "wheel.roughness", ["wheel.roughness is disc, not composite"]),
+        ("times 2", "track.pad_loss_factor", ["the case has no track.pad_loss_factor"]),
+        ("56 m/s", "speed", ["nothing changes: the case is so already"]),
+    ],
+)
+def test_a_change_is_told_by_what_the_case_has(change, key, expected):
+    found = values_of(RAIL, {key: change}, key)
+    if expected is None:
+        assert "rail_loss_factor" in found[0]
+    else:
+        assert found == (expected if isinstance(expected, list) else [pytest.approx(expected, rel=1e-12)])
+
+
+def test_half_of_nothing_is_nothing():
+    """Pads of one material keep their loss factor, whether the case tells it or a damper."""
+    halved = {"track.pad_stiffness": "times 0.5", "track.pad_damping": "times 0.5"}
+    names = "track.pad_stiffness", "track.pad_damping", "track.pad_loss_factor"
+    lossy = changed("wheel-on-rail", track={"name": "nordborg-loss-factor"})
+    loss = asperity.Track.named("nordborg-loss-factor")
+    assert values_of(RAIL, halved, *names) == [200e6, 4e3, None]
+    found = values_of(lossy, halved, *names)
+    assert found == [pytest.approx(0.5 * loss.pad_stiffness), None, None]
+
+
+def test_measured_rails_have_no_level():
+    line = asperity.Profile(1e-6 * np.sin(np.arange(50_000.0)), 1e-3)
+    case = asperity.WheelOnRail(surface={"line": line, "continuation": "repeat"}, duration="0.1 s")
+    reason = "the case has no surface.level, which goes with spectrum"
+    assert values_of(case, {"surface.level": "minus 5 dB"}) == [reason]
+
+
+def test_what_is_swept_besides_is_changed():
+    """Sections in both forms, from a file; labels name the variants."""
+    Path("study.toml").write_text(
+        'case = "ball.toml"\n[sweep]\n"ball.load" = ["10 N", "20 N"]\n'
+        '[sweep.variant."a tenth more"]\nball.load = "times 1.1"\n"speed" = "2 m/s"\n'
+    )
+    found = load_study("study.toml").members()
+    assert [member.case.ball.load for member in found] == pytest.approx([10.0, 11.0, 20.0, 22.0])
+    assert [member.case.speed for member in found] == [1.0, 2.0, 1.0, 2.0]
+    assert found[1].label == "ball.load = 10 N, variant = a tenth more"
+
+
+@pytest.mark.parametrize(
+    ("variant", "message"),
+    [
+        ({"a": {"track.pad": "times 2"}}, r'sweep.variant."a".track.pad: received an unknown key'),
+        ({"a": {"speeds": "1 m/s"}}, r'sweep.variant."a".speeds: .*Did you mean "speed"'),
+        ({"a": {"speed": "1 kg"}}, r'sweep.variant."a".speed: received .1 kg.*allowed: a speed'),
+        ({"a": {"speed": "times fast"}}, r'sweep.variant."a".speed: received .fast.; allowed: a number'),
+        ({"a": {"speed": "plus 3"}}, r'sweep.variant."a".speed: .*Add the unit'),
+        ({"a": {"speed": "minus 3 kg"}}, r'sweep.variant."a".speed: .*a unit that converts to m/s'),
+        ({"a": {"speed": "times -1"}}, r'"a".speed: received .times -1.; allowed: times a number greater'),
+        ({"a": {"speed": "times inf"}}, "times a number greater than 0"),
+        ({"a": {"wheel.roughness": "wood instead of disc"}}, r'"a".wheel.roughness: received .wood'),
+        ({"a": {"kind": "bodies"}}, r'"a".kind: received a key that is changed; allowed: one kind'),
+        ({"a": {}}, r'sweep.variant."a": received {}; allowed: one key or more'),
+        ({"a": 3}, r'sweep.variant."a": received 3; allowed: one key or more'),
+        ({"as it is": {"speed": "1 m/s"}}, 'received this name; allowed: a name of one line other than "as'),
+        ({" ": {"speed": "1 m/s"}}, "received this name"),
+        ({"a\nb": {"speed": "1 m/s"}}, "received this name"),
+        ({}, "sweep.variant: received {}; allowed: names, each with keys and their values"),
+        (["a"], "sweep.variant: received .*; allowed: names"),
+        ({"a": {"x": 1}, "b": {"y": 2}}, "2 errors"),
+    ],
+)
+def test_what_is_wrong_with_a_variant_is_explained(variant, message):
+    with pytest.raises(CaseError, match=message):
+        study_of(RAIL, {"variant": variant})
+
+
+# --- what it does
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    return str(tmp_path_factory.mktemp("cache"))
+
+
+@pytest.fixture(scope="module")
+def table(cache):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ASPERITY_CACHE", cache)
+        return asperity.study(RAIL, {"seed": [1, 2, 3], "variant": VARIANTS}, executor=Here())
+
+
+def test_five_decibels_of_roughness_are_five_decibels_of_force(table, cache, monkeypatch):
+    """The linear law is linear: what roughness makes falls by 5.0 dB, what the load alone makes stays.
+
+    Amplitudes of both add in one way or the other: with a share ε of the load in the amplitude, the level
+    falls by 5 dB and at most 20 lg((1 + 1.78 ε)/(1 − ε)) more or less, 1.78 = 10^(5/20).
+    """
+    monkeypatch.setenv("ASPERITY_CACHE", cache)
+    bare = {"surface.level": "minus 60 dB", "wheel.roughness_level": "minus 60 dB"}
+    load = asperity.study(RAIL, {"seed": [1], "variant": {"bare": bare}}, executor=Here())
+    load = load["force_level"].sel(law="linear", seed=1, variant="bare")
+    force = table["force_level"].sel(law="linear", seed=1)
+    change = force.sel(variant="smooth") - force.sel(variant=AS_IT_IS)
+    share = 10.0 ** ((load - force.sel(variant=AS_IT_IS)) / 20.0)
+    assert (np.abs(change + 5.0) < 20.0 * np.log10((1.0 + 1.79 * share) / (1.0 - share))).all()
+    alone = share < 2e-3
+    assert alone.sum() > 5
+    np.testing.assert_allclose(change[alone], -5.0, atol=0.02)
+    found = effects(table)["effect"].sel(variant="smooth", radiator=["rail", "total"])
+    np.testing.assert_allclose(found, -5.0, atol=0.03)
+
+
+def test_effects_are_differences_within_one_texture(table):
+    """Mean, and Student's interval of the mean, of paired differences; as printed for n = 3, t = 4.303."""
+    level = table["radiated_power_level_a"].sel(law="linear", radiator="rail")
+    paired = (level.sel(variant="soft") - level.sel(variant=AS_IT_IS)).values
+    here = effects(table).sel(variant="soft", radiator="rail")
+    assert float(here["effect"]) == pytest.approx(paired.mean())
+    assert float(here["effect_error"]) == pytest.approx(
+        4.3027 * np.std(paired, ddof=1) / np.sqrt(3), rel=1e-4
+    )
+    assert stats.ttest_1samp(paired, 0.0).confidence_interval(0.95).low == pytest.approx(
+        float(here["effect"] - here["effect_error"])
+    )
+    assert float(here["effect_error"]) < np.ptp(level.sel(variant=AS_IT_IS).values)
+    one = effects(table.isel(seed=[0]).squeeze("seed"))
+    assert float(one["effect"].sel(variant="soft", radiator="rail")) == pytest.approx(paired[0])
+    assert np.isnan(one["effect_error"]).all()
+    assert effects(table, "force_level_a")["effect"].dims == ("variant",)
+
+
+def test_soft_pads_free_the_rail_and_calm_the_sleepers(table):
+    """D. J. Thompson, Railway Noise and Vibration (Elsevier, 2009); and slower is quieter."""
+    found = effects(table)
+    soft = found["effect"].sel(variant="soft")
+    assert float(soft.sel(radiator="rail")) > 1.0
+    assert float(soft.sel(radiator="sleepers")) < -3.0
+    assert float(found["effect"].sel(variant="slow", radiator="total")) < -1.0
+
+
+def test_the_quietest_comes_first_and_what_is_left_out_last(table):
+    found = effects(table)
+    total = found["effect"].sel(radiator="total").values
+    assert (np.diff(total[:-1]) > 0.0).all()
+    assert np.isnan(total[-1])
+    assert found["variant"].values.tolist() == ["smooth", "slow", "soft", "discs"]
+    assert found["left_out"].values.tolist() == ["", "", "", "wheel.roughness is disc, not cast-iron"]
+    of = Effects.of(found)
+    assert of.parts == ["total", "rail", "sleepers"]  # the wheel is rigid, and silent
+    rows = [[cell.text for cell in row] for row in effects_table(of).rows]
+    assert [row[0] for row in rows] == ["as it is", "smooth", "slow", "soft", "discs"]
+    assert rows[0][-1] == "Loudest: rail."
+    assert rows[-1][1:] == ["–", "–", "–", "Left out: wheel.roughness is disc, not cast-iron."]
+    (panel,) = effects_chart(of).panels
+    assert [word for _, word in panel.y.ticks] == ["smooth", "slow", "soft"]
+    assert (panel.y.low, panel.y.high) == (2.5, -0.5)  # the first on top
+    bars = {mark.label: mark for mark in panel.marks if getattr(mark, "label", "")}
+    np.testing.assert_allclose(bars["rail"].right - bars["rail"].left, np.abs(of.effect[:3, 1]))
+
+
+def said(level, effect, error, parts=("rail", "sleepers", "wheel", "total")):
+    dims = ("variant", "radiator")
+    held = {
+        "effect": (dims, [effect]),
+        "effect_error": (dims, [error]),
+        "left_out": ("variant", [""]),
+        "level": ("radiator", level, {"long_name": "", "units": "dB(A) re 1 pW"}),
+    }
+    at = {"variant": ["new"], "radiator": list(parts)}
+    return Effects.of(xarray.Dataset(held, at, {"law": "areal", "seeds": 3})).words(0)
+
+
+def test_an_effect_is_said_in_words():
+    level = [100.0, 90.0, 95.0, 101.5]
+    words = said(level, [-2.1, 1.0, -0.01, -1.7], [0.1, 0.2, 0.0, 0.1])
+    assert words == "Rail 2.1 dB down, sleepers 1.0 up."
+    words = said(level, [-6.0, np.nan, 0.4, -3.0], [0.1, np.nan, 0.5, 0.1])
+    assert words == "Rail 6.0 dB down; loudest then: wheel."
+    assert said(level, [0.1, 0.1, 0.1, 0.1], [0.2] * 4) == "No change that is sure."
+    assert said(level, [0.3, 0.0, 0.0, 0.2], [np.nan] * 4) == "Rail 0.3 dB up."
+
+
+def test_other_tables_have_no_effects(table):
+    for other in (table.isel(variant=0), 3):
+        with pytest.raises(InputError, match='allowed: one with the dimension "variant"'):
+            effects(other)
+    with pytest.raises(InputError, match="quantity: received 'loudness'; allowed: one of"):
+        effects(table, "loudness")
+
+
+def test_more_variants_go_on_where_fewer_were(table, cache, monkeypatch):
+    """The case as it is, and what was changed before, are found; only the new one is computed."""
+    monkeypatch.setenv("ASPERITY_CACHE", cache)
+    again = Here()
+    more = {"seed": [1], "variant": {**VARIANTS, "fast": {"speed": "times 1.1"}}}
+    assert asperity.study(RAIL, more, executor=again)["completed"].values.tolist() == [[1, 1, 1, 0, 1, 1]]
+    assert again.count == 1
+
+
+# --- the ready list
+
+
+def test_the_ready_list_suits_cases_over_a_track():
+    """Its keys exist in both kinds of case; of the main law, from the seed of the case on."""
+    laws = ["areal", "linear"]
+    wheel = what_helps(changed("wheel-on-rail", laws=laws, seed=7))
+    assert wheel.sweep["seed"] == [7, 8, 9]
+    assert {tuple(member.case.laws) for member in wheel.members() if member.case} == {("areal",)}
+    bodies = what_helps(
+        changed(
+            "bodies",
+            over="track",
+            laws=["linear"],
+            surface={"spectrum": "iso3095"},
+            body={"load": "40 kN", "masses": ["600 kg"], "distance": "2 m"},
+        )
+    )
+    assert "body.roughness_level" in bodies.sweep["variant"]["wheel 5 dB smoother"]
+    assert what_helps(RAIL, {"seed": [4]}).sweep["seed"] == [4]
+    with pytest.raises(InputError, match="what helps: received a ball-on-beam case; allowed: a case over"):
+        what_helps(parse_case(BALL))
+
+
+def test_what_helps_stands_in_the_result_of_a_run(table, cache, monkeypatch):
+    """As its schema says, with a chapter of the report."""
+    monkeypatch.setenv("ASPERITY_CACHE", cache)
+    plan = study_of(RAIL, {"seed": [1, 2, 3], "variant": VARIANTS})
+    monkeypatch.setattr("asperity.studies.effects.what_helps", lambda case: plan)
+    tree = with_effects(RAIL, asperity.run(RAIL, brief=True))
+    assert xarray.Dataset.identical(tree["effects"].to_dataset(), effects(table))
+    for name, values in tree["effects"].to_dataset().variables.items():
+        entry = next(e for e in vars(schema).values() if getattr(e, "path", "") == f"effects/{name}")
+        assert (values.dims, values.attrs["units"]) == (entry.dims, entry.units)
+        assert values.attrs["long_name"] == entry.long_name
+    page = asperity.report(tree, "page").read_text(encoding="utf-8")
+    assert '<figure id="what_helps"' in page
+    assert "Left out: wheel.roughness is disc, not cast-iron." in page
+    assert "asperity run case.toml --what-helps" in page
