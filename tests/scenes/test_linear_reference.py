@@ -35,6 +35,9 @@ class Spring:
         at = self.compliance + self.ripple * (1.0 - np.cos(2 * np.pi * x / self.sleeper_spacing))
         return np.multiply.outer(at, np.ones(np.shape(frequency), dtype=complex))
 
+    def places(self, count):
+        return (np.arange(count) + 0.5) * 0.5 * self.sleeper_spacing / count
+
 
 def test_impedances_of_a_real_track_add():
     track, x = Track.named("nordborg"), 0.17

@@ -10,7 +10,13 @@ from asperity.reference.tracks import TRACKS
 from asperity.store import Store
 from asperity.structures import rail_poles as fitting
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
-from asperity.structures.rail_poles import RailPoles, over_the_bay, poles_or_kernel, rail_between, rail_poles
+from asperity.structures.rail_poles import (
+    RailPoles,
+    over_the_period,
+    poles_or_kernel,
+    rail_between,
+    rail_poles,
+)
 from asperity.structures.track import Track
 
 STEP = 50e-6
@@ -163,9 +169,9 @@ def test_kernels_and_fits_are_kept_by_their_content(tmp_path):
 
 
 def test_a_periodic_function_is_tabulated_over_the_bay():
-    fine = over_the_bay(np.sin(2 * np.pi * np.arange(24) / 24))
+    fine = over_the_period(np.sin(2 * np.pi * np.arange(24) / 24), 1)
     np.testing.assert_allclose(fine, np.sin(2 * np.pi * np.linspace(0, 1, len(fine))), atol=1e-4)
-    np.testing.assert_allclose(over_the_bay(np.array([[2.0 + 1j, 3.0]])), [[2.0 + 1j, 3.0]] * len(fine))
+    np.testing.assert_allclose(over_the_period(np.array([[2.0 + 1j, 3.0]]), 1), [[2.0 + 1j, 3.0]] * len(fine))
 
 
 def test_crossing_kernels_are_fitted_within_half_a_percent_of_the_direct_one_and_kept(damped, tmp_path):

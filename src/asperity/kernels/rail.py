@@ -19,10 +19,10 @@ class Channels(NamedTuple):
     receiver: NDArray  # (p,), contact whose displacement it is
     table: NDArray  # (p,), kernel
     first: NDArray  # (n + 1,), first channel of each source, and their number
-    place: NDArray  # (n,), of the contacts at step zero, in sleeper bays
-    stride: float  # distance rolled in a step, in sleeper bays
+    place: NDArray  # (n,), of the contacts at step zero, in periods of the track
+    stride: float  # distance rolled in a step, likewise
     decay: NDArray  # (t, 2 q), poles of the kernels, per step: real parts, then imaginary parts
-    residue: NDArray  # (t, cells + 1, 2 q), at equal places over a bay, both ends included, m/N
+    residue: NDArray  # (t, cells + 1, 2 q), at equal places over a period, both ends included, m/N
     now: NDArray  # (t, cells + 1), displacement at the end of a step for unit force there, m/N
     scattered: NDArray  # (t, positions, taps), kernels that are scattered, m/N; of one tap if none is
     scatters: NDArray  # (t,), whether a kernel is scattered
@@ -30,9 +30,9 @@ class Channels(NamedTuple):
 
 @compiled(**INNER)
 def place(channels, source, step, cells):  # type: ignore[no-untyped-def]
-    """Cell of the bay in which a contact is at a step, and the share of the cell behind it."""
-    bays = channels.place[source] + channels.stride * step
-    at = (bays - np.floor(bays)) * cells
+    """Cell of the period in which a contact is at a step, and the share of the cell behind it."""
+    periods = channels.place[source] + channels.stride * step
+    at = (periods - np.floor(periods)) * cells
     cell = min(int(at), cells - 1)
     return cell, at - cell
 
@@ -41,8 +41,8 @@ def place(channels, source, step, cells):  # type: ignore[no-untyped-def]
 def advance_poles(decay, residue, state, cell, share, force):  # type: ignore[no-untyped-def]
     """Advance the rail by one step under the force at its start, N; return its displacement, m.
 
-    That is the displacement at the end without the force there. The force acts in a cell of the bay, with a
-    share of it behind.
+    That is the displacement at the end without the force there. The force acts in a cell of the period, with
+    a share of it behind.
     """
     low, high = force * (1.0 - share), force * share
     poles = state.shape[0] // 2

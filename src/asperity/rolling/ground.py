@@ -15,7 +15,7 @@ from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
-from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_bay
+from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_period
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,10 +169,11 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
                 pairs.append((source, receiver, known[0] if known else len(tables) - 1))
     source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
     none, weights = np.zeros(0), [each.kernel.weights for each in tables]
+    bays, period = rail.kernel.track.cell_bays, rail.kernel.period
     laid = [
-        (each.poles, over_the_bay(each.residues), np.zeros((1, 1)))
+        (each.poles, over_the_period(each.residues, bays), np.zeros((1, 1)))
         if isinstance(each, RailPoles)
-        else (none, np.zeros((CELLS + 1, 0)), each.weights)
+        else (none, np.zeros((CELLS * bays + 1, 0)), each.weights)
         for each in tables
     ]
     decay = padded([np.stack([poles.real, poles.imag]) for poles, _, _ in laid])
@@ -182,11 +183,11 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
         receiver=receiver,
         table=table,
         first=np.searchsorted(source, np.arange(len(starts) + 1)),
-        place=starts / rail.kernel.spacing,
-        stride=rail.kernel.speed * rail.kernel.time_step / rail.kernel.spacing,
+        place=starts / period,
+        stride=rail.kernel.speed * rail.kernel.time_step / period,
         decay=decay.reshape(len(tables), -1),
-        residue=residue.reshape(len(tables), CELLS + 1, -1),
-        now=np.array([over_the_bay(each[:, 0]) for each in weights]),
+        residue=residue.reshape(len(tables), CELLS * bays + 1, -1),
+        now=np.array([over_the_period(each[:, 0], bays) for each in weights]),
         scattered=padded([scattered for *_, scattered in laid]),
         scatters=np.array([not isinstance(each, RailPoles) for each in tables]),
     )

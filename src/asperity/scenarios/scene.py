@@ -126,7 +126,7 @@ class Scene:
     @property
     def _places(self) -> Array:
         if isinstance(self.over, Track):
-            return (np.arange(POSITIONS) + 0.5) * 0.5 * self.over.sleeper_spacing / POSITIONS
+            return self.over.places(POSITIONS)
         if self.over is None:
             return np.zeros(1)
         begin, end = self.over.extent
@@ -200,10 +200,10 @@ def mean_square_transfer(
     """Mean square over a bay of the contact force per height of the texture, |F/z|², (f,), (N/m)².
 
     As `force_transfer`, at the midpoints of `positions` equal parts of half a bay, which is its own mirror
-    image.
+    image; of bays that differ, all along their cell.
     """
     require(positions >= 1, "positions in a bay", positions, "one or more")
-    x = (np.arange(positions) + 0.5) * 0.5 * track.sleeper_spacing / positions
+    x = track.places(positions)
     return np.mean(np.abs(force_transfer(frequency, wheel, track, stiffness, x)) ** 2, axis=0)
 
 

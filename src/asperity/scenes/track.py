@@ -247,7 +247,7 @@ def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest:
     bands, low, high = third_octave_bands(LOWEST, highest)
     steps = (np.arange(LINES) + 0.5) / LINES
     frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
-    places = (np.arange(POSITIONS) + 0.5) * 0.5 * track.sleeper_spacing / POSITIONS
+    places = track.places(POSITIONS)
 
     def levels(rail: Track) -> Array:
         moved = rail.receptance(frequency, places, places)

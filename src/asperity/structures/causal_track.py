@@ -57,12 +57,12 @@ def causal_track(track: Track, cache: Cache | None = None) -> Track:
     three rigid wheels on a linear contact, in the strengths of the Maxwell elements of pads and ballast. None
     of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps it in all
     bands, and its stiffness at 300 Hz. At rest, and under a load that hardly moves, the track is softer than
-    the nominal one. A cache keeps the fit.
+    the nominal one. Of bays that differ, the nominal one is fitted. A cache keeps the fit.
     """
     if track.is_causal:
         return track
     if track not in _fitted:
-        _fitted[track] = replace(track, relaxations=_relaxations(track, cache))
+        _fitted[track] = replace(track, relaxations=_relaxations(track.regular, cache))
     return _fitted[track]
 
 
@@ -118,7 +118,7 @@ class _Fit:
         self.coarse = np.concatenate([coarse.real, coarse.imag])
         self.least = np.zeros((len(self.lossy), 1 + len(FREQUENCIES)))
         self.least[:, 0] = [least_static(eta) for eta in self.lossy.values()]
-        self.places = (np.arange(POSITIONS) + 0.5) * 0.5 * track.sleeper_spacing / POSITIONS
+        self.places = track.places(POSITIONS)
         self.carried = [1.0 / CONTACT - 1.0 / (mass * self.omega**2) for mass in WHEELS]
         nominal = self.receptance(track)
         self.wanted = [self.banded(np.abs(1.0 / (carried + nominal)) ** 2) for carried in self.carried]

@@ -59,9 +59,8 @@ class CellWaves:
 
     def carried(self, first: int, last: int) -> Complex:
         """Change of each wave (2, f) from one of the equal parts to another one, in either direction."""
-        length = self.edges[-1] / self.bays
-        ends = sorted((first, last))
-        return self._carried(*(replace(self, start=end * length)._span(0.0)[0] for end in ends))
+        ends = (divmod(end, self.bays) for end in sorted((first, last)))
+        return self._carried(*(cell * len(self.steps) + self.bay(part)._span(0.0)[0] for cell, part in ends))
 
     def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= spacing, m."""
@@ -283,3 +282,45 @@ def _range_without(a: Complex, eigenvalue: Complex) -> Complex:
     columns = a - eigenvalue * np.eye(2)[:, :, None]
     larger = np.sum(np.abs(columns) ** 2, axis=0).argmax(axis=0)
     return _normed(np.take_along_axis(columns, larger[None, None], axis=1)[:, 0])[0]
+
+
+_FAR = 40.0
+"""Characteristic lengths of a rail on its supports to where a force is not felt: exp(-40)."""
+
+_SAME = 1e-9  # of the cell: a place as near to a support is at it
+
+
+def static_receptance_of_cell(
+    stiffness: float, shear: float, supports: Array, lengths: Array, x: float
+) -> float:
+    """Static deflection per unit force, m/N, at a place x, m, by beam elements, which are exact at rest.
+
+    As `asperity.structures.periodic_rail.static_receptance`; stiffnesses (n,), N/m, of the supports, each
+    followed by a distance to the next (n,), m.
+    """
+    period = float(np.sum(lengths))
+    characteristic = (4.0 * stiffness * period / np.sum(supports)) ** 0.25
+    cells = 1 + int(np.ceil(_FAR * characteristic / period))
+    within = np.concatenate([[0.0], np.cumsum(lengths[:-1])])
+    nodes = (within + period * np.arange(-cells, cells + 1)[:, None]).ravel()
+    held, at = np.tile(supports, 2 * cells + 1), x % period
+    node = int(np.argmin(np.abs(nodes - at)))
+    if abs(nodes[node] - at) > _SAME * period:
+        node = int(np.searchsorted(nodes, at))
+        nodes, held = np.insert(nodes, node, at), np.insert(held, node, 0.0)
+    matrix = np.zeros((2 * nodes.size, 2 * nodes.size))
+    matrix[::2, ::2] = np.diag(held)
+    for first, span in enumerate(np.diff(nodes)):
+        soft = 12.0 * stiffness * shear / span**2
+        six, near, far = 6.0 * span, (4.0 + soft) * span**2, (2.0 - soft) * span**2
+        beam = [
+            [12.0, six, -12.0, six],
+            [six, near, -six, far],
+            [-12.0, -six, 12.0, -six],
+            [six, far, -six, near],
+        ]
+        own = slice(2 * first, 2 * first + 4)
+        matrix[own, own] += stiffness / (span**3 * (1.0 + soft)) * np.array(beam)
+    force = np.zeros(2 * nodes.size)
+    force[2 * node] = 1.0
+    return float(np.linalg.solve(matrix, force)[2 * node])

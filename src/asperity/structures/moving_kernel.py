@@ -14,6 +14,7 @@ from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
 from asperity.store import Cache, content_key, made
 from asperity.structures.causal_track import causal_track
+from asperity.structures.cell_waves import CellWaves
 from asperity.structures.periodic_rail import PeriodicWaves
 from asperity.structures.track import Track
 from asperity.threads import thread_count
@@ -40,7 +41,7 @@ class HatResponse:
         self.omega = 2.0 * np.pi / period * np.arange(zones * taps + 1) - 1j * self.shift
         half = 0.5 * self.omega * time_step
         self.hat = (np.sin(half) / half) ** 2
-        self.waves: PeriodicWaves = track.waves(self.omega)
+        self.waves: PeriodicWaves | CellWaves = track.waves(self.omega)
 
     def response(self, spectra: Complex) -> Array:
         """Response to the hat at lags 0 … taps − 1 from receptances times the hat, (k, f) → (k, taps)."""
@@ -77,9 +78,10 @@ class MovingKernel:
     """Response of the rail at the moving contact to one hat of force.
 
     Row s, column k of the weights: displacement at x_s + k v Δt, k steps after a force that rises to 1 N and
-    falls again, linearly, within a step each, at x_s = s L/positions; m/N. Column 0 stands for the rising
-    half alone. A force that is linear over each step displaces the rail by the sum of its values times these
-    weights. With a distance, the displacement is that of another contact, which runs so far ahead.
+    falls again, linearly, within a step each, at x_s = s P/positions, P the period of the track; m/N. Column
+    0 stands for the rising half alone. A force that is linear over each step displaces the rail by the sum of
+    its values times these weights. With a distance, the displacement is that of another contact, which runs
+    so far ahead.
     """
 
     track: Track  # with relaxations where it has loss factors
@@ -95,8 +97,13 @@ class MovingKernel:
 
     @property
     def spacing(self) -> float:
-        """Distance of the sleepers, m."""
+        """Mean distance of the sleepers, m."""
         return self.track.sleeper_spacing
+
+    @property
+    def period(self) -> float:
+        """Length after which the track repeats, m."""
+        return self.track.period
 
     @property
     def lag(self) -> Array:
@@ -125,9 +132,9 @@ def moving_kernel(
 
     The track must dissipate; where it has constant loss factors, the kernel is that of its `causal_track`.
     The speed is below the critical one. The kernel lasts for `duration`, s, by default until it has died
-    away, at most 0.6 s, with a warning. Start positions in one bay are equally spaced; between them kernels
-    are interpolated. With a `distance`, m, it is the displacement of a second contact, so far ahead of the
-    force, or behind, at the same speed.
+    away, at most 0.6 s, with a warning. Start positions are equally spaced, so many to a bay; between them
+    kernels are interpolated. With a `distance`, m, it is the displacement of a second contact, so far ahead
+    of the force, or behind, at the same speed.
 
     Inverse Fourier transform of the exact receptance G(x_s + vτ | x_s) times that of the hat,
     sin²(ωΔt/2)/(ωΔt/2)², along ω − iσ and folded at half the sampling frequency; between the nodes of a bay
@@ -191,39 +198,56 @@ def _weights(
     near: HatResponse, speed: float, positions: int, distance: float, progress: Progress | None
 ) -> Array:
     """All rows of the kernel; near the contact receptances are folded as that response says."""
-    taps, time_step, bay_length = near.taps, near.time_step, near.waves.spacing
+    taps, time_step, track = near.taps, near.time_step, near.track
+    bays, bay_length = track.cell_bays, track.sleeper_spacing
     spacing, nodes = bay_length / positions, np.linspace(0.0, bay_length, positions + 1)
-    far = HatResponse(near.track, time_step, taps, 1)
-    shapes = {grid: [s[:-1] for s in grid.waves.symmetric_shapes(nodes)] for grid in (near, far)}
+    far = HatResponse(track, time_step, taps, 1)
+    mirrored = not (distance or track.bays)
+    begin = int(np.floor(distance / spacing)) - 1
+    shapes: dict[tuple[HatResponse, int], tuple[Complex, Complex]] = {}
+    end = int(distance / spacing + positions + taps * speed * time_step / spacing) + 2
 
-    def row(start: int) -> Array:
+    def row(number: int) -> Array:
+        own, start = divmod(number, positions)
         at = start + distance / spacing + np.arange(taps) * (speed * time_step / spacing)  # in nodes
         base = np.floor(at).astype(int)
         cubic, result = lagrange_weights(at - base), np.zeros(taps)
-        first = int(base[0] - 1) // positions if distance else 0
+        first = 0 if mirrored else int(base[0] - 1) // positions
         for bay in range(first, int(base[-1] + 2) // positions + 1):
             grid = near if bay in (-1, 0) else far
-            outgoing, incoming = shapes[grid]
-            amplitude = grid.hat * grid.waves.coefficients * grid.waves.multipliers ** abs(bay)
+            here, (outgoing, incoming) = shapes[grid, own], shapes[grid, (own + bay) % bays]
+            amplitude = grid.hat * grid.waves.coefficients * grid.waves.carried(own, own + bay)
             behind = positions if bay < 0 else start if bay == 0 else 0  # by reciprocity
-            spectra = _over_waves(amplitude * incoming[start], outgoing)
-            spectra[:behind] = _over_waves(amplitude * outgoing[start], incoming[:behind])
+            spectra = _over_waves(amplitude * here[1][start], outgoing)
+            spectra[:behind] = _over_waves(amplitude * here[0][start], incoming[:behind])
             response = grid.response(spectra)
             for weight, offset in zip(cubic, range(-1, 3), strict=True):
                 node = base + offset - bay * positions
-                if bay == 0 and start == 0 and not distance:
+                if bay == 0 and start == 0 and mirrored:
                     node = np.abs(node)  # the track is symmetric about a sleeper
-                here = np.flatnonzero((node >= 0) & (node < positions))
-                result[here] += weight[here] * response[node[here], here]
+                within = np.flatnonzero((node >= 0) & (node < positions))
+                result[within] += weight[within] * response[node[within], within]
         return result
 
-    weights = np.zeros((positions, taps))
+    weights = np.zeros((bays * positions, taps))
     with ThreadPoolExecutor(thread_count()) as pool:
-        for done, found in enumerate(pool.map(row, range(positions))):
-            weights[done] = found
-            if progress is not None:
-                progress(done + 1, positions, f"moving kernel of {taps * time_step:.2g} s")
+        for own in range(bays):
+            needed = {(grid, own) for grid in (near, far)}
+            for bay in range(begin // positions, end // positions + 1):
+                needed.add((near if bay in (-1, 0) else far, (own + bay) % bays))
+            shapes = {each: shapes.get(each) or _shapes(*each, nodes) for each in needed}
+            rows = range(own * positions, (own + 1) * positions)
+            for number, found in zip(rows, pool.map(row, rows), strict=True):
+                weights[number] = found
+                if progress is not None:
+                    progress(number + 1, len(weights), f"moving kernel of {taps * time_step:.2g} s")
     return weights
+
+
+def _shapes(grid: HatResponse, bay: int, nodes: Array) -> tuple[Complex, Complex]:
+    """Shapes of the waves at all nodes of a bay but the last, two of (positions, 2, f)."""
+    outgoing, incoming = grid.waves.bay(bay).symmetric_shapes(nodes)
+    return outgoing[:-1], incoming[:-1]
 
 
 def _over_waves(amplitude: Complex, shapes: Complex) -> Complex:

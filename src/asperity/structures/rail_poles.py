@@ -21,6 +21,8 @@ POLES = 100
 """Poles of a rail where nothing is said of them."""
 CELLS = 192
 """Places in one bay at which residues are tabulated; between them they are linear."""
+ROWS = 48
+"""Start positions of bays that differ from which poles are fitted: they are common to all."""
 LOWEST = 2.0
 """Lowest frequency of the fit, Hz."""
 LINES = 300
@@ -102,7 +104,7 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = 
     if count % 2 or not 4 <= count <= most:
         allowed = f"an even number from 4 to {most}, a tenth of the kernel's lags or {LINES}"
         raise InputError("number of poles", count, allowed)
-    key = content_key("rail-poles", kernel.weights, kernel.time_step, count, ITERATIONS, LINES, GONE)
+    key = content_key("rail-poles", kernel.weights, kernel.time_step, count, ITERATIONS, LINES, GONE, ROWS)
 
     def make() -> dict[str, NDArray[Any]]:
         poles = _poles(kernel, count)
@@ -173,7 +175,7 @@ def _poles(kernel: MovingKernel, count: int) -> Complex:
     """Common poles, by vector fitting on the unit circle."""
     half, taps = 0.5 / kernel.time_step, kernel.weights.shape[1]
     angle, lag = _angles(kernel.time_step), np.arange(1, taps)
-    weights = kernel.weights[:, 1:].astype(complex)
+    weights = kernel.weights[_spread(kernel), 1:].astype(complex)
     pieces = np.array_split(angle, math.ceil(angle.size / PIECE))  # the whole matrix is fifty megabytes
     transform = np.hstack([weights @ np.exp(-1j * lag[:, None] * piece) for piece in pieces])
     size = np.sqrt(np.mean(np.abs(transform) ** 2, axis=0))
@@ -189,6 +191,14 @@ def _poles(kernel: MovingKernel, count: int) -> Complex:
         iterations=ITERATIONS,
         radius=float(np.exp(-slowest)),
     ).poles
+
+
+def _spread(kernel: MovingKernel) -> NDArray[np.int64]:
+    """Start positions to fit poles from: all of one bay, or some all over bays that differ (golden ratio)."""
+    count = len(kernel.weights)
+    if kernel.track.cell_bays == 1:
+        return np.arange(count)
+    return np.unique((0.5 * (np.sqrt(5.0) - 1.0) * np.arange(ROWS) % 1.0 * count).astype(np.int64))
 
 
 def _decays(poles: Complex, lags: int) -> Complex:
@@ -208,15 +218,15 @@ def _residues(weights: Array, poles: Complex) -> Complex:
     return paired(least_squares(matrix, right, DETERMINED), poles)
 
 
-def over_the_bay(values: NDArray[Any]) -> NDArray[Any]:
-    """Values (positions, ...) at the start positions of a kernel, tabulated over a bay: (CELLS + 1, ...).
+def over_the_period(values: NDArray[Any], bays: int) -> NDArray[Any]:
+    """Values (positions, ...) at the start positions of a kernel, tabulated over so many bays, the period.
 
-    At equal places, both ends of the bay included, by a periodic cubic spline.
+    At equal places, `CELLS` to a bay and both ends of the period, by a periodic cubic spline.
     """
     count = len(values)
     around = np.concatenate([values, values[:1]])
     spline = scipy.interpolate.CubicSpline(np.arange(count + 1), around, bc_type="periodic")
-    return np.asarray(spline(np.linspace(0.0, count, CELLS + 1)))
+    return np.asarray(spline(np.linspace(0.0, count, CELLS * bays + 1)))
 
 
 NEGLIGIBLE = 0.01
@@ -301,7 +311,7 @@ def rail_between(
     lengths = np.unique(np.abs(apart[apart != 0.0]))
     kernel = direct.kernel
     crossing: dict[float, RailPoles | MovingKernel] = {}
-    positions, taps = kernel.weights.shape
+    positions, taps = len(kernel.weights) // kernel.track.cell_bays, kernel.weights.shape[1]
     like = {"duration": taps * kernel.time_step, "positions": positions, "cache": cache}
     for done, length in enumerate(lengths):
         if reach is not None and length > reach:

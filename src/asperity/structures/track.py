@@ -12,6 +12,8 @@ from asperity.arguments import Array, Complex, finite_array, not_negative, posit
 from asperity.errors import InputError
 from asperity.parameters import Number, Quantity, keys_of, parameter
 from asperity.reference.tracks import named_track
+from asperity.structures.bays import Bays, Share
+from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
 from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
 from asperity.structures.rail import Rail
 from asperity.structures.support import Chain, ConstantLoss, Relaxation, RigidMass, Spring
@@ -26,6 +28,8 @@ class Relaxations:
     ballast: Relaxation | None = None
 
 
+_SCALED = ("stiffness", "damping")
+"""Of pads and ballast, in bays that differ."""
 VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
 _STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
 _LOSS = Number(at_least=0, at_most=5)
@@ -34,9 +38,10 @@ _RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies
 
 @dataclass(frozen=True)
 class Track:
-    """Rail of infinite length on equal supports, Euler-Bernoulli or Timoshenko.
+    """Rail of infinite length on supports, Euler-Bernoulli or Timoshenko.
 
-    Each support is a pad (spring and damper) on a rigid half sleeper on ballast (spring and damper).
+    Each support is a pad (spring and damper) on a rigid half sleeper on ballast (spring and damper). All are
+    equal, or repeat after a cell of bays that differ.
     All stiffnesses, dampers and masses are those under one rail.
 
     Parameters
@@ -67,6 +72,8 @@ class Track:
         Where the values come from, one text per parameter.
     relaxations : Relaxations, optional
         Causal stiffnesses that stand for the loss factors, as `asperity.structures.causal_track` finds them.
+    bays : Bays, optional
+        How the bays of a cell differ, after which the track repeats; of equal bays by default.
 
     Raises
     ------
@@ -157,6 +164,7 @@ class Track:
     name: str = ""
     sources: tuple[str, ...] = ()
     relaxations: Relaxations | None = None
+    bays: Bays | None = None
 
     def __post_init__(self) -> None:
         for name, key in keys_of(type(self), "").items():
@@ -243,6 +251,53 @@ class Track:
         return bool(self.rail_loss_factor or self.pad_loss_factor or self.ballast_loss_factor)
 
     @property
+    def cell_bays(self) -> int:
+        """Number of bays after which the track repeats."""
+        return len(self._lengths)
+
+    @property
+    def period(self) -> float:
+        """Length after which the track repeats, m."""
+        return self.cell_bays * self.sleeper_spacing
+
+    @property
+    def sleepers(self) -> Array:
+        """Places of the sleepers of a cell (n,), from zero, m."""
+        return np.concatenate([[0.0], np.cumsum(self._lengths[:-1])])
+
+    @property
+    def regular(self) -> Track:
+        """The track whose bays are all nominal."""
+        return replace(self, bays=None)
+
+    @property
+    def bay_tracks(self) -> list[Track]:
+        """Tracks of equal bays, one for each bay of the cell, on such supports as it begins with."""
+        return [self.regular._scaled(each) for each in (self.bays or Bays.equal()).shares]
+
+    def _scaled(self, share: Share) -> Track:
+        """With pads and ballast scaled, their damping with them."""
+        scaled = {f"{part}_{what}": factor for part, factor in share._asdict().items() for what in _SCALED}
+        given = {key: factor * getattr(self, key) for key, factor in scaled.items() if getattr(self, key)}
+        return replace(self, **given)
+
+    @property
+    def mid_spans(self) -> Array:
+        """Places half way between the sleepers of a cell (n,), m."""
+        return self.sleepers + 0.5 * self._lengths
+
+    @property
+    def _lengths(self) -> Array:
+        """Of the bays of a cell, m."""
+        return self.sleeper_spacing * (self.bays.lengths if self.bays else np.ones(1))
+
+    def places(self, count: int) -> Array:
+        """Places to average over, m: so many in half a bay, its own mirror image, or all along other bays."""
+        if not self.bays:
+            return (np.arange(count) + 0.5) * 0.5 * self.sleeper_spacing / count
+        return (np.arange(2 * count * self.cell_bays) + 0.5) * 0.5 * self.sleeper_spacing / count
+
+    @property
     def nominal(self) -> Track:
         """The track with its constant loss factors, without relaxations."""
         return replace(self, relaxations=None)
@@ -252,7 +307,7 @@ class Track:
         """Whether anything in the track dissipates."""
         return bool(self._is_lossy or self.pad_damping or self.ballast_damping)
 
-    def waves(self, omega: ArrayLike) -> PeriodicWaves:
+    def waves(self, omega: ArrayLike) -> PeriodicWaves | CellWaves:
         """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `Chain`.
 
         Without any damping the outgoing wave is that of a damping which vanishes. An `InputError` says if the
@@ -261,7 +316,11 @@ class Track:
         omega = np.atleast_1d(np.asarray(omega, dtype=complex))
         if not self.is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)
-        return periodic_waves(*self.rail.waves(omega), self.support.stiffness(omega), self.sleeper_spacing)
+        rail, spacing = self.rail.waves(omega), self.sleeper_spacing
+        if not self.bays:
+            return periodic_waves(*rail, self.support.stiffness(omega), spacing)
+        supports = np.array([each.support.stiffness(omega) for each in self.bay_tracks])
+        return cell_waves(*rail, supports, self._lengths, self.cell_bays)
 
     def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> Complex:
         """Displacement at `x` per harmonic force at `x0`.
@@ -299,7 +358,8 @@ class Track:
     @property
     def foundation_stiffness(self) -> float:
         """Static stiffness of the supports per length s = K(0)/L, N/m^2."""
-        return self.support.static / self.sleeper_spacing
+        static = np.mean([each.support.static for each in self.bay_tracks])
+        return float(static) / self.sleeper_spacing
 
     def static_deflection(self, force: float, x: float = 0.0) -> float:
         """Deflection under a constant force at rest, at the force.
@@ -316,8 +376,11 @@ class Track:
         float
             m. Exact for discrete supports; with relaxations, when all of them have come to an end.
         """
-        spacing = self.sleeper_spacing
-        return force * static_receptance(*self.rail.static, self.support.static, spacing, x % spacing)
+        spacing, rail = self.sleeper_spacing, self.rail.static
+        if not self.bays:
+            return force * static_receptance(*rail, self.support.static, spacing, x % spacing)
+        supports = np.array([each.support.static for each in self.bay_tracks])
+        return force * static_receptance_of_cell(*rail, supports, self._lengths, x)
 
     @property
     def critical_speed(self) -> float:
@@ -382,7 +445,7 @@ class Track:
 
 
 _PARAMETERS = tuple(
-    each.name for each in fields(Track) if each.name not in ("name", "sources", "relaxations")
+    each.name for each in fields(Track) if each.name not in ("name", "sources", "relaxations", "bays")
 )
 
 EN_15461_BAYS = (
@@ -395,25 +458,28 @@ EN_15461_BAYS = (
 def decay_rate(track: Track, frequency: ArrayLike) -> Array:
     """Decay rate, dB/m, of the wave that reaches farthest, from its change over one bay; frequencies in Hz.
 
-    -20 lg|lambda|/L of the larger multiplier.
+    -20 lg|lambda|/L of the larger multiplier; of a cell of bays that differ, over all of it.
     """
     frequency = finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0)
     largest = np.abs(track.waves(2.0 * np.pi * frequency.ravel()).multipliers).max(axis=0)
-    return (-20.0 * np.log10(largest) / track.sleeper_spacing).reshape(frequency.shape)
+    return (-20.0 * np.log10(largest) / track.period).reshape(frequency.shape)
 
 
 def decay_rate_en15461(track: Track, frequency: ArrayLike) -> Array:
     """Decay rate, dB/m, as a measurement by EN 15461 finds it, force at mid-span; frequencies in Hz.
 
     It differs from `decay_rate` as measurements do: the near field at the force raises it, up to twofold for
-    an Euler-Bernoulli rail, and 66 bays bound it from below.
+    an Euler-Bernoulli rail, and 66 bays bound it from below. Where bays differ, it is the mean of forces in
+    the middle of each, at distances in bays of the mean length.
     """
     frequency = finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0)
     waves = track.waves(2.0 * np.pi * frequency.ravel())
-    force = 0.5 * track.sleeper_spacing
     distances = track.sleeper_spacing * np.array(EN_15461_BAYS)
-    responses = np.array([waves.receptance(force + distance, force) for distance in distances])
-    return decay_rate_of_responses(distances, np.abs(responses)).reshape(frequency.shape)
+    rates = []
+    for force in track.mid_spans:
+        responses = np.array([waves.receptance(force + distance, force) for distance in distances])
+        rates.append(decay_rate_of_responses(distances, np.abs(responses)))
+    return np.mean(rates, axis=0).reshape(frequency.shape)
 
 
 def decay_rate_of_responses(distances: ArrayLike, responses: ArrayLike) -> Array:

@@ -1,0 +1,203 @@
+"""Tracks whose bays differ: against equal bays, beam elements of 120 bays, and a published trend."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import solve_banded
+
+from asperity import Track
+from asperity.errors import InputError
+from asperity.structures.bays import Bays
+from asperity.structures.moving_kernel import moving_kernel
+from asperity.structures.rail_poles import rail_between, rail_poles
+from asperity.structures.track import decay_rate, decay_rate_en15461
+
+EULER = Track.named("x2000")
+UIC60 = Track.named("uic60")
+VARIED = Bays.drawn(6, spacing=0.05, pad=0.2, ballast=0.3, seed=4)
+STEP = 5e-5
+
+
+def in_bays(track: Track, bays: Bays = VARIED) -> Track:
+    return replace(track, bays=bays)
+
+
+def beam_elements(track: Track, frequency: float, x0: float, places: np.ndarray, per_bay: int) -> np.ndarray:
+    """Receptance of 120 bays of Timoshenko beam elements with consistent mass, whose ends are free."""
+    omega, lengths = 2.0 * np.pi * frequency, np.tile(track.bays.lengths * track.sleeper_spacing, 20)
+    sleepers = np.concatenate([[0.0], np.cumsum(lengths)]) - 10 * track.period
+    parts = np.linspace(0.0, 1.0, per_bay, endpoint=False)
+    nodes = (sleepers[:-1, None] + lengths[:, None] * parts).ravel()
+    nodes = np.unique(np.concatenate([nodes, sleepers[-1:], [x0], places]))
+    nodes = nodes[np.concatenate([[True], np.diff(nodes) > 1e-6])]
+    banded = np.zeros((7, 2 * nodes.size), complex)
+    bending = track.bending_stiffness * (1.0 + 1j * track.rail_loss_factor)
+    for first, span in enumerate(np.diff(nodes)):
+        ratio = 12.0 * track.bending_stiffness / ((track.shear_stiffness or 1e15) * span**2)
+        six, near, far = 6.0 * span, (4.0 + ratio) * span**2, (2.0 - ratio) * span**2
+        stiff = [[12, six, -12, six], [six, near, -six, far], [-12, -six, 12, -six], [six, far, -six, near]]
+        matrix = bending / (span**3 * (1 + ratio)) * np.array(stiff) - omega**2 * masses(track, span, ratio)
+        for i in range(4):
+            for j in range(4):
+                banded[3 + i - j, 2 * first + j] += matrix[i, j]
+    for number, sleeper in enumerate(sleepers[:-1]):
+        share = track.bays.pad[number % 6], track.bays.ballast[number % 6]
+        banded[3, 2 * np.argmin(np.abs(nodes - sleeper))] += by_hand(track, omega, *share)
+    force = np.zeros(2 * nodes.size, complex)
+    force[2 * np.argmin(np.abs(nodes - x0))] = 1.0
+    moved = solve_banded((3, 3), banded, force)[::2]
+    return np.array([moved[np.argmin(np.abs(nodes - x))] for x in places])
+
+
+def masses(track: Track, span: float, ratio: float) -> np.ndarray:
+    """Consistent mass of a Timoshenko element (Friedman and Kosmatka 1993), by Gauss's rule on its shapes."""
+    node, weight = np.polynomial.legendre.leggauss(4)
+    s, total = 0.5 * (node + 1.0), np.zeros((4, 4))
+    for at, share in zip(s, 0.5 * span * weight, strict=True):
+        w = np.array(
+            [
+                2 * at**3 - 3 * at**2 - ratio * at + 1 + ratio,
+                span * (at**3 - (2 + ratio / 2) * at**2 + (1 + ratio / 2) * at),
+                -(2 * at**3 - 3 * at**2 - ratio * at),
+                span * (at**3 - (1 - ratio / 2) * at**2 - ratio / 2 * at),
+            ]
+        ) / (1 + ratio)
+        turned = np.array(
+            [
+                6 / span * (at**2 - at),
+                3 * at**2 - (4 + ratio) * at + 1 + ratio,
+                -6 / span * (at**2 - at),
+                3 * at**2 - (2 - ratio) * at,
+            ]
+        ) / (1 + ratio)
+        total += share * (
+            track.mass_per_length * np.outer(w, w) + (track.rotary_inertia or 0.0) * np.outer(turned, turned)
+        )
+    return total
+
+
+def by_hand(track: Track, omega: float, pad_share: float, ballast_share: float) -> complex:
+    """Stiffness of a support whose pad and ballast are scaled with their damping."""
+    pad, ballast = (
+        share
+        * (
+            getattr(track, f"{part}_stiffness") * (1 + 1j * (getattr(track, f"{part}_loss_factor") or 0.0))
+            + 1j * omega * (getattr(track, f"{part}_damping") or 0.0)
+        )
+        for part, share in (("pad", pad_share), ("ballast", ballast_share))
+    )
+    below = ballast - omega**2 * track.sleeper_mass
+    return pad * below / (pad + below)
+
+
+@pytest.mark.parametrize("named", ["x2000", "uic60"])
+@pytest.mark.parametrize("frequency", [80.0, 160.0, 330.0, 700.0, 1050.0, 1250.0, 2500.0])
+def test_it_is_a_track_of_120_bays_of_beam_elements(named: str, frequency: float) -> None:
+    track = in_bays(Track.named(named, rail_loss_factor=0.02))
+    places, x0 = np.array([0.3, 0.61, 2.7]), 0.3
+    found = track.receptance(frequency, places, [x0] * 3)
+    coarse, fine = (beam_elements(track, frequency, x0, places, count) for count in (8, 16))
+    expected = (4.0 * fine - coarse) / 3.0  # shear is constant in an element: second order
+    assert 20.0 * np.abs(np.log10(np.abs(found / expected))).max() < 0.05
+    assert np.abs(np.angle(found / expected)).max() < 0.01
+
+
+@pytest.mark.parametrize("track", [EULER, UIC60])
+def test_equal_bays_are_one(track: Track) -> None:
+    cell, frequency = in_bays(track, Bays.equal(5)), np.geomspace(40.0, 5e3, 20)
+    for rate in (decay_rate, decay_rate_en15461):
+        assert rate(cell, frequency) == pytest.approx(rate(track, frequency), rel=1e-9)
+    for x in (0.0, 0.2, 1.5, -0.1):
+        assert cell.static_deflection(7e4, x) == pytest.approx(track.static_deflection(7e4, x), rel=1e-10)
+    assert cell.critical_speed == pytest.approx(track.critical_speed, rel=1e-12)
+    assert (cell.period, cell.mid_spans[-1]) == pytest.approx((5 * 0.6, 2.7))
+
+
+@pytest.mark.parametrize("distance", [0.0, 1.3, -2.5])
+def test_kernels_of_equal_bays_are_that_of_one(distance: float) -> None:
+    like = {"duration": 0.03, "positions": 6, "distance": distance}
+    one = moving_kernel(EULER, 56.0, STEP, **like).weights
+    cell = moving_kernel(in_bays(EULER, Bays.equal(3)), 56.0, STEP, **like).weights.reshape(3, *one.shape)
+    assert np.abs(cell - one).max() < 1e-9 * np.abs(one).max()
+
+
+def test_a_kernel_at_rest_is_the_receptance_of_its_bay() -> None:
+    kernel = moving_kernel(in_bays(EULER), 0.0, STEP, positions=4)
+    frequency = np.array([60.0, 400.0, 1300.0])
+    transform = kernel.weights @ np.exp(-2j * np.pi * frequency * kernel.lag[:, None])
+    for row in (0, 5, 15, 23):
+        x = row * kernel.period / 24
+        expected = kernel.track.receptance(frequency, x, x) * np.sinc(frequency * STEP) ** 2
+        assert transform[row] == pytest.approx(expected, rel=0.01)
+
+
+def test_poles_stand_for_all_bays_and_contacts_feel_each_other_across_them() -> None:
+    kernel = moving_kernel(in_bays(EULER, Bays.drawn(3, ballast=0.4, seed=1)), 56.0, 2e-4, positions=6)
+    poles = rail_poles(kernel, 60)
+    assert poles.accepted
+    assert poles.residues.shape == (18, 60 // 2 + np.sum(poles.poles.imag == 0) // 2)
+    between = rail_between(poles, [0.0, 2.5])
+    assert between.between(2.5).kernel.weights.shape == kernel.weights.shape
+
+
+def test_a_force_at_rest_is_felt_at_the_other_place_alike() -> None:
+    """Reciprocity, of kernels in time: what is ahead of one place is behind the other."""
+    track, apart = in_bays(EULER), 12 * 0.6 / 4
+    ahead, behind = (
+        moving_kernel(track, 0.0, STEP, duration=0.03, positions=4, distance=d).weights
+        for d in (apart, -apart)
+    )
+    assert np.abs(np.roll(behind, -12, axis=0) - ahead).max() < 1e-9 * np.abs(ahead).max()
+
+
+def test_static_deflection_is_the_limit_of_the_receptance() -> None:
+    for track in (in_bays(EULER), in_bays(UIC60)):
+        for x in (0.0, 0.25, 2.9):
+            slow = replace(track, pad_loss_factor=None, ballast_loss_factor=None, rail_loss_factor=0.0)
+            limit = slow.receptance(0.3, x, x).real
+            assert limit == pytest.approx(slow.static_deflection(1.0, x), rel=1e-4)
+
+
+def test_scattered_sleepers_lower_and_widen_the_pinned_pinned_peak() -> None:
+    """T. X. Wu and D. J. Thompson, Acustica 86 (2000) 313-321: it may be suppressed by random spacing."""
+    frequency, track = np.linspace(1000.0, 1400.0, 201), Track.named("nordborg")
+    peaks = [np.abs(track.receptance(frequency, 0.3, 0.3))]
+    for scatter in (0.02, 0.05, 0.1):
+        cell = in_bays(track, Bays.drawn(30, spacing=scatter, seed=1))
+        scattered = np.abs(cell.receptance(frequency, cell.mid_spans, cell.mid_spans))
+        peaks.append(np.sqrt(np.mean(scattered**2, axis=0)))
+    assert scattered.max() < 0.7 * peaks[0].max()
+    heights = [each.max() / peaks[0].max() for each in peaks]
+    widths = [np.mean(each > each.max() / np.sqrt(2.0)) for each in peaks]
+    assert np.all(np.diff(heights) < -0.05)
+    assert np.all(np.diff(widths) > 0.0)
+
+
+def test_draws_are_those_of_their_seed_alone() -> None:
+    bays = Bays.drawn(100, spacing=0.05, pad=0.1, ballast=0.2, seed=2)
+    assert bays == Bays.drawn(100, spacing=0.05, pad=0.1, ballast=0.2, seed=2)
+    assert bays.pad == Bays.drawn(100, pad=0.1, seed=2).pad
+    assert np.mean(bays.spacing) == pytest.approx(1.0, abs=1e-12)
+    for values, scatter in ((bays.spacing, 0.05), (bays.pad, 0.1), (bays.ballast, 0.2)):
+        assert np.std(values) == pytest.approx(scatter, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (
+            lambda: Bays.drawn(20, spacing=0.9, seed=1),
+            "spacing of the bays: received -.*times the nominal one in bay",
+        ),
+        (lambda: Bays.drawn(50, ballast=0.6, seed=1), "ballast of the bays: .*Lower its scatter"),
+        (lambda: Bays.drawn(5, pad=-0.1), "scatter of the pad"),
+        (lambda: Bays.drawn(101), "bays of a cell"),
+        (lambda: Bays((1.0, 1.0), (1.0,), (1.0, 1.0)), "pad of the bays: received 1 values"),
+        (lambda: Bays((1.0, 1.2), (1.0, 1.0), (1.0, 1.0)), "mean spacing"),
+        (lambda: Bays((1.0,), (np.nan,), (1.0,)), "pad of the bays"),
+    ],
+)
+def test_bays_that_cannot_be_are_refused(make, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        make()
