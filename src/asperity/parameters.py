@@ -24,6 +24,7 @@ _WORDS = {
     "kg": ("a mass", "0.5 kg"),
     "N": ("a force", "5 N"),
     "Pa": ("a pressure", "3 GPa"),
+    "Pa s/m^2": ("a flow resistivity", "200 kPa s/m^2"),
     "kg/m^3": ("a density", "2700 kg/m^3"),
     "Hz": ("a frequency", "5 kHz"),
     "N s/m": ("a damping constant", "10 N s/m"),

@@ -7,6 +7,9 @@ from numpy.testing import assert_allclose
 
 from asperity import WheelOnRail
 from asperity.errors import CaseError
+from asperity.radiation.ground import PorousGround
+from asperity.radiation.pass_by import Receiver
+from asperity.radiation.sound_path import SoundPath
 from asperity.scenes.figures.noise import PASS_BY, pass_by_table
 from asperity.scenes.noise import pass_by_group
 from asperity.schema import group
@@ -94,9 +97,62 @@ def test_sound_power_is_of_all_axles_and_the_pass_by_of_each():
     assert_allclose(one["pass_by_maximum_level"], other["pass_by_maximum_level"], atol=1e-9)
 
 
+def test_the_receiver_stands_where_the_case_says():
+    near, far = heard(), heard(receiver_distance="15 m", receiver_height="0 m", rail_height="0 m")
+    assert (far.attrs["receiver_distance"], far.attrs["receiver_height"]) == (15.0, 0.0)
+    closer = 10.0 * np.log10(15.0 / np.hypot(7.5, 1.2))  # exposure falls as 1/d
+    change = near["sound_exposure_level_a"] - far["sound_exposure_level_a"]
+    assert_allclose(change.sel(radiator="rail"), closer, atol=1e-6)
+    hub, low = heard(wheel=95.0), heard(wheel=95.0, wheel_height="1.2 m")
+    lower = (low["sound_exposure_level_a"] - hub["sound_exposure_level_a"]).sel(radiator="wheel")
+    assert_allclose(lower, sel(0.0, 1, 1.2) - sel(0.0, 1, 0.46), atol=1e-9)
+
+
+def test_ground_directivity_and_rails_are_those_of_the_case():
+    """The plain path is bit for bit that without any key; the others say what they are."""
+    plain, named = heard(wheel=95.0), heard(wheel=95.0, ground="hard", directivity="even")
+    assert plain.equals(named)
+    assert plain.attrs == named.attrs
+    grass, same = heard(ground="grass"), heard(flow_resistivity="80 kPa s/m^2")
+    assert (grass.attrs["ground"], same.attrs["ground"]) == ("grass", "ground of 80 kPa s/m^2")
+    assert_allclose(grass["pass_by_level"], same["pass_by_level"])
+    for depth, found in ((0.5, grass), (2.0, heard(ground="grass", ground_depth="2 m"))):
+        path = SoundPath(np.array([1000.0]), Receiver(), PorousGround(80e3), depth)
+        expected = 10.0 * np.log10(path.integral(0.0)[0] * np.hypot(7.5, 1.2) / np.pi)
+        change = found["sound_exposure_level_a"] - heard()["sound_exposure_level_a"]
+        assert_allclose(change.sel(radiator="rail"), expected, atol=1e-6)
+    across = heard(directivity="cnossos", decay=30.0)  # opposite 10 lg(1/0.505) and what goes sideways
+    louder = (across["pass_by_maximum_level"] - heard(decay=30.0)["pass_by_maximum_level"]).sel(
+        radiator="rail"
+    )
+    assert 2.0 < float(louder) < 4.0
+    apart = heard(rail_distance="1.5 m")
+    more = (apart["sound_exposure_level_a"] - heard()["sound_exposure_level_a"]).sel(radiator="rail")
+    line = np.mean([1.0 / np.hypot(7.5 + side, 1.2) for side in (-0.75, 0.75)]) * np.hypot(7.5, 1.2)
+    assert_allclose(more, 10.0 * np.log10(line), atol=1e-4)
+
+
+def test_what_is_said_of_ground_and_directivity():
+    by = passed(ground="asphalt", directivity="cnossos")
+    said = PASS_BY.said(xarray.DataTree.from_dict({"/pass_by": by}))
+    assert "over asphalt, with which the sound interferes" in said
+    assert "with the directivity of CNOSSOS-EU at the same power" in said
+    plain = PASS_BY.said(xarray.DataTree.from_dict({"/pass_by": passed()}))
+    assert "over reflecting ground. " in plain
+    assert "evenly in all directions" in plain
+
+
 @pytest.mark.parametrize(
     ("noise", "message"),
     [
+        ({"ground": "ballast"}, 'ground: .*allowed: "hard", "grass", "pasture"'),
+        ({"ground": "grass", "flow_resistivity": "1 MPa s/m^2"}, "both ground and flow_resistivity"),
+        ({"flow_resistivity": "10 Pa s/m^2"}, "allowed: 1 kPa s/m.2 to 1 GPa s/m.2"),
+        ({"flow_resistivity": "200 kPa"}, 'with its unit, as "200 kPa s/m.2"'),
+        ({"ground_depth": "1 m"}, "only together with ground or flow_resistivity"),
+        ({"directivity": "dipole"}, 'allowed: "even", "cnossos"'),
+        ({"receiver_distance": "0.5 m"}, "receiver_distance: .*1 m to 1 km"),
+        ({"rail_distance": "3 m"}, "rail_distance: .*0.1 m to 1.9 m"),
         ({"axle_positions": ["1 m", "3 m"]}, "received 1 m, 3 m; allowed: positions that rise from 0 m"),
         ({"axle_positions": ["0 m", "3 m", "3 m"]}, "allowed: positions that rise from 0 m, the first axle"),
         ({"axle_positions": []}, "received an empty list"),

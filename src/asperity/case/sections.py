@@ -15,11 +15,13 @@ from asperity.case.surface import LENGTH, POSITION
 from asperity.case.tables import TableFile, read_ratios
 from asperity.errors import InputError
 from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
-from asperity.reference.cnossos import PAD_CLASSES, WHEEL_TRANSFER
+from asperity.reference.cnossos import DIRECTIVITIES, EVEN, PAD_CLASSES, WHEEL_TRANSFER
+from asperity.reference.grounds import GROUNDS, HARD
 from asperity.units import written
 
 if TYPE_CHECKING:
-    from asperity.radiation.pass_by import Passage
+    from asperity.radiation.pass_by import Passage, Receiver
+    from asperity.radiation.sound_path import SoundPath
 
 MOST_CELLS = 2048  # along one side of the window
 DURATION = Quantity("s", above=0)
@@ -189,7 +191,7 @@ class NumericsKeys(Section):
 class NoiseKeys(Section):
     """What radiates where a track is rolled over, the labels of CNOSSOS-EU, and the train that passes."""
 
-    ALTERNATIVES = (("axle_positions", "wheelbase"),)
+    ALTERNATIVES = (("axle_positions", "wheelbase"), ("ground", "flow_resistivity"))
 
     rail_radiation: Path | Array | None = optional(
         TableFile(columns=(2,), read=read_ratios),
@@ -255,6 +257,63 @@ class NoiseKeys(Section):
         "number of such vehicles, one behind the other",
         goes_with="vehicle_length",
     )
+    receiver_distance: float = key(
+        LENGTH,
+        "7.5 m",
+        "distance of the receiver from the middle of the track",
+        "1 m to 1 km: farther away air and weather decide",
+    )
+    receiver_height: float = key(
+        POSITION,
+        "1.2 m",
+        "height of the receiver above the rail head",
+        "1 mm to 100 m: sound comes over ground",
+    )
+    ground: str | None = optional(
+        Choice((HARD, *GROUNDS)),
+        "grass",
+        "ground beside the track, by its flow resistivity: direct and reflected sound interfere",
+        "hard: the energy of both adds up, as it does in the mean",
+    )
+    flow_resistivity: float | None = optional(
+        Quantity("Pa s/m^2", above=0),
+        "200 kPa s/m^2",
+        "flow resistivity of the ground, instead of its name",
+        "that of noise.ground",
+        "1 kPa s/m^2 to 1 GPa s/m^2: snow is no softer, and rock no harder",
+    )
+    ground_depth: float = key(
+        POSITION,
+        "0.5 m",
+        "depth of that ground below the rail head",
+        "1 mm to 20 m: embankments lie between",
+        goes_with="ground or flow_resistivity",
+    )
+    directivity: str = key(
+        Choice(DIRECTIVITIES),
+        EVEN,
+        "how rail, sleepers and wheel radiate: evenly, or by CNOSSOS-EU with the same power",
+    )
+    rail_distance: float | None = optional(
+        LENGTH,
+        "1.5 m",
+        "distance of both rails, each with half of the power",
+        "both in the middle of the track",
+        "0.1 m to 1.9 m: receivers stand beside the track",
+    )
+    rail_height: float = key(
+        POSITION,
+        "0 m",
+        "height above the rail head at which rail and sleepers radiate; 0.5 m in CNOSSOS-EU",
+        "1 mm to 10 m: vehicles are lower",
+    )
+    wheel_height: float | None = optional(
+        POSITION,
+        "0.5 m",
+        "height above the rail head at which wheels radiate; 0.5 m in CNOSSOS-EU",
+        "that of their middle, the rolling radius",
+        "1 mm to 10 m: vehicles are lower",
+    )
 
     def axles_behind(self, contacts: tuple[float, ...]) -> tuple[float, ...]:
         """Axles of one vehicle behind its first, m: as given, else the contacts, which are so far behind."""
@@ -271,6 +330,32 @@ class NoiseKeys(Section):
             return Passage(axles, speed)
         train = tuple(number * length + axle for number in range(self.vehicles) for axle in axles)
         return Passage(train, speed, self.vehicles * length)
+
+    @property
+    def receiver(self) -> Receiver:
+        """Where the sound is heard."""
+        from asperity.radiation.pass_by import Receiver
+
+        return Receiver(self.receiver_distance, self.receiver_height)
+
+    @property
+    def ground_words(self) -> str:
+        """The ground, in words."""
+        if self.flow_resistivity is not None:
+            return f"ground of {written(self.flow_resistivity, 'Pa s/m^2', 'kPa s/m^2')}"
+        return self.ground or HARD
+
+    def sound_path(self, band: Array) -> SoundPath | None:
+        """What stands between rails and receiver, in one-third octaves, Hz, where anything does."""
+        from asperity.radiation.ground import PorousGround
+        from asperity.radiation.sound_path import SoundPath
+
+        resistivity = self.flow_resistivity or GROUNDS.get(self.ground or HARD)
+        if resistivity is None and self.directivity == EVEN and self.rail_distance is None:
+            return None
+        ground = None if resistivity is None else PorousGround(resistivity)
+        apart = self.rail_distance or 0.0
+        return SoundPath(band, self.receiver, ground, self.ground_depth, self.directivity, apart)
 
     def problems(self) -> Iterator[InputError]:
         """Axles one behind the other."""

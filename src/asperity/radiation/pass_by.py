@@ -1,11 +1,15 @@
 """Sound pressure beside the track while axles pass: sources along the rail over reflecting ground.
 
-All sources are incoherent, radiate evenly in all directions and stand on reflecting ground, so that
-p² = W ρc Q/(4π d²) with Q = 2 at a distance d. They lie in the middle of the track.
+All sources are incoherent. Unless a `asperity.radiation.sound_path.SoundPath` says otherwise they radiate
+evenly in all directions and stand on reflecting ground, so that p² = W ρc Q/(4π d²) with Q = 2 at a distance
+d, and lie in the middle of the track.
 """
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +19,9 @@ from scipy.special import exp1
 from asperity.arguments import Array, Complex, finite_array, positive, real
 from asperity.errors import ComputationError, InputError
 from asperity.radiation.track import IMPEDANCE
+
+if TYPE_CHECKING:
+    from asperity.radiation.sound_path import SoundPath
 
 DIRECTIVITY_FACTOR = 2.0
 """Q: all of the power goes above the ground."""
@@ -155,32 +162,51 @@ def divergence(length: float, distance: float, along: ArrayLike) -> Array:
     return np.asarray((ahead + behind).imag / (length * distance))
 
 
-def squared_pressure(source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike) -> Array:
-    """Mean square sound pressure (..., b, t), Pa², of what all axles make radiate, at times (t,), s."""
-    spread = _divergences(source, passage, receiver, np.asarray(time, dtype=float))
+def squared_pressure(
+    source: AxleSource,
+    passage: Passage,
+    receiver: Receiver,
+    time: ArrayLike,
+    path: SoundPath | None = None,
+) -> Array:
+    """Mean square sound pressure (..., b, t), Pa², of what all axles make radiate, at times (t,), s.
+
+    On a path with the bands of the source, where one is given.
+    """
+    spread = _divergences(source, passage, receiver, np.asarray(time, dtype=float), path)
     return _FACTOR * np.asarray(source.power, dtype=float)[..., None] * spread
 
 
-def exposure(source: AxleSource, passage: Passage, receiver: Receiver) -> Array:
+def exposure(
+    source: AxleSource, passage: Passage, receiver: Receiver, path: SoundPath | None = None
+) -> Array:
     """Integral of the squared sound pressure over the whole passage (..., b), Pa² s: W ρc Q/(4 d v) per axle.
 
-    However far the power is spread along the rail.
+    However far the power is spread along the rail; on a path with its integral in place of π/d.
     """
+    if path is not None:
+        share = len(passage.axles) / passage.speed * path.integral(source.height)
+        return _FACTOR * share * np.asarray(source.power, dtype=float)
     crossing = 4.0 * receiver.shortest(source.height) * passage.speed
     return 4.0 * np.pi * _FACTOR * len(passage.axles) / crossing * np.asarray(source.power, dtype=float)
 
 
-def _divergences(source: AxleSource, passage: Passage, receiver: Receiver, time: Array) -> Array:
+def _divergences(
+    source: AxleSource, passage: Passage, receiver: Receiver, time: Array, path: SoundPath | None
+) -> Array:
     """Sum of `divergence` over the axles (b, t), 1/m², of each band's length."""
     bands = np.shape(source.power)[-1:]
-    lengths = np.broadcast_to(np.asarray(source.length, dtype=float), bands).tolist()
+    lengths = np.broadcast_to(np.asarray(source.length, dtype=float), bands)
     distance = receiver.shortest(source.height)
     first = passage.speed * float(time.min()) - float(passage.axles[-1])
     last = passage.speed * float(time.max())
     farthest = max(-first, last)  # the same on either side
     grid = np.linspace(0.0, farthest, 2 * int(np.ceil(farthest / receiver.distance * _STEPS)) + 2)
     places = [np.abs(passage.speed * time - at) for at in passage.axles]
-    spread = (divergence(length, distance, grid) for length in lengths)
+    if path is None:
+        spread = np.stack([divergence(length, distance, grid) for length in lengths.tolist()])
+    else:
+        spread = path.spread(source.height, lengths, grid)
     return np.stack([np.sum([np.interp(each, grid, one) for each in places], axis=0) for one in spread])
 
 

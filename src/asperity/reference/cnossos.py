@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from asperity.arguments import Array, positive
 from asperity.errors import InputError
@@ -26,6 +27,9 @@ WHEEL_ROUGHNESS: Tables = _TABLES["wheel_roughness"]
 """Table G-1a, wheel, dB re 1 µm at the nominal wavelengths from 1 m to 0.8 mm, by brake."""
 WHEEL_TRANSFER: Tables = _TABLES["wheel_transfer"]
 """Table G-3b, vehicle by wheel diameter, dB at nominal frequencies from 50 Hz to 10 kHz."""
+
+EVEN, CNOSSOS = DIRECTIVITIES = ("even", "cnossos")
+"""Ways in which rolling noise is spread over directions; the second is `directivity`."""
 
 PAD_CLASSES: dict[str, tuple[float, float]] = {
     "soft": (150e6, 250e6),
@@ -107,6 +111,18 @@ def wheel_transfer(name: str) -> Spectrum:
     by (EU) 2021/1226, table G-3b.
     """
     return np.array(_TABLES["frequencies"]), _table("wheel transfer", name)
+
+
+def directivity(azimuth: ArrayLike, elevation: ArrayLike, frequency: ArrayLike) -> Array:
+    """Directivity of rolling noise, dB to add to the level of an even source, of all three broadcast.
+
+    Angles in rad: around, from the track, and up, from the ground; downwards it is that at zero. Frequencies
+    are centres of bands, Hz. Directive (EU) 2015/996, section 2.3, equations 2.3.15 and 2.3.16 (source A).
+    """
+    around, up, f = (np.asarray(each, dtype=float) for each in (azimuth, elevation, frequency))
+    above = np.maximum(up, 0.0)
+    vertical = 40.0 / 3.0 * (2.0 / 3.0 * np.sin(2.0 * above) - np.sin(above)) * np.log10((f + 600.0) / 200.0)
+    return np.asarray(10.0 * np.log10(0.01 + 0.99 * np.sin(around) ** 2) + vertical)
 
 
 def _nearest(names: Tables, *values: float) -> str:

@@ -15,7 +15,7 @@ from asperity.laws import Role, in_role
 from asperity.radiation import pass_by
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
-from asperity.reference import cnossos
+from asperity.reference import cnossos, grounds
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
@@ -323,20 +323,26 @@ LONGEST = 1000.0
 """Greatest of these lengths, m; the exposure depends on none of them."""
 
 
+def sources_of(case: Any) -> tuple[str, ...]:
+    """What the level beside the track is computed by, beyond the sound power."""
+    path = case.noise.sound_path(np.array([1000.0]))
+    return () if path is None or path.ground is None else (grounds.CITATION,)
+
+
 def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
     """Lay out levels beside the track, from the sound power and the decay rates that the spectra hold.
 
     All axles radiate alike: where several were rolled, as their mean.
     """
-    passage, receiver, band = case.passage, pass_by.Receiver(), over_frequency[spectra.BAND.name].values
-    sources = _sources(case, over_frequency)
+    keys, passage, band = case.noise, case.passage, over_frequency[spectra.BAND.name].values
+    receiver, path, sources = keys.receiver, keys.sound_path(band), _sources(case, over_frequency)
     length = max(float(np.max(source.length)) for source in sources)
     time, weights = passage.times(receiver, length), 10.0 ** (a_weighting(band) / 10.0)
     squared, exposed = (
         np.stack([*parts, np.sum(parts, axis=0)], axis=1)  # (laws, sources and their sum, …)
         for parts in (
-            [weights @ pass_by.squared_pressure(each, passage, receiver, time) for each in sources],
-            [pass_by.exposure(each, passage, receiver) for each in sources],
+            [weights @ pass_by.squared_pressure(each, passage, receiver, time, path) for each in sources],
+            [pass_by.exposure(each, passage, receiver, path) for each in sources],
         )
     )
     levels = [pass_by.pass_by_levels(time, of_law, passage.passed) for of_law in squared]
@@ -355,6 +361,9 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
         schema.SOUND_EXPOSURE_LEVEL_A: pass_by.pressure_level(exposed @ weights),
         schema.RECEIVER_DISTANCE: receiver.distance,
         schema.RECEIVER_HEIGHT: receiver.height,
+        schema.GROUND: keys.ground_words,
+        schema.DIRECTIVITY: keys.directivity,
+        schema.RAIL_DISTANCE: keys.rail_distance or 0.0,
     }
     if passage.passed is not None:
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
@@ -369,9 +378,10 @@ def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSour
     power = PICOWATT * np.nan_to_num(10.0 ** (level.values / 10.0)) / case.axles
     decay = over_frequency[schema.BAND_DECAY_RATE.name].values
     length = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
-    places = {"wheel": (0.0, case.rolling.radius)}
+    wheel, rail = case.noise.wheel_height, case.noise.rail_height
+    places = {"wheel": (0.0, case.rolling.radius if wheel is None else wheel)}
     return [
-        pass_by.AxleSource(power[:, number], *places.get(name, (length, 0.0)))
+        pass_by.AxleSource(power[:, number], *places.get(name, (length, rail)))
         for number, name in enumerate(level["radiator"].values.tolist())
         if name != "total"
     ]

@@ -73,7 +73,7 @@ def computed_result(
             found += noise.findings_of_labels(case)
         found += (of_measured := measured.findings_of_measured(in_bands))
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
-        sources += (*scene.over.sources, cnossos.CITATION)
+        sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))
         noise.warn_of_silence(case)
         track.warn_of_loss_factors(losses)
         measured.warn_of_contradictions(of_measured)

@@ -1,0 +1,121 @@
+"""How sound comes from the rails to a receiver: over what ground, from which rail, how evenly it leaves."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array, finite_array, not_negative, one_of, require
+from asperity.radiation.ground import PorousGround
+from asperity.radiation.pass_by import Receiver, time_weighted
+from asperity.reference import cnossos
+
+_PLACES = 400  # along the rail at which paths are computed; in between they are interpolated
+_NODES = 200  # of Gauss's rule over all directions
+
+
+@dataclass(frozen=True, eq=False)
+class SoundPath:
+    """What stands between sources and receiver, in one-third octaves.
+
+    Parameters
+    ----------
+    band : ndarray (b,)
+        Centres, Hz.
+    receiver : Receiver
+        Where the sound is heard.
+    ground : PorousGround, optional
+        Its impedance; without it sound of the ground adds as energy, as that of a hard one does in the mean.
+    ground_depth : float
+        Of the ground below the rail head, m.
+    directivity : str
+        ``"even"``, or ``"cnossos"``: that of rolling noise by CNOSSOS-EU, scaled so that the power stays what
+        it is. By the standard, which scales nothing, a source is as loud opposite as an even one.
+    rail_distance : float
+        Between both rails, m, each with half of the power; zero has both in the middle of the track.
+
+    Raises
+    ------
+    InputError
+        If a number is not possible, the receiver is not beside the rails, or it is not above the ground.
+    """
+
+    band: Array
+    receiver: Receiver
+    ground: PorousGround | None = None
+    ground_depth: float = 0.5
+    directivity: str = cnossos.EVEN
+    rail_distance: float = 0.0
+
+    def __post_init__(self) -> None:
+        finite_array("band centres (Hz)", self.band, "finite positive numbers", above=0.0)
+        one_of("directivity", self.directivity, cnossos.DIRECTIVITIES)
+        not_negative("depth of the ground (m)", self.ground_depth)
+        nearest = 0.5 * not_negative("distance of the rails (m)", self.rail_distance)
+        away = f"{self.receiver.distance:g} m from the middle of the track"
+        require(
+            self.receiver.distance > nearest, "receiver", away, f"more than {nearest:g} m, beside both rails"
+        )
+        above = self.receiver.height + self.ground_depth
+        require(
+            self.ground is None or above >= 0.0, "receiver", f"{above:g} m above the ground", "zero or more"
+        )
+
+    def inverse_square(self, height: float, along: Array) -> Array:
+        """What stands for 1/d² of a source above reflecting ground (b, n), 1/m².
+
+        Of a source at a height above the rail head, m, that is (n,) m along the rail from the place opposite.
+        """
+        rails = {self.receiver.distance + side * self.rail_distance for side in (-0.5, 0.5)}
+        return np.mean([self._from_rail(height, lateral, along) for lateral in sorted(rails)], axis=0)
+
+    def _from_rail(self, height: float, lateral: float, along: Array) -> Array:
+        away, rise = np.hypot(lateral, along), self.receiver.height - height
+        if self.ground is None:
+            found = np.broadcast_to(1.0 / (away**2 + rise**2), (len(self.band), len(along)))
+        else:
+            heights = height + self.ground_depth, self.receiver.height + self.ground_depth
+            found = self.ground.inverse_square(self.band, heights, away)
+        if self.directivity == cnossos.EVEN:
+            return found
+        azimuth, elevation = np.arctan2(lateral, along), np.arctan2(rise, away)
+        return found * _strength(azimuth, elevation, self.band) / _mean_strength(self.band)
+
+    def spread(self, height: float, length: Array, along: Array) -> Array:
+        """The same (b, n) of power that is spread as exp(−2|ξ|/ℓ)/ℓ along the rail around its middle.
+
+        ℓ is (b,), m; places (n,), m, rise evenly from zero, opposite the receiver.
+        """
+        step = float(along[1] - along[0])
+        count = len(along) + math.ceil(2.0 * float(length.max()) / step)  # beyond it exp(−4) is felt
+        places = step * np.arange(count)
+        lateral = self.receiver.distance
+        coarse = lateral * np.sinh(np.linspace(0.0, np.arcsinh(places[-1] / lateral), _PLACES))
+        smooth = self.inverse_square(height, coarse) * (lateral**2 + coarse**2)
+        found = np.stack([np.interp(places, coarse, one) for one in smooth]) / (lateral**2 + places**2)
+        both = np.concatenate([found[:, :0:-1], found], axis=1)  # from one side to the other
+        for one, ell in zip(both, length, strict=True):
+            if ell > 0.0:
+                ahead, behind = (time_weighted(each, step, 0.5 * float(ell)) for each in (one, one[::-1]))
+                one[:] = 0.5 * (ahead + behind[::-1])
+        return both[:, count - 1 : count - 1 + len(along)]
+
+    def integral(self, height: float) -> Array:
+        """Integral of `inverse_square` along the whole rail (b,), 1/m; over hard ground π/d."""
+        node, weight = np.polynomial.legendre.leggauss(_NODES)
+        angle, lateral = 0.25 * np.pi * (node + 1.0), self.receiver.distance
+        found = self.inverse_square(height, lateral * np.tan(angle)) * lateral / np.cos(angle) ** 2
+        return 0.5 * np.pi * found @ weight
+
+
+def _strength(azimuth: Array, elevation: Array, band: Array) -> Array:
+    """Factor of the intensity (b, n) by CNOSSOS-EU."""
+    return 10.0 ** (0.1 * cnossos.directivity(azimuth, elevation, band[:, None]))
+
+
+def _mean_strength(band: Array) -> Array:
+    """Its mean over all directions above the ground (b, 1); all around a source sin²φ is ½ in the mean."""
+    node, weight = np.polynomial.legendre.leggauss(64)
+    elevation = 0.25 * np.pi * (node + 1.0)
+    around = _strength(np.array(0.25 * np.pi), elevation, band) * np.cos(elevation)
+    return (0.25 * np.pi * around @ weight)[:, None]
