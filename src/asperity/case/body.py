@@ -11,7 +11,8 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.surface import ADDED_LEVEL, LENGTH, LEVEL, LEVELS, POSITION, MeasuredLine
-from asperity.case.tables import TableFile, fitted_to, read_modes, read_receptance
+from asperity.case.tables import fitted_to, read_receptance
+from asperity.case.wheel import OTHERWISE, Ringing
 from asperity.errors import InputError
 from asperity.parameters import Choice, Either, File, ListOf, MaterialOrName, Number, Quantity, key, optional
 from asperity.reference.cnossos import WHEEL_ROUGHNESS
@@ -162,7 +163,7 @@ class FlatOnTread(MeasuredLine):
         yield InputError("flat_length", received, allowed, remedy)
 
 
-class Rolling(FlatOnTread):
+class Rolling(Ringing, FlatOnTread):
     """What rolls: one body, or several of the same kind behind one another."""
 
     ALTERNATIVES = (("roughness", "line"), ("profile", "transverse_radius"), ("modes", "receptance"))
@@ -270,22 +271,6 @@ class Rolling(FlatOnTread):
         "that of a bar as long as the contacts are apart",
         f"1e-15 kg m^2 to 1e9 kg m^2: {_BODIES}",
     )
-    modes: Path | Array | None = optional(
-        TableFile(columns=(3, 6), read=read_modes),
-        "modes.csv",
-        "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
-        "modal mass (kg); the sound of wheels needs three columns more: number of nodal diameters, and rms "
-        "axial velocity of the disc and rms radial velocity of the tread, both per radial velocity at the "
-        "contact",
-        "rigid",
-    )
-    receptance: Path | Array | None = optional(
-        TableFile(columns=(3,), read=read_receptance),
-        "receptance.csv",
-        "table of the receptance of a mass, which is fitted by modes: frequency (Hz), real and imaginary "
-        "part (m/N)",
-        "rigid",
-    )
 
     @property
     def across(self) -> float:
@@ -353,8 +338,10 @@ class Rolling(FlatOnTread):
         one, many = words.get(self.type, (self.type, f"{self.type}s"))
         return f"a {one}" if len(self.positions) == 1 else f"{len(self.positions)} {many}"
 
-    def model(self, upper_stiffness: float, highest_frequency: float, name: str = "body") -> Body:
-        """Build one of the bodies, with the resonances of what touches.
+    def model(
+        self, upper_stiffness: float, highest_frequency: float, speed: float, name: str = "body"
+    ) -> Body:
+        """Build one of the bodies, with the resonances of what touches, turning at a rolling speed, m/s.
 
         Stiffness of the contact above each element of a carriage, N/m, if the section gives none. Receptances
         are fitted up to twice the highest frequency, Hz; shorter ones are warned of by `name`.
@@ -368,8 +355,8 @@ class Rolling(FlatOnTread):
             within = frequency <= REACH * highest_frequency
             with fitted_to(self.receptance):
                 return fit_body(self.contact_mass, self.contact_load, frequency[within], measured[within])
-        body = self._rigid(upper_stiffness)
-        return body if self.modes is None else body.with_modes(*read_modes(self.modes))
+        body, resonances = self._rigid(upper_stiffness), self.resonances(highest_frequency, speed)
+        return body.with_modes(*resonances) if len(resonances[0]) else body
 
     def _rigid(self, upper_stiffness: float) -> Body:
         mass, places, above = self.contact_mass, self.places, list(self.masses or ())
@@ -386,13 +373,11 @@ class Rolling(FlatOnTread):
         held = {"element_mass": mass, "upper_stiffness": upper, "upper_damping": dampers[0], "load": extra}
         return carriage(above[0], inertia, places, **held)
 
-    @property
-    def tread(self) -> Wheel:
-        """What touches at each contact, by itself: its mass and its modes."""
+    def tread(self, highest_frequency: float, speed: float) -> Wheel:
+        """What touches at each contact, by itself: mass and modes, turning at a rolling speed, m/s."""
         from asperity.structures.wheel import Wheel
 
-        modes = () if self.modes is None else read_modes(self.modes)
-        return Wheel(self.contact_mass, self.contact_load, *modes)
+        return Wheel(self.contact_mass, self.contact_load, *self.resonances(highest_frequency, speed))
 
     def problems(self) -> Iterator[InputError]:
         """What each type of body needs, and contacts that are apart."""
@@ -410,6 +395,9 @@ class Rolling(FlatOnTread):
         if self.receptance is not None and self.type != "mass":
             received, allowed = f"beside type {self.type}", "that of a mass, alone"
             yield InputError("receptance", received, allowed, "Give modes, or the receptance.")
+        if self.contact_mass < (drawn := self.drawn_mass):
+            allowed = f"at least {drawn:.4g} kg, that of the drawn wheel, to which the axle adds"
+            yield InputError("mass", f"{self.contact_mass:g} kg", allowed, OTHERWISE)
 
     def _problems_of_type(self) -> Iterator[InputError]:
         above = {"mass": 0, "bogie": 1, "carriage": 1}.get(self.type)

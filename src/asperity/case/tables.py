@@ -19,6 +19,7 @@ from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
+from asperity.structures.outline import checked_outline
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
@@ -52,6 +53,7 @@ RADIATION = (
     Column("radial velocity of the tread", ""),
 )
 """Further columns of modes: how they move the whole wheel, rms per radial velocity at the contact."""
+OUTLINE = (Column("radius", "m"), Column("axial place", "m"))
 RATIOS = (_FREQUENCY, Column("radiation ratio", ""))
 RECEPTANCE = (_FREQUENCY, Column("real part", "m/N"), Column("imaginary part", "m/N"))
 RECEPTANCES = (
@@ -135,6 +137,12 @@ def read_modes(table: TableSource) -> tuple[Array, Array, Array]:
     return frequency, ratio, mass
 
 
+def read_mode_table(table: TableSource) -> Array:
+    """Read all that a table of the modes of a wheel holds (n, 3) or (n, 6), see `read_modes`."""
+    read_modes(table)
+    return read_table(table, MODES, RADIATION)
+
+
 def read_mode_shapes(table: TableSource) -> Array | None:
     """Read how the modes of a wheel move its disc and tread, the further columns (n, 3); None without them.
 
@@ -152,6 +160,13 @@ def read_mode_shapes(table: TableSource) -> Array | None:
         received = f"an rms velocity of {ratios[ratios < 0][0]:g}"
         raise InputError(name_of(table), received, "zero or more, per radial velocity at the contact")
     return shapes
+
+
+def read_outline(table: TableSource) -> Array:
+    """Read the outline of a wheel's section (n, 2), radius and axial place, m, and check it."""
+    outline = read_table(table, OUTLINE)
+    checked_outline(outline, f"outline in {name_of(table)}")
+    return outline
 
 
 def read_ratios(table: TableSource) -> tuple[Array, Array]:

@@ -138,7 +138,7 @@ def scene_of(case: Case) -> Scene:
     body, over, highest = case.rolling, case.rolled_over, case.numerics.highest_frequency
     model = over.model(highest)
     on_track = isinstance(model, Track)
-    one = body.model(case.upper_stiffness, highest, case.ROLLING)
+    one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING)
     degrees = body.degrees if len(body.degrees) > 1 or case.ROLLING == "body" else {case.ROLLING: 1.0}
     return Scene(
         model,
@@ -150,7 +150,7 @@ def scene_of(case: Case) -> Scene:
         degrees=degrees,
         displacements=case.DISPLACEMENTS,
         like="wheel-on-rail" if on_track else "ball-on-beam",
-        wheel=body.tread if on_track else None,
+        wheel=body.tread(highest, case.speed) if on_track else None,
         scattered=case.numerics.kernel == "scatter",
         most_poles=case.numerics.poles,
     )

@@ -9,7 +9,7 @@ import xarray
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import Array
-from asperity.case.tables import read_mode_shapes, read_ratios
+from asperity.case.tables import read_ratios
 from asperity.errors import Finding, Grade, MissingSourceWarning
 from asperity.laws import Role, in_role
 from asperity.radiation import pass_by
@@ -216,10 +216,10 @@ def radiating_wheel(case: Any) -> RadiatingWheel | None:
 
     A rigid wheel that moves up and down has one nodal diameter around its tread.
     """
-    shapes = None if case.rolling.modes is None else read_mode_shapes(case.rolling.modes)
-    if shapes is None:
+    modes = case.rolling.turning_modes(case.numerics.highest_frequency, case.speed)
+    if modes is None:
         return None
-    diameters, axial, radial = np.vstack([[1.0, 0.0, math.sqrt(0.5)], shapes]).T
+    diameters, axial, radial = np.vstack([[1.0, 0.0, math.sqrt(0.5)], modes.table()[:, 3:]]).T
     return RadiatingWheel(case.rolling.radius, case.noise.wheel_width, diameters.astype(int), axial, radial)
 
 
