@@ -239,7 +239,8 @@ def warn_of_silence(case: Any) -> None:
     if reason := silent_wheel(case):
         message = (
             f"the sound power from vibration is that of rail and sleepers alone: {reason}. Above about 2 kHz "
-            f"the wheel is the loudest. Give {case.ROLLING}.modes, with how they move the wheel."
+            f"the wheel is the loudest. Give {case.ROLLING}.section, or {case.ROLLING}.modes with how they "
+            "move the wheel."
         )
         warnings.warn(MissingSourceWarning(message, Grade.NOTE), stacklevel=2)
 

@@ -41,8 +41,8 @@ class Wheel:
 
     Notes
     -----
-    The modes stand still in the contact: that a rotating wheel splits each of them in two, one revolution
-    frequency times the number of nodal diameters up and down, is left out.
+    The modes are those that the contact feels. A wheel that turns splits each mode with nodal diameters in
+    two: `asperity.structures.wheel_modes.WheelModes.turning`.
 
     Examples
     --------

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +12,17 @@ from asperity.errors import InputError
 from asperity.reference.materials import Material
 from asperity.store import Cache, content_key, made
 from asperity.structures.outline import Mesh, checked_outline, mesh_of
+from asperity.text_files import write_csv
 
+HEADING = (
+    "frequency (Hz)",
+    "damping ratio",
+    "modal mass (kg)",
+    "nodal diameters",
+    "axial velocity over the disc",
+    "radial velocity of the tread",
+)
+"""Of a table of modes in a file."""
 FORMAT = 1
 """Of modes that are kept: raise it where their computation changes."""
 BEYOND = 1.25
@@ -107,6 +118,11 @@ class WheelModes:
         columns = (self.natural_frequencies[heard], self.damping_ratios[heard], shape**-2.0)
         numbers = (self.nodal_diameters[heard], self.disc[heard] / shape, self.tread[heard] / shape)
         return np.column_stack([*columns, *numbers])
+
+    def write(self, path: str | Path, place: float = 0.0) -> Path:
+        """Write `table` to a CSV file, to the last bit, as `wheel.modes` of a case reads it."""
+        rows = self.table(place).tolist()
+        return write_csv(Path(path), HEADING, [[*row[:3], int(row[3]), *row[4:]] for row in rows])
 
     def damped(self, ratios: Sequence[float], added: float = 0.0, added_from: int = 2) -> "WheelModes":
         """With damping ratios of 0, 1 and so on nodal diameters, the last of all beyond.

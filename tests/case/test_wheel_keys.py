@@ -1,0 +1,125 @@
+"""Keys of a drawn wheel: what its section may be, what overrides it, and what is refused."""
+
+import numpy as np
+import pytest
+
+from asperity.case.cases import as_case, load_case
+from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.errors import CaseError
+from asperity.reference.wheels import SECTIONS
+from asperity.structures.wheel_section import WheelSection
+
+TEXTURE = {"spectrum": "iso3095"}
+MODES = np.array([[1950.0, 3e-4, 330.0, 2, 0.8, 0.7]])
+NUMERICS = {"highest_frequency": 400.0}
+"""So that few modes are sought."""
+
+
+def wheel_on_rail(numerics=NUMERICS, **wheel):
+    return WheelOnRail(surface=TEXTURE, wheel=wheel, numerics=numerics)
+
+
+def outline_file(tmp_path, outline, heading="radius (mm), axial place (mm)", scale=1e3):
+    rows = "\n".join(f"{r * scale!r}, {z * scale!r}" for r, z in np.asarray(outline).tolist())
+    path = tmp_path / "outline.csv"
+    path.write_text(f"{heading}\n{rows}\n")
+    return path
+
+
+def test_a_named_section_and_its_outline_in_millimetres_have_the_same_modes(tmp_path):
+    named = wheel_on_rail(section="curved-web").rolling
+    path = outline_file(tmp_path, named.outline)
+    (tmp_path / "case.toml").write_text(
+        'kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n[wheel]\nsection = "outline.csv"\n'
+    )
+    drawn = load_case(tmp_path / "case.toml").rolling
+    assert drawn.section == path
+    assert drawn.outline == pytest.approx(named.outline, rel=1e-12)
+    expected = named.standing_modes(400.0).table()
+    assert drawn.standing_modes(400.0).table() == pytest.approx(expected, rel=1e-6)
+    assert len(expected) > 2
+
+
+def test_dimensions_override_the_named_section():
+    thick = wheel_on_rail(section="straight-web", web_thickness="40 mm")
+    assert thick.rolling.outline == pytest.approx(
+        WheelSection.named("straight-web", web_thickness=0.04).outline(0.46)
+    )
+    told = {each["key"]: each["value"] for each in thick.parameters()}
+    assert told["wheel.web_thickness"] == "40 mm"
+    assert told["wheel.web_thickness_rim"] == f"{1e3 * SECTIONS['straight-web']['web_thickness_rim']:g} mm"
+    assert thick.rolling.drawn_mass > wheel_on_rail(section="straight-web").rolling.drawn_mass
+    rigid = {each["key"] for each in wheel_on_rail(section="rigid").parameters()}
+    assert not {"wheel.web_thickness", "wheel.modal_damping"} & rigid
+
+
+def test_damping_is_that_of_the_nodal_diameters_and_of_dampers():
+    modes = wheel_on_rail(section="curved-web", modal_damping=[2e-3, 2e-2, 3e-4], added_damping=5e-3)
+    found = modes.rolling.standing_modes(400.0)
+    assert found.damping_ratios == pytest.approx(
+        [(2e-3, 2e-2, 5.3e-3)[min(n, 2)] for n in found.nodal_diameters]
+    )
+
+
+def test_modes_go_up_to_a_quarter_beyond_the_highest_frequency():
+    found = wheel_on_rail(section="curved-web").rolling.standing_modes(1000.0)
+    more = wheel_on_rail(section="curved-web").rolling.standing_modes(1300.0)
+    assert found.natural_frequencies.max() <= 1250.0
+    assert np.sum(more.natural_frequencies <= 1250.0) == len(found.natural_frequencies)
+
+
+def test_a_rigid_wheel_and_a_ball_have_no_modes():
+    assert wheel_on_rail(section="rigid").rolling.standing_modes(400.0) is None
+    assert as_case({"kind": "bodies", "over": "beam", "surface": {"smooth": True}}).rolling.section == "rigid"
+    # a table without nodal diameters stays as it is, and does not turn
+    frequency, _, mass = wheel_on_rail(modes=MODES[:, :3]).rolling.resonances(400.0, 56.0)
+    assert (frequency == MODES[0, 0]).all()
+    assert (mass == MODES[0, 2]).all()
+
+
+def test_a_table_with_nodal_diameters_turns_with_the_wheel():
+    frequency, _, mass = wheel_on_rail(modes=MODES).rolling.resonances(5e3, 46.0)
+    turning = 2 * 46.0 / 0.46 / (2.0 * np.pi)
+    assert frequency == pytest.approx([1950.0 - turning, 1950.0 + turning], rel=1e-6)
+    assert mass == pytest.approx([660.0 * 1950.0 / f for f in frequency], rel=1e-6)
+
+
+def rectangle(radius):
+    return np.array([[0.1, -0.05], [radius, -0.05], [radius, 0.05], [0.1, 0.05]])
+
+
+REFUSED = {
+    "both": ({"section": "curved-web", "modes": MODES}, "both section and modes"),
+    "no such section": ({"section": "curved"}, 'Did you mean "curved-web"?'),
+    "dimensions of none": ({"section": "rigid", "web_thickness": "20 mm"}, "only together with section"),
+    "damping of none": ({"section": "rigid", "added_damping": 0.01}, "only together with section"),
+    "too small": ({"section": "curved-web", "radius": "0.15 m"}, "allowed: bore, hub and rim one outside"),
+    "too light": ({"section": "curved-web", "mass": "200 kg"}, "that of the drawn wheel"),
+    "dampers without bound": ({"section": "curved-web", "added_damping": 0.95}, "at most 0.9"),
+    "another radius": ({"section": rectangle(0.3)}, "a running circle of 300 mm"),
+    "dimensions beside an outline": ({"section": rectangle(0.46), "web_bend": "1 mm"}, "only together with"),
+    "crossing": ({"section": rectangle(0.46)[[0, 2, 1, 3]]}, "that touch"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("wheel", "told"), REFUSED.values(), ids=REFUSED)
+def test_what_does_not_fit_is_refused(wheel, told):
+    with pytest.raises(CaseError) as error:
+        wheel_on_rail(**wheel)
+    assert told in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("heading", "scale", "told"),
+    [
+        ("radius (m), axial place (m)", 1e3, "a point 488 m away"),
+        ("radius, axial place", 1e3, "a heading with the units in brackets"),
+        ("axial place (mm), radius (mm)", 1e3, "Exchange the columns"),
+        ("radius (kg), axial place (mm)", 1e3, "radius in m"),
+    ],
+)
+def test_files_in_other_units_or_orders_are_refused(tmp_path, heading, scale, told):
+    path = outline_file(tmp_path, WheelSection.named("curved-web").outline(0.46), heading, scale)
+    with pytest.raises(CaseError) as error:
+        wheel_on_rail(section=path)
+    assert told in str(error.value)
