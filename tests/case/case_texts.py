@@ -26,6 +26,9 @@ def write_files(folder):
     rates = "f (Hz); vertical (dB/m); lateral (dB/m)\n100; 4,5; 0,5\n125; 4; 0,5\n200; 5; 0,4\n"
     (folder / "rates.csv").write_text(rates)
     (folder / "mobility.csv").write_text("f (Hz), size (m/(N s))\n100, 1e-5\n200, 2e-5\n400, 1e-5\n")
+    passage = "".join(f"{n}, {60 + 5 * min(n, 11 - n)}\n" for n in range(12))
+    (folder / "passage.csv").write_text("time (s), level (dB(A))\n" + passage)
+    (folder / "bands.csv").write_text("f (Hz), level (dB)\n100, 60\n125, 61\n160, 59\n")
     modes = "frequency (Hz), ratio, mass (kg)\n2000, 1e-4, 300\n3100, 1e-4, 250\n"
     (folder / "modes.csv").write_text(modes)
     rows = "".join(f"{100 * n}, {-1e-9 / n:.3g}, -1e-11\n" for n in range(1, 30))

@@ -113,7 +113,10 @@ GIVEN = {
         [contact] spacing = "0.4 mm" | window = "16 mm"
         [numerics] highest_frequency = "4 kHz" | time_step = "20 us" | kernel = "poles" | poles = 80
         [noise] track_pad = "soft" | wheel_transfer = "920 mm" | axles = 4 | rail_radiation = "ratios.csv"
-        sleeper_length = "2.4 m" | sleeper_width = "0.2 m" | wheel_width = "140 mm\"""",
+        sleeper_length = "2.4 m" | sleeper_width = "0.2 m" | wheel_width = "140 mm"
+        vehicle_length = "20 m" | measured_passage = "passage.csv" | measured_bands = "bands.csv"
+        measured_maximum_level = "88 dB" | measured_equivalent_level = "84 dB"
+        measured_exposure_level = "86 dB\"""",
         {
             "speed": 200 / 3.6, "surface.lateral": math.inf, "surface.corrugation": 25e-6,
             "rolled_range": (3.0, 3.0 + 100 / 3.6), "surface.corrugation_wavelength": 0.04,

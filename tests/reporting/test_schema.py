@@ -76,6 +76,7 @@ NOWHERE = (
     "of several contacts",
     "contacts at equal distances",
     "measured on the track",
+    "passage was measured",
 )
 OTHERS = {
     "ball-on-beam": (*NOWHERE, "over a track", "of a wheel", "loss factors", "poles", "law linear", "train"),
@@ -138,6 +139,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
             elsewhere |= chapter.name == "contacts" and not several
             elsewhere |= part.name == "what_helps"  # where it is asked
             elsewhere |= part.name == ("force_piece" if track else "force_peak")
+            elsewhere |= part.name == "pass_by_bands"  # of what was measured
             assert (part.name in drawn) != elsewhere, part.name
 
 

@@ -1,4 +1,6 @@
-"""Tables of what was measured on a track: read in SI, and refused where they cannot be right."""
+"""Tables of what was measured on a track and beside it: read in SI, refused where they cannot be right."""
+
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,6 +9,7 @@ from asperity.arguments import Array
 from asperity.case.content import name_of
 from asperity.case.tables import Column, TableSource, read_table, refuse_disorder
 from asperity.errors import InputError
+from asperity.spectra import a_weighting
 
 FEWEST = 3
 """Rows of a table over frequency."""
@@ -20,10 +23,17 @@ MOBILITIES = (1e-9, 0.1)
 MOST_GAINS = 0.1
 """Share of the lines at which noise may turn the power round that a hammer gives to a rail."""
 
+FEWEST_INSTANTS = 10
+"""Of a passage."""
+FALL = 10.0
+"""dB by which the level of a passage rises and falls."""
+SOUND = ("dB(A)", "dB")
+SOUND_LEVELS = (-20.0, 180.0)
+"""dB re 20 µPa."""
+
 _FREQUENCY = Column("frequency", "Hz")
 _VERTICAL, _LATERAL = Column("vertical decay rate", "dB/m"), Column("lateral decay rate", "dB/m")
-MOBILITY = "m/s/N"
-FORMS = {MOBILITY: 0, "m/s^2/N": -1, "m/N": 1}
+FORMS = {"m/s/N": 0, "m/s^2/N": -1, "m/N": 1}
 """Units of mobility, accelerance and receptance; the power of iω that makes a mobility of each."""
 
 
@@ -64,13 +74,13 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
     A table of frequency and magnitude, or real and imaginary part, e^{+iωt}; the unit in a file says whether
     it holds mobility, accelerance or receptance.
     """
-    rows, power = _of_some_form(table)
+    rows, unit = _in_some_unit(table, _FREQUENCY, ("magnitude or real part", "imaginary part"), FORMS)
     _refuse_few(table, rows)
     frequency = rows[:, 0]
     refuse_disorder(table, frequency)
     found = rows[:, 1] if rows.shape[1] == 2 else rows[:, 1] + 1j * rows[:, 2]
     rate = 2.0 * np.pi * frequency if rows.shape[1] == 2 else 2j * np.pi * frequency
-    mobility = found * rate**power
+    mobility = found * rate ** FORMS[unit]
     least, most = MOBILITIES
     size = mobility if rows.shape[1] == 2 else np.abs(mobility)
     if (wrong := ~((size > least) & (size < most))).any():
@@ -85,17 +95,58 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
     return frequency, mobility
 
 
-def _of_some_form(table: TableSource) -> tuple[Array, int]:
-    """Rows of a table, and the power of iω by which its numbers become mobilities."""
-    errors = []
-    for unit, power in FORMS.items():
-        columns = Column("magnitude or real part", unit), Column("imaginary part", unit)
+def read_passage(table: TableSource) -> tuple[Array, Array]:
+    """Read the level of a passage (n,), dB(A), over rising times (n,), s: it rises and falls by 10 dB."""
+    rows, _ = _in_some_unit(table, Column("time", "s"), ("level",), SOUND)
+    time, level = _levels(table, rows)
+    if len(rows) < FEWEST_INSTANTS:
+        raise InputError(name_of(table), f"{len(rows)} instants", f"at least {FEWEST_INSTANTS}")
+    if (np.diff(time) <= 0.0).any():
+        raise InputError(name_of(table), "times that do not rise", "rising times")
+    if max(level[0], level[-1]) > (least := level.max() - FALL):
+        received = f"a record that begins at {level[0]:.1f} and ends at {level[-1]:.1f} dB(A)"
+        allowed = f"one that begins and ends below {least:.1f} dB(A), {FALL:g} dB below its maximum"
+        raise InputError(name_of(table), received, allowed, "Take a longer record of one train alone.")
+    return time, level
+
+
+def read_band_levels(table: TableSource) -> tuple[Array, Array]:
+    """Read sound pressure levels (n,), dB, in one-third octaves by their exact centres (n,), Hz.
+
+    Without weighting; a file says by the unit dB(A) that its levels are A-weighted.
+    """
+    rows, unit = _in_some_unit(table, _FREQUENCY, ("level",), SOUND[::-1])
+    _refuse_few(table, rows)
+    frequency, level = _levels(table, rows)
+    centres = 10.0 ** (0.1 * band_numbers(table, frequency))
+    return centres, level - (a_weighting(centres) if unit == SOUND[0] else 0.0)
+
+
+def _levels(table: TableSource, rows: Array) -> tuple[Array, Array]:
+    place, level = rows.T
+    least, most = SOUND_LEVELS
+    if (wrong := (level < least) | (level > most)).any():
+        received, allowed = f"a level of {level[wrong][0]:g} dB", f"{least:g} to {most:g} dB re 20 uPa"
+        raise InputError(name_of(table), received, allowed, "Is it a sound pressure level?")
+    return place, level
+
+
+def _in_some_unit(
+    table: TableSource, first: Column, names: tuple[str, ...], units: Iterable[str]
+) -> tuple[Array, str]:
+    """Rows of a table, and the first of some units in which its columns but the first are.
+
+    Of these the first must be there, and all others may.
+    """
+    errors, tried = [], list(units)
+    for unit in tried:
+        second, *others = (Column(name, unit) for name in names)
         try:
-            return read_table(table, (_FREQUENCY, columns[0]), columns[1:]), power
+            return read_table(table, (first, second), tuple(others)), unit
         except InputError as error:
             errors.append(error)
-    told = errors[0]
-    allowed = told.allowed.replace(MOBILITY, " or ".join(FORMS))
+    told, *_ = errors
+    allowed = told.allowed.replace(tried[0], " or ".join(tried))
     raise InputError(told.what, told.received, allowed, told.remedy)
 
 

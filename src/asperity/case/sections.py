@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
 from asperity.case.body import DAMPING
 from asperity.case.form import Section
+from asperity.case.measured import read_band_levels, read_passage
 from asperity.case.rolled_over import FREQUENCY
 from asperity.case.surface import LENGTH, POSITION
 from asperity.case.tables import TableFile, read_ratios
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 MOST_CELLS = 2048  # along one side of the window
 DURATION = Quantity("s", above=0)
+_HEARD, _NOTHING = "0 dB to 180 dB: sound that is heard lies between", "nothing was measured"
 DURATION_OR_ZERO = Quantity("s", at_least=0)
 
 
@@ -314,6 +316,29 @@ class NoiseKeys(Section):
         "that of their middle, the rolling radius",
         "1 mm to 10 m: vehicles are lower",
     )
+    measured_passage: Path | Array | None = optional(
+        TableFile(columns=(2,), read=read_passage),
+        "passage.csv",
+        "what was measured beside the track as this train passed, to compare: time (s), A-weighted sound "
+        "pressure level with time weighting F (dB)",
+        _NOTHING,
+    )
+    measured_bands: Path | Array | None = optional(
+        TableFile(columns=(2,), read=read_band_levels),
+        "bands.csv",
+        "measured sound pressure levels over the pass-by time: one-third octave (Hz), level (dB, or in a "
+        "file dB(A))",
+        _NOTHING,
+    )
+    measured_maximum_level: float | None = optional(
+        Quantity("dB"), "87 dB", "measured L_pAFmax", "that of measured_passage", _HEARD
+    )
+    measured_equivalent_level: float | None = optional(
+        Quantity("dB"), "85 dB", "measured L_pAeq,Tp", "that of measured_passage", _HEARD
+    )
+    measured_exposure_level: float | None = optional(
+        Quantity("dB"), "86 dB", "measured TEL", "that of measured_passage", _HEARD
+    )
 
     def axles_behind(self, contacts: tuple[float, ...]) -> tuple[float, ...]:
         """Axles of one vehicle behind its first, m: as given, else the contacts, which are so far behind."""
@@ -374,3 +399,9 @@ class NoiseKeys(Section):
         if length is not None and length <= last:
             allowed = f"more than that over its axles, {written(last, 'm', 'm')}"
             yield InputError("noise.vehicle_length", written(length, "m", "m"), allowed)
+        elif self.passage(contacts, 1.0).passed is None:
+            for name in ("measured_bands", "measured_equivalent_level", "measured_exposure_level"):
+                if getattr(self, name) is not None:
+                    remedy = "Give noise.vehicle_length."
+                    allowed = "a train with a length, from which the pass-by time follows"
+                    yield InputError(f"noise.{name}", "a single axle", allowed, remedy)

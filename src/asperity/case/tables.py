@@ -280,8 +280,9 @@ def _words(text: str) -> set[str]:
 def _scale(heading: str, column: Column, path: Path) -> float:
     """SI value of the unit that a heading names in brackets; 1 for a pure number."""
     unit = unit_in_brackets(heading)
-    if column.dimension == "dB":
-        unit = re.sub(r" ?re ?1 ?[uµμ]m$", "", unit)
+    if column.dimension.startswith("dB"):
+        unit = re.sub(r" ?re ?(1 ?[uµμ]m|20 ?[uµμ]Pa)$", "", unit)
+        unit = re.sub(r"^dB ?A$", "dB(A)", unit)
     if not column.dimension and unit in ("", "-", "1"):
         return 1.0
     try:

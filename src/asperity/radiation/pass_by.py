@@ -275,7 +275,7 @@ def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, flo
         return PassByLevels(maximum, unknown, unknown)
     duration = passed[1] - passed[0]
     measured = _measured(instants, parts[-1], passed)
-    equivalent, exposed = (_integral(instants, parts, *each) / duration for each in (passed, measured))
+    equivalent, exposed = (integral(instants, parts, *each) / duration for each in (passed, measured))
     return PassByLevels(maximum, pressure_level(equivalent), pressure_level(exposed))
 
 
@@ -316,7 +316,7 @@ def _measured(time: Array, whole: Array, passed: tuple[float, float]) -> tuple[f
     return float(start), float(end)
 
 
-def _integral(time: Array, squared: Array, start: float, end: float) -> Array:
-    """Integral of what is linear between its samples, (s,)."""
+def integral(time: Array, squared: Array, start: float, end: float) -> Array:
+    """Integral from a start to an end of what (s, t) is linear between its samples, (s,)."""
     nodes = np.concatenate([[start], time[(time > start) & (time < end)], [end]])
     return np.trapezoid([np.interp(nodes, time, one) for one in squared], nodes, axis=1)

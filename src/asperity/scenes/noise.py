@@ -20,6 +20,7 @@ from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
 from asperity.scenes.measured import measured_track
+from asperity.scenes.measured_passage import measured_passage
 from asperity.schema import Entry, Values, spectra
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
 from asperity.structures.track import Track, decay_rate
@@ -370,7 +371,8 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
         laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = np.stack([each.transit_exposure for each in levels])
         laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
-    return laid_out
+    main = laid_out[schema.PASS_BY_LEVEL][0, -1]
+    return laid_out | measured_passage(case.noise, time[kept], main, passage.passed, band)
 
 
 def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSource]:

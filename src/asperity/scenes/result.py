@@ -22,6 +22,7 @@ from asperity.scenarios.preparing import PreparedCase
 from asperity.scenes import measured, noise, schema, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
+from asperity.scenes.measured_passage import findings_of_passage
 from asperity.scenes.population import answers
 from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
 from asperity.structures.rail_poles import RailBetween, RailPoles
@@ -73,6 +74,7 @@ def computed_result(
             found += noise.findings_of_labels(case)
         found += (of_measured := measured.findings_of_measured(in_bands))
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
+        found += findings_of_passage(own)
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))
         noise.warn_of_silence(case)
         track.warn_of_loss_factors(losses)

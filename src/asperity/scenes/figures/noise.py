@@ -16,6 +16,7 @@ from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
+from asperity.scenes.figures.measured import compared_numbers, moved_words
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -311,10 +312,11 @@ def _pass_by(tree: DataTree, lines: Lines) -> list[Panel]:
     totals = panels.styled(tree, lines.at, lines.of(PASSING, radiator=whole))
     dashes = {part: _DASHES[part] for part in parts}
     of_parts = _of_parts(lines, PASSING, data.laws(tree, PASSING)[0], dashes)
+    heard = [Line(lines.at, s.values, s.label, INK, (), 2.2) for s in lines.of(schema.MEASURED_LEVEL)]
     label = "sound pressure level, F / dB(A) re 20 µPa"
-    axis = panels.levels_axis(label, [line.y for line in totals], span=SPAN, step=5.0)
+    axis = panels.levels_axis(label, [line.y for line in (*totals, *heard)], span=SPAN, step=5.0)
     time = Axis("time since the first axle was opposite / s", lines.at[0], lines.at[-1])
-    return [Panel(time, axis, (*_train(tree), *totals, *of_parts), height=4.2)]
+    return [Panel(time, axis, (*_train(tree), *totals, *of_parts, *heard), height=4.2)]
 
 
 def _train(tree: DataTree) -> list[Mark]:
@@ -338,7 +340,7 @@ def _pass_by_caption(tree: DataTree) -> str:
     return (
         f"{passing} (ticks), two wheels on each{where}, over {_ground(tree)}. Rail and sleepers radiate "
         f"along the track as its vibration decays, a wheel from its axle, {_directions(tree)}; nothing "
-        "screens them."
+        f"screens them.{moved_words(tree)}"
     )
 
 
@@ -381,7 +383,7 @@ PASS_BY = Figure(
     "pass_by_level",
     "Level beside the track",
     Of(schema.PASS_BY_TIME, "time"),
-    (Of(PASSING, "{radiator}, {law}"),),
+    (Of(PASSING, "{radiator}, {law}"), Of(schema.MEASURED_LEVEL, "measured", "measured", optional=True)),
     _pass_by,
     _pass_by_caption,
     (schema.AXLE_TIME,),
@@ -478,5 +480,7 @@ def pass_by_answers(tree: DataTree) -> Answers | None:
     where = "" if away is None else f", {away:g} m from the track"
     told = "".join(f"; {name} {other:.1f} dB(A)" for name, other in others)
     held = "" if "wheel" in _passing_parts(tree) else ", without the wheel"
-    note = f"re 20 µPa{where}{told}; own radiation model{held}"
+    heard, _ = compared_numbers(tree).get(first, (None, None))
+    measured = "" if heard is None else f"; {first} measured {heard:.1f} dB(A)"
+    note = f"re 20 µPa{where}{told}{measured}; own radiation model{held}"
     return Answers(numbers=(HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note),))
