@@ -549,13 +549,19 @@ def optional(
 
 
 def parameter(
-    kind: ValueKind, example: Any, meaning: str, within: str = "", *, default: Any = dataclasses.MISSING
+    kind: ValueKind,
+    example: Any,
+    meaning: str,
+    within: str = "",
+    *,
+    default: Any = dataclasses.MISSING,
+    goes_with: str = "",
 ) -> Any:
     """Declare a parameter of a physical dataclass, from which its key in a case follows.
 
     `default` is that of the class, in SI; the rest is as in `key`.
     """
-    declared = Key(kind, None, meaning, limits_in(within), example=example)
+    declared = Key(kind, None, meaning, limits_in(within), example=example, goes_with=goes_with)
     return dataclasses.field(default=default, metadata={"key": declared})
 
 

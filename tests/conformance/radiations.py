@@ -64,7 +64,7 @@ def along_the_track():
     node, weight = np.polynomial.legendre.leggauss(24)
     places = 0.5 * bay * (node + 1.0)
     point = [(1j * omega * track.receptance(frequency, x, x)).real.item() for x in places]
-    pad, ballast = (each.stiffness(omega) for each in (track.support.pad, track.support.ballast))
+    pad, ballast = (each.stiffness(omega) for each in track.support.elements[::2])
     below = pad / (pad + ballast - track.sleeper_mass * omega**2)
     lost = track.pad_damping * np.abs((1.0 - below) / below) ** 2 + track.ballast_damping
     share = lost * squared_sleeper_mobility(track, frequency)[0] / (0.5 * weight @ np.array(point))

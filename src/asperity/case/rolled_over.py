@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 from asperity.arguments import Array
 from asperity.case.body import INERTIA, MASS
@@ -15,7 +15,7 @@ from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
 from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
-from asperity.case.tables import RECEPTANCES, TableFile, read_table
+from asperity.case.tables import RECEPTANCES, TableFile, read_dynamic_stiffness, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
     Choice,
@@ -31,7 +31,9 @@ from asperity.parameters import (
 )
 from asperity.reference.materials import Material
 from asperity.reference.tracks import TRACKS
+from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.track import Track
+from asperity.structures.track_parameters import LAYERS
 from asperity.surfaces.heightmap import Profile
 
 if TYPE_CHECKING:
@@ -42,6 +44,8 @@ MODES_BEYOND = 4.0
 """Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
+PRELOAD_STEPS = 20
+"""Steps in which the preload of pads is found, whose stiffness depends on it."""
 FREQUENCY = Quantity("Hz", above=0)
 _WIDTHS = "10 mm to 1 m: rails lie between"
 
@@ -206,7 +210,11 @@ class BeamKeys(RolledOver):
 class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named set")):
     """A track: a named, cited set, each single key of which overrides it; and its rail head."""
 
-    ALTERNATIVES = (("rail_head_radius", "rail_profile"),)
+    ALTERNATIVES = (
+        ("rail_head_radius", "rail_profile"),
+        ("pad_table", "pad_damping"),
+        ("pad_table", "pad_loss_factor"),
+    )
 
     name: str = key(Choice(tuple(TRACKS)), "x2000", "named set of parameters")
     rail_head_radius: float = key(
@@ -220,6 +228,21 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     rail_foot_width: float = key(LENGTH, "150 mm", "width of the rail's foot, which radiates", _WIDTHS)
     rail_head_width: float = key(LENGTH, "72 mm", "width of the rail's head, which radiates", _WIDTHS)
     material: Material = key(MaterialOrName(), "steel", "material of the rail")
+    pad_table: Path | Array | None = optional(
+        TableFile(columns=(3, 4), read=read_dynamic_stiffness),
+        "pad.csv",
+        "measured dynamic stiffness of a pad: frequency (Hz), real and imaginary part (N/m), or magnitude "
+        "(N/m) and loss factor, and the preload (N) if at several; approximated in time; with pad_stiffness "
+        "it is scaled to have that as its real part at 300 Hz",
+    )
+    pad_preload: float | None = optional(
+        Quantity("N", above=0),
+        "30 kN",
+        "preload of the pads at which such a table is taken",
+        "what a support carries of the wheel's static load",
+        "1 N to 10 MN: rails press on pads with as much",
+        goes_with="pad_table",
+    )
     points: tuple[float, ...] | None = optional(
         ListOf(POSITION, least=1),
         ["9 m", "9.3 m"],
@@ -253,10 +276,36 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         return self.rail_profile
 
     @property
-    def overrides(self) -> dict[str, float]:
+    def overrides(self) -> dict[str, Any]:
         """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
         told = {name: getattr(self, name) for name in keys_of(Track, "")}
+        if self.pad_table is not None:
+            told["pad_table"] = self._pad
         return {name: value for name, value in told.items() if value is not None}
+
+    @property
+    def _pad(self) -> StiffnessTable:
+        """The measured pad at its preload, without one at the least of the table."""
+        return stiffness_at_preload(self._pad_rows, self.pad_preload or float(preloads_of(self._pad_rows)[0]))
+
+    @cached_property
+    def _pad_rows(self) -> Array:
+        assert self.pad_table is not None
+        return read_dynamic_stiffness(self.pad_table)
+
+    def preloaded(self, load: float) -> Self:
+        """With the preload of the pads, where it matters and is not given, under a wheel with this load, N.
+
+        That of the support right below the wheel, K(0) G(0|0) of the load at rest, on pads of that preload.
+        """
+        if self.pad_table is None or self.pad_preload is not None or len(preloads_of(self._pad_rows)) < 2:
+            return self
+        carried, told = 0.5 * load, self.overrides
+        for _ in range(PRELOAD_STEPS):
+            pad = stiffness_at_preload(self._pad_rows, carried)
+            track = Track.named(self.name, **(told | {"pad_table": pad}))
+            carried = track.support.static * track.static_deflection(load)
+        return self.with_chosen(pad_preload=carried)
 
     def model(self, highest_frequency: float = math.inf) -> Track:
         """Build the track: the named set with the keys of the case in it."""
@@ -285,7 +334,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     def problems(self) -> Iterator[InputError]:
         """Each damping either viscous or by a loss factor."""
         told = self.overrides
-        for part in ("pad", "ballast"):
+        for part in LAYERS:
             viscous, loss = f"{part}_damping", f"{part}_loss_factor"
             if viscous in told and loss in told:
                 received = f"{told[viscous]:g} N s/m and {loss} = {told[loss]:g}"

@@ -352,6 +352,9 @@ class Case(Section):
         with suppress(InputError):  # bodies that do not touch in a point: `problems` say so
             for title, lengths in chosen_lengths(self, self.nominal_patch).items():
                 self.__dict__[title] = getattr(self, title).with_chosen(**lengths)
+        with suppress(InputError):  # of a track that does not exist
+            if isinstance(over := self.rolled_over, TrackKeys):
+                self.__dict__[self.OVER] = over.preloaded(self.rolling.contact_load)
         if "laws" not in self.given_names:
             self.__dict__["laws"] = self._usual_laws()
 

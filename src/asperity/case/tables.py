@@ -20,6 +20,7 @@ from asperity.files import amount
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
 from asperity.structures.outline import checked_outline
+from asperity.structures.stiffness_table import preloads_of, stiffness_at_preload
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
@@ -31,6 +32,8 @@ FEWEST_LINES = 10  # of a receptance
 MOST_LINES = 2**22
 """Lines of a table that is laid out: 160 MiB of five columns."""
 MOST_DIMENSIONS = 3
+MOST_HEADING = 50
+"""Lines of a file among which its heading is sought."""
 _BAND = 0.1  # of a decade
 
 TableSource = Path | Array
@@ -55,6 +58,10 @@ RADIATION = (
 """Further columns of modes: how they move the whole wheel, rms per radial velocity at the contact."""
 OUTLINE = (Column("radius", "m"), Column("axial place", "m"))
 RATIOS = (_FREQUENCY, Column("radiation ratio", ""))
+STIFFNESS = (_FREQUENCY, Column("real part", "N/m"), Column("imaginary part", "N/m"))
+STIFFNESS_AND_LOSS = (_FREQUENCY, Column("magnitude", "N/m"), Column("loss factor", ""))
+PRELOAD = (Column("preload", "N"),)
+"""A further column of both."""
 RECEPTANCE = (_FREQUENCY, Column("real part", "m/N"), Column("imaginary part", "m/N"))
 RECEPTANCES = (
     _FREQUENCY,
@@ -189,6 +196,34 @@ def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
         raise InputError(name_of(table), f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
     refuse_disorder(table, frequency)
     return frequency, real + 1j * imaginary
+
+
+def read_dynamic_stiffness(table: TableSource) -> Array:
+    """Read a dynamic stiffness over frequency, and preload if the table tells it, (n, 3) or (n, 4).
+
+    Frequency, Hz, real and imaginary part, N/m, e^{+iωt}, and preload, N. Files may have magnitude and loss
+    factor, the imaginary over the real part, instead, which their heading says; arrays hold the parts.
+    """
+    by_loss = isinstance(table, Path) and _tells_loss_factors(table)
+    rows = read_table(table, STIFFNESS_AND_LOSS if by_loss else STIFFNESS, PRELOAD)
+    if by_loss:
+        real = rows[:, 1] / np.hypot(1.0, rows[:, 2])
+        rows = np.column_stack([rows[:, 0], real, real * rows[:, 2], rows[:, 3:]])
+    try:
+        for preload in preloads_of(rows):
+            stiffness_at_preload(rows, preload)
+    except InputError as error:
+        raise error.about(name_of(table), f"{error.received} ({error.what})") from None
+    return rows
+
+
+def _tells_loss_factors(path: Path) -> bool:
+    """Whether the heading of a text file names a loss factor."""
+    if path.suffix.lower() in NETCDF:
+        return False
+    content = read_text(path, path.name, "a table of dynamic stiffness", largest=LARGEST_TABLE)
+    lines = (line.lower() for line in islice(lines_in(content), MOST_HEADING))
+    return any("loss" in line and unit_in_brackets(line) for line in lines)
 
 
 def refuse_disorder(table: TableSource, frequency: Array) -> None:

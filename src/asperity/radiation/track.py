@@ -125,9 +125,12 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
     """Sum over all half sleepers of the squared mobility, mean over the places of the force in a bay.
 
     Velocity of the sleeper per force on the rail, squared, (f,), (m/s)²/N², at positive frequencies (f,), Hz.
-    A sleeper on its ballast moves by K_p/(K_p + K_b − m_s ω²) of the rail above it; the rest as in
-    `squared_mobility`.
+    A sleeper on its ballast moves by K_p/(K_p + K_b − m_s ω²) of the rail above it; of one that bends, it is
+    the mean over its length. The rest as in `squared_mobility`.
     """
+    if track.continuous:
+        moved = track.support.sleeper_square(2.0 * np.pi * above_zero(frequency))
+        return moved * squared_mobility(track, frequency, force) / track.sleeper_spacing
     bay = _Bay(track, frequency)
     above = bay.waves.outgoing(0.0)
     total = bay.over_bays(above[:, None] * above.conj()[None, :])

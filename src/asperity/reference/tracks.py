@@ -27,6 +27,12 @@ _UIC60_SUPPORTS: Parameters = {
     "ballast_damping": (47e3, "published together with a ballast of 40 MN/m"),
     "sleeper_spacing": (0.6, _RANGE + "0.55 to 0.65 m"),
 }
+_CHOSEN = "chosen here, no particular product"
+_UIC60_TIMOSHENKO: Parameters = {
+    **_UIC60_RAIL,
+    "shear_stiffness": (80.77e9 * 76.7e-4 * 0.393, _UIC60_SHEAR),
+    "rotary_inertia": (60.2 / 76.7e-4 * 3.037e-5, _UIC60),
+}
 _NORDBORG_RAIL: Parameters = {
     "bending_stiffness": (210e9 * 22.5e-6, _NORDBORG + ": E = 210 GPa, I = 22.5e-6 m^4"),
     "mass_per_length": (60.0, _NORDBORG),
@@ -59,13 +65,26 @@ TRACKS: dict[str, Parameters] = {
         "pad_loss_factor": (0.15, _NORDBORG),
         "ballast_loss_factor": (0.4, _NORDBORG),
     },
-    "uic60": {
-        **_UIC60_RAIL,
-        "shear_stiffness": (80.77e9 * 76.7e-4 * 0.393, _UIC60_SHEAR),
-        "rotary_inertia": (60.2 / 76.7e-4 * 3.037e-5, _UIC60),
-        **_UIC60_SUPPORTS,
-    },
+    "uic60": {**_UIC60_TIMOSHENKO, **_UIC60_SUPPORTS},
     "uic60-euler": {**_UIC60_RAIL, **_UIC60_SUPPORTS},
+    "slab-blocks": {
+        **_UIC60_TIMOSHENKO,
+        "pad_stiffness": (150e6, _CHOSEN + ": a pad on a block"),
+        "pad_loss_factor": (0.2, _CHOSEN),
+        "sleeper_mass": (100.0, _CHOSEN + ": the block"),
+        "ballast_stiffness": (25e6, _CHOSEN + ": the boot of the block, on a rigid slab"),
+        "ballast_loss_factor": (0.2, _CHOSEN + ": of the boot"),
+        "sleeper_spacing": (0.6, _RANGE + "0.55 to 0.65 m"),
+    },
+    "embedded": {
+        **_UIC60_TIMOSHENKO,
+        "pad_stiffness": (60e6, _CHOSEN + ": 100 MN/m per metre of rail"),
+        "pad_loss_factor": (0.2, _CHOSEN),
+        "sleeper_mass": (0.0, "none"),
+        "ballast_stiffness": (float("inf"), "the trough of the rail is rigid"),
+        "sleeper_spacing": (0.6, "a length of rail, to which pad_stiffness belongs"),
+        "continuous": (True, "the rail lies on its embedment all along"),
+    },
 }
 
 

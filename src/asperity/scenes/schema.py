@@ -106,7 +106,13 @@ _FORCE = "level of the linear contact force in time over that of constant loss f
 LOSS_FACTOR_FORCE_ERROR = _losses("loss_factor_force_error(band)", "dB", _FORCE)
 _RAIL = "level of the rail's receptance in time over that of constant loss factors"
 LOSS_FACTOR_RAIL_ERROR = _losses("loss_factor_rail_error(band)", "dB", _RAIL)
-LOSS_FACTOR = _losses("loss_factor(layer)", "1", "constant loss factor")
+_TABLE = "of this layer it is measured over frequency"
+LOSS_FACTOR = _losses("loss_factor(layer)", "1", "constant loss factor", missing=_TABLE)
+_measured = partial(entry, "track", condition="where the pad is measured over frequency")
+MEASURED_STIFFNESS = _measured(
+    "measured_stiffness(band)", "1", "measured stiffness of the pad over the nominal"
+)
+MEASURED_LOSS_FACTOR = _measured("measured_loss_factor(band)", "1", "measured loss factor of the pad")
 RELAXED_STIFFNESS = _losses("relaxed_stiffness(layer, band)", "1", "stiffness in time over the nominal one")
 RELAXED_LOSS_FACTOR = _losses("relaxed_loss_factor(layer, band)", "1", "loss factor in time")
 

@@ -29,7 +29,9 @@ from asperity.spectra import (
 )
 from asperity.structures.causal_track import causal_track
 from asperity.structures.rail_poles import RailPoles
+from asperity.structures.stiffness_table import StiffnessTable
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
+from asperity.structures.track_parameters import LAYERS
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
@@ -220,7 +222,7 @@ DOUBTFUL = 0.75
 """Error of a band, dB, from which on it is warned of."""
 LEAST_SHOWN = 0.05
 """Errors below this, dB, are not listed."""
-PARTS = ("rail", "pad", "ballast")
+PARTS = ("rail", *LAYERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,18 +280,27 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
     if error.track.is_causal:
         return []
     level, frequency = error.force[error.worst], error.bands[error.worst]
+    table = error.track.pad_table
     factors = {part: getattr(error.track, f"{part}_loss_factor") or 0.0 for part in PARTS}
     layer = max(factors, key=factors.__getitem__)
+    if table is not None and (largest := float(table_of(table, error.bands)[1].max())) > factors[layer]:
+        layer, factors = "pad", {"pad": largest}
+    words = layer.replace("_", " ")
     meaning = "Nothing that answers after a force only has the loss factor "
-    meaning += f"{factors[layer]:g} of the {layer} at all frequencies"
-    if off := [nominal_frequency(error.bands[i]) for i in np.flatnonzero(np.abs(error.force) > DOUBTFUL)]:
-        meaning += f": read the one-third octaves of {', '.join(off)} with their error"
+    meaning += f"{factors[layer]:g} of the {words} at all frequencies"
     remedy = "Give the rail a smaller one."
-    if layer != "rail":
+    if layer == "pad" and table is not None:
+        meaning = "The springs and dampers that stand in time for the table of the pad miss it"
+        remedy = (
+            "Losses need a stiffness that rises with frequency, as steeply: is the table that of one pad?"
+        )
+    elif layer != "rail":
         stiffness = getattr(error.track, f"{layer}_stiffness")
         damping = 1e-3 * stiffness * factors[layer] / (2.0 * np.pi * frequency)
         exact = f"{damping:.3g} kN s/m dissipate as much at {frequency:.3g} Hz"
         remedy = f"Give {layer}_damping, which is exact: {exact}."
+    if off := [nominal_frequency(error.bands[i]) for i in np.flatnonzero(np.abs(error.force) > DOUBTFUL)]:
+        meaning += f": read the one-third octaves of {', '.join(off)} with their error"
     return [
         Finding(
             "error of the contact force for constant loss factors, at most",
@@ -311,15 +322,25 @@ def relaxed(error: LossFactorError) -> Values:
     if not layers:
         return {}
     stiffness = np.array(list(layers.values()))
-    return {
+    measured: Values = {}
+    if error.track.pad_table is not None:
+        entries = schema.MEASURED_STIFFNESS, schema.MEASURED_LOSS_FACTOR
+        measured = dict(zip(entries, table_of(error.track.pad_table, error.bands), strict=True))
+    return measured | {
         schema.TRACK_BAND: error.bands,
         schema.LAYER: list(layers),
         schema.LOSS_FACTOR_FORCE_ERROR: error.force,
         schema.LOSS_FACTOR_RAIL_ERROR: error.rail,
-        schema.LOSS_FACTOR: [getattr(error.track, f"{name}_loss_factor") for name in layers],
+        schema.LOSS_FACTOR: [getattr(error.track, f"{name}_loss_factor") or np.nan for name in layers],
         schema.RELAXED_STIFFNESS: stiffness.real,
         schema.RELAXED_LOSS_FACTOR: stiffness.imag / stiffness.real,
     }
+
+
+def table_of(table: StiffnessTable, bands: Array) -> tuple[Array, Array]:
+    """Stiffness over the nominal one and loss factor of a table (b,) in the middle of bands, Hz."""
+    measured = table.at(2.0 * np.pi * bands)
+    return measured.real, measured.imag / measured.real
 
 
 def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str, str]]:
@@ -338,8 +359,8 @@ def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str,
     shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]
     yield "loss factors in time", f"error of the contact force, dB: {', '.join(shown)}"
     own = track.relaxations
-    relaxing = {"rail": own.rail, "pads": own.pad, "ballast": own.ballast}
-    shares = ", ".join(f"{name} {part.static:.2f}" for name, part in relaxing.items() if part is not None)
+    relaxing = {"pads" if name == "pad" else name: part for name, part in vars(own).items() if part}
+    shares = ", ".join(f"{name.replace('_', ' ')} {part.static:.2f}" for name, part in relaxing.items())
     half = 0.5 * track.sleeper_spacing
     rest, was = (1e3 * each.static_deflection(load, half) for each in (track, nominal))
     down = f"the load at mid-span rests {rest:.3g} mm down, nominally {was:.3g} mm"

@@ -1,9 +1,10 @@
-"""A causal track that stands for one with constant loss factors.
+"""A causal track that stands for one with constant loss factors, or with measured stiffnesses.
 
 No material has one stiffness and one loss factor at all frequencies: by Kramers and Kronig a loss factor η
 lets the stiffness grow, by 2η/π per neper of frequency. The stiffnesses of the causal track relax
 (`asperity.structures.support`), such that the contact force of a wheel is as nearly as possible that on
-the track with constant loss factors, in each one-third octave.
+the track with constant loss factors, in each one-third octave. A measured stiffness over frequency is taken
+for what it is: the elements aim at it instead.
 """
 
 from collections.abc import Callable
@@ -18,8 +19,10 @@ from scipy.linalg import block_diag
 from asperity.arguments import Array, Complex
 from asperity.spectra import third_octave_bands
 from asperity.store import Cache, content_key, made
-from asperity.structures.support import Relaxation, relaxing
-from asperity.structures.track import Relaxations, Track
+from asperity.structures.stiffness_table import StiffnessTable
+from asperity.structures.support import ConstantLoss, Losses, Relaxation, relaxing
+from asperity.structures.track import Track
+from asperity.structures.track_parameters import Relaxations
 
 LOWEST, HIGHEST = 5.0, 5000.0
 """One-third octaves over which the contact force is fitted, Hz."""
@@ -51,13 +54,13 @@ Linearised = Callable[[Array], tuple[Array, Array]]
 
 
 def causal_track(track: Track, cache: Cache | None = None) -> Track:
-    """Put stiffnesses that relax in the place of loss factors; a track that is causal already stays as it is.
+    """Put stiffnesses that relax in the place of loss factors and tables; a causal track stays as it is.
 
     Least squares of the level of the mean square of 1/(α_W + α_C + α_R) over half a bay and each band, for
-    three rigid wheels on a linear contact, in the strengths of the Maxwell elements of pads and ballast. None
-    of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps it in all
-    bands, and its stiffness at 300 Hz. At rest, and under a load that hardly moves, the track is softer than
-    the nominal one. Of bays that differ, the nominal one is fitted. A cache keeps the fit.
+    three rigid wheels on a linear contact, in the strengths of the Maxwell elements of the springs below the
+    rail. None of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps
+    it in all bands, and its stiffness at 300 Hz. At rest, and under a load that hardly moves, the track is
+    softer than the nominal one. Of bays that differ, the nominal one is fitted. A cache keeps the fit.
     """
     if track.is_causal:
         return track
@@ -94,6 +97,14 @@ def least_static(factor: float) -> float:
     return max(1.0 / (1.0 + 2.0 * factor), LEAST_STATIC)
 
 
+def _least(losses: Losses) -> float:
+    """The same of any losses; below its first frequency a table goes on with the loss factor there."""
+    if isinstance(losses, StiffnessTable):
+        return losses.static * least_static(losses.imaginary[0] / losses.real[0])
+    assert isinstance(losses, ConstantLoss)
+    return least_static(losses.factor or 0.0)
+
+
 def _rail(factor: float) -> Relaxation:
     """The loss factor in all bands."""
     losses = relaxing(2.0 * np.pi * third_octave_bands(LOWEST, HIGHEST)[0], FREQUENCIES).imag[:, 1:]
@@ -103,13 +114,12 @@ def _rail(factor: float) -> Relaxation:
 
 
 class _Fit:
-    """Errors of the contact force in bands, as a function of the Maxwell elements of pads and ballast."""
+    """Errors of the contact force in bands, as a function of the Maxwell elements between rail and ground."""
 
     def __init__(self, track: Track) -> None:
         self.track = track
         self.rail = _rail(track.rail_loss_factor) if track.rail_loss_factor else None
-        factors = {"pad": track.pad_loss_factor, "ballast": track.ballast_loss_factor}
-        self.lossy = {part: eta for part, eta in factors.items() if eta}
+        self.lossy = {part: losses for part, losses in track.lossy.items() if part != "rail"}
         centres, low, high = third_octave_bands(LOWEST, HIGHEST)
         steps = (np.arange(LINES) + 0.5) / LINES
         self.omega = 2.0 * np.pi * (low[:, None] * (high / low)[:, None] ** steps).ravel()
@@ -117,7 +127,9 @@ class _Fit:
         coarse = relaxing(2.0 * np.pi * centres, FREQUENCIES)
         self.coarse = np.concatenate([coarse.real, coarse.imag])
         self.least = np.zeros((len(self.lossy), 1 + len(FREQUENCIES)))
-        self.least[:, 0] = [least_static(eta) for eta in self.lossy.values()]
+        self.least[:, 0] = [_least(losses) for losses in self.lossy.values()]
+        wanted = [losses.at(2.0 * np.pi * centres) + np.zeros(len(centres)) for losses in self.lossy.values()]
+        self.aims = [np.concatenate([each.real, each.imag]) for each in wanted]
         self.places = track.places(POSITIONS)
         self.carried = [1.0 / CONTACT - 1.0 / (mass * self.omega**2) for mass in WHEELS]
         nominal = self.receptance(track)
@@ -145,14 +157,10 @@ class _Fit:
             found[name] = Relaxation(static, tuple(strengths), FREQUENCIES)
         return replace(self.track, relaxations=Relaxations(self.rail, **found))
 
-    def constant(self, stiffness: float, loss: float) -> Array:
-        """Real and imaginary part of a constant, in the rows of `coarse`."""
-        return np.repeat([stiffness, loss], len(self.coarse) // 2)
-
     def start(self) -> Array:
-        """Unknowns that depart least from the constant loss factors."""
-        aims = [self.constant(1.0 - least_static(eta), eta) for eta in self.lossy.values()]
-        return np.concatenate([np.zeros(0), *(scipy.optimize.nnls(self.coarse, aim)[0] for aim in aims)])
+        """Unknowns that depart least from the constant loss factors and the tables."""
+        missing = [aim - self.coarse @ least for aim, least in zip(self.aims, self.least, strict=True)]
+        return np.concatenate([np.zeros(0), *(scipy.optimize.nnls(self.coarse, aim)[0] for aim in missing)])
 
     def linearised(self, unknowns: Array) -> tuple[Array, Array]:
         """Weighted errors and departures, (n,), and their slopes, (n, unknowns)."""
@@ -181,8 +189,8 @@ class _Fit:
         return share * weight * error, share * (2.0 * weight - 1.0 / weight)[:, None] * slopes
 
     def _departures(self, unknowns: Array) -> tuple[Array, Array]:
-        """Departures from the constant loss factors at the centres of bands, and their slopes."""
-        aims = np.array([self.constant(1.0, eta) for eta in self.lossy.values()])
+        """Departures from the constant loss factors and tables at the centres of bands, and their slopes."""
+        aims = np.array(self.aims)
         departures = self.parts(unknowns) @ self.coarse.T - aims
         return DEPARTURE * departures.ravel(), DEPARTURE * block_diag(*[self.coarse] * len(aims))
 

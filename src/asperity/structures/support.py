@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from asperity.arguments import Array, Complex
+from asperity.structures.stiffness_table import StiffnessTable
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,10 @@ class ConstantLoss:
         return np.asarray(1.0 + 1j * (self.factor or 0.0))
 
 
+Losses = ConstantLoss | Relaxation | StiffnessTable
+"""How a stiffness depends on frequency, relative to a nominal one."""
+
+
 class Element(Protocol):
     """One of the things between rail and ground; `below` is the stiffness under it, None on rigid ground."""
 
@@ -73,7 +78,7 @@ class Spring:
     """A stiffness over frequency: with losses of its own, and a viscous damper beside it."""
 
     nominal: float  # N/m
-    losses: ConstantLoss | Relaxation
+    losses: Losses
     damping: float  # N s/m
 
     def stiffness(self, omega: ArrayLike) -> Complex:
@@ -206,6 +211,34 @@ class _SleeperWaves:
             running, fading = (np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
             found = found + self.running * running + self.fading * fading
         return found
+
+
+@dataclass(frozen=True)
+class TunedDamper:
+    """A mass that hangs at the rail on a standard linear solid: a spring beside a Maxwell element.
+
+    At its frequency, where it dissipates most, the solid has the stiffness m (2πf)² and the loss factor η:
+    1 − η of that stiffness is the spring's, 2 η the Maxwell element's. It is causal as it is.
+    """
+
+    mass: float  # m, kg
+    frequency: float  # f, at which the mass would swing on the real part of its spring, Hz
+    loss_factor: float  # η, below 1
+
+    def spring(self, omega: ArrayLike) -> Complex:
+        """Dynamic stiffness of the solid, N/m."""
+        solid = Relaxation(1.0 - self.loss_factor, (2.0 * self.loss_factor,), (self.frequency,))
+        return self.mass * (2.0 * np.pi * self.frequency) ** 2 * solid.at(omega)
+
+    def stiffness(self, omega: ArrayLike) -> Complex:
+        """Dynamic stiffness at the rail, N/m: -k m ω²/(k - m ω²)."""
+        spring, inertia = self.spring(omega), self.mass * np.asarray(omega, dtype=complex) ** 2
+        return -spring * inertia / (spring - inertia)
+
+    def squeezed(self, omega: ArrayLike) -> Array:
+        """Square of how much the solid is stretched per square of the rail's displacement."""
+        inertia = self.mass * np.asarray(omega, dtype=complex) ** 2
+        return np.abs(inertia / (self.spring(omega) - inertia)) ** 2
 
 
 @dataclass(frozen=True)

@@ -8,41 +8,38 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, finite_array, not_negative, positive, shown
+from asperity.arguments import Array, Complex, finite_array, shown
 from asperity.errors import InputError
-from asperity.parameters import Number, Quantity, keys_of, parameter
 from asperity.reference.tracks import named_track
 from asperity.structures.bays import Bays, Share
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
 from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
 from asperity.structures.rail import Rail
-from asperity.structures.support import Chain, ConstantLoss, Relaxation, RigidMass, Spring
-
-
-@dataclass(frozen=True)
-class Relaxations:
-    """What stands for the loss factors of a track; None where there is none."""
-
-    rail: Relaxation | None = None  # of its bending (and shear) stiffness
-    pad: Relaxation | None = None
-    ballast: Relaxation | None = None
-
+from asperity.structures.stiffness_table import StiffnessTable
+from asperity.structures.support import (
+    BendingSleeper,
+    Chain,
+    ConstantLoss,
+    Element,
+    Losses,
+    RigidMass,
+    Spring,
+    TunedDamper,
+)
+from asperity.structures.track_parameters import LAYERS, TrackParameters
 
 _SCALED = ("stiffness", "damping")
 """Of pads and ballast, in bays that differ."""
 VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
-_STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
-_LOSS = Number(at_least=0, at_most=5)
-_RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies between"
 
 
 @dataclass(frozen=True)
-class Track:
+class Track(TrackParameters):
     """Rail of infinite length on supports, Euler-Bernoulli or Timoshenko.
 
-    Each support is a pad (spring and damper) on a rigid half sleeper on ballast (spring and damper). All are
-    equal, or repeat after a cell of bays that differ.
-    All stiffnesses, dampers and masses are those under one rail.
+    Each support is a chain: a pad on a half sleeper, rigid or bending, on a pad of its own if there is one,
+    on ballast, and, if they are given, a mass of ballast and the subgrade. Supports are equal, or repeat
+    after a cell of bays that differ. All stiffnesses, dampers and masses are those under one rail.
 
     Parameters
     ----------
@@ -55,7 +52,7 @@ class Track:
     sleeper_mass : float
         m_s, half a sleeper, kg; zero is allowed.
     ballast_stiffness : float
-        k_b, N/m.
+        k_b, N/m; infinite where blocks or rails lie on a rigid slab.
     sleeper_spacing : float
         L, m.
     rail_loss_factor : float
@@ -66,6 +63,18 @@ class Track:
         The same for the ballast.
     shear_stiffness, rotary_inertia : float, optional
         G A kappa, N, and rho I, kg m: both for a Timoshenko rail, none for Euler-Bernoulli.
+    sleeper_bending_stiffness, sleeper_length, seat_distance : float, optional
+        Of a whole sleeper that bends, N m^2 and m, and the distance of its two seats, m.
+    under_sleeper_pad_stiffness, ballast_mass, subgrade_stiffness : float, optional
+        Layers that the support has beside pad and ballast, N/m and kg; springs with a damping or a loss
+        factor of their own, as the pad.
+    continuous : bool
+        Whether the supports are spread evenly along the rail: s(omega) = K(omega)/L.
+    rail_damper_mass, rail_damper_frequency, rail_damper_loss_factor : float, optional
+        Of a `asperity.structures.support.TunedDamper` in the middle of each bay: kg, Hz, 1.
+    pad_table : StiffnessTable, optional
+        Measured stiffness of the pad over frequency, to which `pad_stiffness` gives the scale: its real part
+        at 300 Hz, by default that of the table in `Track.named`.
     name : str
         What the set is called.
     sources : tuple of str
@@ -83,7 +92,7 @@ class Track:
 
     Notes
     -----
-    Vertical motion of one rail on rigid half sleepers. Euler-Bernoulli overestimates the
+    Vertical motion of one rail. Euler-Bernoulli overestimates the
     pinned-pinned frequency of a UIC 60 rail at 0.6 m by a third (1420 for 1063 Hz); above about 5 kHz
     the section of a rail deforms. A constant loss factor is not causal: in time a causal track stands
     for it (`asperity.structures.causal_track`). Viscous damping is causal.
@@ -96,93 +105,6 @@ class Track:
     >>> bool(mid_span > sleeper)  # near the pinned-pinned frequency
     True
     """
-
-    bending_stiffness: float = parameter(
-        Quantity("N m^2", above=0),
-        "4.7 MN m^2",
-        "bending stiffness of the rail",
-        f"1 kN m^2 to 1 GN m^2: {_RAILS}",
-    )
-    mass_per_length: float = parameter(
-        Quantity("kg/m", above=0), "60 kg/m", "mass of the rail per length", f"1 kg/m to 1000 kg/m: {_RAILS}"
-    )
-    pad_stiffness: float = parameter(
-        _STIFFNESS, "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
-    )
-    sleeper_mass: float = parameter(
-        Quantity("kg", above=0),
-        "150 kg",
-        "mass of a sleeper under one rail: half a sleeper",
-        "1 kg to 100 t: sleepers lie between",
-    )
-    ballast_stiffness: float = parameter(
-        _STIFFNESS,
-        "150 MN/m",
-        "stiffness of the ballast under half a sleeper",
-        f"1 kN/m to 1 TN/m: {_BALLAST}",
-    )
-    sleeper_spacing: float = parameter(
-        Quantity("m", above=0),
-        "0.6 m",
-        "distance of the sleepers",
-        "0.1 m to 10 m: sleepers are as far apart",
-    )
-    rail_loss_factor: float = parameter(_LOSS, 0.01, "loss factor of the rail", default=0.0)
-    pad_damping: float | None = parameter(
-        _DAMPING, "18 kN s/m", "viscous damping of a pad", f"1e-3 N s/m to 1e9 N s/m: {_PADS}", default=None
-    )
-    pad_loss_factor: float | None = parameter(
-        _LOSS, 0.15, "loss factor of a pad, instead of pad_damping; approximated in time", default=None
-    )
-    ballast_damping: float | None = parameter(
-        _DAMPING,
-        "48 kN s/m",
-        "viscous damping of the ballast",
-        f"1e-3 N s/m to 1e9 N s/m: {_BALLAST}",
-        default=None,
-    )
-    ballast_loss_factor: float | None = parameter(
-        _LOSS,
-        0.4,
-        "loss factor of the ballast, instead of ballast_damping; approximated in time",
-        default=None,
-    )
-    shear_stiffness: float | None = parameter(
-        Quantity("N", above=0),
-        "243 MN",
-        "shear stiffness of the rail; with it, the rail is a Timoshenko beam",
-        f"1 kN to 1 TN: {_RAILS}",
-        default=None,
-    )
-    rotary_inertia: float | None = parameter(
-        Quantity("kg m", above=0),
-        "0.24 kg m",
-        "rotary inertia of the rail per length",
-        f"1e-6 kg m to 1000 kg m: {_RAILS}",
-        default=None,
-    )
-    name: str = ""
-    sources: tuple[str, ...] = ()
-    relaxations: Relaxations | None = None
-    bays: Bays | None = None
-
-    def __post_init__(self) -> None:
-        for name, key in keys_of(type(self), "").items():
-            value, unit = getattr(self, name), getattr(key.kind, "dimension", "")
-            above_zero = getattr(key.kind, "above", None) == 0 and name != "sleeper_mass"
-            what = name.replace("_", " ") + f" ({unit})" * bool(unit)
-            if value is not None or getattr(type(self), name, 0.0) is not None:
-                (positive if above_zero else not_negative)(what, value)
-        for element in ("pad", "ballast"):
-            viscous, factor = (getattr(self, f"{element}_{each}") for each in ("damping", "loss_factor"))
-            if viscous is not None and factor is not None:
-                received = f"{element}_damping = {viscous:g} N s/m and {element}_loss_factor = {factor:g}"
-                remedy = "Remove one: an element is either viscous or has a loss factor."
-                raise InputError(f"damping of the {element}", received, "one of them", remedy)
-        if (self.shear_stiffness is None) != (self.rotary_inertia is None):
-            missing = "rotary_inertia" if self.rotary_inertia is None else "shear_stiffness"
-            allowed = "shear_stiffness and rotary_inertia together, or neither (Euler-Bernoulli)"
-            raise InputError("Timoshenko rail", f"no {missing}", allowed)
 
     @classmethod
     def named(cls, name: str, **overrides: Any) -> Track:
@@ -209,10 +131,16 @@ class Track:
         for key in overrides:
             if key not in _PARAMETERS:
                 raise InputError("track parameter", repr(key), "one of " + ", ".join(_PARAMETERS))
-            element, _, loss = key.partition("_")
-            other = {"damping": f"{element}_loss_factor", "loss_factor": f"{element}_damping"}.get(loss)
-            if overrides[key] is not None and other not in overrides:
-                parameters.pop(other or "", None)
+            element, _, loss = key.rpartition("_")
+            element, loss = (element.removesuffix("_loss"), "loss") if loss == "factor" else (element, loss)
+            other = {"damping": [f"{element}_loss_factor"], "loss": [f"{element}_damping"]}.get(loss, [])
+            if key == "pad_table":
+                other = ["pad_damping", "pad_loss_factor"]
+            for each in other:
+                if overrides[key] is not None and each not in overrides:
+                    parameters.pop(each, None)
+        if overrides.get("pad_table") is not None:
+            overrides = {"pad_stiffness": overrides["pad_table"].nominal} | overrides
         sources = {key: source for key, (_, source) in parameters.items()}
         sources |= dict.fromkeys(overrides, "given here")
         values: dict[str, Any] = {"name": name} | {key: value for key, (value, _) in parameters.items()}
@@ -224,31 +152,83 @@ class Track:
         """All that its motion depends on, by name."""
         return {key: value for key, value in asdict(self).items() if key not in ("name", "sources")}
 
-    def _losses(self, part: str) -> ConstantLoss | Relaxation:
-        relaxed = getattr(self.relaxations, part, None)
-        return relaxed or ConstantLoss(getattr(self, f"{part}_loss_factor"))
+    def _losses(self, part: str, factor: float | None) -> Losses:
+        relaxed: Losses | None = getattr(self.relaxations, part, None)
+        if relaxed is not None:
+            return relaxed
+        return self.pad_table if part == "pad" and self.pad_table else ConstantLoss(factor)
 
     @property
     def rail(self) -> Rail:
         """The rail without supports."""
         section = self.shear_stiffness, self.rotary_inertia
-        return Rail(self.bending_stiffness, self.mass_per_length, self._losses("rail"), *section)
+        return Rail(
+            self.bending_stiffness,
+            self.mass_per_length,
+            self._losses("rail", self.rail_loss_factor),
+            *section,
+        )
+
+    @property
+    def springs(self) -> dict[str, Spring]:
+        """Springs between rail and ground by their names of `LAYERS`, those that give way at all."""
+        layers = (
+            (self.pad_stiffness, self.pad_damping, self.pad_loss_factor),
+            (
+                self.under_sleeper_pad_stiffness,
+                self.under_sleeper_pad_damping,
+                self.under_sleeper_pad_loss_factor,
+            ),
+            (self.ballast_stiffness, self.ballast_damping, self.ballast_loss_factor),
+            (self.subgrade_stiffness, self.subgrade_damping, self.subgrade_loss_factor),
+        )
+        return {
+            layer: Spring(stiffness, self._losses(layer, factor), damping or 0.0)
+            for layer, (stiffness, damping, factor) in zip(LAYERS, layers, strict=True)
+            if stiffness is not None and stiffness < np.inf
+        }
+
+    @property
+    def elements(self) -> dict[str, Element]:
+        """What lies between rail and ground, by name, from the rail down."""
+        springs = self.springs
+        sleeper: Element = RigidMass(self.sleeper_mass)
+        if self.sleeper_bending_stiffness is not None:
+            beam = self.sleeper_length, self.sleeper_bending_stiffness, self.seat_distance
+            sleeper = BendingSleeper(self.sleeper_mass, *beam)
+        bed = {} if self.ballast_mass is None else {"ballast mass": RigidMass(self.ballast_mass)}
+        found = {"pad": springs.pop("pad"), "sleeper": sleeper} | springs
+        subgrade = {"subgrade": found.pop("subgrade")} if "subgrade" in found else {}
+        return found | bed | subgrade
 
     @property
     def support(self) -> Chain:
         """What the rail lies on at each sleeper."""
-        pad = Spring(self.pad_stiffness, self._losses("pad"), self.pad_damping or 0.0)
-        ballast = Spring(self.ballast_stiffness, self._losses("ballast"), self.ballast_damping or 0.0)
-        return Chain((pad, RigidMass(self.sleeper_mass), ballast))
+        return Chain(tuple(self.elements.values()))
+
+    @property
+    def damper(self) -> TunedDamper | None:
+        """What hangs at the rail in the middle of each bay."""
+        if self.rail_damper_mass is None:
+            return None
+        assert self.rail_damper_frequency is not None
+        assert self.rail_damper_loss_factor is not None
+        return TunedDamper(self.rail_damper_mass, self.rail_damper_frequency, self.rail_damper_loss_factor)
+
+    @property
+    def lossy(self) -> dict[str, Losses]:
+        """Losses that are not causal, by part: of the rail, and of the springs below it."""
+        parts = {"rail": self.rail.losses} | {layer: each.losses for layer, each in self.springs.items()}
+        return {
+            part: losses
+            for part, losses in parts.items()
+            if isinstance(losses, StiffnessTable) or (isinstance(losses, ConstantLoss) and losses.factor)
+        }
 
     @property
     def is_causal(self) -> bool:
         """Whether it responds after a force only: no constant loss factor, or relaxations instead."""
-        return not self._is_lossy or self.relaxations is not None
-
-    @property
-    def _is_lossy(self) -> bool:
-        return bool(self.rail_loss_factor or self.pad_loss_factor or self.ballast_loss_factor)
+        return not self.lossy
 
     @property
     def cell_bays(self) -> int:
@@ -299,13 +279,14 @@ class Track:
 
     @property
     def nominal(self) -> Track:
-        """The track with its constant loss factors, without relaxations."""
+        """The track with its constant loss factors and its table, without relaxations."""
         return replace(self, relaxations=None)
 
     @property
     def is_damped(self) -> bool:
         """Whether anything in the track dissipates."""
-        return bool(self._is_lossy or self.pad_damping or self.ballast_damping)
+        damped = any(spring.damping for spring in self.springs.values())
+        return bool(damped or self.nominal.lossy or self.damper)
 
     def waves(self, omega: ArrayLike) -> PeriodicWaves | CellWaves:
         """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `Chain`.
@@ -316,11 +297,19 @@ class Track:
         omega = np.atleast_1d(np.asarray(omega, dtype=complex))
         if not self.is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)
-        rail, spacing = self.rail.waves(omega), self.sleeper_spacing
-        if not self.bays:
-            return periodic_waves(*rail, self.support.stiffness(omega), spacing)
-        supports = np.array([each.support.stiffness(omega) for each in self.bay_tracks])
-        return cell_waves(*rail, supports, self._lengths, self.cell_bays)
+        rail, spacing, damper = self.rail, self.sleeper_spacing, self.damper
+        if self.continuous:
+            foundation = self.support.stiffness(omega) / spacing
+            if damper is not None:
+                foundation = foundation + damper.stiffness(omega) / spacing
+            return periodic_waves(*rail.waves(omega, foundation), np.zeros_like(omega), spacing)
+        if not self.bays and damper is None:
+            return periodic_waves(*rail.waves(omega), self.support.stiffness(omega), spacing)
+        points, lengths = np.array([each.support.stiffness(omega) for each in self.bay_tracks]), self._lengths
+        if damper is not None:
+            hung = np.broadcast_to(damper.stiffness(omega), points.shape)
+            points, lengths = np.stack([points, hung], axis=1), np.repeat(0.5 * lengths, 2)
+        return cell_waves(*rail.waves(omega), points.reshape(-1, omega.size), lengths, self.cell_bays)
 
     def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> Complex:
         """Displacement at `x` per harmonic force at `x0`.
@@ -377,6 +366,8 @@ class Track:
             m. Exact for discrete supports; with relaxations, when all of them have come to an end.
         """
         spacing, rail = self.sleeper_spacing, self.rail.static
+        if self.continuous:
+            return force * self.rail.deflection_on(self.foundation_stiffness)
         if not self.bays:
             return force * static_receptance(*rail, self.support.static, spacing, x % spacing)
         supports = np.array([each.support.static for each in self.bay_tracks])
@@ -387,9 +378,11 @@ class Track:
         """Critical speed of the continuous foundation (4 s B/m^2)^(1/4), m/s.
 
         The mass m is that of rail and sleepers together, m' + m_s/L, which gives the smaller speed: at
-        the low frequencies of a constant moving force the sleepers move with the rail.
+        the low frequencies of a constant moving force the sleepers move with the rail, and so do ballast and
+        rail dampers that have a mass.
         """
-        mass = self.mass_per_length + self.sleeper_mass / self.sleeper_spacing
+        more = (self.ballast_mass or 0.0) + (self.rail_damper_mass or 0.0)
+        mass = self.mass_per_length + (self._moving_sleeper + more) / self.sleeper_spacing
         return float((4.0 * self.foundation_stiffness * self.bending_stiffness / mass**2) ** 0.25)
 
     def refuse_speed(self, speed: float) -> None:
@@ -403,8 +396,11 @@ class Track:
     def pinned_pinned_frequency(self) -> float:
         """Frequency at which half a bending wave fits between two supports, Hz.
 
-        Euler-Bernoulli (pi/2L^2) sqrt(B/m'); Timoshenko from the dispersion relation at k = pi/L.
+        Euler-Bernoulli (pi/2L^2) sqrt(B/m'); Timoshenko from the dispersion relation at k = pi/L. Infinite on
+        supports that are spread evenly. Rail dampers, which split it, are left out.
         """
+        if self.continuous:
+            return float("inf")
         return self.rail.pinned_frequency(self.sleeper_spacing)
 
     @property
@@ -412,11 +408,12 @@ class Track:
         """Frequencies of the whole track moving as one on its layers, undamped, Hz, ascending.
 
         Rail and sleepers on the ballast, then the rail on its pads against the sleepers; from each of
-        them on waves travel. Without sleeper mass only one, sqrt(s/m')/2 pi.
+        them on waves travel. Without sleeper mass only one, sqrt(s/m')/2 pi. Of the nominal stiffnesses, with
+        rigid sleepers, and without the masses of ballast and rail dampers.
         """
         rail = self.mass_per_length * self.sleeper_spacing
-        pad, ballast = self.pad_stiffness, self.ballast_stiffness
-        if self.sleeper_mass == 0.0:
+        pad, ballast = self.pad_stiffness, self._below_sleeper
+        if self._moving_sleeper == 0.0:
             return (float(np.sqrt(self.foundation_stiffness / self.mass_per_length) / (2.0 * np.pi)),)
         middle = pad / rail + (pad + ballast) / self.sleeper_mass
         root = np.sqrt(middle**2 - 4.0 * pad * ballast / (rail * self.sleeper_mass))
@@ -436,12 +433,23 @@ class Track:
     def antiresonance_frequency(self) -> float:
         """Frequency sqrt((k_p + k_b)/m_s)/2 pi at which the sleepers hold the rail still, Hz.
 
-        Infinite without sleeper mass.
+        Infinite without a sleeper that moves; k_b is that of all springs under it, nominal.
         """
-        if self.sleeper_mass == 0.0:
+        if self._moving_sleeper == 0.0:
             return float("inf")
-        square = (self.pad_stiffness + self.ballast_stiffness) / self.sleeper_mass
+        square = (self.pad_stiffness + self._below_sleeper) / self.sleeper_mass
         return float(np.sqrt(square) / (2.0 * np.pi))
+
+    @property
+    def _below_sleeper(self) -> float:
+        """Nominal stiffness of all springs under a sleeper in line, N/m."""
+        under = [spring.nominal for layer, spring in self.springs.items() if layer != "pad"]
+        return under[0] if len(under) == 1 else 1.0 / sum(1.0 / k for k in under) if under else float("inf")
+
+    @property
+    def _moving_sleeper(self) -> float:
+        """Mass of half a sleeper, kg; zero of one on rigid ground."""
+        return self.sleeper_mass if self._below_sleeper < np.inf else 0.0
 
 
 _PARAMETERS = tuple(

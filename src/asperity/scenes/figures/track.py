@@ -239,7 +239,13 @@ TRACK = (
 # --- loss factors: what stands for them in time, and what that does to the contact force
 
 _FORCE, _RAIL = schema.LOSS_FACTOR_FORCE_ERROR, schema.LOSS_FACTOR_RAIL_ERROR
-_LAYERS = (chart.BLUE, ()), (chart.VERMILLION, (6, 1.5)), (chart.GREEN, (3, 1.5))
+_LAYERS = (
+    (chart.BLUE, ()),
+    (chart.VERMILLION, (6, 1.5)),
+    (chart.GREEN, (3, 1.5)),
+    (chart.MUTED, (6, 1.5, 1.5, 1.5)),
+    (INK, (1.5, 1.5, 6, 1.5)),
+)
 """Looks of parts of the track."""
 _DOTTED: dict[str, Any] = {"dashes": (1.5, 1.5), "width": 1.0}
 
@@ -249,7 +255,13 @@ def _of_layers(tree: DataTree) -> list[Series]:
     layers, entry = data.words(tree, schema.LAYER), schema.LOSS_FACTOR
     found = [*Of(schema.RELAXED_STIFFNESS, "{layer}, stiffness over nominal", "{layer}")(tree)]
     found += Of(schema.RELAXED_LOSS_FACTOR, "{layer}, loss factor", "{layer}")(tree)
+    for measured in (schema.MEASURED_STIFFNESS, schema.MEASURED_LOSS_FACTOR):
+        if data.present(tree, measured):
+            name = f"pad, {measured.name.replace('_', ' ')}"
+            found.append(Series(name, "1", data.values(tree, measured), measured, "pad", {"layer": "pad"}))
     for layer, factor in zip(layers, data.values(tree, entry), strict=True):
+        if not np.isfinite(factor):
+            continue
         constant = np.full(len(data.values(tree, schema.TRACK_BAND)), factor)
         name, told = f"{layer}, constant loss factor", {"layer": layer}
         found.append(Series(name, entry.units, constant, entry, layer, told))
@@ -270,11 +282,12 @@ def _loss(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     nominal = Rules(np.ones(1), "y", **_DOTTED)
     constants = [Rules(s.values[:1], "y", colour=s.look[0], **_DOTTED) for s in lines.of(schema.LOSS_FACTOR)]
     of_layers = {
-        "stiffness / nominal": (schema.RELAXED_STIFFNESS, [nominal]),
-        "loss factor": (schema.RELAXED_LOSS_FACTOR, constants),
+        "stiffness / nominal": (schema.RELAXED_STIFFNESS, schema.MEASURED_STIFFNESS, [nominal]),
+        "loss factor": (schema.RELAXED_LOSS_FACTOR, schema.MEASURED_LOSS_FACTOR, constants),
     }
-    for label, (entry, rules) in of_layers.items():
+    for label, (entry, measured, rules) in of_layers.items():
         drawn = panels.styled(tree, lines.at, lines.of(entry))
+        drawn += [Line(lines.at, s.values, "", s.look[0], **_DOTTED) for s in lines.of(measured)]
         axis = panels.log_axis(label, [*(mark.at for mark in rules), *(line.y for line in drawn)])
         yield Panel(bands, axis, (*rules, *drawn), height=1.9)
 
@@ -290,10 +303,10 @@ def _loss_caption(tree: DataTree) -> str:
             f"{data.engineering(rest, 'm')}, by {data.engineering(nominal, 'm')} on the nominal stiffnesses."
         )
     return (
-        "Nothing that answers after a force only has one stiffness and one loss factor (dotted) at all "
-        "frequencies: the stiffness grows where it dissipates. In time, springs and Maxwell elements stand "
-        "for the loss factors, chosen for the contact force. Above: level of the linear contact force over "
-        "that with constant loss factors, for a wheel at rest, mean over a bay; dashed: of the rail's "
+        "Nothing that answers after a force only has one stiffness and one loss factor (dotted, as what was "
+        "measured) at all frequencies: the stiffness grows where it dissipates. In time, springs and Maxwell "
+        "elements stand for them, chosen for the contact force. Above: level of the linear contact force "
+        "over that with constant loss factors, for a wheel at rest, mean over a bay; dashed: of the rail's "
         "displacement under a given force. Receptances, decay rates and the linear contact in the frequency "
         f"domain have constant loss factors.{softer}"
     )
@@ -310,5 +323,11 @@ LOSS_FACTORS = Figure(
     ),
     _loss,
     _loss_caption,
-    further=(schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR),
+    further=(
+        schema.LOSS_FACTOR,
+        schema.RELAXED_STIFFNESS,
+        schema.RELAXED_LOSS_FACTOR,
+        schema.MEASURED_STIFFNESS,
+        schema.MEASURED_LOSS_FACTOR,
+    ),
 )

@@ -1,0 +1,232 @@
+"""What a track is made of: its parameters, each declared once, and what must fit together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import not_negative, positive, real, shown
+from asperity.errors import InputError
+from asperity.parameters import Flag, Key, Number, Quantity, keys_of, parameter
+from asperity.structures.bays import Bays
+from asperity.structures.stiffness_table import StiffnessTable
+from asperity.structures.support import Relaxation
+
+
+@dataclass(frozen=True)
+class Relaxations:
+    """What stands for the loss factors of a track; None where there is none."""
+
+    rail: Relaxation | None = None  # of its bending (and shear) stiffness
+    pad: Relaxation | None = None
+    under_sleeper_pad: Relaxation | None = None
+    ballast: Relaxation | None = None
+    subgrade: Relaxation | None = None
+
+
+LAYERS = ("pad", "under_sleeper_pad", "ballast", "subgrade")
+"""Springs between the rail and rigid ground, from the rail down."""
+_STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
+_LOSS, _LENGTH = Number(at_least=0, at_most=5), Quantity("m", above=0)
+_RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies between"
+_SLEEPERS, _GROUND = "sleepers lie between", "the ground lies between"
+
+
+def _layer(layer: str, words: str, stiffness: str, damping: str, loss: float, lie: str) -> list[Any]:
+    """Declare stiffness, viscous damping and loss factor of a layer that a track may have."""
+    own: dict[str, Any] = {"default": None, "goes_with": f"{layer}_stiffness"}
+    factor = f"loss factor of {words}, instead of {layer}_damping; approximated in time"
+    return [
+        parameter(_STIFFNESS, stiffness, f"stiffness of {words}", f"1 kN/m to 1 TN/m: {lie}", default=None),
+        parameter(_DAMPING, damping, f"viscous damping of {words}", f"1e-3 N s/m to 1e9 N s/m: {lie}", **own),
+        parameter(_LOSS, loss, factor, **own),
+    ]
+
+
+_UNDER_SLEEPER_PAD = _layer(
+    "under_sleeper_pad", "a pad under half a sleeper", "200 MN/m", "20 kN s/m", 0.2, _PADS
+)
+_SUBGRADE = _layer(
+    "subgrade", "the ground below the ballast of half a sleeper", "100 MN/m", "60 kN s/m", 0.3, _GROUND
+)
+_BENT: dict[str, Any] = {"goes_with": "sleeper_bending_stiffness"}
+_DAMPER: dict[str, Any] = {"default": None, "goes_with": "rail_damper_mass"}
+
+
+@dataclass(frozen=True)
+class TrackParameters:
+    """Parameters of an `asperity.structures.track.Track`, which says what they are."""
+
+    bending_stiffness: float = parameter(
+        Quantity("N m^2", above=0),
+        "4.7 MN m^2",
+        "bending stiffness of the rail",
+        f"1 kN m^2 to 1 GN m^2: {_RAILS}",
+    )
+    mass_per_length: float = parameter(
+        Quantity("kg/m", above=0), "60 kg/m", "mass of the rail per length", f"1 kg/m to 1000 kg/m: {_RAILS}"
+    )
+    pad_stiffness: float = parameter(
+        _STIFFNESS, "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
+    )
+    sleeper_mass: float = parameter(
+        Quantity("kg", above=0),
+        "150 kg",
+        "mass of a sleeper under one rail: half a sleeper",
+        "1 kg to 100 t: sleepers lie between",
+    )
+    ballast_stiffness: float = parameter(
+        Quantity("N/m", above=0, infinite=True),
+        "150 MN/m",
+        "stiffness of the ballast under half a sleeper, or of the boot of a block",
+        f"1 kN/m to 1 TN/m: {_BALLAST}",
+    )
+    sleeper_spacing: float = parameter(
+        Quantity("m", above=0),
+        "0.6 m",
+        "distance of the sleepers",
+        "0.1 m to 10 m: sleepers are as far apart",
+    )
+    rail_loss_factor: float = parameter(_LOSS, 0.01, "loss factor of the rail", default=0.0)
+    pad_damping: float | None = parameter(
+        _DAMPING, "18 kN s/m", "viscous damping of a pad", f"1e-3 N s/m to 1e9 N s/m: {_PADS}", default=None
+    )
+    pad_loss_factor: float | None = parameter(
+        _LOSS, 0.15, "loss factor of a pad, instead of pad_damping; approximated in time", default=None
+    )
+    ballast_damping: float | None = parameter(
+        _DAMPING,
+        "48 kN s/m",
+        "viscous damping of the ballast",
+        f"1e-3 N s/m to 1e9 N s/m: {_BALLAST}",
+        default=None,
+    )
+    ballast_loss_factor: float | None = parameter(
+        _LOSS,
+        0.4,
+        "loss factor of the ballast, instead of ballast_damping; approximated in time",
+        default=None,
+    )
+    shear_stiffness: float | None = parameter(
+        Quantity("N", above=0),
+        "243 MN",
+        "shear stiffness of the rail; with it, the rail is a Timoshenko beam",
+        f"1 kN to 1 TN: {_RAILS}",
+        default=None,
+    )
+    rotary_inertia: float | None = parameter(
+        Quantity("kg m", above=0),
+        "0.24 kg m",
+        "rotary inertia of the rail per length",
+        f"1e-6 kg m to 1000 kg m: {_RAILS}",
+        default=None,
+    )
+    sleeper_bending_stiffness: float | None = parameter(
+        Quantity("N m^2", above=0),
+        "6 MN m^2",
+        "bending stiffness of a sleeper; without it, half sleepers are rigid",
+        f"1 N m^2 to 1 GN m^2: {_SLEEPERS}",
+        default=None,
+    )
+    sleeper_length: float = parameter(
+        _LENGTH,
+        "2.6 m",
+        "length of a sleeper that bends",
+        f"0.5 m to 10 m: {_SLEEPERS}",
+        default=2.6,
+        **_BENT,
+    )
+    seat_distance: float = parameter(
+        _LENGTH,
+        "1.5 m",
+        "distance of the two rails, middle to middle",
+        f"0.2 m to 5 m: {_RAILS}",
+        default=1.5,
+        **_BENT,
+    )
+    under_sleeper_pad_stiffness: float | None = _UNDER_SLEEPER_PAD[0]
+    under_sleeper_pad_damping: float | None = _UNDER_SLEEPER_PAD[1]
+    under_sleeper_pad_loss_factor: float | None = _UNDER_SLEEPER_PAD[2]
+    ballast_mass: float | None = parameter(
+        Quantity("kg", above=0),
+        "300 kg",
+        "mass of the ballast that moves with half a sleeper, between ballast and subgrade",
+        f"1 kg to 100 t: {_BALLAST}",
+        default=None,
+        goes_with="subgrade_stiffness",
+    )
+    subgrade_stiffness: float | None = _SUBGRADE[0]
+    subgrade_damping: float | None = _SUBGRADE[1]
+    subgrade_loss_factor: float | None = _SUBGRADE[2]
+    continuous: bool = parameter(
+        Flag(),
+        True,
+        "spread the supports evenly along the rail, as under an embedded one: sleeper_spacing is the length "
+        "that each stands for",
+        default=False,
+    )
+    rail_damper_mass: float | None = parameter(
+        Quantity("kg", above=0),
+        "15 kg",
+        "mass of a tuned damper on the rail in the middle of every bay",
+        "1 g to 1 t: rail dampers lie between",
+        default=None,
+    )
+    rail_damper_frequency: float | None = parameter(
+        Quantity("Hz", above=0),
+        "800 Hz",
+        "natural frequency of such a damper on a rail that holds still",
+        "1 Hz to 20 kHz: rail dampers lie between",
+        **_DAMPER,
+    )
+    rail_damper_loss_factor: float | None = parameter(
+        Number(above=0, at_most=0.9), 0.35, "loss factor of such a damper at its frequency", **_DAMPER
+    )
+    pad_table: StiffnessTable | None = None
+    name: str = ""
+    sources: tuple[str, ...] = ()
+    relaxations: Relaxations | None = None
+    bays: Bays | None = None
+
+    def __post_init__(self) -> None:
+        for name, key in keys_of(type(self), "").items():
+            self._check(name, key)
+        for element in LAYERS:
+            viscous, factor = (getattr(self, f"{element}_{each}") for each in ("damping", "loss_factor"))
+            if viscous is not None and factor is not None:
+                received = f"{element}_damping = {viscous:g} N s/m and {element}_loss_factor = {factor:g}"
+                remedy = "Remove one: an element is either viscous or has a loss factor."
+                raise InputError(f"damping of the {element}", received, "one of them", remedy)
+        if (self.shear_stiffness is None) != (self.rotary_inertia is None):
+            missing = "rotary_inertia" if self.rotary_inertia is None else "shear_stiffness"
+            allowed = "shear_stiffness and rotary_inertia together, or neither (Euler-Bernoulli)"
+            raise InputError("Timoshenko rail", f"no {missing}", allowed)
+        if self.pad_table is not None and (self.pad_damping, self.pad_loss_factor) != (None, None):
+            remedy = "The table has the losses of the pad: remove pad_damping and pad_loss_factor."
+            raise InputError("damping of the pad", "one beside pad_table", "one of them", remedy)
+        if self.continuous and self.bays is not None:
+            remedy = "Give no scatter, or supports that are not spread along the rail."
+            raise InputError("bays that differ", "some on supports that are continuous", "equal bays", remedy)
+        if self.sleeper_bending_stiffness is not None and self.seat_distance >= self.sleeper_length:
+            allowed = f"less than the length of the sleeper, {self.sleeper_length:g} m"
+            raise InputError("seat distance (m)", f"{self.seat_distance:g}", allowed)
+        if self.rail_damper_mass is not None:
+            positive("rail damper frequency (Hz)", self.rail_damper_frequency)
+            allowed = "above 0 and below 1, the most that one Maxwell element dissipates"
+            real("rail damper loss factor", self.rail_damper_loss_factor, allowed, above=0.0, below=1.0)
+
+    def _check(self, name: str, key: Key) -> None:
+        """Refuse a value that is out of range, or given without what it goes with."""
+        value, usual = getattr(self, name), getattr(type(self), name, 0.0)
+        what = name.replace("_", " ") + (f" ({key.kind.dimension})" if isinstance(key.kind, Quantity) else "")
+        if key.goes_with and value != usual and getattr(self, key.goes_with) is None:
+            raise InputError(what, shown(value), f"only together with {key.goes_with}")
+        if isinstance(key.kind, Flag):
+            key.kind(value)
+        elif (value is not None or usual is not None) and not (
+            value == np.inf and getattr(key.kind, "infinite", False)
+        ):
+            above_zero = getattr(key.kind, "above", None) == 0 and name != "sleeper_mass"
+            (positive if above_zero else not_negative)(what, value)

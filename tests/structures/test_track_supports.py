@@ -1,0 +1,249 @@
+"""Tracks on other supports than pad, sleeper and ballast: rigid ground, foundations, rail dampers, tables."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.linalg import toeplitz
+
+from asperity import Track
+from asperity.errors import InputError
+from asperity.structures.causal_track import causal_track
+from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
+from asperity.structures.support import BendingSleeper, RigidMass, Spring, TunedDamper
+from asperity.structures.track import decay_rate
+
+FREQUENCY = np.array([30.0, 120.0, 400.0, 800.0, 1063.0, 2500.0, 5000.0])
+OMEGA = 2.0 * np.pi * FREQUENCY
+DAMPERS = {"rail_damper_mass": 15.0, "rail_damper_frequency": 800.0, "rail_damper_loss_factor": 0.35}
+BED = {"ballast_mass": 300.0, "subgrade_stiffness": 9e7, "subgrade_loss_factor": 0.3}
+PAD = StiffnessTable((10.0, 300.0, 2000.0), (150e6, 200e6, 300e6), (15e6, 40e6, 75e6))
+
+
+def euler(**changes):
+    return Track.named("uic60-euler", **changes)
+
+
+def timoshenko(**changes):
+    return Track.named("uic60", **changes)
+
+
+def test_the_keys_make_the_chain_from_the_rail_down():
+    pad = {"under_sleeper_pad_stiffness": 2e8, "under_sleeper_pad_loss_factor": 0.2}
+    elements = timoshenko(sleeper_bending_stiffness=6e6, sleeper_length=2.4, **pad, **BED).elements
+    assert list(elements) == ["pad", "sleeper", "under_sleeper_pad", "ballast", "ballast mass", "subgrade"]
+    assert elements["sleeper"] == BendingSleeper(150.0, 2.4, 6e6, 1.5)
+    assert elements["ballast mass"] == RigidMass(300.0)
+    for name, (stiffness, loss) in {"under_sleeper_pad": (2e8, 0.2), "subgrade": (9e7, 0.3)}.items():
+        spring = elements[name]
+        assert isinstance(spring, Spring)
+        np.testing.assert_allclose(spring.stiffness(OMEGA), stiffness * (1.0 + 1j * loss))
+    assert list(timoshenko().elements) == ["pad", "sleeper", "ballast"]
+    assert list(timoshenko(ballast_stiffness=math.inf).elements) == ["pad", "sleeper"]
+
+
+def foundation_of(track):
+    """Stiffness per length of pads on rigid ground."""
+    pad = track.pad_stiffness * (1.0 + 1j * (track.pad_loss_factor or 0.0))
+    return (pad + 1j * OMEGA * (track.pad_damping or 0.0)) / track.sleeper_spacing
+
+
+def on_winkler(track):
+    """Point receptance of an Euler-Bernoulli beam on a foundation, by the roots of its quartic."""
+    found = []
+    bending = track.bending_stiffness * (1.0 + 1j * track.rail_loss_factor)
+    for omega, foundation in zip(OMEGA, foundation_of(track), strict=True):
+        roots = np.roots([bending, 0.0, 0.0, 0.0, foundation - track.mass_per_length * omega**2])
+        p = roots[roots.real < 0.0]  # w = Σ a exp(p |x|): w' = 0 and B w''' = F/2 at the force
+        found.append(np.linalg.solve([p, p**3], [0.0, 0.5 / bending]).sum())
+    return np.array(found)
+
+
+def test_an_embedded_rail_is_a_beam_on_a_foundation():
+    rigid = {"continuous": True, "ballast_stiffness": math.inf}
+    track = euler(**rigid)
+    for x in (0.0, 0.21):
+        np.testing.assert_allclose(track.receptance(FREQUENCY, x, x), on_winkler(track), rtol=1e-11)
+    beta = (foundation_of(track)[0].real / (4.0 * track.bending_stiffness)) ** 0.25
+    assert track.foundation_stiffness == pytest.approx(300e6)
+    assert track.static_deflection(1.0, 0.2) == pytest.approx(beta / (2.0 * 300e6), rel=1e-12)
+    assert track.pinned_pinned_frequency == math.inf
+    assert track.cut_on_frequencies == pytest.approx([math.sqrt(300e6 / 60.2) / (2.0 * math.pi)])
+
+
+@pytest.mark.parametrize("make", [euler, timoshenko])
+def test_a_foundation_is_the_limit_of_close_supports(make):
+    """Of the same stiffness per length, sleepers and ballast with mass among it."""
+    spread, names = make(continuous=True, **BED), ("pad", "ballast", "subgrade")
+    share = 0.02 / spread.sleeper_spacing
+    keys = [f"{name}_{what}" for name in names for what in ("stiffness", "damping")]
+    scaled = {key: share * value for key in keys if (value := getattr(spread, key)) is not None}
+    masses = {key: share * getattr(spread, key) for key in ("sleeper_mass", "ballast_mass")}
+    close = make(sleeper_spacing=0.02, **(BED | scaled | masses))
+    x, x0 = [0.0, 0.004, 1.3], [0.0, 0.004, 0.2]
+    expected = close.receptance(FREQUENCY, x, x0)
+    np.testing.assert_allclose(spread.receptance(FREQUENCY, x, x0), expected, rtol=4e-4)
+    assert spread.static_deflection(1.0) == pytest.approx(close.static_deflection(1.0), rel=1e-4)
+    slow = [spread.receptance(np.array([f]), 0.0, 0.0)[0].real for f in (0.5, 1.0)]
+    at_rest = spread.nominal.static_deflection(1.0)
+    assert at_rest == pytest.approx((4.0 * slow[0] - slow[1]) / 3.0, rel=0.06)  # η of rail and subgrade
+
+
+@pytest.mark.parametrize("make", [euler, timoshenko])
+def test_an_embedded_rail_is_right_at_complex_frequencies(make):
+    """Its receptance is analytic in the lower half-plane: the mean on a circle is the value in the middle."""
+    track = make(continuous=True, rail_loss_factor=0.0, **DAMPERS)
+    for middle, radius in ((900.0 - 400.0j, 300.0), (0.0 - 500.0j, 300.0), (6e3 - 900.0j, 800.0)):
+        ring = middle + radius * np.exp(2j * np.pi * (np.arange(64) + 0.5) / 64)
+        ring = np.where(ring.real < 0.0, -ring.conj(), ring)  # G(-ω*) = G(ω)*
+        values = track.waves(ring).receptance(0.1, 0.1)
+        mirrored = (middle + radius * np.exp(2j * np.pi * (np.arange(64) + 0.5) / 64)).real < 0.0
+        values = np.where(mirrored, values.conj(), values)
+        centre = track.waves(np.array([middle])).receptance(0.1, 0.1)[0]
+        assert values.mean() == pytest.approx(centre, rel=1e-9)
+
+
+def test_rail_dampers_are_superposed_points():
+    """One at mid-span and one support in each bay, against the reactions of 1001 points on the free rail."""
+    track = timoshenko(**DAMPERS)
+    free = Track.named("uic60").rail
+    for frequency in (120.0, 800.0, 1063.0):
+        omega = 2.0 * np.pi * np.array([frequency], complex)
+        k, amplitude = (each[:, 0] for each in free.waves(omega))
+        at = 0.3 * (np.arange(1001) - 500)
+        stiffness = np.where(np.arange(1001) % 2 == 0, *(
+            each.stiffness(omega)[0] for each in (track.support, TunedDamper(15.0, 800.0, 0.35))
+        ))  # fmt: skip
+
+        def direct(x, k=k, amplitude=amplitude):
+            return np.exp(-1j * np.multiply.outer(np.abs(x), k)) @ amplitude
+
+        matrix = np.eye(1001) + toeplitz(direct(at - at[0]), direct(at - at[0])) * stiffness
+        for x, x0 in ((0.0, 0.0), (0.3, 0.3), (1.27, 0.1)):
+            moved = np.linalg.solve(matrix, direct(at - x0))
+            expected = direct(np.array(x - x0)) - direct(at - x) @ (stiffness * moved)
+            assert track.receptance(frequency, x, x0) == pytest.approx(expected, rel=1e-8)
+
+
+def test_a_damper_is_a_mass_on_a_spring():
+    """Against the matrix of a mass that carries it; at its frequency its spring is as stated."""
+    damper = TunedDamper(15.0, 800.0, 0.35)
+    spring = damper.spring(OMEGA)
+    assert damper.spring(2.0 * np.pi * 800.0) == pytest.approx(
+        15.0 * (2.0 * np.pi * 800.0) ** 2 * (1 + 0.35j)
+    )
+    for omega, k, found in zip(OMEGA, spring, damper.stiffness(OMEGA), strict=True):
+        inverse = np.linalg.inv([[k + 2e8 - 40.0 * omega**2, -k], [-k, k - 15.0 * omega**2]])
+        assert 1.0 / (found + 2e8 - 40.0 * omega**2) == pytest.approx(inverse[0, 0], rel=1e-12)
+
+
+def test_spread_dampers_split_the_cut_on_as_two_masses_do():
+    """All of a long rail in step: mass of a bay on its foundation, with the damper's mass on its spring."""
+    loss = DAMPERS | {"rail_damper_loss_factor": 1e-9, "rail_damper_frequency": 300.0}
+    lossless = {"pad_damping": None, "ballast_damping": None, "rail_loss_factor": 0.0}
+    track = euler(continuous=True, ballast_stiffness=math.inf, **lossless, **loss)
+    rail, damper, pad = 60.2 * 0.6, 15.0, 180e6
+    spring = damper * (2.0 * np.pi * 300.0) ** 2
+    own = [[(pad + spring) / rail, -spring / rail], [-spring / damper, spring / damper]]
+    for frequency in np.sqrt(np.linalg.eigvals(own)) / (2.0 * np.pi):
+        just = np.array([0.999, 1.001]) * frequency
+        below, above = decay_rate(track, just)
+        assert below > 0.1
+        assert above < 1e-3
+
+
+def test_a_damper_raises_the_decay_rate_at_its_frequency():
+    frequency = np.geomspace(600.0, 1000.0, 9)
+    plain, damped = (decay_rate(timoshenko(**each), frequency) for each in ({}, DAMPERS))
+    assert (damped > 2.0 * plain).all()
+
+
+def test_a_damper_answers_after_the_rail_only():
+    assert Track.named("nordborg", rail_loss_factor=0.0, **DAMPERS).is_causal
+
+
+# --- measured pads
+
+
+def test_a_table_is_met_at_its_frequencies_and_held_beyond():
+    track = timoshenko(pad_table=PAD)
+    at = 2.0 * np.pi * np.array([5.0, 10.0, 300.0, math.sqrt(600e3), 2000.0, 4000.0])
+    expected = [150e6 + 15e6j] * 2 + [200e6 + 40e6j, 250e6 + 57.5e6j] + [300e6 + 75e6j] * 2
+    np.testing.assert_allclose(track.springs["pad"].stiffness(at), expected, rtol=1e-12)
+    assert (track.pad_stiffness, track.pad_damping) == (200e6, None)
+    assert track.springs["pad"].static == pytest.approx(150e6)
+    twice = timoshenko(pad_table=PAD, pad_stiffness=400e6).springs["pad"]
+    np.testing.assert_allclose(twice.stiffness(at), 2.0 * np.array(expected), rtol=1e-12)
+    assert hash(track) == hash(timoshenko(pad_table=PAD))
+
+
+def test_preloads_are_interpolated_and_held_beyond():
+    rows = [(10.0, 100e6, 10e6), (300.0, 120e6, 20e6), (2000.0, 150e6, 30e6)]
+    table = np.array([(*row, 18e3) for row in rows] + [(f, 2 * re, 3 * im, 68e3) for f, re, im in rows[::-1]])
+    assert list(preloads_of(table)) == [18e3, 68e3]
+    for preload, real, imaginary in ((5e3, 120e6, 20e6), (43e3, 180e6, 40e6), (90e3, 240e6, 60e6)):
+        at = stiffness_at_preload(table, preload)
+        assert (at.real[1], at.imaginary[1]) == pytest.approx((real, imaginary))
+    assert stiffness_at_preload(np.array(rows)).real == (100e6, 120e6, 150e6)
+
+
+def maxwell(omega):
+    """A pad that is causal: a spring and two of the elements that the fit has, of 1000 MN/m at most."""
+    elements = [1e8 * 1j * omega / (1j * omega + 2.0 * np.pi * f) for f in (100.0, 1000.0)]
+    return 2e8 + sum(elements)
+
+
+def test_a_causal_table_is_met_in_time():
+    """The force is within 0.2 dB in every band: what is left is the table's interpolation and its ends."""
+    frequency = np.geomspace(5.0, 8e3, 60)
+    measured = maxwell(2.0 * np.pi * frequency)
+    parts = (tuple(each.tolist()) for each in (frequency, measured.real, measured.imag))
+    track = Track.named("nordborg", pad_table=StiffnessTable(*parts), rail_loss_factor=0.0)
+    assert not track.is_causal
+    causal = causal_track(track)
+    assert causal.is_causal
+    assert causal.nominal == track
+    at = 2.0 * np.pi * np.geomspace(8.0, 5e3, 40)
+    np.testing.assert_allclose(causal.springs["pad"].stiffness(at), maxwell(at), rtol=0.02)
+    assert causal.springs["pad"].static == pytest.approx(2e8, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: timoshenko(ballast_mass=200.0), "only together with subgrade_stiffness"),
+        (lambda: timoshenko(subgrade_damping=1e4), "only together with subgrade_stiffness"),
+        (lambda: timoshenko(seat_distance=1.4), "only together with sleeper_bending_stiffness"),
+        (
+            lambda: timoshenko(sleeper_bending_stiffness=6e6, seat_distance=2.6),
+            "less than the length of the sleeper, 2.6 m",
+        ),
+        (lambda: timoshenko(rail_damper_mass=15.0), "rail damper frequency"),
+        (lambda: timoshenko(**(DAMPERS | {"rail_damper_loss_factor": 1.0})), "above 0 and below 1"),
+        (lambda: timoshenko(rail_damper_frequency=800.0), "only together with rail_damper_mass"),
+        (lambda: timoshenko(continuous=1), "true or false"),
+        (lambda: timoshenko(pad_table=PAD, pad_damping=1e4), "remove pad_damping"),
+        (
+            lambda: timoshenko(**BED, subgrade_damping=1e4),
+            "an element is either viscous or has a loss factor",
+        ),
+        (lambda: StiffnessTable((10.0, 20.0), (1e8, 1e8), (0.0, 0.0)), "3 or more, rising"),
+        (lambda: StiffnessTable((10.0, 30.0, 20.0), (1e8,) * 3, (0.0,) * 3), "numbers that do not rise"),
+        (lambda: StiffnessTable((10.0, 20.0, 30.0), (1e8,) * 2, (0.0,) * 3), "rows of unequal length"),
+        (
+            lambda: StiffnessTable((10.0, 20.0, 30.0, 40.0), (1e8,) * 4, (1e6, -1.0, -2.0, 3.0)),
+            "an imaginary part below zero from 20 to 30 Hz, by which the pad would make energy",
+        ),
+        (
+            lambda: StiffnessTable((1.0, 2.0, 3.0), (1e8, 1e8, 0.0), (0.0,) * 3),
+            "real part of zero or less at 3",
+        ),
+        (
+            lambda: stiffness_at_preload(np.array([(f, 1e8, 0.0, p) for f in (1, 2, 3) for p in (1e4, 2e4)])),
+            "a table at 2 preloads, and none to take",
+        ),
+    ],
+)
+def test_bad_supports_are_refused(call, message):
+    with pytest.raises(InputError, match=message):
+        call()
