@@ -189,7 +189,8 @@ def _lacks_damping(kernel: MovingKernel) -> tuple[float, str]:
     frequency = float(np.argmax(spectrum) / (longest.size * kernel.time_step))
     layers = ("ballast_damping or ballast_loss_factor", "pad_damping or pad_loss_factor")
     lightest = dict(zip(track.cut_on_frequencies, layers, strict=False))
-    lightest |= {track.pinned_pinned_frequency: "rail_loss_factor"}
+    if np.isfinite(track.pinned_pinned_frequency):
+        lightest |= {track.pinned_pinned_frequency: "rail_loss_factor"}
     nearest = min(lightest, key=lambda natural: abs(np.log(max(frequency, 1.0) / natural)))
     return frequency, lightest[nearest]
 
