@@ -1,6 +1,7 @@
 """Tracks on other supports than pad, sleeper and ballast: rigid ground, foundations, rail dampers, tables."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.linalg import toeplitz
 
 from asperity import Track
 from asperity.errors import InputError
+from asperity.structures.bays import Bays
 from asperity.structures.causal_track import causal_track
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.support import BendingSleeper, RigidMass, Spring, TunedDamper
@@ -125,6 +127,14 @@ def test_rail_dampers_are_superposed_points():
             assert track.receptance(frequency, x, x0) == pytest.approx(expected, rel=1e-8)
 
 
+def test_bays_with_dampers_that_do_not_differ_are_one_bay():
+    track = timoshenko(**DAMPERS)
+    cell = replace(track, bays=Bays.equal(3))
+    for x, x0 in ((0.0, 0.0), (0.3, 0.3), (2.0, -0.7)):
+        expected = track.receptance(FREQUENCY, x, x0)
+        np.testing.assert_allclose(cell.receptance(FREQUENCY, x, x0), expected, rtol=1e-9)
+
+
 def test_a_damper_is_a_mass_on_a_spring():
     """Against the matrix of a mass that carries it; at its frequency its spring is as stated."""
     damper = TunedDamper(15.0, 800.0, 0.35)
@@ -222,6 +232,7 @@ def test_a_causal_table_is_met_in_time():
         (lambda: timoshenko(**(DAMPERS | {"rail_damper_loss_factor": 1.0})), "above 0 and below 1"),
         (lambda: timoshenko(rail_damper_frequency=800.0), "only together with rail_damper_mass"),
         (lambda: timoshenko(continuous=1), "true or false"),
+        (lambda: replace(timoshenko(continuous=True), bays=Bays.equal(2)), "supports that are continuous"),
         (lambda: timoshenko(pad_table=PAD, pad_damping=1e4), "remove pad_damping"),
         (
             lambda: timoshenko(**BED, subgrade_damping=1e4),
