@@ -1,6 +1,7 @@
 """Sound of rail and sleepers: motion against sums over many bays, radiation against exact fields."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from asperity import Track
 from asperity.errors import InputError
 from asperity.radiation import track as sound
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, RailSection, SleeperTop
+from asperity.structures.bays import Bays
 
 UIC60 = Track.named("uic60")
 LOSSY = Track.named("nordborg-loss-factor", rail_loss_factor=0.05)
@@ -57,6 +59,43 @@ def test_an_uneven_force_counts_by_its_square():
     for square, given in ((np.ones(200), None), (force(places)[:, 0], force)):
         found = sound.squared_point_mobility(UIC60, 700.0, given)[0]
         assert found == pytest.approx(np.average(point, weights=square), rel=1e-5)
+
+
+def test_the_sums_over_a_cell_of_bays_that_differ_are_those_of_superposition():
+    """With a force that is uneven along it: on both sides, which are not alike."""
+    track = replace(LOSSY, bays=Bays.drawn(3, spacing=0.15, ballast=0.4, seed=2))
+    waves, omega, cells = track.waves(2.0 * np.pi * FREQUENCIES), 2.0 * np.pi * FREQUENCIES, 14
+    motion = [abs(sleeper_per_rail(bay, omega)) ** 2 for bay in track.bay_tracks]
+    step = track.period / 40
+    places = (np.arange(-cells * 40, cells * 40) + 0.5) * step
+    expected, weights = np.zeros((3, FREQUENCIES.size)), 0.0
+    for x0 in (np.arange(30) + 0.5) * track.period / 30:
+        weight = uneven(x0, track)
+        weights += weight
+        moved = np.array([waves.receptance(x, x0) for x in places])
+        above = [
+            waves.receptance(s + c * track.period, x0) for c in range(-cells, cells) for s in track.sleepers
+        ]
+        squares = np.abs(above).reshape(2 * cells, 3, -1) ** 2
+        expected[0] += weight * step * np.sum(np.abs(moved) ** 2, axis=0)
+        expected[1] += weight * np.sum(squares * motion, axis=(0, 1))
+        expected[2] += weight * np.abs(waves.receptance(x0, x0)) ** 2
+    expected *= omega**2 / weights
+    mobilities = sound.squared_mobility, sound.squared_sleeper_mobility, sound.squared_point_mobility
+    for mobility, squares in zip(mobilities, expected, strict=True):
+        assert_allclose(mobility(track, FREQUENCIES, lambda x: uneven(x, track)[:, None]), squares, rtol=2e-3)
+
+
+def uneven(x, track):
+    return (1.5 + 0.5 * np.sin(2.0 * np.pi * x / track.period)) ** 2
+
+
+@pytest.mark.parametrize(
+    "mobility", ["squared_mobility", "squared_sleeper_mobility", "squared_point_mobility"]
+)
+def test_a_cell_of_equal_bays_sounds_as_one(mobility):
+    cell, of = replace(UIC60, bays=Bays.equal(3)), getattr(sound, mobility)
+    assert_allclose(of(cell, FREQUENCIES), of(UIC60, FREQUENCIES), rtol=1e-6)
 
 
 def test_limits_of_radiators():

@@ -38,8 +38,8 @@ def passed_points(
     Bay by bay: what the forces in it do at a point. By reciprocity G(x_f|x) = G(x|x_f), so that one source at
     the point gives the responses to forces at all places of a bay. Responses as in
     `asperity.structures.moving_kernel`; those to forces more than a bay away are carried by the waves of the
-    track, in which a bay differs from the next by a factor, so that its forces are transformed once for all
-    points.
+    track, which change from a bay to the next by a factor each, so that its forces are transformed once
+    for all points.
     """
     places = np.atleast_1d(finite_array("points on the rail (m)", points)) / kernel.spacing
     first, stride = origin / kernel.spacing, kernel.speed * kernel.time_step / kernel.spacing  # in bays
@@ -53,7 +53,7 @@ def passed_points(
         begin, end = (min(max(0, math.ceil((at - first) / stride)), count) for at in (bay, bay + 1))
         within, acting = first + stride * np.arange(begin, end) - bay, forces[:, begin:end]
         sides = {point.side(bay) for point in passed} - {0}
-        sent, until = waves.sent(acting, within, sides), min(end + taps, count)
+        sent, until = waves.sent(bay, acting, within, sides), min(end + taps, count)
         moved = [point.moved(bay, acting, within, sent)[:, : until - begin] for point in passed]
         return slice(begin, until), moved
 
@@ -75,28 +75,34 @@ class _Waves:
 
     def __init__(self, kernel: MovingKernel, taps: int) -> None:
         self.grid = HatResponse(kernel.track, kernel.time_step, taps, ZONES)
-        nodes, first_zone = chebpts1(TERMS), slice(taps + 1)
-        near = self.grid.waves.shapes_at_nodes(NODES)
-        far = self.grid.waves.symmetric_shapes(0.5 * kernel.spacing * (nodes + 1.0))
-        self.near = dict(zip((1, -1), near, strict=True))  # (NODES + 1, 2, all f)
-        # in single precision, which takes half the time: far bays move a point by a few per cent of all
-        self.far = {
-            side: shapes[..., first_zone].astype(np.complex64)
-            for side, shapes in zip((1, -1), far, strict=True)
-        }
+        nodes, self.track = chebpts1(TERMS), kernel.track
+        self._near: dict[int, dict[int, Complex]] = {}
+        self.far = []  # in single precision, which takes half the time: they move a point by a few per cent
+        for bay in range(self.track.cell_bays):
+            far = self.grid.waves.bay(bay).symmetric_shapes(0.5 * kernel.spacing * (nodes + 1.0))
+            first_zone = (shapes[..., : taps + 1].astype(np.complex64) for shapes in far)
+            self.far.append(dict(zip((1, -1), first_zone, strict=True)))
         self.polynomials = chebvander(nodes, TERMS - 1) / TERMS
         self.polynomials[:, 1:] *= 2.0  # by row one that is 1 at its node, and 0 at the others
+
+    def near(self, bay: int) -> dict[int, Complex]:
+        """Waves at the nodes of a bay near a point, by side (NODES + 1, 2, all f)."""
+        bay %= self.track.cell_bays
+        if bay not in self._near:
+            self._near[bay] = dict(zip((1, -1), self.grid.waves.bay(bay).shapes_at_nodes(NODES), strict=True))
+        return self._near[bay]
 
     def shares(self, places: Array) -> Array:
         """Shares (TERMS, k) of the nodes in what acts at places (k,) from 0 to 1 of a bay."""
         return np.asarray(self.polynomials @ chebvander(2.0 * places - 1.0, TERMS - 1).T)
 
-    def sent(self, forces: Array, places: Array, sides: Iterable[int]) -> dict[int, Complex]:
+    def sent(self, bay: int, forces: Array, places: Array, sides: Iterable[int]) -> dict[int, Complex]:
         """Waves (runs, 2, f) to some sides of forces (runs, k), N, at places (k,) from 0 to 1 of a bay."""
         window = np.exp(-self.grid.shift * self.grid.time_step * np.arange(len(places)))
         shared = forces[:, None] * (self.shares(places) * window)
         spectra = rfft(shared.astype(np.float32), 2 * self.grid.taps)
-        return {side: np.einsum("rxf,xjf->rjf", spectra, self.far[side]) for side in sides}
+        far = self.far[bay % self.track.cell_bays]
+        return {side: np.einsum("rxf,xjf->rjf", spectra, far[side]) for side in sides}
 
 
 class _Point:
@@ -105,7 +111,7 @@ class _Point:
     def __init__(self, waves: _Waves, place: float, taps: int) -> None:
         self.waves, self.bay = waves, math.floor(place)
         self.at = place - self.bay  # from 0 to 1
-        shapes, at = waves.grid.waves, self.at * waves.grid.track.sleeper_spacing
+        shapes, at = waves.grid.waves.bay(self.bay), self.at * waves.track.sleeper_spacing
         amplitude = waves.grid.hat * shapes.coefficients
         self.felt = {1: amplitude * shapes.incoming(at), -1: amplitude * shapes.outgoing(at)}  # m, (2, f)
         self.responses = {bay: self._hats(bay)[:, :taps] for bay in (-1, 0, 1)}
@@ -119,12 +125,12 @@ class _Point:
         side, distance = self.side(bay), bay - self.bay
         if not side:
             return _convolved(forces, self.responses[distance], places * NODES)
-        received = self._received(side, abs(distance), slice(self.waves.grid.taps + 1))
+        received = self._received(side, distance, slice(self.waves.grid.taps + 1))
         return self.waves.grid.response(np.einsum("rjf,jf->rf", sent[side], received))
 
     def _received(self, side: int, bays: int, zone: slice = slice(None)) -> Complex:
-        """What waves are here that were sent out so many bays away, m/N, (2, f), in a zone of frequencies."""
-        return self.felt[side][:, zone] * self.waves.grid.waves.multipliers[:, zone] ** bays
+        """What waves are here that were sent out so many bays on, m/N, (2, f), in a zone of frequencies."""
+        return self.felt[side][:, zone] * self.waves.grid.waves.carried(self.bay, self.bay + bays, zone)
 
     def _hats(self, bay: int) -> Array:
         """Responses, (NODES + 3, n), to forces at nodes −1 … NODES + 1 of a bay; the point's is bay 0."""
@@ -132,7 +138,8 @@ class _Point:
         for place in range(bay * NODES - 1, (bay + 1) * NODES + 2):
             bays, node = divmod(place, NODES)
             side = 1 if place >= NODES * self.at else -1
-            spectra.append(np.sum(self._received(side, abs(bays)) * self.waves.near[side][node], axis=0))
+            near = self.waves.near(self.bay + bays)[side][node]
+            spectra.append(np.sum(self._received(side, bays) * near, axis=0))
         return self.waves.grid.response(np.array(spectra))
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.special import h2vp, j1
 
 from asperity.arguments import Array, Complex, finite_array, positive, whole
+from asperity.radiation.cell import FEWEST_NODES, Cell
 from asperity.structures.track import Track
 
 SPEED_OF_SOUND = 343.2
@@ -77,8 +78,6 @@ def _positive(ka: ArrayLike) -> Array:
 ForceOverBay = Callable[[Array], Array]
 """Mean square of the force at places (n,), m from a sleeper, at the frequencies (n, f), in any unit."""
 
-FEWEST_NODES = 4  # of Gauss's rule, beside one per radian of the shortest wave
-
 
 def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Integral along the rail of the squared mobility, mean over the places of the force in a bay.
@@ -109,8 +108,11 @@ def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | N
     -----
     Both waves and their products: u_j is wave j in the bay after that of the force, and Σ_p Σ_ij u_i u_j*
     (λ_i λ_j*)^p = Σ_ij u_i u_j*/(1 − λ_i λ_j*) over all bays. Within a bay by Gauss's rule, in that of the
-    force from the force on. A bay is its own mirror image, so both sides of the force are alike in the mean.
+    force from the force on. A bay is its own mirror image, so both sides of the force are alike in the mean;
+    of a cell of bays that differ both are summed, and the mean is over all of it.
     """
+    if track.bays:
+        return Cell(track, 2.0 * np.pi * above_zero(frequency)).rail(force)
     bay = _Bay(track, frequency)
     along = np.stack([bay.waves.outgoing(x) for x in bay.node])  # (x, j, f)
     total = bay.over_bays(np.einsum("x,xif,xjf->ijf", bay.weight, along, along.conj(), optimize=True))
@@ -131,6 +133,8 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
     if track.continuous:
         moved = track.support.sleeper_square(2.0 * np.pi * above_zero(frequency))
         return moved * squared_mobility(track, frequency, force) / track.sleeper_spacing
+    if track.bays:
+        return Cell(track, 2.0 * np.pi * above_zero(frequency)).sleepers(force)
     bay = _Bay(track, frequency)
     above = bay.waves.outgoing(0.0)
     total = bay.over_bays(above[:, None] * above.conj()[None, :])
@@ -139,6 +143,8 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
 
 def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
+    if track.bays:
+        return Cell(track, 2.0 * np.pi * above_zero(frequency)).point(force)
     bay = _Bay(track, frequency)
     return bay.mean(np.stack([np.abs(bay.waves.receptance(x0, x0)) ** 2 for x0 in bay.node]), force)
 

@@ -57,31 +57,36 @@ class CellWaves:
         length = self.edges[-1] / self.bays
         return replace(self, start=number % self.bays * length, spacing=length)
 
-    def carried(self, first: int, last: int) -> Complex:
-        """Change of each wave (2, f) from one of the equal parts to another one, in either direction."""
-        ends = (divmod(end, self.bays) for end in sorted((first, last)))
-        return self._carried(*(cell * len(self.steps) + self.bay(part)._span(0.0)[0] for cell, part in ends))
+    @property
+    def spans(self) -> list[CellWaves]:
+        """Stretches of the cell from each support to the next."""
+        ends = zip(self.edges[:-1], np.diff(self.edges), strict=True)
+        return [replace(self, start=float(start), spacing=float(length)) for start, length in ends]
+
+    def carried(self, first: int, last: int, zone: slice = slice(None)) -> Complex:
+        """Change of each wave (2, f) from one equal part to another, in either direction, in a zone of f."""
+        begin, end = (self._first_span(bay) for bay in sorted((first, last)))
+        return self._carried(begin, end, zone)
+
+    def _first_span(self, bay: int) -> int:
+        """Span in which an equal part of the cell begins, counted on through the cells."""
+        cell, part = divmod(bay, self.bays)
+        return cell * len(self.steps) + self.bay(part)._span(0.0)[0]
 
     def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= spacing, m."""
-        return self.symmetric_shapes(np.array([x]))[0][0]
+        first, at = self._place(x)
+        return self._carried(first, at[0]) * self._shape(self.decaying, *at)
 
     def incoming(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= spacing, m, in m/N."""
-        return self.symmetric_shapes(np.array([x]))[1][0]
+        first, at = self._place(x)
+        return self._shape(self.growing, *at) / self._carried(first, at[0])
 
     def symmetric_shapes(self, places: Array) -> tuple[Complex, Complex]:
         """Shapes at any places (p,), m, two of (p, 2, f): of the decaying waves and of the growing ones."""
-        first, _ = self._span(0.0)
-        reach = self.start + float(np.max(places)) - self._edge(first)
-        refuse_decay(self.wavenumbers.imag * reach)
-        shapes: list[list[Complex]] = [[], []]
-        for x in places:
-            span, _ = at = self._span(float(x))
-            scale = self._carried(first, span)
-            shapes[0].append(scale * self._shape(self.decaying, *at))
-            shapes[1].append(self._shape(self.growing, *at) / scale)
-        return np.array(shapes[0]), np.array(shapes[1])
+        at = [float(x) for x in places]
+        return np.array([self.outgoing(x) for x in at]), np.array([self.incoming(x) for x in at])
 
     def shapes_at_nodes(self, count: int) -> tuple[Complex, Complex]:
         """As `symmetric_shapes`, at the ends of so many equal parts of the stretch."""
@@ -100,16 +105,19 @@ class CellWaves:
         inside = min(int(np.searchsorted(self.edges, place, side="right")) - 1, len(self.steps) - 1)
         return int(cell) * len(self.steps) + inside, place - self.edges[inside]
 
-    def _edge(self, span: int) -> float:
-        cell, inside = divmod(span, len(self.steps))
-        return float(cell * self.edges[-1] + self.edges[inside])
+    def _place(self, x: float) -> tuple[int, tuple[int, float]]:
+        """Span in which the stretch begins; that of a place and the place in it, refused if too far on."""
+        first, before = self._span(0.0)
+        refuse_decay(self.wavenumbers.imag * (before + x))
+        return first, self._span(x)
 
-    def _carried(self, first: int, last: int) -> Complex:
+    def _carried(self, first: int, last: int, zone: slice = slice(None)) -> Complex:
         """Change of each wave (2, f) from one span to a later one."""
         cells, rest = divmod(last - first, len(self.steps))
-        around = np.prod(self.steps, axis=0) ** cells if cells else np.ones_like(self.steps[0])
+        steps = self.steps[..., zone]
+        around = np.prod(steps, axis=0) ** cells if cells else np.ones_like(steps[0])
         for span in range(first, first + rest):
-            around = around * self.steps[span % len(self.steps)]
+            around = around * steps[span % len(steps)]
         return around
 
     def _shape(self, waves: Complex, span: int, place: float) -> Complex:

@@ -35,9 +35,9 @@ class PeriodicWaves:
         """Itself, as every bay: `asperity.structures.cell_waves.CellWaves` has others."""
         return self
 
-    def carried(self, first: int, last: int) -> Complex:
-        """Change of each wave (2, f) from one bay to another one, in either direction."""
-        return self.multipliers ** abs(last - first)
+    def carried(self, first: int, last: int, zone: slice = slice(None)) -> Complex:
+        """Change of each wave (2, f) from one bay to another one, in either direction, in a zone of f."""
+        return self.multipliers[:, zone] ** abs(last - first)
 
     def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= L, m: phi_lambda(x), scaled."""

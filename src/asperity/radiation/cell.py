@@ -1,0 +1,116 @@
+"""Vibration of a track whose bays differ, summed along it, mean over the places of a force in its cell."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from asperity.arguments import Array, Complex
+from asperity.structures.cell_waves import CellWaves
+from asperity.structures.track import Track
+
+FEWEST_NODES = 4  # of Gauss's rule between two supports, beside one per radian of the shortest wave
+
+
+class Cell:
+    """Places of a force all over a cell, by Gauss's rule, and what it does on both sides.
+
+    Span by span, from a support to the next. What is sent to one side by a force at x0 of a span is sum_j
+    s_j(x0) u_j(x), for decaying and growing waves in turn; quadratic forms of u_j, summed over the spans
+    beyond with the steps of the waves, give the squares there.
+    """
+
+    def __init__(self, track: Track, omega: Array) -> None:
+        waves = track.waves(omega)
+        assert isinstance(waves, CellWaves)
+        self.track, self.omega, self.spans, self.steps = track, omega, waves.spans, waves.steps
+        self.edges, shortest = waves.edges, float(np.abs(waves.wavenumbers).max())
+        self.count = FEWEST_NODES + math.ceil(shortest * float(np.diff(waves.edges).max()))
+
+    def gauss(self, begin: float, end: float) -> tuple[Array, Array]:
+        """Nodes and weights between two places."""
+        node, weight = np.polynomial.legendre.leggauss(self.count)
+        return begin + 0.5 * (end - begin) * (node + 1.0), 0.5 * (end - begin) * weight
+
+    def rail(self, force: Callable[[Array], Array] | None) -> Array:
+        """Integral along the rail of the squared mobility (f,), mean over the places of the force."""
+        ahead, behind = self._beyond(*(self._forms(waves) for waves in ("outgoing", "incoming")))
+
+        def squares(number: int, span: CellWaves, x0: float) -> Array:
+            right, left = span.incoming(x0), span.outgoing(x0)
+            total = _squared(right, ahead[number]) + _squared(left, behind[number])
+            for x, length in zip(*self.gauss(x0, span.spacing), strict=True):
+                total = total + length * np.abs(np.sum(right * span.outgoing(x), axis=0)) ** 2
+            for x, length in zip(*self.gauss(0.0, x0), strict=True):
+                total = total + length * np.abs(np.sum(left * span.incoming(x), axis=0)) ** 2
+            return total
+
+        return self._mean(squares, force)
+
+    def sleepers(self, force: Callable[[Array], Array] | None) -> Array:
+        """Sum over all half sleepers of the squared mobility (f,), mean over the places of the force."""
+        every, zero = len(self.spans) // self.track.cell_bays, np.zeros(self.omega.shape)
+        moved = [zero] * len(self.spans)
+        moved[::every] = [bay.support.sleeper_square(self.omega) for bay in self.track.bay_tracks]
+        seen = np.array([[s.outgoing(0.0), s.incoming(0.0)] for s in self.spans])  # (n, side, 2, f)
+        forms = np.array(moved)[:, None, None, None] * seen[:, :, :, None] * seen[:, :, None].conj()
+        ahead, behind = self._beyond(forms[:, 0], forms[:, 1])
+        behind = behind + forms[:, 1]  # a span begins with its own support
+
+        def squares(number: int, span: CellWaves, x0: float) -> Array:
+            return _squared(span.incoming(x0), ahead[number]) + _squared(span.outgoing(x0), behind[number])
+
+        return self._mean(squares, force)
+
+    def point(self, force: Callable[[Array], Array] | None) -> Array:
+        """Squared mobility of the rail at the force (f,), mean over its places."""
+
+        def squares(number: int, span: CellWaves, x0: float) -> Array:
+            return np.abs(np.sum(span.outgoing(x0) * span.incoming(x0), axis=0)) ** 2
+
+        return self._mean(squares, force)
+
+    def _forms(self, waves: str) -> Complex:
+        """Integrals of products of waves over each span (n, i, j, f)."""
+        forms = []
+        for span in self.spans:
+            places, lengths = self.gauss(0.0, span.spacing)
+            shapes = np.array([getattr(span, waves)(x) for x in places])
+            forms.append(np.einsum("x,xif,xjf->ijf", lengths, shapes, shapes.conj(), optimize=True))
+        return np.array(forms)
+
+    def _beyond(self, decaying: Complex, growing: Complex) -> tuple[Complex, Complex]:
+        """Forms (n, i, j, f) of all spans after each, and of all before it, in the scale of each."""
+        step = self.steps[:, :, None] * self.steps[:, None].conj()  # from a span to the next
+        around = np.prod(step, axis=0)
+        after, before = np.zeros_like(decaying), np.zeros_like(growing)
+        count = len(step)
+        for lap in range(2):  # around the cell once to close it, and once more
+            if lap:
+                after[0], before[0] = after[0] / (1.0 - around), before[0] / (1.0 - around)
+            for span in range(count - 1, -1, -1):
+                following = (span + 1) % count
+                beyond = after[following] if lap or following else 0.0
+                after[span] = step[span] * (decaying[following] + beyond)
+            for span in range(1, count + 1):
+                beyond = before[span - 1] if lap or span > 1 else 0.0
+                before[span % count] = step[span - 1] * (growing[span - 1] + beyond)
+        return after, before
+
+    def _mean(
+        self, squares: Callable[[int, CellWaves, float], Array], force: Callable[[Array], Array] | None
+    ) -> Array:
+        """Mean of ω² times squares, by the weights of Gauss's rule and of the force."""
+        places, lengths = zip(*(self.gauss(0.0, span.spacing) for span in self.spans), strict=True)
+        values = np.array(
+            [squares(n, span, float(x)) for n, span in enumerate(self.spans) for x in places[n]]
+        )
+        along = np.concatenate([edge + each for edge, each in zip(self.edges, places, strict=False)])
+        square = 1.0 if force is None else force(along)
+        weights = np.concatenate(lengths)[:, None] * np.broadcast_to(square, values.shape)
+        return np.asarray(self.omega**2 * np.average(values, axis=0, weights=weights))
+
+
+def _squared(sent: Complex, form: Complex) -> Array:
+    """Sum over i and j of s_i s_j* form_ij (f,)."""
+    return np.asarray(np.einsum("if,jf,ijf->f", sent, sent.conj(), form).real)
