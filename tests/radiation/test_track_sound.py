@@ -64,10 +64,10 @@ def test_an_uneven_force_counts_by_its_square():
 def test_the_sums_over_a_cell_of_bays_that_differ_are_those_of_superposition():
     """With a force that is uneven along it: on both sides, which are not alike."""
     track = replace(LOSSY, bays=Bays.drawn(3, spacing=0.15, ballast=0.4, seed=2))
-    waves, omega, cells = track.waves(2.0 * np.pi * FREQUENCIES), 2.0 * np.pi * FREQUENCIES, 14
+    waves, omega, cells = track.waves(2.0 * np.pi * FREQUENCIES), 2.0 * np.pi * FREQUENCIES, 24
     motion = [abs(sleeper_per_rail(bay, omega)) ** 2 for bay in track.bay_tracks]
-    step = track.period / 40
-    places = (np.arange(-cells * 40, cells * 40) + 0.5) * step
+    step = track.period / 30
+    places = (np.arange(-cells * 30, cells * 30) + 0.5) * step
     expected, weights = np.zeros((3, FREQUENCIES.size)), 0.0
     for x0 in (np.arange(30) + 0.5) * track.period / 30:
         weight = uneven(x0, track)

@@ -12,7 +12,7 @@ from asperity.structures.track import Track
 FEWEST_NODES = 4  # of Gauss's rule between two supports, beside one per radian of the shortest wave
 
 
-class Cell:
+class CellMobility:
     """Places of a force all over a cell, by Gauss's rule, and what it does on both sides.
 
     Span by span, from a support to the next. What is sent to one side by a force at x0 of a span is sum_j

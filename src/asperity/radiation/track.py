@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.special import h2vp, j1
 
 from asperity.arguments import Array, Complex, finite_array, positive, whole
-from asperity.radiation.cell import FEWEST_NODES, Cell
+from asperity.radiation.cell import FEWEST_NODES, CellMobility
 from asperity.structures.track import Track
 
 SPEED_OF_SOUND = 343.2
@@ -112,7 +112,7 @@ def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | N
     of a cell of bays that differ both are summed, and the mean is over all of it.
     """
     if track.bays:
-        return Cell(track, 2.0 * np.pi * above_zero(frequency)).rail(force)
+        return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).rail(force)
     bay = _Bay(track, frequency)
     along = np.stack([bay.waves.outgoing(x) for x in bay.node])  # (x, j, f)
     total = bay.over_bays(np.einsum("x,xif,xjf->ijf", bay.weight, along, along.conj(), optimize=True))
@@ -134,7 +134,7 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
         moved = track.support.sleeper_square(2.0 * np.pi * above_zero(frequency))
         return moved * squared_mobility(track, frequency, force) / track.sleeper_spacing
     if track.bays:
-        return Cell(track, 2.0 * np.pi * above_zero(frequency)).sleepers(force)
+        return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).sleepers(force)
     bay = _Bay(track, frequency)
     above = bay.waves.outgoing(0.0)
     total = bay.over_bays(above[:, None] * above.conj()[None, :])
@@ -144,7 +144,7 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
 def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
     if track.bays:
-        return Cell(track, 2.0 * np.pi * above_zero(frequency)).point(force)
+        return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).point(force)
     bay = _Bay(track, frequency)
     return bay.mean(np.stack([np.abs(bay.waves.receptance(x0, x0)) ** 2 for x0 in bay.node]), force)
 
