@@ -241,10 +241,9 @@ def test_variants_are_told_by_what_they_do():
     assert "=so already – Left out: nothing changes: the case is so already." in told
     assert "Failed" not in outcome.stderr
     found = columns("out/effects.csv")
-    assert found["variant"] == ["calm", "twice as fast", "'=so already"] * 2
-    assert found["place"][::3] == ["ball.load = 5 N", "ball.load = 10 N"]
-    assert (numbers(found["effect [dB]"])[[0, 3]] < -10.0).all()
-    assert [text.split(" dB ")[1] for text in found["in words"][:2]] == ["down.", "up."]
+    assert found["variant"][::2] == ["calm", "twice as fast", "'=so already"]
+    assert found["ball.load [N]"] == ["5.0", "10.0"] * 3
+    assert (numbers(found["effect [dB]"])[:2] < -10.0).all()
     page = Path("out/study.html").read_text(encoding="utf-8")
     assert re.findall('<figure id="(.*?)" class="chart">', page) == [
         "effects-1",
@@ -253,11 +252,19 @@ def test_variants_are_told_by_what_they_do():
     ]
     assert 'id="effects-table-2"' in page
     again = json.loads(call(*AGAIN, "--json").stdout)
-    assert again["effects"]["columns"] == list(found)
-    assert again["effects"]["rows"][2][3] is None
+    words = again["in_words"]["ball.load = 5 N"]
+    assert [each.split(" dB ")[-1] for each in words.values()][:2] == ["down.", "up."]
     assert again["sweep"]["variant"]["calm"] == {"surface.level": "minus 20 dB"}
     Path("study.toml").write_text(VARIANTS.replace("20 dB", "10 dB"))
     assert "the study.nc of another study" in call(*AGAIN, code=2).stderr
+
+
+def test_variants_of_a_case_that_fails_are_compared_with_nothing():
+    Path("study.toml").write_text(VARIANTS.replace('["5 N", "10 N"]', '["1 MN"]') + "ball.load = '5 N'")
+    outcome = call(*AGAIN)
+    assert "Failed (3 of 4 members)" in outcome.stderr
+    assert "What each change does" not in outcome.stdout
+    assert "rms force" in words_of(outcome.stdout)
 
 
 def test_the_ready_list_is_a_study_and_needs_a_track():

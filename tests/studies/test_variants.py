@@ -215,6 +215,8 @@ def test_the_quietest_comes_first_and_what_is_left_out_last(table):
     assert [row[0] for row in rows] == ["as it is", "smooth", "slow", "soft", "discs"]
     assert rows[0][-1] == "Loudest: rail."
     assert rows[-1][1:] == ["–", "–", "–", "Left out: wheel.roughness is disc, not cast-iron."]
+    assert of.best == f"Helps most: smooth, −5.0 dB(A). {rows[1][-1]}"
+    assert Effects.of(found.isel(variant=[2, 3])).best == ""
     (panel,) = effects_chart(of).panels
     assert [word for _, word in panel.y.ticks] == ["smooth", "slow", "soft"]
     assert (panel.y.low, panel.y.high) == (2.5, -0.5)  # the first on top
@@ -231,7 +233,7 @@ def said(level, effect, error, parts=("rail", "sleepers", "wheel", "total")):
         "level": ("radiator", level, {"long_name": "", "units": "dB(A) re 1 pW"}),
     }
     at = {"variant": ["new"], "radiator": list(parts)}
-    return Effects.of(xarray.Dataset(held, at, {"law": "areal", "seeds": 3})).words(0)
+    return Effects.of(xarray.Dataset(held, at, {"law": "areal", "seeds": 3})).in_words["new"]
 
 
 def test_an_effect_is_said_in_words():

@@ -8,7 +8,6 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray
 
 from asperity import files
@@ -71,7 +70,8 @@ def run_study(
         several = table.sizes.get(SEED, 0)
         means = mean_and_scatter(table) if several > 1 else None
         band = prediction_band(table) if several >= FEWEST else None
-        told = effects_of(table)
+        effect = effects(table) if VARIANT in table.dims else None
+        told = _by_place(table, effect)
         for words, found in told:
             _print_effects(words, found)
         if asked or not told:
@@ -80,7 +80,7 @@ def run_study(
             reason = names_kept()[name] or "are no bands to add up"
             say(f"{name}: no member has it; there {reason}", err=True)
         _print_messages(table, left_out=bool(told))
-        written = _write(directory, table, means, band, told, asked)
+        written = _write(directory, table, means, band, effect, asked)
     chosen = table[[name for name in asked if name in table]].assign_attrs(table.attrs) if asked else table
     heading, rows = tables.columns_of(chosen, bands=bool(asked))
     return {
@@ -89,7 +89,7 @@ def run_study(
         "completed": int(table["completed"].sum()),
         "columns": heading,
         "rows": rows,
-        **({"effects": dict(zip(("columns", "rows"), _listed(told), strict=True))} if told else {}),
+        "in_words": {place: of.in_words for place, of in told},
         "warnings": json.loads(table.attrs["warnings"]),
         "failures": json.loads(table.attrs["failures"]),
         "files": written,
@@ -148,7 +148,7 @@ def _write(
     table: xarray.Dataset,
     means: xarray.Dataset | None,
     band: xarray.Dataset | None,
-    told: Sequence[tuple[str, Effects]],
+    effect: xarray.Dataset | None,
     asked: Sequence[str],
 ) -> dict[str, Path]:
     """Write all that there is of a study, in place of an earlier one, and say where; return files by name."""
@@ -165,13 +165,19 @@ def _write(
             notes["ensemble"] = f"\n{band.attrs['meaning']}"
             axes = [str(name) for name in band["force_level"].dims if name not in ("law", "band")]
             write_csv(new / BAND, *tables.long_columns(band, [*axes, "law", "band"]))
-        if told:
+        if effect is not None:
             names["effects"] = EFFECTS
-            write_csv(new / EFFECTS, *_listed(told))
-        blocks = [*_blocks(told), *_figures(table, means, band, asked or tables.USUAL_IN_FIGURES)]
+            write_csv(new / EFFECTS, *tables.long_columns(effect, list(map(str, effect["effect"].dims))))
+        told = _by_place(table, effect)
+        blocks = [
+            *_blocks(told),
+            *_figures(table, means, band, asked or tables.USUAL_IN_FIGURES),
+        ]
         if blocks:
             names["page"] = PAGE
-            files.write_bytes(new / PAGE, _page(table, blocks, list(names)).encode())
+            files.write_bytes(
+                new / PAGE, _page(table, blocks, list(names), told[0][1].best if told else "").encode()
+            )
         for name in {MEANS, BAND, EFFECTS, PAGE} - set(names.values()):  # of an earlier study
             files.discard(directory / name)
     for what, name in names.items():
@@ -180,8 +186,10 @@ def _write(
     return {what: directory / name for what, name in names.items()}
 
 
-def _page(table: xarray.Dataset, blocks: Sequence[PageFigure | ReportTable], written: Sequence[str]) -> str:
-    """The page of a study, with the files that lie beside it."""
+def _page(
+    table: xarray.Dataset, blocks: Sequence[PageFigure | ReportTable], written: Sequence[str], best: str
+) -> str:
+    """The page of a study, with the files that lie beside it; what helps `best` comes first."""
     swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
     done, count = int(table["completed"].sum()), table["completed"].size
     summary = swept if done == count else f"{swept}; {done} of {count} members completed"
@@ -192,7 +200,8 @@ def _page(table: xarray.Dataset, blocks: Sequence[PageFigure | ReportTable], wri
         "ensemble": ("band over seeds (CSV)", BAND),
         "results": ("results (netCDF)", RESULTS),
     }
-    return figures_page("Study", summary, blocks, dict(offered[what] for what in offered if what in written))
+    beside = dict(offered[what] for what in offered if what in written)
+    return figures_page("Study", best or summary, blocks, beside)
 
 
 def _figures(
@@ -222,18 +231,16 @@ def _figures(
 # --- what each variant does
 
 
-def effects_of(table: xarray.Dataset) -> list[tuple[str, Effects]]:
-    """Effects of the variants of a study, for each place on its other axes, named; none without variants."""
-    if VARIANT not in table.dims:
+def _by_place(table: xarray.Dataset, effect: xarray.Dataset | None) -> list[tuple[str, Effects]]:
+    """Effects of variants for each place on the other axes of a study, named; none without variants."""
+    if effect is None:
         return []
-    found = effects(table)
-    others = [key for key in json.loads(table.attrs["sweep"]) if key in found.dims and key != VARIANT]
-    told = []
-    for place in list(product(*(range(found.sizes[key]) for key in others)))[: study_figures.MOST_PANELS]:
-        at = dict(zip(others, place, strict=True))
-        words = ", ".join(f"{key} = {typed_words(table[key])[n]}" for key, n in at.items())
-        told.append((words, Effects.of(found.isel(at))))
-    return told
+    others = [key for key in json.loads(table.attrs["sweep"]) if key in effect.dims and key != VARIANT]
+    places = product(*(range(effect.sizes[key]) for key in others))
+    ats = [dict(zip(others, place, strict=True)) for place in places][: study_figures.MOST_PANELS]
+    words = [", ".join(f"{key} = {typed_words(effect[key])[n]}" for key, n in at.items()) for at in ats]
+    found = zip(words, (Effects.of(effect.isel(at)) for at in ats), strict=True)
+    return [(told, of) for told, of in found if of.parts]  # none where the case as it is has failed
 
 
 def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[PageFigure | ReportTable]:
@@ -242,18 +249,6 @@ def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[PageFigure | Report
         title = f"What helps, {words}" if words else "What helps?"
         yield PageFigure(f"effects-{n}", title, effects_caption(of), effects_chart(of), EFFECTS)
         yield replace(effects_table(of), name=f"effects-table-{n}")
-
-
-def _listed(told: Sequence[tuple[str, Effects]]) -> tables.Rows:
-    """Heading and rows of all effects."""
-    columns = (f"{what} {part}".strip() for part in told[0][1].parts for what in ("effect", "±"))
-    heading = ["place", VARIANT, *(f"{column} [dB]" for column in columns), "in words"]
-    rows: list[list[object]] = [
-        [words, name, *np.stack([of.effect[n], of.error[n]], axis=1).ravel().tolist(), of.words(n)]
-        for words, of in told
-        for n, name in enumerate(of.variants)
-    ]
-    return heading, rows
 
 
 def _print_effects(words: str, of: Effects) -> None:

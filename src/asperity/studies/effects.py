@@ -130,15 +130,12 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     if not isinstance(table, xarray.Dataset) or VARIANT not in table.dims:
         received = list(map(str, table.dims)) if isinstance(table, xarray.Dataset) else shown(table)
         raise InputError("table of the study", received, f'one with the dimension "{VARIANT}"')
-    names = [
-        name for name, each in table.data_vars.items() if str(each.attrs.get("units")).startswith("dB(A)")
+    weighted = [
+        str(name) for name, each in table.data_vars.items() if each.attrs["units"].startswith("dB(A)")
     ]
-    usual = [
-        name
-        for name in (schema.RADIATED_POWER_LEVEL_A.name, f"{spectra.FORCE_LEVEL.name}_a")
-        if name in names
-    ]
-    held = table[one_of("quantity", quantity or usual[0], map(str, names))]
+    usual = schema.RADIATED_POWER_LEVEL_A.name
+    usual = usual if usual in weighted else f"{spectra.FORCE_LEVEL.name}_a"
+    held = table[one_of("quantity", quantity or usual, weighted)]
     law = str(table["law"].values[0])
     held = held.sel(law=law, drop=True) if "law" in held.dims else held
     base = held.sel({VARIANT: AS_IT_IS}, drop=True)
@@ -175,22 +172,16 @@ def _error(change: xarray.DataArray) -> xarray.DataArray:
 
 def _left_out(table: xarray.Dataset, effect: xarray.DataArray) -> xarray.DataArray:
     """Why each variant has no effect; empty where it has one."""
-    failures = json.loads(table.attrs["failures"])
-    known = effect.notnull().any([dim for dim in effect.dims if dim != VARIANT])
+    known = effect.notnull().any([dim for dim in effect.dims if dim != VARIANT]).values
+    met = [(f"{m},", f["message"]) for f in json.loads(table.attrs["failures"]) for m in f["members"]]
     reasons = [
-        ""
-        if here
-        else next(
-            (f["message"] for f in failures for m in f["members"] if f"{VARIANT} = {name}," in f"{m},"), ""
-        )
-        for name, here in zip(effect[VARIANT].values, known.values, strict=True)
+        "" if here else next((why for member, why in met if f"{VARIANT} = {name}," in member), "it failed")
+        for name, here in zip(effect[VARIANT].values, known, strict=True)
     ]
     return xarray.DataArray(reasons, dims=VARIANT)
 
 
 def _order(effect: xarray.DataArray, sweep: Collection[str]) -> NDArray[np.int64]:
     """Places of the variants by what they do to the whole, the last of the parts; mean over other keys."""
-    parts = {dim: -1 for dim in effect.dims if dim not in sweep}
-    return np.argsort(
-        effect.isel(parts).mean([d for d in sweep if d in effect.dims and d != VARIANT]).values, kind="stable"
-    )
+    whole = effect.isel({dim: -1 for dim in effect.dims if dim not in sweep})
+    return np.argsort(whole.mean([dim for dim in whole.dims if dim != VARIANT]).values, kind="stable")

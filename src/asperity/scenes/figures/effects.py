@@ -1,6 +1,5 @@
 """What helps: what named changes of a case do to what radiates, as bars, as a table and in words."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -55,27 +54,40 @@ class Effects:
             int(found.attrs[schema.EFFECT_SEEDS.name]),
         )
 
-    def words(self, number: int) -> str:
-        """Say what a variant does: ``"Rail 2.1 dB down, sleepers 1.0 dB up."``"""
-        if self.left_out[number]:
-            return f"Left out: {self.left_out[number]}."
-        effect, error = self.effect[number], self.error[number]
-        sure = np.isfinite(effect) & (np.abs(effect) >= HEARD) & ~(np.abs(effect) <= error)
+    @property
+    def in_words(self) -> dict[str, str]:
+        """What each variant does: ``"Rail 2.1 dB down, sleepers 1.0 up."``"""
+        return {
+            name: f"Left out: {why}." if why else self._words(effect, error)
+            for name, why, effect, error in zip(
+                self.variants, self.left_out, self.effect, self.error, strict=True
+            )
+        }
+
+    @property
+    def best(self) -> str:
+        """What helps most; empty where nothing surely helps."""
+        helps = self.effect[0, 0] < -np.nan_to_num(self.error[0, 0])
+        how = f"{data.signed(self.effect[0, 0])} dB(A)"
+        words = f"Helps most: {self.variants[0]}, {how}. {self.in_words[self.variants[0]]}"
+        return words if helps else ""
+
+    def _words(self, effect: Numbers, error: Numbers) -> str:
+        own = np.array([part != WHOLE for part in self.parts])
+        sure = own & (np.abs(effect) >= HEARD) & ~(np.abs(effect) <= error)
         order = sorted(np.flatnonzero(sure).tolist(), key=lambda n: -abs(effect[n]))
         told = [
-            f"{self.parts[n]} {abs(effect[n]):.1f} {'down' if effect[n] < 0.0 else 'up'}".strip()
-            for n in order
-            if len(self.parts) == 1 or self.parts[n] != WHOLE
+            f"{self.parts[n]} {abs(effect[n]):.1f}{'' if k else ' dB'} {'down' if effect[n] < 0.0 else 'up'}"
+            for k, n in enumerate(order)
         ]
-        told[:1] = [re.sub(r"(\d) ", r"\1 dB ", each) for each in told[:1]]
-        before, after = (self._loudest(level) for level in (self.level, self.level + effect))
-        then = f"; loudest then: {after}" if after != before else ""
-        sentence = ", ".join(told) or "no change that is sure"
-        return f"{sentence[:1].upper()}{sentence[1:]}{then}."
+        sentence = ", ".join(told).strip() or "no change that is sure"
+        before, after = self.loudest(), self.loudest(effect)
+        return f"{sentence[:1].upper()}{sentence[1:]}{f'; loudest then: {after}' if after != before else ''}."
 
-    def _loudest(self, level: Numbers) -> str:
-        parts = [(each, name) for each, name in zip(level, self.parts, strict=True) if name != WHOLE]
-        return max(parts)[1] if parts else ""
+    def loudest(self, effect: Numbers | float = 0.0) -> str:
+        """The loudest part, with an effect; nothing where parts are not told apart."""
+        level = self.level + np.nan_to_num(effect)
+        return max(zip(level, self.parts, strict=True), key=lambda pair: (pair[1] != WHOLE, pair[0]))[1]
 
 
 def effects_chart(of: Effects) -> Chart:
@@ -102,19 +114,17 @@ def effects_caption(of: Effects) -> str:
             f"Means over {of.seeds} seeds, each difference within one texture; lines: their confidence "
             "intervals of 95 % (Student's t)."
         )
-    return f"{of.what} of {of.law} with each change, less that of the case as it is. {sure}"
+    return f"{of.what}, by {of.law}: with each change, less that of the case as it is. {sure}"
 
 
 def effects_table(of: Effects) -> ReportTable:
     """What each variant does, the quietest first, in numbers and in words."""
-    as_it_is = [f"{level:.1f}" for level in of.level]
     columns = {"change": text_cells(["as it is", *of.variants], "name")}
     for p, part in enumerate(of.parts):
         cells = [_cell(*pair) for pair in zip(of.effect[:, p], of.error[:, p], strict=True)]
-        columns[part or "level"] = [Cell(as_it_is[p], "number"), *cells]
-    loudest = of._loudest(of.level)
-    first = f"Loudest: {loudest}." if loudest else ""
-    columns["in words"] = text_cells([first, *(of.words(n) for n in range(len(of.variants)))])
+        columns[part or "level"] = [Cell(f"{of.level[p]:.1f}", "number"), *cells]
+    first = f"Loudest: {of.loudest()}." if of.loudest() else ""
+    columns["in words"] = text_cells([first, *of.in_words.values()])
     note = f"As it is: {of.units}; below, differences in dB. In grey and in brackets: not surely any change."
     return table("effects", "What each change does, the quietest first", columns, note)
 
