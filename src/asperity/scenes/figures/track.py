@@ -327,7 +327,5 @@ LOSS_FACTORS = Figure(
         schema.LOSS_FACTOR,
         schema.RELAXED_STIFFNESS,
         schema.RELAXED_LOSS_FACTOR,
-        schema.MEASURED_STIFFNESS,
-        schema.MEASURED_LOSS_FACTOR,
     ),
 )
