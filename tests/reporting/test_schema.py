@@ -77,6 +77,7 @@ NOWHERE = (
     "contacts at equal distances",
     "measured on the track",
     "passage was measured",
+    "pad is measured",
 )
 OTHERS = {
     "ball-on-beam": (*NOWHERE, "over a track", "of a wheel", "loss factors", "poles", "law linear", "train"),
