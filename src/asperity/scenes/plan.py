@@ -52,11 +52,13 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
             f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"
         )
         warn_of_findings(noise.findings_of_labels(case))
-    frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, sleeper passing"
-    passing = f"{case.speed / track.sleeper_spacing:.4g} Hz, critical speed {track.critical_speed:.4g} m/s"
+    frequencies = f"critical speed {track.critical_speed:.4g} m/s"
+    if not track.continuous:
+        passing = f"sleeper passing {case.speed / track.sleeper_spacing:.4g} Hz"
+        frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, {passing}, {frequencies}"
     points = ", ".join(f"{position:g} m" for position in scene.points)
     return [
-        ("track", f"{frequencies} {passing}"),
+        ("track", frequencies),
         *described_losses(losses, prepared.shape.load),
         ("rail motion recorded at", points),
         ("sound power", f"of {known}"),

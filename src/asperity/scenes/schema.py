@@ -100,6 +100,10 @@ LAG = _track("lag", "s", "time since the impulse")
 _KERNEL = "displacement of the rail under the wheel"
 MOVING_KERNEL = _track("moving_kernel(start_position, lag)", "m/(N s)", _KERNEL)
 
+POWER_PART = _track("power_part", "1", "part of the track that dissipates")
+_SHARE = "share that the part dissipates of the power of a harmonic force on the rail at mid-span"
+POWER_SHARE = _track("power_share(power_part, frequency)", "1", _SHARE)
+
 TRACK_BAND = _losses("band", "Hz", _BAND)
 LAYER = _losses("layer", "1", "part of the track with a loss factor")
 _FORCE = "level of the linear contact force in time over that of constant loss factors"
@@ -119,9 +123,13 @@ RELAXED_LOSS_FACTOR = _losses("relaxed_loss_factor(layer, band)", "1", "loss fac
 NAME = _fact("name", "text", "of the set of parameters")
 SLEEPER_SPACING = _fact("sleeper_spacing", "m", "distance of the sleepers")
 _PINNED = "at which half a bending wave fits between two sleepers"
-PINNED_PINNED_FREQUENCY = _fact("pinned_pinned_frequency", "Hz", _PINNED)
+_apart = partial(Attribute, "track", condition=f"{_TRACK}, on single supports")
+PINNED_PINNED_FREQUENCY = _apart("pinned_pinned_frequency", "Hz", _PINNED)
 CUT_ON_FREQUENCY = _fact("cut_on_frequency", "Hz", "above which waves run along the rail on its pads")
-ANTIRESONANCE_FREQUENCY = _fact("antiresonance_frequency", "Hz", "at which the sleepers hold the rail still")
+_HELD = "at which the sleepers hold the rail still"
+ANTIRESONANCE_FREQUENCY = Attribute(
+    "track", "antiresonance_frequency", "Hz", _HELD, f"{_TRACK}, with sleepers that move"
+)
 CRITICAL_SPEED = _fact("critical_speed", "m/s", "of the rail with its sleepers on a continuous foundation")
 _STATIC = "of the rail at mid-span under the wheel's load, nominal stiffnesses"
 STATIC_DEFLECTION = _fact("static_deflection", "m", _STATIC)
@@ -219,10 +227,13 @@ UNMEASURED_POWER_LEVEL_A = _unmeasured("unmeasured_power_level_a(law, radiator)"
 
 _tone = partial(Attribute, "spectra", condition=_TRACK)
 _PASSING = "speed over the distance of the sleepers"
-SLEEPER_PASSING_FREQUENCY = _tone("sleeper_passing_frequency", "Hz", _PASSING)
+SLEEPER_PASSING_FREQUENCY = Attribute(
+    "spectra", "sleeper_passing_frequency", "Hz", _PASSING, f"{_TRACK}, on single supports"
+)
 _PINNED = "pinned–pinned frequency as a moving wheel meets it, the lower"
-PINNED_PINNED_LOW = _tone("pinned_pinned_low", "Hz", _PINNED)
-PINNED_PINNED_HIGH = _tone("pinned_pinned_high", "Hz", "the higher")
+_split = partial(Attribute, "spectra", condition=f"{_TRACK}, on single supports")
+PINNED_PINNED_LOW = _split("pinned_pinned_low", "Hz", _PINNED)
+PINNED_PINNED_HIGH = _split("pinned_pinned_high", "Hz", "the higher")
 WHEEL_REVOLUTION_FREQUENCY = _tone("wheel_revolution_frequency", "Hz", "turns of the wheel per second")
 
 # --- the pass-by

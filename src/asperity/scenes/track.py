@@ -32,6 +32,7 @@ from asperity.structures.rail_poles import RailPoles
 from asperity.structures.stiffness_table import StiffnessTable
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.structures.track_parameters import LAYERS
+from asperity.structures.track_power import dissipated_power
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
@@ -147,14 +148,16 @@ def _roughness(computed: Computed) -> Values:
 
 
 def tones(computed: Computed) -> Values:
-    """Frequencies that speed, track and wheel have of themselves."""
+    """Frequencies that speed, track and wheel have of themselves; of spread supports that of the wheel."""
     case, pinned = computed.case, computed.track.pinned_pinned_frequency
+    turns: Values = {schema.WHEEL_REVOLUTION_FREQUENCY: case.speed / (2.0 * math.pi * case.rolling.radius)}
+    if computed.track.continuous:
+        return turns
     half = 0.5 * case.speed / computed.track.sleeper_spacing
-    return {
+    return turns | {
         schema.SLEEPER_PASSING_FREQUENCY: 2.0 * half,
         schema.PINNED_PINNED_LOW: pinned - half,
         schema.PINNED_PINNED_HIGH: pinned + half,
-        schema.WHEEL_REVOLUTION_FREQUENCY: case.speed / (2.0 * math.pi * case.rolling.radius),
     }
 
 
@@ -200,16 +203,33 @@ def track_group(computed: Computed, losses: LossFactorError) -> Values:
         schema.START_POSITION: rows * track.sleeper_spacing / positions,
         schema.LAG: kernel.lag[kept],
         schema.MOVING_KERNEL: kernel.weights[rows, kept] / kernel.time_step,
-        **{fact: getattr(track, fact.name) for fact in OF_TRACK},
+        **facts(track),
         schema.STATIC_DEFLECTION: track.static_deflection(load, half),
         schema.STATIC_DEFLECTION_IN_TIME: kernel.track.static_deflection(load, half),
         schema.KERNEL_METHOD: "scatter",
         **relaxed(losses),
+        **power_shares(track, frequency),
     }
     if isinstance(rail.direct, RailPoles):
         laid_out |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.direct.fit_error}
         laid_out |= {schema.KERNEL_POLES: rail.direct.count}
     return laid_out
+
+
+def facts(track: Track) -> Values:
+    """What a track says of itself, but for frequencies that it does not have."""
+    values = {fact: getattr(track, fact.name) for fact in OF_TRACK}
+    return {fact: value for fact, value in values.items() if isinstance(value, str) or np.isfinite(value)}
+
+
+def power_shares(track: Track, frequency: Array) -> Values:
+    """Lay out what share each part of a track dissipates of the power of a force at mid-span.
+
+    Of bays that differ, the nominal one.
+    """
+    parts = dissipated_power(track.regular, frequency, 0.5 * track.sleeper_spacing)
+    powers = np.array(list(parts.values()))
+    return {schema.POWER_PART: list(parts), schema.POWER_SHARE: powers / powers.sum(axis=0)}
 
 
 # --- what stands for the loss factors of a track in time, and how far the contact force is off for it
