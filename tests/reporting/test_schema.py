@@ -78,6 +78,7 @@ NOWHERE = (
     "measured on the track",
     "passage was measured",
     "pad is measured",
+    "disc and tread vibrate",
 )
 OTHERS = {
     "ball-on-beam": (*NOWHERE, "over a track", "of a wheel", "loss factors", "poles", "law linear", "train"),

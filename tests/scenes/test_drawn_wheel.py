@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.scenes import schema
+from asperity.scenes.figures.wheel import LOUDEST, wheel_table
+from asperity.scenes.noise import mode_by_mode
 from asperity.structures.wheel import Wheel
 
 CASE = {
@@ -38,6 +41,37 @@ def test_the_table_of_a_drawn_wheel_gives_the_same_run(drawn, runs, tmp_path):
 def test_the_wheel_is_heard(drawn):
     assert drawn["spectra"]["radiated_power_level"].attrs["wheel"] == "computed"
     assert np.isfinite(drawn["spectra"]["radiated_power_level_a"].values).all()
+
+
+def test_the_wheel_is_told_mode_by_mode(drawn):
+    held = drawn["spectra"]
+    level = held["wheel_mode_power_level_a"].values[0]
+    wheel = held["radiated_power_level_a"].sel(radiator="wheel").values[0]
+    assert 10.0 * np.log10(np.sum(10.0 ** (level / 10.0))) == pytest.approx(wheel, abs=1e-9)
+    modes = case_of(section="curved-web").rolling.standing_modes(1600.0)
+    assert held["wheel_mode_frequency"].values[1:] == pytest.approx(modes.natural_frequencies)
+    assert held["wheel_mode_diameters"].values[1:].tolist() == modes.nodal_diameters.tolist()
+    assert held["wheel_mode"].values.tolist() == list(range(len(level)))
+    found = wheel_table(drawn)
+    rows = [[cell.text for cell in row] for row in found.rows]
+    loudest = int(np.argmax(level))
+    assert rows[0][0] == f"{held['wheel_mode_frequency'].values[loudest]:.0f} Hz"
+    assert rows[0][3] == f"{level[loudest]:.1f}"
+    assert rows[-1][0] == f"{len(level) - LOUDEST} others"
+    assert sum(float(row[-1]) for row in rows) == pytest.approx(100.0, abs=0.6)
+
+
+def test_a_mode_radiates_in_the_band_in_which_it_rings():
+    """Of one mode with nodal diameters, its two waves count as one mode."""
+    case = case_of(modes=np.array([[950.0, 1e-3, 300.0, 3, 0.5, 0.7], [500.0, 1e-3, 300.0, 0, 0.5, 0.7]]))
+    band = np.array([500.0, 1000.0])
+    power = np.zeros((1, 4, 2))
+    power[0, 1:3, 1], power[0, 3, 0] = 1e-6, 2e-6
+    found = mode_by_mode(case, power, band)
+    level = found[schema.WHEEL_MODE_POWER_LEVEL_A][0]
+    assert level[0] == -np.inf
+    assert level[1] == pytest.approx(63.0, abs=0.02)
+    assert level[2] == pytest.approx(63.0 - 3.2, abs=0.1)
 
 
 def test_turning_splits_the_resonances_of_the_run():

@@ -166,10 +166,18 @@ class RadiatingWheel:
 
         Per Hz where these are densities. Frequencies (f,), Hz.
         """
+        return IMPEDANCE * np.sum(self._radiating(frequency) * square, axis=0)
+
+    def power_of_modes(self, frequency: ArrayLike, square: Array) -> Array:
+        """The same of each mode (p, f), W."""
+        return IMPEDANCE * self._radiating(frequency) * square
+
+    def _radiating(self, frequency: ArrayLike) -> Array:
+        """Sound power per impedance of air and square velocity at the contact (p, f), m²."""
         disc = 2.0 * np.pi * self.radius**2 * self.axial[:, None] ** 2 * self.axial_ratio(frequency)
         around = 2.0 * np.pi * self.radius * self.width
         tread = around * self.radial[:, None] ** 2 * self.radial_ratio(frequency)
-        return IMPEDANCE * np.sum((disc + tread) * square, axis=0)
+        return np.asarray(disc + tread)
 
     def _ratio(self, frequency: ArrayLike, transition: Array, exponent: NDArray[np.int64]) -> Array:
         over = 2.0 * np.pi * above_zero(frequency) * self.radius / SPEED_OF_SOUND / transition[:, None]

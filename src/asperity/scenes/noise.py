@@ -254,7 +254,8 @@ def radiation(computed: Computed) -> Values:
     """
     case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
     edges = band / HALF_BAND, band * HALF_BAND
-    power = np.maximum(band_energies(computed.frequency, _radiated(computed), *edges), 0.0)
+    density, of_modes = _radiated(computed)
+    power = np.maximum(band_energies(computed.frequency, density, *edges), 0.0)
     wheels = 2.0 * case.axles / len(computed.scene.offsets)  # for each that was rolled
 
     def laid_out(power: Array, levels: Entry, totals: Entry) -> Values:
@@ -273,6 +274,10 @@ def radiation(computed: Computed) -> Values:
         own, louder, longer = found
         beside |= own
         power[:, :2] *= louder
+    rung: Values = {}
+    if of_modes.shape[1]:
+        energy = np.maximum(band_energies(computed.frequency, of_modes, *edges), 0.0)
+        rung = mode_by_mode(case, wheels * energy, band)
     # the length 8.686/Δ of the decay is the mean of those over a band
     within = 10.0 ** (0.1 * (np.arange(9) - 4.0) / 9.0)
     lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * within)
@@ -281,11 +286,36 @@ def radiation(computed: Computed) -> Values:
         **laid_out(power, schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A),
         schema.BAND_DECAY_RATE: 1.0 / np.mean(lengths, axis=1) / longer,
         **beside,
+        **rung,
     }
 
 
-def _radiated(computed: Computed) -> Array:
+def mode_by_mode(case: Any, power: Array, band: Array) -> Values:
+    """Lay out the modes of the wheels with their A-weighted sound power, of powers (laws, modes, b), W.
+
+    The rigid motion comes first; of the two waves in which turning splits a mode the powers are added.
+    """
+    modes = case.rolling.standing_modes(case.numerics.highest_frequency).table()
+    frequency, damping, _, diameters, *_ = np.vstack([[0.0, 0.0, 1.0, 1.0, 0.0, 0.0], modes]).T
+    number = np.arange(len(diameters))
+    mode = np.append(0, np.repeat(number[1:], np.where(diameters[1:] > 0.0, 2, 1)))
+    weighted = power @ 10.0 ** (a_weighting(band) / 10.0)
+    summed = np.stack([weighted[:, mode == each].sum(axis=1) for each in number], axis=1)
+    with np.errstate(divide="ignore"):
+        level = 10.0 * np.log10(summed / PICOWATT)
+    return {
+        schema.WHEEL_MODE: number,
+        schema.WHEEL_MODE_FREQUENCY: frequency,
+        schema.WHEEL_MODE_DAMPING: damping,
+        schema.WHEEL_MODE_DIAMETERS: diameters.astype(int),
+        schema.WHEEL_MODE_POWER_LEVEL_A: level,
+    }
+
+
+def _radiated(computed: Computed) -> tuple[Array, Array]:
     """Sound power (laws, 3, f), W/Hz, of rail, sleepers and wheels, of what was rolled on one rail.
+
+    And that of the wheel's rigid motion and each of its modes (laws, modes, f), none where they are unknown.
 
     The contacts feel each other in their forces; what several of them radiate adds up as that of incoherent
     forces. Track with constant loss factors where it has them: their sound power is a matter of frequency, as
@@ -305,6 +335,7 @@ def _radiated(computed: Computed) -> Array:
     density[:, 0, used] = rail.power_per_force(track, lines, spread) * exciting
     density[:, 1, used] = top.power_per_force(track, lines, spread) * exciting
     wheel, own = radiating_wheel(case), computed.scene.wheel
+    of_modes = np.zeros((len(force), 0 if wheel is None else len(wheel.axial), len(used)))
     if wheel is not None and own is not None:
         motion = computed.psd(computed.stacked("rolling_displacement"))[..., used]
         middle = 0.5 * track.sleeper_spacing
@@ -312,7 +343,8 @@ def _radiated(computed: Computed) -> Array:
         for law, (of_force, of_motion) in enumerate(zip(force, motion, strict=True)):
             square = modal_velocity_psd(own, lines, of_force, of_motion, compliance)  # (modes, c, f)
             density[law, 2, used] = wheel.power(lines, square.sum(axis=1))
-    return density
+            of_modes[law][:, used] = wheel.power_of_modes(lines, square.sum(axis=1))
+    return density, of_modes
 
 
 # --- beside the track

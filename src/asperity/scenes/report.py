@@ -23,6 +23,7 @@ from asperity.scenes.figures import (
     roughness,
     scene,
     track,
+    wheel,
 )
 
 PAGE, SUMMARY = "report.html", "summary.html"
@@ -33,7 +34,7 @@ CHAPTERS = (
         "noise",
         "Rolling noise",
         (noise.RADIATED, *noise.NOISE),
-        (noise.radiated_table, noise.sound_power_table),
+        (noise.radiated_table, wheel.wheel_table, noise.sound_power_table),
         noise.noise_answers,
     ),
     Chapter(

@@ -203,6 +203,21 @@ RADIATED_POWER_LEVEL_A = _radiated("radiated_power_level_a(law, radiator)", "dB(
 _DECAY = "decay rate of the rail, of the mean length in the band"
 BAND_DECAY_RATE = _rail_spectra("band_decay_rate(band)", "dB/m", _DECAY)
 
+_RINGING = "where it is known how a wheel's disc and tread vibrate"
+_mode = partial(_spectra, condition=_RINGING)
+WHEEL_MODE = _mode("wheel_mode", "1", "mode of the wheel, by frequency; 0 is its rigid motion")
+WHEEL_MODE_FREQUENCY = _mode(
+    "wheel_mode_frequency(wheel_mode)", "Hz", "natural frequency of the wheel at rest"
+)
+WHEEL_MODE_DAMPING = _mode("wheel_mode_damping(wheel_mode)", "1", "damping ratio of a mode of the wheel")
+WHEEL_MODE_DIAMETERS = _mode(
+    "wheel_mode_diameters(wheel_mode)", "1", "nodal diameters of a mode of the wheel"
+)
+_POWER = "A-weighted sound power level of a mode of the wheels of all axles, over the bands computed"
+WHEEL_MODE_POWER_LEVEL_A = _mode(
+    "wheel_mode_power_level_a(law, wheel_mode)", "dB(A) re 1 pW", _POWER, missing=NO_SIGNAL
+)
+
 _MEASURED = "where something was measured on the track"
 _beside = partial(_spectra, condition=_MEASURED, missing="it was not measured in these bands")
 MEASURED_DECAY_RATE = _beside("measured_decay_rate(band)", "dB/m", "decay rate, measured")
