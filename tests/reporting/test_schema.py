@@ -77,6 +77,7 @@ NOWHERE = (
     "contacts at equal distances",
     "measured on the track",
     "passage was measured",
+    "says what passes",
     "pad is measured",
     "disc and tread vibrate",
 )

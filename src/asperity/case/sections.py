@@ -18,6 +18,7 @@ from asperity.errors import InputError
 from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
 from asperity.reference.cnossos import DIRECTIVITIES, EVEN, PAD_CLASSES, WHEEL_TRANSFER
 from asperity.reference.grounds import GROUNDS, HARD
+from asperity.reference.tsi_noise import LIMITS
 from asperity.units import written
 
 if TYPE_CHECKING:
@@ -257,6 +258,13 @@ class NoiseKeys(Section):
         Number(at_least=1, at_most=100, whole=True),
         1,
         "number of such vehicles, one behind the other",
+        goes_with="vehicle_length",
+    )
+    vehicle: str | None = optional(
+        Choice(tuple(LIMITS)),
+        "emu",
+        "type of vehicle, whose limit of TSI Noise the level is held to",
+        "no limit",
         goes_with="vehicle_length",
     )
     receiver_distance: float = key(

@@ -15,10 +15,11 @@ from asperity.laws import Role, in_role
 from asperity.radiation import pass_by
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
-from asperity.reference import cnossos, grounds
+from asperity.reference import cnossos, grounds, tsi_noise
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
+from asperity.scenes.limits import held_to_limits
 from asperity.scenes.measured import measured_track
 from asperity.scenes.measured_passage import measured_passage
 from asperity.schema import Entry, Values, spectra
@@ -360,7 +361,8 @@ LONGEST = 1000.0
 def sources_of(case: Any) -> tuple[str, ...]:
     """What the level beside the track is computed by, beyond the sound power."""
     path = case.noise.sound_path(np.array([1000.0]))
-    return () if path is None or path.ground is None else (grounds.CITATION,)
+    ground = () if path is None or path.ground is None else (grounds.CITATION,)
+    return ground if case.noise.vehicle is None else (*ground, tsi_noise.CITATION)
 
 
 def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
@@ -403,6 +405,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
         laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = np.stack([each.transit_exposure for each in levels])
         laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
+        laid_out |= held_to_limits(case, over_frequency, laid_out[schema.PASS_BY_EQUIVALENT_LEVEL])
     main = laid_out[schema.PASS_BY_LEVEL][0, -1]
     return laid_out | measured_passage(case.noise, time[kept], main, passage.passed, band)
 

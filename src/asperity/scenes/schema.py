@@ -331,6 +331,16 @@ LEFT_OUT = _effects("left_out(variant)", "1", "why the change was left out; empt
 EFFECT_LAW = Attribute("effects", "law", "text", "contact law", EFFECT.condition)
 EFFECT_SEEDS = Attribute("effects", "seeds", "1", "over which effects are averaged", EFFECT.condition)
 
+_ASKED = "where noise.vehicle says what passes"
+VEHICLE = _place("vehicle", "text", "type of vehicle, by which TSI Noise limits the level", _ASKED)
+_LEVEL = "L_pAeq,Tp normalised to the reference speed, of wagons to 0.225 axles/m (TSI Noise)"
+NORMALISED_LEVEL = _heard("normalised_level(law, radiator)", "dB(A) re 20 uPa", _LEVEL, condition=_ASKED)
+REFERENCE_SPEED = _place("reference_speed", "m/s", "to which it is normalised", _ASKED)
+_LIMIT = "largest normalised level of all sources, compared as a whole decibel"
+TSI_LIMIT = _place("tsi_limit", "dB(A) re 20 uPa", _LIMIT, f"{_ASKED}, and a limit holds")
+_ISO = "of a test by TSI Noise and ISO 3095: condition, what is here, what is asked, whether it is met"
+REFERENCE_CONDITIONS = _place("reference_conditions", "JSON", _ISO, _ASKED)
+
 _TOTAL = {"radiator": "total"}
 KEPT: dict[Entry, dict[str, str]] = {
     ACCELERATION_LEVEL: {},
@@ -339,6 +349,7 @@ KEPT: dict[Entry, dict[str, str]] = {
     PASS_BY_EQUIVALENT_LEVEL: _TOTAL,
     TRANSIT_EXPOSURE_LEVEL: _TOTAL,
     SOUND_EXPOSURE_LEVEL_A: _TOTAL,
+    NORMALISED_LEVEL: _TOTAL,
     SOUND_POWER_LEVEL: {},
     SOUND_POWER_LEVEL_A: {"source": "total"},
     RADIATED_POWER_LEVEL: {},

@@ -16,6 +16,7 @@ from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
+from asperity.scenes.figures.limits import limit_sentence
 from asperity.scenes.figures.measured import compared_numbers, moved_words
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
@@ -483,4 +484,5 @@ def pass_by_answers(tree: DataTree) -> Answers | None:
     heard, _ = compared_numbers(tree).get(first, (None, None))
     measured = "" if heard is None else f"; {first} measured {heard:.1f} dB(A)"
     note = f"re 20 µPa{where}{told}{measured}; own radiation model{held}"
-    return Answers(numbers=(HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note),))
+    number = HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note)
+    return Answers(more=limit_sentence(tree), numbers=(number,))

@@ -1,0 +1,160 @@
+"""A pass-by beside the limits of TSI Noise, and a case beside the conditions of ISO 3095."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+from numpy.testing import assert_allclose
+
+from asperity import WheelOnRail
+from asperity.errors import CaseError, InputError
+from asperity.reference.cnossos import rail_roughness
+from asperity.reference.tsi_noise import pass_by_limit
+from asperity.scenes.figures.limits import limit_sentence, limits_table
+from asperity.scenes.figures.noise import pass_by_answers
+from asperity.scenes.noise import pass_by_group, sources_of
+from asperity.schema import group
+
+BAND = 1000.0 * 10.0 ** (np.arange(-7, 8) / 10.0)
+KMH = 1.0 / 3.6
+VEHICLE = {"vehicle": "emu", "axle_positions": [0.0, 2.5, 19.0, 21.5], "vehicle_length": 26.4}
+DECAY = np.where(BAND < 380.0, 3.0, np.where(BAND < 760.0, 7.0, 3.0))  # above the limit
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "slow", "fast"),
+    [
+        ("electric-locomotive", 84.0, 99.0),
+        ("diesel-locomotive", 85.0, None),
+        ("emu", 80.0, 95.0),
+        ("dmu", 81.0, 96.0),
+        ("coach", 79.0, None),
+        ("wagon", 83.0, None),
+    ],
+)
+def test_limits_of_table_4(vehicle, slow, fast):
+    """Regulation (EU) No 1304/2014, as printed, and its formulas (1), (2) and (4)."""
+    at = {v: pass_by_limit(vehicle, v * KMH, 0.15) for v in (60.0, 80.0, 160.0, 249.9, 250.0, 320.0)}
+    axles = 10.0 * np.log10(0.225 / 0.15) if vehicle == "wagon" else 0.0
+    speeds = {60.0: 0.0, 80.0: 0.0, 160.0: -30 * np.log10(2.0), 249.9: -30 * np.log10(249.9 / 80.0)}
+    for v, change in speeds.items():
+        assert (at[v].level, 3.6 * at[v].speed) == (slow, pytest.approx(80.0))
+        assert_allclose(at[v].normalisation, change + axles, atol=1e-9)
+    for v, change in {250.0: 0.0, 320.0: -50.0 * np.log10(320.0 / 250.0)}.items():
+        assert (at[v].level, 3.6 * at[v].speed) == (fast, pytest.approx(250.0))
+        assert_allclose(at[v].normalisation, change + axles, atol=1e-9)
+
+
+def test_a_level_is_compared_as_a_whole_decibel():
+    limit = pass_by_limit("emu", 80.0 * KMH, 0.15)
+    assert [limit.met(level) for level in (79.0, 80.0, 80.49, 80.5, 81.0)] == [True, True, True, False, False]
+    with pytest.raises(InputError, match="type of vehicle"):
+        pass_by_limit("tram", 20.0, 0.2)
+    with pytest.raises(InputError, match=r"axles per length \(1/m\)"):
+        pass_by_limit("wagon", 20.0, 0.0)
+
+
+def passed(speed=160.0, power=100.0, decay=DECAY, over=-1.0, wheel=np.nan, **noise):
+    """The pass-by of a sound power in the band of 1 kHz, dB, on a rail as rough as the limit and over."""
+    level, parts = np.full((4, len(BAND)), np.nan), np.array([power, power - 10.0, wheel])
+    level[:, 7] = *parts, 10.0 * np.log10(np.nansum(10.0 ** (parts / 10.0)))
+    names = {"law": ["areal"], "radiator": ["rail", "sleepers", "wheel", "total"], "band": BAND}
+    wavelength, limit = rail_roughness("iso3095")
+    rough = np.stack([limit[7:29] + over, limit[7:29] + 20.0])  # the wheel's is not asked
+    spectra = {
+        "radiated_power_level": (("law", "radiator", "band"), level[None]),
+        "band_decay_rate": ("band", decay),
+        "roughness_level": (("part", "surface_band"), rough),
+    }
+    held = xarray.Dataset(
+        spectra, names | {"part": ["rail", "wheel"], "surface_band": wavelength[7:29] * 1.005}
+    )
+    case = WheelOnRail(surface={"spectrum": "iso3095"}, noise=VEHICLE | noise, speed=speed * KMH)
+    return group(pass_by_group(case, held))
+
+
+def told(*args, **keys):
+    tree = xarray.DataTree.from_dict({"/pass_by": passed(*args, **keys)})
+    return limit_sentence(tree), limits_table(tree)
+
+
+def conditions(**keys):
+    return {each["condition"]: each for each in json.loads(passed(**keys).attrs["reference_conditions"])}
+
+
+def test_the_level_is_normalised_and_held_to_the_limit():
+    by = passed(wheel=95.0)
+    assert (by.attrs["tsi_limit"], by.attrs["vehicle"]) == (80.0, "emu")
+    assert_allclose(by.attrs["reference_speed"], 80.0 * KMH)
+    change = by["normalised_level"] - by["pass_by_equivalent_level"]
+    assert_allclose(change, -30.0 * np.log10(2.0), atol=1e-9)
+    assert all(each["met"] for each in conditions().values())
+    wagon = passed(80.0, vehicle="wagon", vehicles=3)
+    change = wagon["normalised_level"] - wagon["pass_by_equivalent_level"]
+    assert_allclose(change.sel(radiator="rail"), -10.0 * np.log10(4 / 26.4 / 0.225), atol=1e-9)
+
+
+def test_said_whether_it_is_met_and_what_decides():
+    by = passed()
+    level = float(by["normalised_level"].sel(radiator="total").item())
+    louder = 100.0 + 80.0 - level  # exactly the limit
+    below, within, above = "3.0 dB below the 80 dB(A)", "met as a whole", "2.0 dB over the 80 dB(A)"
+    for change, words in ((-3.0, below), (0.3, within), (2.0, above)):
+        sentence, table = told(power=louder + change)
+        assert words in sentence
+        assert "TSI Noise, EMU: rolling noise without the wheel has" in sentence
+        assert sentence.endswith("at 80 km/h, " + table.rows[0][2].text + "; the rail decides.")
+        assert table.rows[0][3].text == ("no" if words == above else "yes")
+        assert [row[3].text for row in table.rows[1:]] == ["yes"] * 4
+    sentence, table = told(wheel=110.0)
+    assert "rolling noise alone has" in sentence
+    assert "; the wheel decides." in sentence
+    assert "rail " in table.rows[0][1].text
+    answers = pass_by_answers(xarray.DataTree.from_dict({"/pass_by": by}))
+    assert answers.more == limit_sentence(xarray.DataTree.from_dict({"/pass_by": by}))
+
+
+def test_conditions_that_are_not_met_are_named():
+    over = np.full(22, -1.0)
+    over[[3, 9]] = 0.7, 2.1  # 200 mm and 50 mm
+    rough = conditions(over=over)["rail roughness"]
+    assert rough["here"] == "above it in 2 bands, by up to 2.1 dB at 50 mm"
+    assert "in 22 of 22 bands" in rough["asked"]
+    assert conditions(over=0.04)["rail roughness"]["met"]  # printed to a tenth
+    slow = DECAY.copy()
+    slow[BAND > 4000.0] = 0.5
+    slow[(BAND > 380.0) & (BAND < 410.0)] = 4.5
+    decay = conditions(decay=slow)["decay rate"]
+    assert decay["here"].startswith("below it in 2 bands, by up to 1.5 dB/m at 400")
+    sentence, table = told(over=over, decay=slow, receiver_distance=10.0)
+    assert "no limit holds for this receiver and speed" in sentence
+    assert sentence.endswith("Not as a test asks: receiver, rail roughness, decay rate.")
+    assert [row[3].text for row in table.rows] == ["–", "no", "yes", "no", "no"]
+    assert not conditions(speed=330.0)["speed"]["met"]
+    assert "no limit holds" in told(250.0, vehicle="coach")[0]
+    assert "95 dB(A) allowed" in told(250.0)[0]
+
+
+def test_without_a_type_of_vehicle_nothing_is_said():
+    by = passed(vehicle=None)
+    assert not {"normalised_level", "vehicle"} & {*by, *by.attrs}
+    tree = xarray.DataTree.from_dict({"/pass_by": by})
+    assert (limit_sentence(tree), limits_table(tree)) == ("", None)
+    for noise, count in (({}, 0), ({"ground": "grass"}, 1), (VEHICLE, 1), (VEHICLE | {"ground": "lawn"}, 2)):
+        assert len(sources_of(WheelOnRail(surface={"spectrum": "iso3095"}, noise=noise))) == count
+
+
+@pytest.mark.parametrize(
+    ("noise", "message"),
+    [
+        ({"vehicle": "emu"}, "only together with vehicle_length"),
+        (
+            {"vehicle": "tram", "vehicle_length": "30 m"},
+            'allowed: "electric-locomotive", "diesel-locomotive"',
+        ),
+    ],
+)
+def test_vehicles_that_cannot_be(noise, message):
+    with pytest.raises(CaseError, match=message):
+        WheelOnRail(surface={"spectrum": "iso3095"}, noise=noise)
