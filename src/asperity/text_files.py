@@ -23,12 +23,20 @@ _APART = re.compile(r",\s")
 
 
 def read_text(
-    path: Path, source: str, allowed: str, *, largest: int, remedy: str = "", shorten: str = ""
+    path: Path,
+    source: str,
+    allowed: str,
+    *,
+    largest: int,
+    remedy: str = "",
+    shorten: str = "",
+    latin: bool = False,
 ) -> str:
     """Read a text file that a person has written, without a mark of its encoding.
 
     Of at most `largest` bytes. `source` is its name and `allowed` what may stand there, for messages;
-    `remedy` is what to do if there is no such file, `shorten` if it is too large.
+    `remedy` is what to do if there is no such file, `shorten` if it is too large. What is no UTF-8 is read as
+    Latin-1 if `latin`, as instruments write it.
     """
     if received := no_file(path):
         raise InputError(source, received, allowed, remedy)
@@ -40,10 +48,10 @@ def read_text(
     if len(content) > largest:
         allowed = f"{allowed} of at most {amount(largest)}"
         raise InputError(source, f"more than {amount(largest)}", allowed, shorten)
-    return decoded(content, source, allowed)
+    return decoded(content, source, allowed, latin=latin)
 
 
-def decoded(content: bytes, source: str, allowed: str) -> str:
+def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -> str:
     """Decode the content of a text file, UTF-8 or marked UTF-16, without the mark.
 
     Of another encoding an `InputError` says which it probably is; `source` and `allowed` are for that
@@ -60,6 +68,8 @@ def decoded(content: bytes, source: str, allowed: str) -> str:
             raise InputError(source, received, allowed, remedy)
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
+        if latin and not content.startswith(_MARKS):
+            return content.decode("latin-1")
         line = content[: error.start].count(b"\n") + 1
         encoding = error.encoding[:6].upper()  # whatever the order of bytes
         received = f"a byte that is no {encoding} in line {line}"
@@ -84,7 +94,7 @@ def lines_of_cells(content: str) -> Iterator[tuple[int, list[str]]]:
         if separator in (";", "\t"):
             text = text.replace(",", ".")
         if text:
-            cells = [cell.strip() for cell in text.split(separator)]
+            cells = [cell.strip().strip('"') for cell in text.split(separator)]
             yield number, [cell for cell in cells if cell] if tabs else cells
 
 

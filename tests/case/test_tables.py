@@ -55,17 +55,43 @@ def test_they_are_read_in_si(name, expected, source):
         "measured [mm],of [dB re 1 um]\n100,3\n80,2\n",
         "# lathe 3\n# wavelength (m); level (dB)\n0,1; 3\n0,08; 2  # the shorter one\n",
         "\ufeffwavelength [cm];level [dB]\r\n10;3\r\n8;2\r\n",
+        "Rail roughness, EN 15610\nSite;km 12,3\nOperator;A\nWavelength [cm];Level [dB re 1 µm]\n10;3\n8;2\n",
+        "Wavelength;Level\ncm;dB re 1 µm\n10;3,0\n8;2,0\n",
+        "Wavelength;Level\n[mm];[dB re. 1 micron]\n100;3\n80;2\n",
+        "wavelength [m]\tlevel [dB]\n0,1\t3\n0,08\t2\n",
+        "Wellenlänge / cm;Pegel / dB ref 1 µm;\n8;2;\n10;3;\n",
+        "wavelength in mm,level in dB\n100,3\n80,2\n",
+        'lambda/cm,L/dB\n"10","3"\n"8","2"\n',
+        "wavelength (mm) level (dB)\n100 3\n80 2\n",
+        "wavelength (cm);left (dB);right (dB)\n10;3;3\n8;2;2\n",
     ],
 )
-def test_levels_are_read_in_the_ways_they_are_written(text, tmp_path):
-    (tmp_path / "levels.txt").write_text(text, encoding="utf-8")
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_levels_are_read_in_the_ways_they_are_written(text, encoding, tmp_path):
+    text = text.replace("\ufeff", "") if encoding == "latin-1" else text
+    (tmp_path / "levels.txt").write_text(text, encoding=encoding)
     wavelengths, levels = tables.read_levels(tmp_path / "levels.txt")
-    assert (list(wavelengths), list(levels)) == (pytest.approx([0.1, 0.08]), [3, 2])
+    assert (list(wavelengths), list(levels)) == (pytest.approx([0.1, 0.08]), pytest.approx([3, 2]))
+
+
+def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
+    (tmp_path / "levels.csv").write_text("wavelength (m), left (dB), right (dB)\n0.1, 10, 0\n0.08, -5, -5\n")
+    _, levels = tables.read_levels(tmp_path / "levels.csv")
+    np.testing.assert_allclose(levels, [10.0 * math.log10((10 + 1) / 2), -5.0], rtol=1e-12)
 
 
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
+        (
+            "levels",
+            "wavelength (m), left (dB), right (m)\n0.1, 3, 3",
+            "the heading 'right (m)'; allowed: level",
+        ),
+        ("levels", "wavelength (m), left (dB), right (dB)\n0.1, 3, 3\n0.08, 2", "'0.08, 2' in line 3"),
+        ("levels", "wavelength (m), left (dB), right (dB)\n0.1, 3", "'0.1, 3' in line 2"),
+        ("levels", "Site; A\nDate; 1 May\n100; 3", f"heading 'Date, 1 May'; allowed: {ASKED}"),
+        ("levels", "frequency (Hz), level (dB)\n100, 3", "'frequency (Hz)'; allowed: wavelength in m"),
         ("levels", LEVELS + "0.1, 3\n0.063, 1", "a gap in the bands between 100 mm and 63 mm"),
         ("levels", LEVELS + "0.1, 3\n0.09, 1", "bands closer than one-third octaves between 100 mm and 90"),
         ("levels", LEVELS + "0.1, 3\n0.1, 1", "bands closer than one-third octaves"),

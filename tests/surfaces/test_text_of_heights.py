@@ -172,3 +172,37 @@ LINE = "1.5\n2.5\n"
 def test_what_is_wrong_is_said(read, content, hints, message):
     with pytest.raises(InputError, match=message):
         read(content, **hints)
+
+
+SIDE_BY_SIDE = np.array([[0.51, 1.0], [-0.25, 2.0], [0.0, 3.5]])  # µm
+POSITIONS = ("0", "0,001", "0,002")  # m
+ROUGH = "".join(f"{left};{right}\n" for left, right in SIDE_BY_SIDE).replace(".", ",")
+WITH_PLACE = "".join(f"{x};{row}\n" for x, row in zip(POSITIONS, ROUGH.splitlines(), strict=True))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Distance [m];Left rail [µm];Right rail [µm]\n" + WITH_PLACE,
+        "Trolley 7;;\nSite;km 12,3;\n\nWeg [m];links [µm];rechts [µm]\n" + WITH_PLACE.replace("\n", ";\n"),
+        "Sampling interval: 1 mm\nUnits: um\nleft;right\n" + ROUGH,
+        "Sample distance;1;mm\nUnit: um\n".replace("1;mm", "1 mm;") + ROUGH.replace(";", "\t"),
+    ],
+)
+def test_lines_beside_each_other_as_trolleys_write_them(read, text):
+    for encoding in ("utf-8", "latin-1"):
+        lines = read(text, encoding)
+        np.testing.assert_allclose(lines.heights, 1e-6 * SIDE_BY_SIDE)
+        assert lines.spacing[0] == pytest.approx(1e-3)
+    coarser = read("x [mm],a [um],b [um]\n0,1,2\n5,3,4\n10,5,6\n", pixel="1 mm", height_unit="nm")
+    np.testing.assert_allclose(
+        coarser.heights, 1e-9 * np.array([[1, 2], [3, 4], [5, 6]])
+    )  # hints are stronger
+    assert coarser.spacing[0] == pytest.approx(1e-3)
+
+
+def test_points_in_one_unit_are_no_lines(read):
+    surface = read("x (um),y (um),z (um)\n" + ANY_ORDER)
+    assert surface.shape == (3, 4)
+    with pytest.raises(InputError, match="coordinates that are not uniform"):
+        read("a;b\n1;2\n5;3\n6;1\n", pixel="1 mm", height_unit="um", pixel_unit="mm")

@@ -3,6 +3,7 @@
 import math
 import re
 from array import array
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,15 +16,17 @@ from numpy.typing import NDArray
 
 from asperity.arguments import Array, no_file, shown
 from asperity.case.content import name_of
+from asperity.case.headings import are_words, heading_of, unit_of
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
+from asperity.spectra import energy_sum
 from asperity.structures.outline import checked_outline
 from asperity.structures.stiffness_table import preloads_of, stiffness_at_preload
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
-from asperity.units import factor, unit_in_brackets
+from asperity.units import factor
 
 LARGEST_TABLE = 10 * 2**20  # bytes of text
 NETCDF = (".nc", ".nc4")
@@ -88,11 +91,14 @@ class TableFile(File):
 
 
 def read_levels(table: TableSource) -> tuple[Array, Array]:
-    """Read one-third-octave band levels of a texture over wavelength, from a table of two columns.
+    """Read one-third-octave band levels of a texture over wavelength, from a table of two columns or more.
 
-    Wavelengths (n,), m, falling, and levels (n,), dB re 1 µm; no band may be missing.
+    Wavelengths (n,), m, falling, and levels (n,), dB re 1 µm; no band may be missing. Of several columns of
+    levels, lines beside each other, that is their energy mean.
     """
-    wavelength, level = read_table(table, LEVELS).T
+    rows = read_table(table, LEVELS, repeated=True)
+    wavelength, levels = rows[:, 0], rows[:, 1:]
+    level = levels[:, 0] if levels.shape[1] == 1 else energy_sum(levels) - 10.0 * np.log10(levels.shape[1])
     order = np.argsort(-wavelength)
     wavelength, level = wavelength[order], level[order]
     if wavelength[-1] <= 0:
@@ -232,13 +238,20 @@ def refuse_disorder(table: TableSource, frequency: Array) -> None:
         raise InputError(name_of(table), "frequencies that do not rise", "rising frequencies, all above 0 Hz")
 
 
-def read_table(table: TableSource, columns: tuple[Column, ...], further: tuple[Column, ...] = ()) -> Array:
+def read_table(
+    table: TableSource,
+    columns: tuple[Column, ...],
+    further: tuple[Column, ...] = (),
+    *,
+    repeated: bool = False,
+) -> Array:
     """Read a table of numbers (lines, columns), in SI; all of its lines may have all `further` columns.
 
-    An array is taken as it is, in SI. In a file, columns are apart by comma, semicolon (with decimal commas)
-    or white space; text from '#' on is left out. A heading, or a comment right above the numbers, names the
-    unit of each column that has one in brackets, as ``wavelength (cm)``; a table that does not is refused. So
-    is a line that does not hold one finite number for each column. A netCDF-4 file holds `columns` alone.
+    An array is taken as it is, in SI. In a file, columns are apart by semicolon or tab (with decimal commas),
+    comma or white space; text from '#' on is left out. A heading, or a comment right above the numbers, names
+    the unit of each column that has one, as ``wavelength (cm)``; a table that does not is refused. So is a
+    line that does not hold one finite number for each column. Other lines of words may stand above the
+    heading. A netCDF-4 file holds `columns` alone. With `repeated` the last column may come several times.
     """
     allowed = f"a table with the columns {_named(columns)}"
     if further:
@@ -250,20 +263,26 @@ def read_table(table: TableSource, columns: tuple[Column, ...], further: tuple[C
     if table.suffix.lower() in NETCDF:
         return read_columns(table, columns)
     remedy = f"Write it as netCDF ({NETCDF[0]}), which may be larger."
-    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, shorten=remedy)
+    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, shorten=remedy, latin=True)
+    words: deque[list[str]] = deque(maxlen=2)
     heading: list[str] = []
     found = array("d")
     for number, cells in lines_of_cells(content):
-        if not found and not heading and len(cells) == len(columns) + len(further):
-            columns += further
+        if not found and are_words(cells):
+            words.append(cells)
+            continue
+        if not found:
+            if len(cells) == len(columns) + len(further):
+                columns += further
+            elif repeated and len(cells) > len(columns):
+                columns += columns[-1:] * (len(cells) - len(columns))
+            dimensions = [column.dimension for column in columns]
+            heading = heading_of(words, dimensions) or _comment_above(content, number)
         values = [_number(cell) for cell in cells]
-        if len(cells) == len(columns) and all(map(math.isfinite, values)):
-            heading = heading or _comment_above(content, number)
-            found.extend(values)
-        elif len(cells) == len(columns) and not (found or heading) and all(map(math.isnan, values)):
-            heading = cells
-        else:
+        short = not heading and words and len(cells) < len(words[-1])  # than what may be its heading
+        if short or len(cells) != len(columns) or not all(map(math.isfinite, values)):
             raise InputError(name_of(table), f"'{', '.join(cells)[:40]}' in line {number}", allowed)
+        found.extend(values)
     if not found:
         raise InputError(name_of(table), "no line of numbers", allowed)
     return np.array(found).reshape(-1, len(columns)) * _scales(heading, columns, table)
@@ -289,11 +308,10 @@ def _comment_above(content: str, number: int) -> list[str]:
 
 def _scales(heading: list[str], columns: tuple[Column, ...], path: Path) -> list[float]:
     """SI values of the units that a heading names in brackets, for each column."""
-    units = [unit_in_brackets(cell) for cell in heading]
-    if len(units) != len(columns) or any(
-        not unit and column.dimension for unit, column in zip(units, columns, strict=True)
-    ):
-        received = f"the heading {shown(', '.join(heading))}" if len(units) == len(columns) else "no heading"
+    units = map(unit_of, heading, (column.dimension for column in columns))
+    fit = len(heading) == len(columns)
+    if not fit or any(not unit and column.dimension for unit, column in zip(units, columns, strict=True)):
+        received = f"the heading {shown(', '.join(heading))}" if fit else "no heading"
         example = f"'{', '.join(c.name + f' ({c.dimension})' * bool(c.dimension) for c in columns)}'"
         remedy = f"Add the line {example} above the numbers, with the units that they are in."
         raise InputError(path.name, received, "a heading with the units in brackets", remedy)
@@ -314,10 +332,7 @@ def _words(text: str) -> set[str]:
 
 def _scale(heading: str, column: Column, path: Path) -> float:
     """SI value of the unit that a heading names in brackets; 1 for a pure number."""
-    unit = unit_in_brackets(heading)
-    if column.dimension.startswith("dB"):
-        unit = re.sub(r" ?re ?(1 ?[uµμ]m|20 ?[uµμ]Pa)$", "", unit)
-        unit = re.sub(r"^dB ?A$", "dB(A)", unit)
+    unit = unit_of(heading, column.dimension)
     if not column.dimension and unit in ("", "-", "1"):
         return 1.0
     try:

@@ -36,7 +36,8 @@ _NUMBER = r"[-+]?\d++(?:[.,]\d*+)?(?:[eE][-+]?\d++)?"
 _BRACKET = re.compile(r"[\[(] ?([^\s\[\]()\d]{1,20}) ?[\])]")
 _UNIT_LINE = re.compile(r"(.*?)\bunits?\b ?[:=]? ?[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
 _PIXEL_LINE = re.compile(
-    rf"(pixel(?:[ _]size)?|spacing|sample spacing|dx|dy) ?[:=]? ?({_NUMBER}) ?([^\s\d;,]{{1,20}})",
+    r"(pixel(?:[ _]size)?|spacing|sampl(?:e|ing)[ _](?:spacing|interval|distance)|dx|dy)"
+    rf" ?[:=;]? ?({_NUMBER}) ?([^\s\d;,]{{1,20}})[;,]*",
     re.IGNORECASE,
 )
 _LATERAL_WORDS = {"x", "y", "xy", "lateral", "length", "distance", "position", "pixel"}
@@ -81,10 +82,11 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     """Read heights from text: tab, semicolon, comma or white space between columns, point or comma decimals.
 
     One column is a line z; two are x, z at uniform x; three are x, y, z on a regular grid; more are a matrix
-    of heights whose rows follow one another along x, so the first axis of the map is the line number. Missing
-    heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that start with
-    ``#``, ``%`` or ``//`` are header, see `parsed_header`; a hint is stronger than it. The file is read line
-    by line, so that memory is a few times what its numbers take.
+    of heights whose rows follow one another along x, so the first axis of the map is the line number. Lines
+    beside each other may have their position in the first of three columns or more, see `units_of_lines`.
+    Missing heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that
+    start with ``#``, ``%`` or ``//`` are header, see `parsed_header`; a hint is stronger than it. The file is
+    read line by line, so that memory is a few times what its numbers take.
     """
     size, allowed = path.stat().st_size, f"at most {amount(MAX_TEXT_BYTES)} of text"
     remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
@@ -94,8 +96,16 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
         dialect = _dialect(lines, hints.decimal, path.name)
     with path.open(encoding=encoding) as lines:
         header_lines, table = _table(lines, dialect, path.name)
+    if (units := units_of_lines(header_lines, table.shape[1])) is not None:
+        return _lines(table, *units, hints, path.name)
     header = parsed_header(header_lines, dialect.delimiter, table.shape[1])
-    return _surfaces(table, header, hints, path.name)
+    try:
+        return _surfaces(table, header, hints, path.name)
+    except InputError as error:
+        if error.received != arrays.UNEVEN or "dx" not in header or "z" not in header:
+            raise
+    heights = table * hints.heights_in(path.name, header["z"])  # lines without their positions
+    return guards.surfaces_of(heights, hints.spacing_in(path.name, (header["dx"], header["dy"])), path.name)
 
 
 def _encoding(path: Path) -> str:
@@ -197,8 +207,7 @@ def _no_numbers(number: int, text: str, source: str) -> InputError:
 
 def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str) -> list[guards.Surface]:
     columns, heading = table.shape[1], 'Write it into the heading, as "x (mm)"'
-    heights = table[:, -1] if columns in (2, 3) else table
-    heights *= hints.heights_in(source, header.get("z"))
+    heights = (table[:, -1] if columns in (2, 3) else table) * hints.heights_in(source, header.get("z"))
     spacing = hints.pixel or ((header["dx"], header["dy"]) if "dx" in header else None)
 
     def lateral(axis: str) -> float:
@@ -211,6 +220,30 @@ def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str)
         heights, steps = arrays.rasterised(table[:, 0], table[:, 1], heights, source)
         spacing = spacing or (steps[0] * lateral("x"), steps[1] * lateral("y"))
     return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
+
+
+def _lines(table: Array, along: float, unit: float, hints: Hints, source: str) -> list[guards.Surface]:
+    """Lines beside each other at the positions of the first column, from units of both, m."""
+    lines = [arrays.line(table[:, 0], heights, source) for heights in table[:, 1:].T]
+    heights, step = np.stack([line for line, _ in lines], axis=1), lines[0][1] * along
+    return guards.surfaces_of(heights * hints.heights_in(source, unit), hints.pixel or (step, step), source)
+
+
+FINER = 100.0
+"""Least ratio of the unit of positions to that of heights at which several columns are lines: mm to µm."""
+
+
+def units_of_lines(lines: list[str], columns: int) -> tuple[float, float] | None:
+    """Units of positions and of heights, m, of three columns or more whose titles are those of lines.
+
+    Each title has a unit: the first a much larger one, all others the same. None for any other heading.
+    """
+    titles = next((found for text in reversed(lines) if len(found := _brackets(text)) == columns > 2), [])
+    try:
+        along, *heights = map(_length, titles)
+    except (InputError, ValueError):
+        return None
+    return (along, heights[0]) if len(set(heights)) == 1 and along >= FINER * heights[0] else None
 
 
 def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> dict[str, float]:
