@@ -26,7 +26,7 @@ from asperity.structures.outline import checked_outline
 from asperity.structures.stiffness_table import preloads_of, stiffness_at_preload
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
-from asperity.units import factor
+from asperity.units import factor, unit_in_brackets
 
 LARGEST_TABLE = 10 * 2**20  # bytes of text
 NETCDF = (".nc", ".nc4")
@@ -227,7 +227,7 @@ def _tells_loss_factors(path: Path) -> bool:
     """Whether the heading of a text file names a loss factor."""
     if path.suffix.lower() in NETCDF:
         return False
-    content = read_text(path, path.name, "a table of dynamic stiffness", largest=LARGEST_TABLE)
+    content = read_text(path, path.name, "a table of dynamic stiffness", largest=LARGEST_TABLE, latin=True)
     lines = (line.lower() for line in islice(lines_in(content), MOST_HEADING))
     return any("loss" in line and unit_in_brackets(line) for line in lines)
 
