@@ -24,6 +24,7 @@ WHEEL = {
     "wheel": {"roughness": "disc"},
     "contact": {"spacing": "1 mm", "samples": 2, "sample_length": "60 mm"},
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
+    "sideways": {"contact_place": "5 mm"},
 }
 BODIES = {
     "kind": "bodies",

@@ -29,6 +29,7 @@ _WORDS = {
     "Hz": ("a frequency", "5 kHz"),
     "N s/m": ("a damping constant", "10 N s/m"),
     "N/m": ("a stiffness", "300 MN/m"),
+    "N m": ("a rotational stiffness per rad", "500 kN m"),
     "N m^2": ("a bending stiffness", "4.7 MN m^2"),
     "kg/m": ("a mass per length", "60 kg/m"),
     "kg m": ("a rotary inertia per length", "0.24 kg m"),

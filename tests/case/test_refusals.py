@@ -136,6 +136,14 @@ wheel: [track] bending_stiffness = "6 MN m" → a bending stiffness greater than
 wheel: [track] pad_stiffness = "300 MN" → a stiffness greater than 0, with its unit, as "300 MN/m"
 wheel: [track] mass_per_length = "60 kg" → a mass per length
 wheel: [track] rotary_inertia = "1 kg" → a rotary inertia per length
+wheel: [sideways] contact_place = "40 mm" → received 40 mm; allowed: at most 36 mm off the middle
+wheel: [sideways] contact_place = "-40 mm" → The rail head, track.rail_head_width, is no wider.
+wheel: [sideways] contact_place = 0.01 → Add unit and quotes: "0.01 m" if it is in SI units (m).
+wheel: [sideways] contact_place = "1 m" → allowed: -50 mm to 50 mm. Rail heads lie between.
+wheel: [sideways] friction = 0.0 → sideways.friction: received 0.0; allowed: a number greater than 0 and at
+wheel: [sideways] pad_roll_stiffness = "500 kN" → a rotational stiffness per rad greater than 0
+wheel: [sideways] bending_stiffness = "1 N m^2" → Rails lie between.
+wheel: [sideways] torsional_stiffness = "-1 N m^2" → greater than 0
 wheel: [track] rail_profile = "rail.csv" | rail_head_radius = "0.3 m" → both rail_head_radius and rail_profile
 wheel: [track] points = [] → track.points: received an empty list
 wheel: [track] points = ["60 m"] → received 60 m; allowed: positions that are passed, 0 m to 56 m

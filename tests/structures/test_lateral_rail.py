@@ -107,6 +107,36 @@ def test_decay_rates_are_those_of_a_beam_on_an_elastic_layer():
         assert track.decay_rate(f)[0] == pytest.approx(8.685889638 * least, rel=2e-3)
 
 
+def test_a_rail_that_lies_all_along_is_the_limit_of_short_bays():
+    even = replace(LOSSY, continuous=True)
+    short = replace(LOSSY, sleeper_spacing=LOSSY.sleeper_spacing / 40)
+    softer = {f"{part}_stiffness": getattr(LOSSY, f"{part}_stiffness") / 40 for part in ("pad", "ballast")}
+    short = replace(short, sleeper_mass=LOSSY.sleeper_mass / 40, **softer)
+    f = np.array([60.0, 300.0, 1200.0, 4000.0])
+    found, limit = (LateralTrack(each).at_contact(f, 0.0, 0.9, 0.01) for each in (even, short))
+    assert_allclose(found, limit, rtol=2e-3)
+
+
+def test_layers_below_the_sleeper_and_what_bends_count_sideways_too():
+    """A chain by hand: ballast and under-sleeper pad in line below a mass, and a pad as on rigid ground."""
+    bending = {"sleeper_bending_stiffness": 5e6, "sleeper_length": 2.6, "seat_distance": 1.5}
+    under = {"under_sleeper_pad_stiffness": 5e7, "under_sleeper_pad_loss_factor": 0.3}
+    track = LateralTrack(replace(LOSSY, **bending, **under), pad_stiffness=8e7, ballast_stiffness=6e7)
+    omega = 2.0 * np.pi * FREQUENCIES
+    pad, soft, ballast = 8e7 * (1 + 0.15j), 5e7 * (1 + 0.3j), 6e7 * (1 + 0.4j)
+    below = soft * ballast / (soft + ballast) - LOSSY.sleeper_mass * omega**2
+    expected = pad * below / (pad + below)
+    stiffness = track.support(omega)
+    assert_allclose(stiffness[0, 0], expected, rtol=1e-12)
+    assert_allclose(stiffness[0, 1], -RAIL.foot_depth * expected, rtol=1e-12)
+    roll = LOSSY.pad_stiffness * (1 + 0.15j) * 0.15**2 / 12.0
+    assert_allclose(stiffness[1, 1], RAIL.foot_depth**2 * expected + roll, rtol=1e-12)
+    slab = LateralTrack(
+        replace(LOSSY, sleeper_mass=10.0, ballast_stiffness=math.inf, ballast_loss_factor=None)
+    )
+    assert_allclose(slab.support(omega)[0, 0], LOSSY.pad_stiffness / 3.0 * (1 + 0.15j), rtol=1e-12)
+
+
 def test_power_sent_into_the_track_is_dissipated_in_rail_and_supports():
     """Im(u* f) = Σ u* Im K u + η ∫ EI |v''|² + GJ |φ'|², Euler-Bernoulli, force at mid-span."""
     rail = EULER

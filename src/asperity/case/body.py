@@ -339,12 +339,18 @@ class Rolling(Ringing, FlatOnTread):
         return f"a {one}" if len(self.positions) == 1 else f"{len(self.positions)} {many}"
 
     def model(
-        self, upper_stiffness: float, highest_frequency: float, speed: float, name: str = "body"
+        self,
+        upper_stiffness: float,
+        highest_frequency: float,
+        speed: float,
+        name: str = "body",
+        place: float = 0.0,
     ) -> Body:
         """Build one of the bodies, with the resonances of what touches, turning at a rolling speed, m/s.
 
-        Stiffness of the contact above each element of a carriage, N/m, if the section gives none. Receptances
-        are fitted up to twice the highest frequency, Hz; shorter ones are warned of by `name`.
+        It touches at a place across its tread, m. Stiffness of the contact above each element of a carriage,
+        N/m, if the section gives none. Receptances are fitted up to twice the highest frequency, Hz; shorter
+        ones are warned of by `name`.
         """
         if self.receptance is not None:
             from asperity.structures.modal_fit import REACH, warn_of_short_band
@@ -355,7 +361,8 @@ class Rolling(Ringing, FlatOnTread):
             within = frequency <= REACH * highest_frequency
             with fitted_to(self.receptance):
                 return fit_body(self.contact_mass, self.contact_load, frequency[within], measured[within])
-        body, resonances = self._rigid(upper_stiffness), self.resonances(highest_frequency, speed)
+        resonances = self.resonances(highest_frequency, speed, place)
+        body = self._rigid(upper_stiffness)
         return body.with_modes(*resonances) if len(resonances[0]) else body
 
     def _rigid(self, upper_stiffness: float) -> Body:
@@ -373,11 +380,11 @@ class Rolling(Ringing, FlatOnTread):
         held = {"element_mass": mass, "upper_stiffness": upper, "upper_damping": dampers[0], "load": extra}
         return carriage(above[0], inertia, places, **held)
 
-    def tread(self, highest_frequency: float, speed: float) -> Wheel:
-        """What touches at each contact, by itself: mass and modes, turning at a rolling speed, m/s."""
+    def tread(self, highest_frequency: float, speed: float, place: float = 0.0) -> Wheel:
+        """What touches at each contact, at a place, m, by itself: mass and modes, as `model` has them."""
         from asperity.structures.wheel import Wheel
 
-        return Wheel(self.contact_mass, self.contact_load, *self.resonances(highest_frequency, speed))
+        return Wheel(self.contact_mass, self.contact_load, *self.resonances(highest_frequency, speed, place))
 
     def problems(self) -> Iterator[InputError]:
         """What each type of body needs, and contacts that are apart."""

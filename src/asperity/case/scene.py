@@ -25,6 +25,7 @@ from asperity.reference.materials import contact_modulus
 from asperity.units import written
 
 if TYPE_CHECKING:
+    from asperity.case.sideways import SidewaysKeys
     from asperity.radiation.pass_by import Passage
 
 MOST_STEPS = 10**8
@@ -107,11 +108,12 @@ class Case(Section):
     )
     surface: Surface = section(Surface, "what is rolled over: a measured map, or synthesised roughness")
 
-    if TYPE_CHECKING:  # each preset declares these, the last two where a track may be rolled over
+    if TYPE_CHECKING:  # each preset declares these, the last three where a track may be rolled over
         contact: ContactKeys
         numerics: NumericsKeys
         track: TrackKeys
         noise: NoiseKeys
+        sideways: SidewaysKeys
 
     @classmethod
     def sections(cls) -> Mapping[str, Inner]:
@@ -261,6 +263,11 @@ class Case(Section):
         """All contacts behind the foremost, m."""
         ahead = sorted(self.rolling.offsets, reverse=True)
         return tuple(ahead[0] - place for place in ahead)
+
+    @property
+    def contact_place(self) -> float:
+        """Place of the contact across a tread and a rail head, m from their middle, to the field side."""
+        return self.sideways.contact_place if "sideways" in self.inner else 0.0
 
     @property
     def axles(self) -> int:

@@ -144,11 +144,16 @@ class Ringing(Section, parameters=_DIMENSIONS):
         modes = self.standing_modes(highest_frequency)
         return None if modes is None else modes.turning(speed / self.radius)
 
-    def resonances(self, highest_frequency: float, speed: float) -> tuple[Array, Array, Array]:
-        """Natural frequencies, Hz, damping ratios and modal masses, kg, as the contact feels them."""
+    def resonances(
+        self, highest_frequency: float, speed: float, place: float = 0.0
+    ) -> tuple[Array, Array, Array]:
+        """Natural frequencies, Hz, damping ratios and modal masses, kg, as the contact feels them.
+
+        At a place across the tread, m from the running circle, positive away from the flange.
+        """
         turning = self.turning_modes(highest_frequency, speed)
         if turning is not None:
-            frequency, ratio, mass = turning.table().T[:3]
+            frequency, ratio, mass = turning.table(place).T[:3]
             return frequency, ratio, mass
         none = np.zeros(0)
         return (none, none, none) if self.modes is None else read_modes(self.modes)

@@ -10,6 +10,7 @@ from asperity.case.form import section
 from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case, time_step_on_grid
 from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
+from asperity.case.sideways import SidewaysKeys
 from asperity.case.surface import Surface
 from asperity.case.tables import check_band_levels, read_levels
 from asperity.errors import InputError
@@ -76,6 +77,7 @@ class WheelOnRail(Case, defaults=DEFAULTS):
     contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")
     numerics: NumericsKeys = section(NumericsKeys, "how finely time and the track are resolved")
     noise: NoiseKeys = section(NoiseKeys, "what radiates, and the labels of CNOSSOS-EU")
+    sideways: SidewaysKeys = section(SidewaysKeys, "where they touch, and what moves sideways, by frequency")
 
     @property
     def title(self) -> str:
@@ -111,6 +113,18 @@ class WheelOnRail(Case, defaults=DEFAULTS):
             yield InputError("wheel.load", received, allowed, remedy)
         yield from self._problems_of_levels()
         yield from self._problem_of_length()
+        yield from self._problem_of_place()
+
+    def _problem_of_place(self) -> Iterator[InputError]:
+        """A contact on tread and rail head."""
+        place, half = self.sideways.contact_place, 0.5 * self.track.rail_head_width
+        if abs(place) > half:
+            received, allowed = (
+                written(place, "m", "mm"),
+                f"at most {written(half, 'm', 'mm')} off the middle",
+            )
+            remedy = "The rail head, track.rail_head_width, is no wider."
+            yield InputError("sideways.contact_place", received, allowed, remedy)
 
     def _problems_of_levels(self) -> Iterator[InputError]:
         """Band levels that no wheel or rail has ask for their unit."""

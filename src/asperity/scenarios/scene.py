@@ -13,6 +13,7 @@ from asperity.structures.body import Body
 from asperity.structures.modal import Modal, modal_receptance
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
+from asperity.structures.wheel_modes import WheelModes
 
 PLACES = (0.3, 0.37, 0.45, 0.5, 0.6)
 """Places on a structure, in its lengths, over which a linear force is averaged: no mode has nodes at all."""
@@ -65,6 +66,8 @@ class Scene:
     displacements: tuple[str, str] = ("over_displacement", "rolling_displacement")
     like: str = ""  # kind of case whose errors of laws are its own, as far as a map knows
     wheel: Wheel | None = None  # what touches a rail, by itself: its mass and its modes
+    modes: WheelModes | None = None  # its modes in the frame of the contact, where their shapes are known
+    place: float = 0.0  # of the contact across tread and rail head, m from their middle
     scattered: bool = False  # a track is carried on by its whole past, not by poles
     most_poles: int | None = None  # that are fitted to a track
 
@@ -138,7 +141,7 @@ def scene_of(case: Case) -> Scene:
     body, over, highest = case.rolling, case.rolled_over, case.numerics.highest_frequency
     model = over.model(highest)
     on_track = isinstance(model, Track)
-    one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING)
+    one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING, case.contact_place)
     degrees = body.degrees if len(body.degrees) > 1 or case.ROLLING == "body" else {case.ROLLING: 1.0}
     return Scene(
         model,
@@ -150,7 +153,9 @@ def scene_of(case: Case) -> Scene:
         degrees=degrees,
         displacements=case.DISPLACEMENTS,
         like="wheel-on-rail" if on_track else "ball-on-beam",
-        wheel=body.tread(highest, case.speed) if on_track else None,
+        wheel=body.tread(highest, case.speed, case.contact_place) if on_track else None,
+        modes=body.turning_modes(highest, case.speed) if on_track else None,
+        place=case.contact_place,
         scattered=case.numerics.kernel == "scatter",
         most_poles=case.numerics.poles,
     )

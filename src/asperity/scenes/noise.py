@@ -221,7 +221,9 @@ def radiating_wheel(case: Any) -> RadiatingWheel | None:
     modes = case.rolling.turning_modes(case.numerics.highest_frequency, case.speed)
     if modes is None:
         return None
-    diameters, axial, radial = np.vstack([[1.0, 0.0, math.sqrt(0.5)], modes.table()[:, 3:]]).T
+    diameters, axial, radial = np.vstack(
+        [[1.0, 0.0, math.sqrt(0.5)], modes.table(case.contact_place)[:, 3:]]
+    ).T
     return RadiatingWheel(case.rolling.radius, case.noise.wheel_width, diameters.astype(int), axial, radial)
 
 

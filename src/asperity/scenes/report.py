@@ -23,6 +23,7 @@ from asperity.scenes.figures import (
     noise,
     roughness,
     scene,
+    sideways,
     track,
     wheel,
 )
@@ -58,6 +59,7 @@ CHAPTERS = (
         (tables.statistics_table, tables.homogeneity_table),
     ),
     Chapter("track", "Track and wheel", (*track.TRACK, track.LOSS_FACTORS), (measured.measured_table,)),
+    Chapter("sideways", "Sideways", sideways.SIDEWAYS, (sideways.sideways_table,)),
     Chapter("rail", "Motion of the rail", motion.RAIL),
     Chapter("energy", "Energy", (), (motion.energy_table,)),
     Chapter(

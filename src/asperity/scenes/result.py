@@ -19,7 +19,7 @@ from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenes import measured, noise, schema, track, validity
+from asperity.scenes import measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
 from asperity.scenes.measured_passage import findings_of_passage
@@ -75,6 +75,7 @@ def computed_result(
         found += (of_measured := measured.findings_of_measured(in_bands))
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
         found += findings_of_passage(own)
+        own |= sideways.sideways_group(computed)
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))
         noise.warn_of_silence(case)
         track.warn_of_loss_factors(losses)

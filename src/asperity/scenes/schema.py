@@ -340,6 +340,46 @@ _LIMIT = "largest normalised level of all sources, compared as a whole decibel"
 TSI_LIMIT = _place("tsi_limit", "dB(A) re 20 uPa", _LIMIT, f"{_ASKED}, and a limit holds")
 _ISO = "of a test by TSI Noise and ISO 3095: condition, what is here, what is asked, whether it is met"
 REFERENCE_CONDITIONS = _place("reference_conditions", "JSON", _ISO, _ASKED)
+# --- what moves sideways
+
+_SIDE = "where the contact of a wheel and a rail is off the middle, or the wheel is drawn"
+_side = partial(entry, "sideways", condition=_SIDE)
+_side_fact = partial(Attribute, "sideways", condition=_SIDE)
+SIDEWAYS_LAW = _side("law", "1", "contact law")
+SIDEWAYS_FREQUENCY = _side("frequency", "Hz", "frequency")
+SIDEWAYS_BAND = _side("band", "Hz", _BAND)
+SIDEWAYS_RADIATOR = _side("radiator", "1", "what radiates by which motion")
+_RAIL = "receptance of the rail head at mid-span, sideways per force"
+RAIL_LATERAL_RECEPTANCE = _side("rail_lateral_receptance(frequency)", "m/N", f"{_RAIL} sideways")
+RAIL_CROSS_RECEPTANCE = _side("rail_cross_receptance(frequency)", "m/N", f"{_RAIL} downwards")
+_WHEEL = "receptance of the wheel at the contact, along the axle per force"
+WHEEL_LATERAL_RECEPTANCE = _side("wheel_lateral_receptance(frequency)", "m/N", f"{_WHEEL} along it")
+WHEEL_CROSS_RECEPTANCE = _side("wheel_cross_receptance(frequency)", "m/N", f"{_WHEEL} downwards")
+_DECAY = "decay rate of the rail sideways, eigenvalue"
+LATERAL_DECAY_RATE = _side("lateral_decay_rate(frequency)", "dB/m", _DECAY)
+_FORCE = "lateral contact force in stick, mean of the contacts"
+LATERAL_FORCE_PSD = _spectra(
+    "lateral_force_psd(law, frequency)", "N2/Hz", f"PSD of the {_FORCE}, one-sided", _SIDE
+)
+LATERAL_FORCE_LEVEL = _side(
+    "lateral_force_level(law, band)", "dB re 1 N", f"level of the {_FORCE}", missing=NO_SIGNAL
+)
+_POWER = "sound power level of motion that the lateral force makes, or takes part in, of all axles"
+_NONE = "nothing radiates, or it is not known how the disc and tread of this wheel vibrate"
+LATERAL_POWER_LEVEL = _side("lateral_power_level(law, radiator, band)", "dB re 1 pW", _POWER, missing=_NONE)
+LATERAL_POWER_LEVEL_A = _side(
+    "lateral_power_level_a(law, radiator)", "dB(A) re 1 pW", f"A-weighted {_POWER}", missing=_NONE
+)
+_CHANGE = "level of the linear vertical force with the lateral one over that without, which runs leave out"
+VERTICAL_FORCE_CHANGE = _side("vertical_force_change(band)", "dB", _CHANGE)
+_SLIP = "share of the time in which the lateral force would be beyond friction, of a normal distribution"
+SLIP_SHARE = _side("slip_share(law)", "1", _SLIP)
+LATERAL_FORCE_SPREAD = _side("lateral_force_rms(law)", "N", f"rms of the {_FORCE}")
+_PLACE = "of the contact across tread and rail head, from their middle, positive towards the field side"
+CONTACT_PLACE = _side_fact("contact_place", "m", _PLACE)
+STICK_STIFFNESS = _side_fact("stick_stiffness", "N/m", "lateral stiffness of the contact in stick, Mindlin")
+SLIP_FORCE = _side_fact("slip_force", "N", "coefficient of friction times the static load")
+
 
 _TOTAL = {"radiator": "total"}
 KEPT: dict[Entry, dict[str, str]] = {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -123,10 +124,13 @@ class LateralRail:
         """What moves the foot sideways (2,), as `head`."""
         return np.array([1.0, -self.foot_depth])
 
-    def free_waves(self, omega: Complex, mass: float, losses: Complex) -> FreeWaves:
+    def free_waves(
+        self, omega: Complex, mass: float, losses: Complex, foundation: Complex | float = 0.0
+    ) -> FreeWaves:
         """Waves of the rail without supports at angular frequencies (f,), rad/s, as of `Track.waves`.
 
-        Mass per length, kg/m; stiffness relative to the nominal one, (f,) or a scalar.
+        Mass per length, kg/m; stiffness relative to the nominal one, (f,) or a scalar; stiffness per length
+        of a foundation all along the rail (2, 2, f), which takes from the inertia.
 
         With q = k², t = EI q − ρI ω² and p = 1 + t/S, the answer to a harmonic force and torque along the
         rail is [[p (GJ q − I ω²), p m' e ω²], [p m' e ω², q t − p m' ω²]]/Δ(q), Δ the cubic (q t − p m' ω²)
@@ -136,8 +140,10 @@ class LateralRail:
         square, e = omega**2, self.centroid_height
         bending, torsion = self.bending_stiffness * losses, self.torsional_stiffness * losses
         soft = self.bending_stiffness / self.shear_stiffness  # EI/S, m²: both lose alike
-        turning, rotary = (self.polar_inertia + mass * e**2) * square, self.rotary_inertia * square
-        moved, coupled = mass * square, mass * e * square
+        held = np.broadcast_to(foundation, (2, 2, len(omega)))
+        turning = (self.polar_inertia + mass * e**2) * square - held[1, 1]
+        moved, coupled = mass * square - held[0, 0], mass * e * square - held[0, 1]
+        rotary = self.rotary_inertia * square
         rest = 1.0 - rotary * soft / bending  # p = rest + soft q
         along = -(rotary + moved * soft)  # q t − p m' ω² = bending q² + along q − moved rest
         cubic = np.broadcast_arrays(
@@ -268,8 +274,9 @@ class LateralTrack:
 
     Notes
     -----
-    Pads and ballast lose as they do vertically, by the same share at every frequency. Sleepers move sideways
-    as rigid bodies and do not roll.
+    Pads and ballast lose as they do vertically, by the same share at every frequency; other springs below
+    are as stiff as vertically. Sleepers move sideways as rigid bodies and do not roll. Bays are all nominal,
+    and rail dampers are left out.
 
     Examples
     --------
@@ -303,27 +310,33 @@ class LateralTrack:
         That of the chain of springs and masses below, on the foot, and the pad's stiffness against roll.
         """
         vertical, even = self.track, self.foot_width**2 / 12.0
-        pad, *others = vertical.support.elements
-        softer = _share(self.ballast_stiffness, vertical.ballast_stiffness, 1.0)
+        shares = {
+            "pad": _share(self.pad_stiffness, vertical.pad_stiffness, THIRD),
+            "ballast": _share(self.ballast_stiffness, vertical.ballast_stiffness, 1.0),
+        }
         below: Complex | None = None
-        for element in reversed(others):
+        for name, element in reversed(vertical.elements.items()):
             if isinstance(element, RigidMass | BendingSleeper):
                 below = RigidMass(element.mass).on(omega, below)
             else:
-                below = _in_line(softer * _alone(element, omega), below)
-        own = _alone(pad, omega)
-        sideways = _in_line(own * _share(self.pad_stiffness, vertical.pad_stiffness, THIRD), below)
-        found = np.multiply.outer(np.outer(self.rail.foot, self.rail.foot), sideways)
-        found[1, 1] += own * _share(self.pad_roll_stiffness, vertical.pad_stiffness, even)
+                below = _in_line(shares.get(name, 1.0) * _alone(element, omega), below)
+        assert below is not None
+        found = np.multiply.outer(np.outer(self.rail.foot, self.rail.foot), below)
+        roll = _share(self.pad_roll_stiffness, vertical.pad_stiffness, even)
+        found[1, 1] += roll * _alone(vertical.elements["pad"], omega)
         return np.asarray(found)
 
     def waves(self, omega: ArrayLike) -> LateralWaves:
         """The three waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
-        omega = np.atleast_1d(np.asarray(omega, dtype=complex))
-        if not self.track.is_damped:
+        omega, track = np.atleast_1d(np.asarray(omega, dtype=complex)), self.track
+        bare = replace(track, rail_damper_mass=None, rail_damper_frequency=None, rail_damper_loss_factor=None)
+        if not bare.is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)
-        free = self.rail.free_waves(omega, self.track.mass_per_length, self.track.rail.losses.at(omega))
-        return lateral_waves(free, self.support(omega), self.track.sleeper_spacing)
+        support, spacing = self.support(omega), track.sleeper_spacing
+        rail = partial(self.rail.free_waves, omega, track.mass_per_length, track.rail.losses.at(omega))
+        if track.continuous:
+            return lateral_waves(rail(support / spacing), 0.0 * support, spacing)
+        return lateral_waves(rail(), support, spacing)
 
     def receptance(self, frequency: ArrayLike, x: float, x0: float) -> Complex:
         """Lateral displacement of the head at `x` per lateral force on the head at `x0`.

@@ -87,16 +87,18 @@ class WheelModes:
     def at(self, place: float = 0.0) -> tuple[Array, Array]:
         """Radial and axial displacement (p,) each, kg^(−1/2), at a place, m from the running circle.
 
+        Of modes by a table those that it holds, wherever the contact is.
+
         Raises
         ------
         InputError
             If the place is off the tread.
         """
+        if len(self.places) == 1:
+            return self.radial[:, 0], self.axial[:, 0]
         low, high = float(self.places[0]), float(self.places[-1])
         allowed = f"{low * 1e3:.4g} mm to {high * 1e3:.4g} mm, the tread"
         where = real("place of the contact (m)", place, allowed, at_least=low, at_most=high)
-        if len(self.places) == 1:
-            return self.radial[:, 0], self.axial[:, 0]
         right = int(np.clip(np.searchsorted(self.places, where), 1, len(self.places) - 1))
         share = (where - self.places[right - 1]) / (self.places[right] - self.places[right - 1])
         both = [

@@ -26,7 +26,13 @@ MEASURED = "measured, in one-third octaves"
 _LOOK: tuple[Any, ...] = (chart.INK, (), 2.0)
 
 
-def over_bands(entry: Entry, of: Entry, look: tuple[Any, ...] = _LOOK, label: str = MEASURED) -> Columns:
+def over_bands(
+    entry: Entry,
+    of: Entry,
+    look: tuple[Any, ...] = _LOOK,
+    label: str = MEASURED,
+    frequency: Entry = schema.TRACK_FREQUENCY,
+) -> Columns:
     """Column of what holds for one-third octaves, at the frequencies of a figure of the track.
 
     As one of the figure's own `of`: a mobility as a receptance.
@@ -35,12 +41,12 @@ def over_bands(entry: Entry, of: Entry, look: tuple[Any, ...] = _LOOK, label: st
     def columns(tree: DataTree) -> Iterator[Series]:
         if not data.present(tree, entry):
             return
-        frequency, band = data.values(tree, schema.TRACK_FREQUENCY), data.values(tree, BAND)
-        number = np.rint(10.0 * np.log10(frequency / band[0])).astype(int)
+        at, band = data.values(tree, frequency), data.values(tree, BAND)
+        number = np.rint(10.0 * np.log10(at / band[0])).astype(int)
         inside = (number >= 0) & (number < len(band))
         found = np.where(inside, data.values(tree, entry)[np.clip(number, 0, len(band) - 1)], np.nan)
         if entry.units == "(m/s)/N":
-            found = found / (2.0 * np.pi * frequency)
+            found = found / (2.0 * np.pi * at)
         if np.isfinite(found).any():
             yield Series(entry.name, of.units, found, of, label, look=look)
 

@@ -1,0 +1,237 @@
+"""What moves sideways, by frequency: the lateral force that the vertical one makes, and its sound."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from asperity.arguments import Array, Complex
+from asperity.contact.tangential import stick_stiffness
+from asperity.radiation.sideways import SideOfRail, squared_lateral_mobility
+from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
+from asperity.scenarios.scene import force_transfer
+from asperity.scenes import schema
+from asperity.scenes.compute import Computed
+from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
+from asperity.schema import Values
+from asperity.spectra import HALF_BAND, a_weighted_total, band_energies
+from asperity.structures.lateral_contact import at_springs, lateral_force, vertical_change, wheel_receptances
+from asperity.structures.lateral_rail import LateralTrack
+from asperity.structures.modal import modal_answers
+from asperity.structures.wheel_modes import WheelModes
+
+PLACES = 12
+"""Of the contact in a bay, over which squares are averaged."""
+PICOWATT = 1e-12
+"""Of sound power levels, W."""
+
+
+def moves_sideways(computed: Computed) -> bool:
+    """Whether anything does: where the contact is off the middle, or the web of a drawn wheel may be bent."""
+    case = computed.case
+    return "sideways" in case.inner and (case.contact_place != 0.0 or case.rolling.is_drawn)
+
+
+@dataclass(frozen=True, eq=False)
+class Sideways:
+    """Forces and motion sideways, of what was rolled on one rail, on the lines of the spectra."""
+
+    computed: Computed
+
+    @cached_property
+    def track(self) -> LateralTrack:
+        """The track sideways."""
+        keys = self.computed.case.track
+        return self.computed.case.sideways.model(self.computed.track.nominal, keys.rail_foot_width)
+
+    @cached_property
+    def lines(self) -> Array:
+        """Frequencies of the spectra (f,), Hz."""
+        return self.computed.frequency[self.computed.shown]
+
+    @cached_property
+    def places(self) -> Array:
+        """Of the contact in the bay (n,), m."""
+        return self.track.track.sleeper_spacing * (np.arange(PLACES) + 0.5) / PLACES
+
+    @cached_property
+    def stiffness(self) -> tuple[float, float]:
+        """Of the contact under the load, normal and in stick, N/m."""
+        case, shape = self.computed.case, self.computed.shape
+        materials = case.rolling.material, case.rolled_over.material
+        return self.computed.stiffness, stick_stiffness(shape.semi_axes, materials)
+
+    def rail(self, frequency: Array, x: float) -> Complex:
+        """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m."""
+        found = self.track.at_contact(frequency, x, x, self.computed.scene.place)
+        found[0, 0] += self.track.track.receptance(frequency, x, x)
+        return found
+
+    def wheel(self, frequency: Array) -> Complex:
+        """Receptances of the wheel at the contact (2, 2, f), m/N."""
+        scene, mass = self.computed.scene, self.computed.case.rolling.contact_mass
+        return wheel_receptances(scene.modes, mass, frequency, scene.place)
+
+    def answer(self, frequency: Array, x: float) -> Complex:
+        """All of it at the contact, A (2, 2, f), m/N."""
+        return at_springs(self.wheel(frequency) + self.rail(frequency, x), *self.stiffness)
+
+    # --- as the mean over each line of the spectra, with every resonance of the wheel resolved
+
+    @cached_property
+    def fine(self) -> tuple[Array, Array]:
+        """Frequencies that resolve all resonances, and the edges of the lines, Hz."""
+        modes: WheelModes | None = self.computed.scene.modes
+        none = np.zeros(0)
+        own = (none, none) if modes is None else (modes.natural_frequencies, modes.damping_ratios)
+        return fine_lines(self.lines, *own)
+
+    @cached_property
+    def fine_answers(self) -> Complex:
+        """A at each place (n, 2, 2, k) on them, the rail's between its lines."""
+        fine, wheel = self.fine[0], self.wheel(self.fine[0])
+        rails = np.stack([self.rail(self.lines, x) for x in self.places])
+        between = np.empty((*rails.shape[:3], len(fine)), complex)
+        for index in np.ndindex(rails.shape[:3]):
+            between[index] = np.interp(fine, self.lines, rails[index])
+        return np.stack([at_springs(wheel + each, *self.stiffness) for each in between])
+
+    @cached_property
+    def shares(self) -> Complex:
+        """Lateral over vertical force at each place (n, k)."""
+        return np.stack([lateral_force(each) for each in self.fine_answers])
+
+    @cached_property
+    def spread(self) -> Array:
+        """Mean square of the linear vertical force at each place over their mean (n, f)."""
+        first, (normal, _) = self.computed.scene.first, self.stiffness
+        square = np.abs(force_transfer(self.lines, first, self.track.track, normal, self.places)) ** 2
+        return np.asarray(square / square.mean(axis=0))
+
+    @cached_property
+    def seen(self) -> tuple[Array, Array]:
+        """Square of a compliance |α₀|² + |α_W|² (k,), and |α₀|² S_F + S_x (laws, f) of all contacts.
+
+        The second over the first is S_F, and changes little within a line (`asperity.radiation.wheel`).
+        """
+        computed, middle = self.computed, 0.5 * self.track.track.sleeper_spacing
+        normal, _ = self.stiffness
+        own = np.abs(1.0 / normal + self.track.track.receptance(self.lines, middle, middle))
+        moved = computed.psd(computed.stacked("rolling_displacement"))[..., self.computed.shown].sum(axis=1)
+        force = computed.force_psd[..., self.computed.shown].sum(axis=1)
+        fine = self.fine[0]
+        other = np.interp(fine, self.lines, own) ** 2 + np.abs(self.wheel(fine)[0, 0]) ** 2
+        return other, own**2 * force + moved
+
+    def means(self, values: Array) -> Array:
+        """Means over the lines (n, f) of values per square of the vertical force (n, k)."""
+        return line_means(values / self.seen[0], *self.fine)
+
+    @cached_property
+    def squares(self) -> Array:
+        """|T/F|² at each place (n, f), over |α₀|² + |α_W|²."""
+        return self.means(np.abs(self.shares) ** 2)
+
+    @cached_property
+    def force_psd(self) -> Array:
+        """PSD of the lateral force (laws, f), N²/Hz, of all contacts together."""
+        return np.asarray(np.mean(self.spread * self.squares, axis=0) * self.seen[1])
+
+    def rail_power(self) -> Array:
+        """Sound power of the rail sideways (laws, f), W/Hz."""
+        case, rail = self.computed.case, self.track.rail
+        forms = squared_lateral_mobility(self.track, self.lines, self.places, self.computed.scene.place)
+        together = self.means(self.shares.real) + 1j * self.means(self.shares.imag)
+        one = self.means(np.ones((1, len(self.fine[0]))))
+        of_force = forms[:, 0, 0].real * one + forms[:, 1, 1].real * self.squares
+        of_force += 2.0 * (forms[:, 0, 1] * together).real
+        square = np.mean(self.spread * of_force, axis=0) * self.seen[1]
+        side = SideOfRail(rail.height, case.track.rail_foot_width, case.track.rail_head_width)
+        return side.power(self.lines, square)
+
+    def wheel_power(self, sideways: bool) -> Array:
+        """Sound power of the wheels under both forces, or the vertical one alone (laws, f), W/Hz.
+
+        Zero of a wheel whose modes are unknown. Rigid motion up and down is one nodal diameter around the
+        tread, along the axle that of a rigid disc.
+        """
+        modes, case, fine = self.computed.scene.modes, self.computed.case, self.fine[0]
+        if modes is None:
+            return np.zeros_like(self.seen[1])
+        spread = np.stack([np.interp(fine, self.lines, each) for each in self.spread]) / PLACES
+        share = np.sum(spread * self.shares, axis=0).real if sideways else np.zeros_like(fine)
+        square = np.sum(spread * np.abs(self.shares) ** 2, axis=0) if sideways else share
+        omega, (radial, axial) = (
+            2.0 * np.pi * fine,
+            (each[:, None] for each in modes.at(self.computed.scene.place)),
+        )
+        answers = modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
+        moved = radial**2 + 2.0 * radial * axial * share + axial**2 * square
+        rigid = 1.0 / (case.rolling.contact_mass * omega) ** 2
+        velocity = np.vstack([rigid, rigid * square, np.abs(omega * answers) ** 2 * moved])
+        numbers = np.concatenate([[1, 0], modes.nodal_diameters])
+        disc, tread = np.append([0.0, 1.0], modes.disc), np.append([math.sqrt(0.5), 0.0], modes.tread)
+        radiator = RadiatingWheel(case.rolling.radius, case.noise.wheel_width, numbers, disc, tread)
+        return radiator.power(self.lines, self.means(velocity)) * self.seen[1]
+
+
+RADIATORS = ("rail sideways", "wheel, vertical force", "wheel, both forces")
+
+
+def sideways_group(computed: Computed) -> Values:
+    """Lay out receptances and decay sideways, the lateral force of each law, its grip and its sound power."""
+    if not moves_sideways(computed):
+        return {}
+    found, case, band = Sideways(computed), computed.case, computed.band
+    edges, lines = (band / HALF_BAND, band * HALF_BAND), found.lines
+    contacts = len(computed.scene.offsets)
+
+    def levels(density: Array) -> Array:
+        """Levels in bands (..., b), dB, of densities on the used lines (..., f)."""
+        whole = np.zeros((*density.shape[:-1], len(computed.frequency)))
+        whole[..., computed.shown] = density
+        with np.errstate(divide="ignore"):
+            return np.asarray(
+                10.0 * np.log10(np.maximum(band_energies(computed.frequency, whole, *edges), 0.0))
+            )
+
+    powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
+    wheels = 2.0 * case.axles / contacts
+    power = levels(wheels / PICOWATT * np.stack(powers, axis=1))
+    lateral = found.force_psd / contacts
+    step = float(lines[1] - lines[0])
+    limit = case.sideways.friction * computed.shape.load
+    spread = np.sqrt(lateral.sum(axis=-1) * step)
+    with np.errstate(divide="ignore"):
+        slips = [math.erfc(ratio) for ratio in limit / (math.sqrt(2.0) * spread)]
+    middle = 0.5 * found.track.track.sleeper_spacing
+    frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
+    rail, wheel = found.rail(frequency, middle), found.wheel(frequency)
+    alone = np.mean([1.0 / np.abs(each[0, 0]) ** 2 for each in found.fine_answers], axis=0)
+    coupled = [np.abs(vertical_change(each) / each[0, 0]) ** 2 for each in found.fine_answers]
+    change = line_means(np.stack([np.mean(coupled, axis=0), alone]), *found.fine)
+    coupling = np.subtract(*levels(change))
+    return {
+        schema.SIDEWAYS_LAW: list(computed.runs),
+        schema.SIDEWAYS_FREQUENCY: frequency,
+        schema.SIDEWAYS_BAND: band,
+        schema.SIDEWAYS_RADIATOR: RADIATORS,
+        schema.RAIL_LATERAL_RECEPTANCE: np.abs(rail[1, 1]),
+        schema.RAIL_CROSS_RECEPTANCE: np.abs(rail[1, 0]),
+        schema.WHEEL_LATERAL_RECEPTANCE: np.abs(wheel[1, 1]),
+        schema.WHEEL_CROSS_RECEPTANCE: np.abs(wheel[1, 0]),
+        schema.LATERAL_DECAY_RATE: found.track.decay_rate(frequency),
+        schema.LATERAL_FORCE_PSD: lateral,
+        schema.LATERAL_FORCE_LEVEL: levels(lateral),
+        schema.LATERAL_POWER_LEVEL: power,
+        schema.LATERAL_POWER_LEVEL_A: a_weighted_total(power, band),
+        schema.VERTICAL_FORCE_CHANGE: coupling,
+        schema.SLIP_SHARE: slips,
+        schema.LATERAL_FORCE_SPREAD: spread,
+        schema.CONTACT_PLACE: computed.scene.place,
+        schema.STICK_STIFFNESS: found.stiffness[1],
+        schema.SLIP_FORCE: limit,
+    }
