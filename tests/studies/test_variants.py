@@ -202,6 +202,31 @@ def test_soft_pads_free_the_rail_and_calm_the_sleepers(table):
     assert float(found["effect"].sel(variant="slow", radiator="total")) < -1.0
 
 
+@pytest.mark.long
+def test_dampers_calm_what_they_sit_on(cache, monkeypatch):
+    """Thompson: rail dampers raise the decay rate and calm the rail; a wheel with damped modes rings less."""
+    monkeypatch.setenv("ASPERITY_CACHE", cache)
+    drawn = RAIL.with_(wheel={"section": "curved-web"}, numerics={"highest_frequency": "4 kHz"})
+    listed = what_helps(drawn).sweep["variant"]
+    dampers = {name: listed[name] for name in ("rail dampers", "wheel dampers")}
+    found = effects(asperity.study(drawn, {"variant": dampers}, executor=Here()))["effect"]
+    on_rail, on_wheel = (found.sel(variant=name) for name in dampers)
+    assert float(on_rail.sel(radiator="rail")) < -2.0
+    assert abs(float(on_rail.sel(radiator="sleepers"))) < 2.0
+    assert float(on_wheel.sel(radiator="wheel")) < -3.0
+    assert float(np.abs(on_wheel.sel(radiator=["rail", "sleepers"])).max()) < 1.5
+
+
+def test_measured_pads_are_scaled():
+    """To half the stiffness that they have where they are told by a number."""
+    rows = np.array([[100.0, 300e6, 60e6], [300.0, 340e6, 70e6], [1000.0, 400e6, 80e6]])  # Hz, N/m
+    case = changed("wheel-on-rail", track={"name": "uic60", "pad_table": rows})
+    nominal = case.track_model().pad_stiffness
+    assert nominal > 300e6
+    halved = {"track.pad_stiffness": "times 0.5", "track.pad_damping": "times 0.5"}
+    assert values_of(case, halved, "track.pad_stiffness") == [pytest.approx(0.5 * nominal)]
+
+
 def test_the_quietest_comes_first_and_what_is_left_out_last(table):
     found = effects(table)
     total = found["effect"].sel(radiator="total").values

@@ -58,7 +58,7 @@ class Effects:
     def in_words(self) -> dict[str, str]:
         """What each variant does: ``"Rail 2.1 dB down, sleepers 1.0 up."``"""
         return {
-            name: f"Left out: {why}." if why else self._words(effect, error)
+            name: f"Left out: {why.rstrip('.')}." if why else self._words(effect, error)
             for name, why, effect, error in zip(
                 self.variants, self.left_out, self.effect, self.error, strict=True
             )
