@@ -27,25 +27,56 @@ def sleeper_per_rail(track, omega):
     return pad / (pad + ballast - track.sleeper_mass * omega**2)
 
 
-def bay_by_bay(track, cells=24, forces=12):
+def bay_by_bay(track, cells=24, forces=12, bays=BAYS):
     """Squared mobility, summed over many bays on both sides, forces on edges of cells; of sleepers."""
     bay, omega = track.sleeper_spacing, 2.0 * np.pi * FREQUENCIES
-    places = (np.arange(-BAYS * cells, BAYS * cells) + 0.5) * bay / cells
+    places = (np.arange(-bays * cells, bays * cells) + 0.5) * bay / cells
     waves, sleeper = track.waves(omega), sleeper_per_rail(track, omega)
     rail, sleepers = [], []
     for x0 in (np.arange(forces) + 0.5) * bay / forces:
         moved = np.array([waves.receptance(x, x0) for x in places])
-        above = np.array([waves.receptance(n * bay, x0) for n in range(-BAYS, BAYS)])
+        above = np.array([waves.receptance(n * bay, x0) for n in range(-bays, bays)])
         rail.append(np.sum(np.abs(omega * moved) ** 2, axis=0) * bay / cells)
         sleepers.append(np.sum(np.abs(omega * sleeper * above) ** 2, axis=0))
     return np.mean(rail, axis=0), np.mean(sleepers, axis=0)
 
 
-@pytest.mark.parametrize("track", [UIC60, LOSSY], ids=["uic60", "loss factors"])
-def test_the_sums_over_bays_are_those_of_superposition(track):
-    rail, sleepers = bay_by_bay(track)
+DAMPED = replace(UIC60, rail_damper_mass=15.0, rail_damper_frequency=800.0, rail_damper_loss_factor=0.35)
+
+
+@pytest.mark.parametrize(
+    ("track", "resolved"),
+    [(UIC60, {}), (LOSSY, {}), (DAMPED, {"cells": 48, "forces": 24, "bays": 30})],
+    ids=["uic60", "loss factors", "rail dampers"],
+)
+def test_the_sums_over_bays_are_those_of_superposition(track, resolved):
+    rail, sleepers = bay_by_bay(track, **resolved)
     assert_allclose(sound.squared_mobility(track, FREQUENCIES), rail, rtol=5e-4)
     assert_allclose(sound.squared_sleeper_mobility(track, FREQUENCIES), sleepers, rtol=5e-4)
+
+
+def test_spread_sleepers_sound_as_close_ones():
+    """As many per length, each of as little mass and stiffness."""
+    spread, share = replace(UIC60, continuous=True), 0.05
+    scaled = ("pad_stiffness", "pad_damping", "sleeper_mass", "ballast_stiffness", "ballast_damping")
+    close = replace(UIC60, sleeper_spacing=share * 0.6, **{k: share * getattr(UIC60, k) for k in scaled})
+    expected = share * sound.squared_sleeper_mobility(close, FREQUENCIES)
+    assert_allclose(sound.squared_sleeper_mobility(spread, FREQUENCIES), expected, rtol=3e-3)
+
+
+def test_a_sleeper_that_bends_sounds_by_its_mean_square():
+    """Times what a rigid one would by the motion of its seat; none on rigid ground."""
+    bent = replace(UIC60, sleeper_bending_stiffness=6e6)
+    omega, sleeper = 2.0 * np.pi * FREQUENCIES, bent.elements["sleeper"]
+    below = bent.springs["ballast"].stiffness(omega)
+    seat = 1.0 - bent.support.stiffness(omega) / bent.springs["pad"].stiffness(omega)
+    expected = np.abs(seat) ** 2 * sleeper.spread(omega, below)
+    assert_allclose(bent.support.sleeper_square(omega), expected, rtol=1e-9)
+    rigid = replace(bent, sleeper_bending_stiffness=1e13)
+    heard = [sound.squared_sleeper_mobility(each, FREQUENCIES) for each in (rigid, UIC60, bent)]
+    assert_allclose(heard[0], heard[1], rtol=1e-4)
+    assert (np.abs(heard[2] / heard[1] - 1.0) > 0.05).any()
+    assert not sound.squared_sleeper_mobility(replace(UIC60, ballast_stiffness=np.inf), FREQUENCIES).any()
 
 
 def test_an_uneven_force_counts_by_its_square():

@@ -228,7 +228,7 @@ def test_a_causal_table_is_met_in_time():
             lambda: timoshenko(sleeper_bending_stiffness=6e6, seat_distance=2.6),
             "less than the length of the sleeper, 2.6 m",
         ),
-        (lambda: timoshenko(rail_damper_mass=15.0), "rail damper frequency"),
+        (lambda: timoshenko(rail_damper_mass=15.0), "received no rail_damper_frequency"),
         (lambda: timoshenko(**(DAMPERS | {"rail_damper_loss_factor": 1.0})), "above 0 and below 1"),
         (lambda: timoshenko(rail_damper_frequency=800.0), "only together with rail_damper_mass"),
         (lambda: timoshenko(continuous=1), "true or false"),

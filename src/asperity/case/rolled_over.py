@@ -35,6 +35,7 @@ from asperity.structures.stiffness_table import StiffnessTable, preloads_of, sti
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import LAYERS
 from asperity.surfaces.heightmap import Profile
+from asperity.units import written
 
 if TYPE_CHECKING:
     from asperity.structures.beam import Support
@@ -332,7 +333,11 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         return sleeper, sleeper + bay / 2
 
     def problems(self) -> Iterator[InputError]:
-        """Each damping either viscous or by a loss factor."""
+        """Each damping either viscous or by a loss factor; a preload of pads where it decides anything."""
+        single = self.pad_table is not None and len(preloads_of(self._pad_rows)) < 2
+        if self.pad_preload is not None and single:
+            received = f"{written(self.pad_preload, 'N', 'kN')} for a table that is at no preload, or at one"
+            yield InputError("pad_preload", received, "a preload for a table at several", "Remove it.")
         told = self.overrides
         for part in LAYERS:
             viscous, loss = f"{part}_damping", f"{part}_loss_factor"

@@ -111,7 +111,7 @@ def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | N
     force from the force on. A bay is its own mirror image, so both sides of the force are alike in the mean;
     of a cell of bays that differ both are summed, and the mean is over all of it.
     """
-    if track.bays:
+    if track.has_cells:
         return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).rail(force)
     bay = _Bay(track, frequency)
     along = np.stack([bay.waves.outgoing(x) for x in bay.node])  # (x, j, f)
@@ -133,7 +133,7 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
     if track.continuous:
         moved = track.support.sleeper_square(2.0 * np.pi * above_zero(frequency))
         return moved * squared_mobility(track, frequency, force) / track.sleeper_spacing
-    if track.bays:
+    if track.has_cells:
         return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).sleepers(force)
     bay = _Bay(track, frequency)
     above = bay.waves.outgoing(0.0)
@@ -143,7 +143,7 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
 
 def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
-    if track.bays:
+    if track.has_cells:
         return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).point(force)
     bay = _Bay(track, frequency)
     return bay.mean(np.stack([np.abs(bay.waves.receptance(x0, x0)) ** 2 for x0 in bay.node]), force)

@@ -213,6 +213,13 @@ def rail_section(case: Any, track: Track) -> RailSection:
     return RailSection(keys.rail_foot_width, keys.rail_head_width, area, table)
 
 
+def sleeper_top(case: Any, track: Track) -> SleeperTop:
+    """Top of a sleeper of a case; one that bends is as long as it radiates, if nothing else is said."""
+    keys = case.noise
+    bends = track.sleeper_bending_stiffness is not None and "sleeper_length" not in keys.given_names
+    return SleeperTop(track.sleeper_length if bends else keys.sleeper_length, keys.sleeper_width)
+
+
 def radiating_wheel(case: Any) -> RadiatingWheel | None:
     """Wheel of a case as a radiator of its rigid motion, first, and of its modes; None if they are unknown.
 
@@ -334,7 +341,7 @@ def _radiated(computed: Computed) -> tuple[Array, Array]:
         return np.abs(force_transfer(lines, computed.scene.first, track, stiffness, x)) ** 2
 
     density = np.zeros((len(force), 3, len(used)))
-    rail, top = rail_section(case, track), SleeperTop(case.noise.sleeper_length, case.noise.sleeper_width)
+    rail, top = rail_section(case, track), sleeper_top(case, track)
     density[:, 0, used] = rail.power_per_force(track, lines, spread) * exciting
     density[:, 1, used] = top.power_per_force(track, lines, spread) * exciting
     wheel, own = radiating_wheel(case), computed.scene.wheel

@@ -236,6 +236,11 @@ class Track(TrackParameters):
         return len(self._lengths)
 
     @property
+    def has_cells(self) -> bool:
+        """Whether it has several points in one period: bays that differ, or rail dampers beside supports."""
+        return bool(self.bays or (self.damper and not self.continuous))
+
+    @property
     def period(self) -> float:
         """Length after which the track repeats, m."""
         return self.cell_bays * self.sleeper_spacing
@@ -303,7 +308,7 @@ class Track(TrackParameters):
             if damper is not None:
                 foundation = foundation + damper.stiffness(omega) / spacing
             return periodic_waves(*rail.waves(omega, foundation), np.zeros_like(omega), spacing)
-        if not self.bays and damper is None:
+        if not self.has_cells:
             return periodic_waves(*rail.waves(omega), self.support.stiffness(omega), spacing)
         points, lengths = np.array([each.support.stiffness(omega) for each in self.bay_tracks]), self._lengths
         if damper is not None:

@@ -211,9 +211,12 @@ class TrackParameters:
             raise InputError("bays that differ", "some on supports that are continuous", "equal bays", remedy)
         if self.sleeper_bending_stiffness is not None and self.seat_distance >= self.sleeper_length:
             allowed = f"less than the length of the sleeper, {self.sleeper_length:g} m"
-            raise InputError("seat distance (m)", f"{self.seat_distance:g}", allowed)
+            raise InputError("sleeper", f"seat_distance = {self.seat_distance:g} m", allowed)
         if self.rail_damper_mass is not None:
-            positive("rail damper frequency (Hz)", self.rail_damper_frequency)
+            for name in ("rail_damper_frequency", "rail_damper_loss_factor"):
+                if getattr(self, name) is None:
+                    allowed = "rail_damper_mass with rail_damper_frequency and rail_damper_loss_factor"
+                    raise InputError("rail damper", f"no {name}", allowed)
             allowed = "above 0 and below 1, the most that one Maxwell element dissipates"
             real("rail damper loss factor", self.rail_damper_loss_factor, allowed, above=0.0, below=1.0)
 

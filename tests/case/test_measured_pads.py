@@ -1,0 +1,125 @@
+"""Measured pads in a case: tables in all their forms, the preload that the wheel decides, messages."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from case_texts import case_text, write_files
+
+from asperity import WheelOnRail
+from asperity.case.cases import parse_case
+from asperity.case.tables import read_dynamic_stiffness
+from asperity.errors import CaseError, InputError
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "pad_stiffness.csv"
+PARTS = "frequency (Hz), real part (MN/m), imaginary part (MN/m)\n10, 90, 9\n300, 120, 18\n2000, 160, 40\n"
+BY_LOSS = """# a pad at 20 °C
+frequency (Hz); dynamic stiffness (kN/mm); loss factor; preload (kN)
+10; 150,75; 0,1; 20
+300; 150,75; 0,1; 20
+2000; 150,75; 0,1; 20
+300; 301,50; 0,1; 60
+10; 301,50; 0,1; 60
+2000; 301,50; 0,1; 60
+"""
+
+
+def pad(tmp_path, text):
+    (tmp_path / "pad.csv").write_text(text, encoding="utf-8")
+    return tmp_path / "pad.csv"
+
+
+def case_of(table, **track):
+    surface = {"spectrum": "iso3095"}
+    return WheelOnRail(surface=surface, track={"name": "uic60", "pad_table": table, **track})
+
+
+def test_parts_and_loss_factors_are_read(tmp_path):
+    rows = read_dynamic_stiffness(pad(tmp_path, PARTS))
+    np.testing.assert_allclose(rows, [(10, 9e7, 9e6), (300, 1.2e8, 1.8e7), (2000, 1.6e8, 4e7)])
+    np.testing.assert_array_equal(read_dynamic_stiffness(rows), rows)
+    rows = read_dynamic_stiffness(pad(tmp_path, BY_LOSS))
+    np.testing.assert_allclose(np.abs(rows[:, 1] + 1j * rows[:, 2]), [150.75e6] * 3 + [301.5e6] * 3)
+    np.testing.assert_allclose(rows[:, 2] / rows[:, 1], 0.1)
+    assert set(rows[:, 3]) == {20e3, 60e3}
+
+
+def test_the_wheel_decides_the_preload(tmp_path):
+    """The support below the wheel carries K w of it, on pads that are as stiff as under that force."""
+    table = pad(tmp_path, BY_LOSS)
+    light, heavy = (case_of(table).with_(wheel={"load": load}) for load in ("70 kN", "100 kN"))
+    for case, load in ((light, 70e3), (heavy, 100e3)):
+        track, preload = case.track.model(), case.track.pad_preload
+        assert preload == pytest.approx(track.support.static * track.static_deflection(load), rel=1e-9)
+        place = (preload - 20e3) / 40e3
+        assert track.pad_stiffness == pytest.approx(150e6 * (1.0 + min(max(place, 0.0), 1.0)), rel=1e-3)
+    assert 20e3 < light.track.pad_preload < heavy.track.pad_preload < 60e3
+    assert "pad_preload" not in light.to_toml()
+    assert case_of(table, pad_preload="60 kN").track.model().pad_stiffness == pytest.approx(300e6, rel=1e-3)
+
+
+def test_a_given_stiffness_scales_the_table(tmp_path):
+    track = case_of(pad(tmp_path, PARTS), pad_stiffness="240 MN/m").track.model()
+    at = 2.0 * np.pi * np.array([10.0, 2000.0])
+    np.testing.assert_allclose(track.springs["pad"].stiffness(at), [180e6 + 18e6j, 320e6 + 80e6j])
+    assert (track.pad_damping, track.pad_loss_factor) == (None, None)
+
+
+def test_the_example_is_a_case_that_reads_as_it_was_written(tmp_path):
+    case = case_of(EXAMPLE)
+    again = parse_case(case.to_toml(), EXAMPLE)
+    assert again == case
+    assert again.track.model() == case.track.model()
+    assert "Made up" in EXAMPLE.read_text(encoding="utf-8").splitlines()[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (PARTS.replace("18", "-18"), "an imaginary part below zero at 300 Hz"),
+        (BY_LOSS.replace("150,75; 0,1", "150,75; -0,1"), "below zero from 10 to 2000 Hz, by which the pad"),
+        (PARTS.replace("120", "0"), "a real part of zero or less at 300 Hz"),
+        (PARTS + "300, 1, 1\n", "numbers that do not rise"),
+        (PARTS.rpartition("300")[0], "1 frequencies"),
+        (PARTS.replace("(MN/m)", "(m/N)"), "real part in N/m"),
+        (PARTS.replace("10, 90, 9", "10, 90"), "'10, 90' in line 2"),
+        (BY_LOSS.replace("; 20\n", "; nan\n"), "in line 3"),
+        ("frequency (Hz), loss factor\n1, 1\n", "magnitude"),
+    ],
+)  # fmt: skip
+def test_bad_tables_are_refused_with_their_place(text, message, tmp_path):
+    with pytest.raises(InputError, match=r"pad\.csv") as told:
+        read_dynamic_stiffness(pad(tmp_path, text))
+    assert message in str(told.value)
+    with pytest.raises(CaseError) as told:
+        case_of(pad(tmp_path, text))
+    assert message in str(told.value)
+    assert "track.pad_table" in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ('pad_table = "pad.csv"\npad_damping = "9 kN s/m"', "both pad_table and pad_damping"),
+        ('pad_table = "pad.csv"\npad_loss_factor = 0.1', "both pad_table and pad_loss_factor"),
+        ('pad_table = "pad.csv"\npad_preload = "30 kN"', "30 kN for a table that is at no preload"),
+        ('pad_preload = "30 kN"', "only together with pad_table"),
+        ('under_sleeper_pad_damping = "9 kN s/m"', "only together with under_sleeper_pad_stiffness"),
+        ('ballast_mass = "300 kg"', "only together with subgrade_stiffness"),
+        ('sleeper_length = "2.4 m"', "only together with sleeper_bending_stiffness"),
+        ('rail_damper_mass = "15 kg"', "no rail_damper_frequency"),
+        ("rail_damper_loss_factor = 0.95", "at most 0.9"),
+        ("continuous = 1", "true or false"),
+        ('sleeper_bending_stiffness = "6 MN m^2"\nseat_distance = "2.6 m"', "received seat_distance = 2.6 m"),
+        (
+            'subgrade_stiffness = "90 MN/m"\nsubgrade_damping = "9 kN s/m"\nsubgrade_loss_factor = 0.1',
+            "damping is either viscous or by a loss factor",
+        ),
+    ],
+)  # fmt: skip
+def test_keys_that_do_not_fit_are_named(keys, message, tmp_path):
+    source = write_files(tmp_path)
+    pad(tmp_path, PARTS)
+    with pytest.raises(CaseError) as told:
+        parse_case(case_text("wheel-on-rail", f"[track]\n{keys}"), source)
+    assert message in str(told.value)
