@@ -55,7 +55,7 @@ def test_a_level_is_compared_as_a_whole_decibel():
         pass_by_limit("wagon", 20.0, 0.0)
 
 
-def passed(speed=160.0, power=100.0, decay=DECAY, over=-1.0, wheel=np.nan, **noise):
+def passed(speed=160.0, power=100.0, decay=DECAY, over=-1.0, wheel=np.nan, measured=np.nan, **noise):
     """The pass-by of a sound power in the band of 1 kHz, dB, on a rail as rough as the limit and over."""
     level, parts = np.full((4, len(BAND)), np.nan), np.array([power, power - 10.0, wheel])
     level[:, 7] = *parts, 10.0 * np.log10(np.nansum(10.0 ** (parts / 10.0)))
@@ -65,6 +65,7 @@ def passed(speed=160.0, power=100.0, decay=DECAY, over=-1.0, wheel=np.nan, **noi
     spectra = {
         "radiated_power_level": (("law", "radiator", "band"), level[None]),
         "band_decay_rate": ("band", decay),
+        "measured_decay_rate": ("band", measured * decay),
         "roughness_level": (("part", "surface_band"), rough),
     }
     held = xarray.Dataset(
@@ -127,6 +128,11 @@ def test_conditions_that_are_not_met_are_named():
     slow[(BAND > 380.0) & (BAND < 410.0)] = 4.5
     decay = conditions(decay=slow)["decay rate"]
     assert decay["here"].startswith("below it in 2 bands, by up to 1.5 dB/m at 400")
+    one = np.where(BAND < 4000.0, np.nan, 3.0)  # measured in the last bands alone: these are no longer low
+    assert (
+        "below it in 1 bands, by up to 1.5 dB/m at 400"
+        in conditions(decay=slow, measured=one)["decay rate"]["here"]
+    )
     sentence, table = told(over=over, decay=slow, receiver_distance=10.0)
     assert "no limit holds for this receiver and speed" in sentence
     assert sentence.endswith("Not as a test asks: receiver, rail roughness, decay rate.")
