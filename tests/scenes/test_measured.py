@@ -117,11 +117,20 @@ def test_the_report_shows_both(damped):
     assert set(shown[f"{MEASURED}, lateral"][inside]) == {0.5}
 
 
-def test_a_mobility_is_drawn_as_the_receptance_that_it_is(runs):
+def test_a_mobility_changes_force_and_rail_and_is_drawn_as_a_receptance(runs):
     _, mobility = own_data(WheelOnRail(**CASE))
-    tree = runs(with_track(mobility=np.column_stack([mobility[:, 0], np.hypot(*mobility[:, 1:].T)])))
-    drawn = TRACK[0].collect(tree)
-    lines = {line.label: line.values for line in drawn.lines if line.units == "m/N"}
-    ratio = lines[MEASURED] / lines["rail, mid-span"]
-    assert 0.8 < np.nanmedian(ratio) < 1.25
+    tree = runs(with_track(mobility=np.column_stack([mobility[:, 0], 2.0 * mobility[:, 1:]])))
+    names = "measured_mobility", "expected_mobility", "measured_force_change", "measured_power_change"
+    own, expected, force, power = (tree["spectra"][f"{name}"].values for name in names)
+    inside = np.isfinite(own)
+    np.testing.assert_allclose(own[inside], 2.0 * expected[inside], rtol=1e-9)
+    np.testing.assert_allclose((force + 20.0 * np.log10(2.0))[inside], power[inside], rtol=1e-9)
+    soft = (tree["spectra/band"].values > 240) & (
+        tree["spectra/band"].values < 410
+    )  # softer than the contact
+    assert (np.abs(power[soft]) < 2.0).all()
+    assert (force[soft] < -4.0).all()
+    assert not warned(tree)
+    lines = {line.label: line.values for line in TRACK[0].collect(tree).lines if line.units == "m/N"}
+    assert 1.7 < np.nanmedian(lines[MEASURED] / lines["rail, mid-span"]) < 2.3
     assert "linear force / dB" in measured_table(tree).head
