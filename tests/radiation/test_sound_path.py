@@ -89,6 +89,20 @@ def test_interference_within_a_band():
     assert_allclose(found[0, 0], expected, rtol=1e-4)
 
 
+@pytest.mark.parametrize("centre", [250.0, 500.0, 1000.0, 1600.0])
+def test_level_over_grass_against_sommerfelds_integral(centre):
+    """A source 0.2 m, a receiver 1.2 m above the rail head, 0.5 m over grass: the exact field over lg f."""
+    direct, bounced = np.hypot(7.5, 1.0), np.hypot(7.5, 0.7 + 1.7)
+    square = []
+    for f in centre * 10.0 ** (0.05 * (np.arange(20) + 0.5) / 10.0 - 0.05):
+        k, admittance = wavenumber(f), 1.0 / GRASS.impedance(f)
+        reflection = reflected(f, admittance, 2.4, 7.5) * np.exp(-1j * k * bounced) / bounced
+        total = np.abs(np.exp(-1j * k * direct) / direct + reflection) ** 2
+        square.append(0.5 * total / (1.0 + np.sin(1.4 * k) / (1.4 * k)))
+    path = SoundPath(np.array([centre]), Receiver(), GRASS, 0.5)
+    assert_allclose(path.inverse_square(0.2, np.zeros(1))[0, 0], np.mean(square), rtol=0.02)
+
+
 def test_directivity_of_cnossos():
     """10 lg(0.01 + 0.99 sin²φ); upwards at 1.4 kHz 40/3 (⅔ sin 2ψ − sin ψ) times lg 10."""
     quarter = 0.5 * np.pi

@@ -31,9 +31,10 @@ class PorousGround:
 
     Notes
     -----
-    Its one parameter is fitted to fibrous material at 0.01 < ρf/σ < 1, and used for ground below that, too
-    (200 Hz to 2.5 kHz; C. I. Chessell, J. Acoust. Soc. Am. 62 (1977) 825). Coarse ballast, into which sound
-    goes sideways as well, is no such ground (K. Attenborough et al., J. Acoust. Soc. Am. 129 (2011) 2806).
+    Fitted to fibrous material at 0.01 < ρf/σ < 1. Ground has less, and is described all the same (C. I.
+    Chessell, J. Acoust. Soc. Am. 62 (1977) 825), reasonably from about 250 Hz on (T. J. Cox and P. D'Antonio,
+    Acoustic Absorbers and Diffusers, 3rd edition, p. 199). Coarse ballast, into which sound goes sideways as
+    well, is no such ground (K. Attenborough et al., J. Acoust. Soc. Am. 129 (2011) 2806).
     """
 
     flow_resistivity: float
