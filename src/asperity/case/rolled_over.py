@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -15,7 +16,7 @@ from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
 from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
-from asperity.case.tables import RECEPTANCES, TableFile, read_dynamic_stiffness, read_table
+from asperity.case.tables import RECEPTANCES, TableFile, read_bays, read_dynamic_stiffness, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
     Choice,
@@ -31,6 +32,7 @@ from asperity.parameters import (
 )
 from asperity.reference.materials import Material
 from asperity.reference.tracks import TRACKS
+from asperity.structures.bays import MOST_BAYS, Bays
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import LAYERS
@@ -45,6 +47,9 @@ MODES_BEYOND = 4.0
 """Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
+LISTED = ("sleeper_spacing", "pad_stiffness", "ballast_stiffness")
+"""What a table of bays holds."""
+_SCATTER = "standard deviation over the mean of the normal distribution from which"
 PRELOAD_STEPS = 20
 """Steps in which the preload of pads is found, whose stiffness depends on it."""
 FREQUENCY = Quantity("Hz", above=0)
@@ -215,6 +220,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         ("rail_head_radius", "rail_profile"),
         ("pad_table", "pad_damping"),
         ("pad_table", "pad_loss_factor"),
+        ("bay_table", "bays"),
+        *(("bay_table", f"{each}") for each in LISTED),
     )
 
     name: str = key(Choice(tuple(TRACKS)), "x2000", "named set of parameters")
@@ -243,6 +250,28 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "what a support carries of the wheel's static load",
         "1 N to 10 MN: rails press on pads with as much",
         goes_with="pad_table",
+    )
+    bays: int | None = optional(
+        Number(at_least=2, at_most=MOST_BAYS, whole=True),
+        20,
+        "number of bays that differ, after which the track repeats",
+        "all bays are alike",
+    )
+    spacing_scatter: float = key(
+        Number(at_least=0, at_most=0.3), 0.0, f"{_SCATTER} distances of sleepers are drawn", goes_with="bays"
+    )
+    pad_scatter: float = key(
+        Number(at_least=0, at_most=1), 0.0, f"{_SCATTER} stiffnesses of pads are drawn", goes_with="bays"
+    )
+    ballast_scatter: float = key(
+        Number(at_least=0, at_most=1), 0.0, f"{_SCATTER} stiffnesses of ballast are drawn", goes_with="bays"
+    )
+    scatter_seed: int = key(INDEX, 1, "seed of these draws", goes_with="bays")
+    bay_table: Path | Array | None = optional(
+        TableFile(columns=(3,), read=read_bays),
+        "bays.csv",
+        "bays one by one instead, after which the track repeats: distance to the next sleeper (m), stiffness "
+        "of pad and of ballast (N/m); damping goes with stiffness",
     )
     points: tuple[float, ...] | None = optional(
         ListOf(POSITION, least=1),
@@ -282,6 +311,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         told = {name: getattr(self, name) for name in keys_of(Track, "")}
         if self.pad_table is not None:
             told["pad_table"] = self._pad
+        if self.bay_table is not None:
+            told |= dict(zip(LISTED, self._listed.mean(axis=0).tolist(), strict=True))
         return {name: value for name, value in told.items() if value is not None}
 
     @property
@@ -293,6 +324,20 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     def _pad_rows(self) -> Array:
         assert self.pad_table is not None
         return read_dynamic_stiffness(self.pad_table)
+
+    @cached_property
+    def _listed(self) -> Array:
+        assert self.bay_table is not None
+        return read_bays(self.bay_table)
+
+    def _drawn_or_listed(self) -> Bays | None:
+        """How bays differ, if they do."""
+        if self.bay_table is not None:
+            return Bays.listed(*self._listed.T)
+        if self.bays is None:
+            return None
+        scatters = {part: getattr(self, f"{part}_scatter") for part in ("spacing", "pad", "ballast")}
+        return Bays.drawn(self.bays, **scatters, seed=self.scatter_seed)
 
     def preloaded(self, load: float) -> Self:
         """With the preload of the pads, where it matters and is not given, under a wheel with this load, N.
@@ -310,7 +355,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
 
     def model(self, highest_frequency: float = math.inf) -> Track:
         """Build the track: the named set with the keys of the case in it."""
-        return Track.named(self.name, **self.overrides)
+        return replace(Track.named(self.name, **self.overrides), bays=self._drawn_or_listed())
 
     def default_of(self, name: str) -> float | str | None:
         """Value of a key that is left out: that of the named set."""
@@ -328,17 +373,19 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         """The points, m; by default over the sleeper nearest to the middle, m, and at mid-span after it."""
         if self.points is not None:
             return self.points
-        bay = self.model().sleeper_spacing
-        sleeper = bay * round(middle / bay)
-        return sleeper, sleeper + bay / 2
+        return self.model().sleeper_near(middle)
 
     def problems(self) -> Iterator[InputError]:
-        """Each damping either viscous or by a loss factor; a preload of pads where it decides anything."""
+        """Each damping viscous or by a loss factor; a preload that decides anything; bays above zero."""
         single = self.pad_table is not None and len(preloads_of(self._pad_rows)) < 2
         if self.pad_preload is not None and single:
             received = f"{written(self.pad_preload, 'N', 'kN')} for a table that is at no preload, or at one"
             yield InputError("pad_preload", received, "a preload for a table at several", "Remove it.")
         told = self.overrides
+        try:
+            self._drawn_or_listed()
+        except InputError as error:
+            yield error.about(f"{error.what.split()[0]}_scatter")
         for part in LAYERS:
             viscous, loss = f"{part}_damping", f"{part}_loss_factor"
             if viscous in told and loss in told:

@@ -22,6 +22,7 @@ from asperity.files import amount
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
 from asperity.spectra import energy_sum
+from asperity.structures.bays import MOST_BAYS
 from asperity.structures.outline import checked_outline
 from asperity.structures.stiffness_table import preloads_of, stiffness_at_preload
 from asperity.surfaces.readers.guards import hostile
@@ -60,6 +61,7 @@ RADIATION = (
 )
 """Further columns of modes: how they move the whole wheel, rms per radial velocity at the contact."""
 OUTLINE = (Column("radius", "m"), Column("axial place", "m"))
+BAYS = (Column("spacing", "m"), Column("pad stiffness", "N/m"), Column("ballast stiffness", "N/m"))
 RATIOS = (_FREQUENCY, Column("radiation ratio", ""))
 STIFFNESS = (_FREQUENCY, Column("real part", "N/m"), Column("imaginary part", "N/m"))
 STIFFNESS_AND_LOSS = (_FREQUENCY, Column("magnitude", "N/m"), Column("loss factor", ""))
@@ -220,6 +222,23 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
             stiffness_at_preload(rows, preload)
     except InputError as error:
         raise error.about(name_of(table), f"{error.received} ({error.what})") from None
+    return rows
+
+
+def read_bays(table: TableSource) -> Array:
+    """Read the bays of a track one by one (n, 3): distance to the next sleeper, m, pad and ballast, N/m."""
+    rows = read_table(table, BAYS)
+    if len(rows) > MOST_BAYS:
+        raise InputError(
+            name_of(table), f"{len(rows)} bays", f"at most {MOST_BAYS}", "They repeat by themselves."
+        )
+    for column, values in zip(BAYS, rows.T, strict=True):
+        if (wrong := values <= 0.0).any():
+            received = (
+                f"a {column.name} of {values[wrong][0]:g} {column.dimension} in bay {wrong.argmax() + 1}"
+            )
+            remedy = "Give a sleeper that hangs very soft ballast, as 1 kN/m." if column is BAYS[2] else ""
+            raise InputError(name_of(table), received, "greater than 0", remedy)
     return rows
 
 

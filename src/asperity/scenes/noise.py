@@ -348,7 +348,7 @@ def _radiated(computed: Computed) -> tuple[Array, Array]:
     of_modes = np.zeros((len(force), 0 if wheel is None else len(wheel.axial), len(used)))
     if wheel is not None and own is not None:
         motion = computed.psd(computed.stacked("rolling_displacement"))[..., used]
-        middle = 0.5 * track.sleeper_spacing
+        middle = float(track.mid_spans[0])
         compliance = np.abs(1.0 / stiffness + track.receptance(lines, middle, middle))
         for law, (of_force, of_motion) in enumerate(zip(force, motion, strict=True)):
             square = modal_velocity_psd(own, lines, of_force, of_motion, compliance)  # (modes, c, f)

@@ -1,6 +1,6 @@
 """What a run will look at, in words; how finely its bodies are resolved; what its textures are judged by."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ from asperity.scenes import noise, schema
 from asperity.scenes.track import described_losses, loss_factor_error, warn_of_loss_factors
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting
+from asperity.structures.moving_kernel import STARTS
 from asperity.structures.rail_poles import POLES
 from asperity.structures.track import Track
 from asperity.units import written
@@ -59,10 +60,27 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
     points = ", ".join(f"{position:g} m" for position in scene.points)
     return [
         ("track", frequencies),
+        *_rows_of_bays(case, track),
         *described_losses(losses, prepared.shape.load),
         ("rail motion recorded at", points),
         ("sound power", f"of {known}"),
     ]
+
+
+def _rows_of_bays(case: Case, track: Track) -> Iterator[tuple[str, str]]:
+    """How bays differ, and what that costs, in words; nothing where they do not."""
+    if track.bays is None:
+        return
+    lengths, count = track.sleeper_spacing * track.bays.lengths, track.cell_bays
+    parts = [f"{lengths.min():.3g} to {lengths.max():.3g} m long"]
+    for name in ("pad", "ballast"):
+        stiffness = 1e-6 * getattr(track, f"{name}_stiffness") * np.array(getattr(track.bays, name))
+        if np.ptp(stiffness):
+            parts.append(f"{name} {stiffness.min():.3g} to {stiffness.max():.3g} MN/m")
+    yield "bays that differ", f"{count} in {track.period:.4g} m, then they repeat: {', '.join(parts)}"
+    passes = case.speed * case.rolled_time / track.period
+    words = f"of {STARTS * count} start positions, {count} times that of one bay; passed {passes:.2g} times"
+    yield "moving kernel", words
 
 
 def own_settings(case: Case) -> list[Setting]:

@@ -120,8 +120,18 @@ MEASURED_LOSS_FACTOR = _measured("measured_loss_factor(band)", "1", "measured lo
 RELAXED_STIFFNESS = _losses("relaxed_stiffness(layer, band)", "1", "stiffness in time over the nominal one")
 RELAXED_LOSS_FACTOR = _losses("relaxed_loss_factor(layer, band)", "1", "loss factor in time")
 
+_bays = partial(entry, "track", condition="where bays differ")
+BAY = _bays("bay", "1", "bay of the cell, the first behind the sleeper at zero")
+BAY_LENGTH = _bays("bay_length(bay)", "m", "distance to the next sleeper")
+BAY_PAD_STIFFNESS = _bays("bay_pad_stiffness(bay)", "N/m", "stiffness of the pad with which a bay begins")
+BAY_BALLAST_STIFFNESS = _bays("bay_ballast_stiffness(bay)", "N/m", "stiffness of the ballast below it")
+_MEAN = "receptance of the rail at mid-span, root mean square over all bays"
+RECEPTANCE_ALL_BAYS = _bays("receptance_all_bays(frequency)", "m/N", _MEAN)
+_EQUAL = "receptance of the rail at mid-span of equal, nominal bays"
+RECEPTANCE_EQUAL_BAYS = _bays("receptance_equal_bays(frequency)", "m/N", _EQUAL)
+
 NAME = _fact("name", "text", "of the set of parameters")
-SLEEPER_SPACING = _fact("sleeper_spacing", "m", "distance of the sleepers")
+SLEEPER_SPACING = _fact("sleeper_spacing", "m", "distance of the sleepers, mean")
 _PINNED = "at which half a bending wave fits between two sleepers"
 _apart = partial(Attribute, "track", condition=f"{_TRACK}, on single supports")
 PINNED_PINNED_FREQUENCY = _apart("pinned_pinned_frequency", "Hz", _PINNED)

@@ -69,6 +69,8 @@ def product_of_bands(entry: Entry, centres: Array, time: float) -> xarray.Variab
 
 PLACES = 12
 """Of several contacts in a bay, over which their linear forces are averaged."""
+MOST_PLACES = 120
+"""In a cell of bays that differ."""
 
 
 def linear_reference(computed: Computed) -> tuple[Array, Array]:
@@ -94,7 +96,8 @@ def linear_reference(computed: Computed) -> tuple[Array, Array]:
         return force, texture
     turning = textures.parts.get("wheel", np.zeros_like(textures.line))
     path, own = passed(textures.followed - turning), passed(turning)
-    places = track.sleeper_spacing * (np.arange(PLACES) + 0.5) / PLACES
+    count = min(PLACES * track.cell_bays, MOST_PLACES)
+    places = track.period * (np.arange(count) + 0.5) / count
     force[above] = coupled_force_psd(lines, path[above], own[above], speed, scene, stiffness, places)
     return force, texture
 
@@ -184,7 +187,7 @@ def track_group(computed: Computed, losses: LossFactorError) -> Values:
     track, rail, load = computed.track, computed.rail, computed.shape.load
     kernel = rail.kernel
     frequency = np.geomspace(LOWEST_FREQUENCY, computed.case.numerics.highest_frequency, FREQUENCIES)
-    half = 0.5 * track.sleeper_spacing
+    half = float(track.mid_spans[0])
     midspan, support = track.receptance(frequency, [half, 0.0], [half, 0.0])
     positions, taps = kernel.weights.shape
     rows = np.arange(0, positions, max(1, positions // KERNEL_STARTS))
@@ -200,7 +203,7 @@ def track_group(computed: Computed, losses: LossFactorError) -> Values:
         schema.DECAY_RATE: decay_rate(track, frequency),
         schema.DECAY_RATE_EN15461: decay_rate_en15461(track, frequency),
         schema.DECAY_RATE_LIMIT: iso_3095_decay_rate(frequency),
-        schema.START_POSITION: rows * track.sleeper_spacing / positions,
+        schema.START_POSITION: rows * track.period / positions,
         schema.LAG: kernel.lag[kept],
         schema.MOVING_KERNEL: kernel.weights[rows, kept] / kernel.time_step,
         **facts(track),
@@ -209,6 +212,7 @@ def track_group(computed: Computed, losses: LossFactorError) -> Values:
         schema.KERNEL_METHOD: "scatter",
         **relaxed(losses),
         **power_shares(track, frequency),
+        **_bays(track, frequency),
     }
     if isinstance(rail.direct, RailPoles):
         laid_out |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.direct.fit_error}
@@ -230,6 +234,22 @@ def power_shares(track: Track, frequency: Array) -> Values:
     parts = dissipated_power(track.regular, frequency, 0.5 * track.sleeper_spacing)
     powers = np.array(list(parts.values()))
     return {schema.POWER_PART: list(parts), schema.POWER_SHARE: powers / powers.sum(axis=0)}
+
+
+def _bays(track: Track, frequency: Array) -> Values:
+    """Lay out how bays differ, and their mid-spans beside one of equal bays; nothing where they do not."""
+    if not track.bays:
+        return {}
+    half, spans = 0.5 * track.sleeper_spacing, track.mid_spans
+    squares = np.abs(track.receptance(frequency, spans, spans)) ** 2
+    return {
+        schema.BAY: 1 + np.arange(track.cell_bays),
+        schema.BAY_LENGTH: track.sleeper_spacing * track.bays.lengths,
+        schema.BAY_PAD_STIFFNESS: track.pad_stiffness * np.array(track.bays.pad),
+        schema.BAY_BALLAST_STIFFNESS: track.ballast_stiffness * np.array(track.bays.ballast),
+        schema.RECEPTANCE_ALL_BAYS: np.sqrt(np.mean(squares, axis=0)),
+        schema.RECEPTANCE_EQUAL_BAYS: np.abs(track.regular.receptance(frequency, half, half)),
+    }
 
 
 # --- what stands for the loss factors of a track in time, and how far the contact force is off for it
@@ -264,12 +284,13 @@ def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest:
     """Compare a track with the causal one that stands for it in time; the error of a causal one is zero.
 
     Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to that of `highest`, Hz. In
-    each band of mean squares over a bay and over the band, for a texture that is white in it.
+    each band of mean squares over a bay, the nominal one, and over the band, for a texture that is white in
+    it.
     """
     bands, low, high = third_octave_bands(LOWEST, highest)
     steps = (np.arange(LINES) + 0.5) / LINES
     frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
-    places = track.places(POSITIONS)
+    places = track.regular.places(POSITIONS)
 
     def levels(rail: Track) -> Array:
         moved = rail.receptance(frequency, places, places)
@@ -277,7 +298,7 @@ def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest:
         squares = np.mean(np.abs(np.stack([force, moved])) ** 2, axis=1)
         return 10.0 * np.log10(squares.reshape(2, -1, LINES).mean(axis=-1))
 
-    force, rail = levels(causal_track(track)) - levels(track)
+    force, rail = levels(causal_track(track.regular)) - levels(track.regular)
     return LossFactorError(track, bands, force, rail)
 
 
@@ -381,7 +402,7 @@ def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str,
     own = track.relaxations
     relaxing = {"pads" if name == "pad" else name: part for name, part in vars(own).items() if part}
     shares = ", ".join(f"{name.replace('_', ' ')} {part.static:.2f}" for name, part in relaxing.items())
-    half = 0.5 * track.sleeper_spacing
+    half = float(track.mid_spans[0])
     rest, was = (1e3 * each.static_deflection(load, half) for each in (track, nominal))
     down = f"the load at mid-span rests {rest:.3g} mm down, nominally {was:.3g} mm"
     yield "stiffness at rest", f"of the nominal one: {shares}; {down}"

@@ -79,6 +79,11 @@ class Bays:
             )
         )
 
+    @classmethod
+    def listed(cls, spacing: Array, pad: Array, ballast: Array) -> Bays:
+        """Bays one by one (n,), in any unit: of each quantity the mean is taken for the nominal one."""
+        return cls(*(tuple((each / each.mean()).tolist()) for each in (spacing, pad, ballast)))
+
     @property
     def lengths(self) -> Array:
         """Relative lengths (n,)."""

@@ -276,6 +276,17 @@ class Track(TrackParameters):
         """Of the bays of a cell, m."""
         return self.sleeper_spacing * (self.bays.lengths if self.bays else np.ones(1))
 
+    def sleeper_near(self, x: float) -> tuple[float, float]:
+        """Places of the sleeper nearest to one, m, and of the middle of the bay behind it."""
+        spacing = self.sleeper_spacing
+        if not self.bays:
+            sleeper = spacing * round(x / spacing)
+            return sleeper, sleeper + spacing / 2
+        cells = np.floor(x / self.period) + np.arange(-1, 2)[:, None]
+        sleepers, middles = ((each + self.period * cells).ravel() for each in (self.sleepers, self.mid_spans))
+        nearest = np.argmin(np.abs(sleepers - x))
+        return float(sleepers[nearest]), float(middles[nearest])
+
     def places(self, count: int) -> Array:
         """Places to average over, m: so many in half a bay, its own mirror image, or all along other bays."""
         if not self.bays:

@@ -7,8 +7,22 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data
-from asperity.reporting.chart import BLUE, GRID, INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Panel, Shape
+from asperity.reporting.chart import (
+    BLUE,
+    GRID,
+    INK,
+    MUTED,
+    VERMILLION,
+    Axis,
+    Line,
+    Mark,
+    Note,
+    Numbers,
+    Panel,
+    Shape,
+)
 from asperity.reporting.figure import Figure, Lines, Series
+from asperity.scenes.figures.track import sleepers_between
 from asperity.scenes.schema import ROLLING_POINT, ROLLING_SENSOR
 from asperity.schema import Entry, contact, provenance
 from asperity.schema.rolling import OFFSET, POSITION, SPEED
@@ -304,7 +318,8 @@ def _track(tree: DataTree, of: Lengths) -> list[Panel]:
     half = (BAYS + 0.4) * spacing
     left, right = at - half, at + half
     path = _path(*np.clip([begin, end], left, right))
-    marks = [*_rail(left, right, spacing), path, _places(points, -RAIL / 2)]
+    sleepers = sleepers_between(tree, left, right, spacing)
+    marks = [*_rail(left, right, sleepers), path, _places(points, -RAIL / 2)]
     if radius is not None:
         marks += _rolling_body(at, radius, 1.0, data.number(tree, SPEED), inside=0.12)
     x = Axis("x along the rail / m", left, right)
@@ -312,12 +327,12 @@ def _track(tree: DataTree, of: Lengths) -> list[Panel]:
     return [_view(x, y, marks, "the wheel on the track", 3.6, share=1.9)]
 
 
-def _rail(left: float, right: float, spacing: float) -> list[Mark]:
+def _rail(left: float, right: float, sleepers: Numbers) -> list[Mark]:
     """Rail, and pads, sleepers and ballast below it."""
     bottom = -RAIL - PAD - SLEEPER
     look: dict[str, Any] = {"colour": MUTED, "dashes": (3, 2)}
     marks: list[Mark] = [_block(left, -RAIL, right - left, RAIL, **look)]
-    for x in np.arange(np.ceil(left / spacing), np.floor(right / spacing) + 1) * spacing:
+    for x in sleepers:
         marks.append(_block(x - 0.08, -RAIL - PAD, 0.16, PAD, fill=MUTED, colour=""))
         marks.append(_block(x - SLEEPER_WIDTH / 2, bottom, SLEEPER_WIDTH, SLEEPER, **look))
     return [*marks, _block(left, bottom - BALLAST, right - left, BALLAST, fill="", **look)]

@@ -63,8 +63,18 @@ def sleeper_times(tree: DataTree, start: float, end: float, unit: float) -> list
         return []
     time, position = data.values(tree, rolling.TIME), data.values(tree, rolling.POSITION)
     first, last = np.interp([start, end], time, position)
-    sleepers = spacing * np.arange(np.ceil(first / spacing), np.floor(last / spacing) + 1)
+    sleepers = sleepers_between(tree, first, last, spacing)
     return [_short((time[0] + (sleepers - position[0]) / speed) / unit)]
+
+
+def sleepers_between(tree: DataTree, first: float, last: float, spacing: float) -> Numbers:
+    """Places of the sleepers between two others, m: equally spaced, or as bays of a cell that repeats."""
+    if not data.present(tree, schema.BAY_LENGTH):
+        return spacing * np.arange(np.ceil(first / spacing), np.floor(last / spacing) + 1)
+    ends = np.cumsum(data.values(tree, schema.BAY_LENGTH))
+    cells = np.arange(np.floor(first / ends[-1]), np.floor(last / ends[-1]) + 1)
+    every = (ends[-1] * cells[:, None] + np.concatenate([[0.0], ends[:-1]])).ravel()
+    return every[(every >= first) & (every <= last)]
 
 
 def _short(at: Numbers) -> Rules:
@@ -81,6 +91,14 @@ RECEPTANCES = (
     Of(schema.RECEPTANCE_MIDSPAN_PHASE, "receptance_midspan phase", *_MIDSPAN),
     Of(schema.RECEPTANCE_SUPPORT, "", *_SUPPORT),
     Of(schema.RECEPTANCE_SUPPORT_PHASE, "receptance_support phase", *_SUPPORT),
+    Of(schema.RECEPTANCE_ALL_BAYS, "", "rail, mid-spans of all bays, rms", (INK, (), 1.6), optional=True),
+    Of(
+        schema.RECEPTANCE_EQUAL_BAYS,
+        "",
+        "rail, mid-span of equal bays",
+        (chart.MUTED, (3, 1.5)),
+        optional=True,
+    ),
     Of(schema.WHEEL_RECEPTANCE, "", "wheel", (chart.GREEN, (6, 1.5, 1.5, 1.5))),
     Of(schema.CONTACT_RECEPTANCE, "", "contact spring", (chart.MUTED, (1.5, 1.5))),
 )
@@ -121,7 +139,46 @@ def _receptance_caption(tree: DataTree) -> str:
     return (
         "Displacement per force at the point of the force, both positive downwards, time factor e^{+iωt}: "
         "a spring has the phase 0°, a mass ±180°, a damper −90°. Dotted lines: frequencies of the resting "
-        f"track.{stated}"
+        f"track.{stated}{_first_bay(tree)}"
+    )
+
+
+def _first_bay(tree: DataTree) -> str:
+    """Say which bay is shown, where they differ."""
+    if not data.present(tree, schema.BAY):
+        return ""
+    count = len(data.values(tree, schema.BAY))
+    return f" Of the first of {count} bays that differ, and of the sleeper with which it begins."
+
+
+_OF_BAYS = (
+    (schema.BAY_LENGTH, "distance to the next sleeper", ("distance / m", 1.0)),
+    (schema.BAY_PAD_STIFFNESS, "stiffness of the pad", ("pad / (MN/m)", 1e-6)),
+    (schema.BAY_BALLAST_STIFFNESS, "stiffness of the ballast", ("ballast / (MN/m)", 1e-6)),
+)
+
+
+def _bays(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Distance, pad and ballast of each bay, one below the other."""
+    count = len(lines.at)
+    ticks = tuple((float(n), f"{n}") for n in range(1, count + 1, 1 + count // 20))
+    along = Axis("bay", 0.5, count + 0.5, ticks=ticks)
+    for entry, _, (label, unit) in _OF_BAYS:
+        (series,) = lines.of(entry)
+        values = series.values * unit
+        mean = Rules(np.array([values.mean()]), "y")
+        points = Line(lines.at, values, colour=chart.BLUE, width=0.8, marker="o")
+        margin = 0.1 * max(float(np.ptp(values)), 0.1 * values.mean())
+        yield Panel(
+            along, Axis(label, values.min() - margin, values.max() + margin), (mean, points), height=1.5
+        )
+
+
+def _bays_caption(tree: DataTree) -> str:
+    lengths = data.values(tree, schema.BAY_LENGTH)
+    return (
+        f"Each of the {len(lengths)} bays from the sleeper at 0 m on, with the pad and the ballast of the "
+        f"sleeper with which it begins; after {lengths.sum():.4g} m they repeat. Dotted: means."
     )
 
 
@@ -239,6 +296,14 @@ TRACK = (
         _receptance,
         _receptance_caption,
         any_of=tuple(each.entry for each in RECEPTANCES if each.entry.units != "rad"),
+    ),
+    Figure(
+        "bays",
+        "Bays of the track",
+        Of(schema.BAY),
+        tuple(Of(each, name) for each, name, _ in _OF_BAYS),
+        _bays,
+        _bays_caption,
     ),
     Figure(
         "decay_rate",
