@@ -80,6 +80,7 @@ NOWHERE = (
     "says what passes",
     "pad is measured",
     "disc and tread vibrate",
+    "bays differ",
 )
 OTHERS = {
     "ball-on-beam": (*NOWHERE, "over a track", "of a wheel", "loss factors", "poles", "law linear", "train"),
@@ -142,7 +143,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
             elsewhere |= chapter.name == "contacts" and not several
             elsewhere |= part.name == "what_helps"  # where it is asked
             elsewhere |= part.name == ("force_piece" if track else "force_peak")
-            elsewhere |= part.name == "pass_by_bands"  # of what was measured
+            elsewhere |= part.name in ("pass_by_bands", "bays")  # of what was measured, and where they differ
             assert (part.name in drawn) != elsewhere, part.name
 
 

@@ -336,7 +336,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
             return Bays.listed(*self._listed.T)
         if self.bays is None:
             return None
-        scatters = {part: getattr(self, f"{part}_scatter") for part in ("spacing", "pad", "ballast")}
+        scatters = {"spacing": self.spacing_scatter, "pad": self.pad_scatter, "ballast": self.ballast_scatter}
         return Bays.drawn(self.bays, **scatters, seed=self.scatter_seed)
 
     def preloaded(self, load: float) -> Self:
