@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.errors import MeasuredTrackWarning
 from asperity.radiation.measured_track import HammerTest
+from asperity.running import prepare_case
 from asperity.scenes.figures.measured import MEASURED, measured_table
 from asperity.scenes.figures.noise import RADIATED, noise_answers, radiated_table
 from asperity.scenes.figures.track import TRACK
+from asperity.scenes.plan import planned_rows
 
 CASE = {
     "laws": ["linear"],
@@ -86,6 +89,14 @@ def test_a_contradiction_is_warned_of_with_its_bands(damped):
     (message,) = warned(damped)
     assert "measured decay rate over that of the computed track, farthest from 1: 4 (" in message
     assert "see 500 Hz, 630 Hz, 800 Hz, 1 kHz. Fit pads, ballast and losses of [track]" in message
+
+
+def test_a_plan_warns_of_it_too():
+    rates, _ = own_data(WheelOnRail(**CASE))
+    rates[3, 1] *= 0.3
+    with pytest.warns(MeasuredTrackWarning, match="farthest from 1: 0.3 ") as caught:
+        planned_rows(prepare_case(with_track(decay_rates=rates)))
+    assert "see 315 Hz." in str(caught[-1].message)
 
 
 def test_the_report_shows_both(damped):

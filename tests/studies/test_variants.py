@@ -98,6 +98,14 @@ def test_measured_rails_have_no_level():
     assert values_of(case, {"surface.level": "minus 5 dB"}) == [reason]
 
 
+def test_a_measured_track_is_that_track():
+    rates = np.array([[100.0, 5.0], [125.0, 5.0], [160.0, 5.0]])
+    case = RAIL.with_(track={"decay_rates": rates})
+    reason = "track.decay_rates was measured on the track as it is: leave it out to ask for another"
+    assert values_of(case, {"track.pad_stiffness": "times 0.5"}) == [reason]
+    assert values_of(case, {"track.rail_foot_width": "125 mm"}, "track.rail_foot_width") == [0.125]
+
+
 def test_what_is_swept_besides_is_changed():
     """Sections in both forms, from a file; labels name the variants."""
     Path("study.toml").write_text(

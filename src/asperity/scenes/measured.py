@@ -3,19 +3,33 @@
 import warnings
 
 import numpy as np
-import xarray
 
 from asperity.arguments import Array
 from asperity.case.measured import read_decay_rates, read_mobility
+from asperity.case.rolled_over import TrackKeys
 from asperity.errors import Finding, Grade, MeasuredTrackWarning
 from asperity.radiation.measured_track import HammerTest
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
-from asperity.schema import Values, spectra
+from asperity.schema import Values
 from asperity.spectra import nominal_frequency
+from asperity.structures.track import Track
 
 FACTOR = 3.0
 """By which a decay rate or a mobility may be off that of the computed track before it is warned of."""
+
+
+def hammer_tests(keys: TrackKeys, track: Track, band: Array) -> tuple[HammerTest, HammerTest] | None:
+    """What was measured on a track, and what would be on the computed one, in bands by their centres, Hz.
+
+    None where the keys say nothing of the kind.
+    """
+    if keys.decay_rates is None and keys.mobility is None:
+        return None
+    computed = HammerTest.of_track(track, band)
+    rates = None if keys.decay_rates is None else read_decay_rates(keys.decay_rates)[:2]
+    mobility = None if keys.mobility is None else read_mobility(keys.mobility)
+    return computed.measured(rates, mobility), computed
 
 
 def measured_track(run: Computed) -> tuple[Values, Array, Array] | None:
@@ -25,25 +39,23 @@ def measured_track(run: Computed) -> tuple[Values, Array, Array] | None:
     the computed track. None where the case says nothing of the kind.
     """
     keys = run.case.track
-    if keys.decay_rates is None and keys.mobility is None:
+    if (tests := hammer_tests(keys, run.track.nominal, run.band)) is None:
         return None
-    computed = HammerTest.of_track(run.track.nominal, run.band)
-    rates = None if keys.decay_rates is None else read_decay_rates(keys.decay_rates)
-    mobility = None if keys.mobility is None else read_mobility(keys.mobility)
-    found = computed.measured(None if rates is None else rates[:2], mobility)
+    found, computed = tests
     lines = computed.frequency
     other = run.scene.first.receptance(lines.ravel()).reshape(lines.shape) + 1.0 / run.stiffness
     longer, louder = found.longer(computed), found.louder(computed, other)
     known = np.isfinite(found.decay_rate) | np.isfinite(found.rms_mobility)
     change = np.where(known, 10.0 * np.log10(longer * louder), np.nan)
     laid_out: Values = {schema.MEASURED_POWER_CHANGE: change}
-    if rates is not None:
+    if keys.decay_rates is not None:
         laid_out |= {schema.MEASURED_DECAY_RATE: found.decay_rate}
         laid_out |= {schema.EXPECTED_DECAY_RATE: computed.decay_rate}
-        if rates[2] is not None:
-            sideways = computed.measured((rates[0], rates[2]), None)
+        centres, _, lateral = read_decay_rates(keys.decay_rates)
+        if lateral is not None:
+            sideways = computed.measured((centres, lateral), None)
             laid_out |= {schema.MEASURED_LATERAL_DECAY_RATE: sideways.decay_rate}
-    if mobility is not None:
+    if keys.mobility is not None:
         own, expected = found.rms_mobility, computed.rms_mobility
         force = 10.0 * np.log10(louder * (expected / own) ** 2)
         laid_out |= {schema.MEASURED_MOBILITY: own, schema.EXPECTED_MOBILITY: expected}
@@ -51,19 +63,19 @@ def measured_track(run: Computed) -> tuple[Values, Array, Array] | None:
     return laid_out, longer * louder, longer
 
 
-_COMPARED = (
-    ("decay_rates", "decay rate", schema.MEASURED_DECAY_RATE, schema.EXPECTED_DECAY_RATE),
-    ("mobility", "point mobility", schema.MEASURED_MOBILITY, schema.EXPECTED_MOBILITY),
-)
-
-
-def findings_of_measured(over_frequency: xarray.Dataset) -> list[Finding]:
-    """Hold what was measured to the computed track; nothing where nothing was."""
-    band, found = over_frequency[spectra.BAND.name].values, []
-    for key, quantity, own, expected in _COMPARED:
-        if own.name not in over_frequency or np.isnan(over_frequency[own.name]).all():
+def findings_of_measured(keys: TrackKeys, track: Track, band: Array) -> list[Finding]:
+    """Hold what was measured to the computed track, in bands by their centres (b,), Hz."""
+    if (tests := hammer_tests(keys, track, band)) is None:
+        return []
+    measured, computed = tests
+    compared = (
+        ("decay_rates", "decay rate", measured.decay_rate / computed.decay_rate),
+        ("mobility", "point mobility", measured.rms_mobility / computed.rms_mobility),
+    )
+    found = []
+    for key, quantity, ratio in compared:
+        if np.isnan(ratio).all():
             continue
-        ratio = over_frequency[own.name].values / over_frequency[expected.name].values
         apart = np.exp(np.abs(np.log(ratio)))
         worst = int(np.nanargmax(apart))
         off = ", ".join(map(nominal_frequency, band[apart > FACTOR]))

@@ -15,9 +15,10 @@ from asperity.scenarios.laws import working_point
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.refining import Setting, Way
 from asperity.scenes import noise, schema
-from asperity.scenes.track import described_losses, loss_factor_error, warn_of_loss_factors
+from asperity.scenes.measured import findings_of_measured, warn_of_contradictions
+from asperity.scenes.track import LOWEST, described_losses, loss_factor_error, warn_of_loss_factors
 from asperity.schema import Entry, spectra
-from asperity.spectra import a_weighting
+from asperity.spectra import a_weighting, third_octave_bands
 from asperity.structures.moving_kernel import STARTS
 from asperity.structures.rail_poles import POLES
 from asperity.structures.track import Track
@@ -45,6 +46,8 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
     scene, highest = prepared.scene, case.numerics.highest_frequency
     losses = loss_factor_error(track, scene.first, stiffness, highest)
     warn_of_loss_factors(losses)
+    bands = third_octave_bands(LOWEST, highest)[0]
+    warn_of_contradictions(findings_of_measured(case.track, track.nominal, bands))
     known = "rail, sleepers and wheel"
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers, for {reason}"

@@ -72,7 +72,8 @@ def computed_result(
         if schema.SOUND_POWER_LEVEL_A in over_frequency:
             power = in_bands[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
             found += noise.findings_of_labels(case)
-        found += (of_measured := measured.findings_of_measured(in_bands))
+        of_measured = measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
+        found += of_measured
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
         found += findings_of_passage(own)
         own |= sideways.sideways_group(computed)

@@ -15,8 +15,9 @@ from asperity.case.describing import CaseKey, entry_of, value_in_toml
 from asperity.case.form import Section
 from asperity.case.scene import Case
 from asperity.errors import CaseError, InputError
-from asperity.parameters import Origin
+from asperity.parameters import Origin, keys_of
 from asperity.reference.materials import Material
+from asperity.structures.track import Track
 from asperity.units import quantity
 
 VARIANT, AS_IT_IS = "variant", "as it is"
@@ -27,6 +28,15 @@ _INSTEAD = re.compile(r"\s*(.+?)\s+(instead of)\s+(.+?)\s*")
 
 class Unfit(Exception):
     """Why a change does not apply to a case."""
+
+
+def _refuse_measured(case: Case, entry: CaseKey) -> None:
+    """What was measured on a track holds for that track alone, whose sound power it decides."""
+    if entry.section != "track" or entry.name not in keys_of(Track, ""):
+        return
+    for name in ("decay_rates", "mobility"):
+        if getattr(case.track, name, None) is not None:
+            raise Unfit(f"track.{name} was measured on the track as it is: leave it out to ask for another")
 
 
 @dataclass(frozen=True)
@@ -59,6 +69,7 @@ class Change:
 
     def applied(self, case: Case) -> Any:
         """The value that the key gets in a case, as it stands in TOML; `Unfit` says why there is none."""
+        _refuse_measured(case, self.entry)
         if not self.way:
             return self.value
         now, name = _value_of(case, self.entry), self.entry.dotted
