@@ -41,9 +41,9 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
 
     Notes
     -----
-    A stiffness k that is stretched by u dissipates ω Im k |u|²: the supports where they are, and the bending
-    and shear stiffness of the rail all along it, on both sides of the force. Each is integrated by itself;
-    that together they are the power at the force, -ω Im G(x|x), is not used.
+    A stiffness k that is stretched by u dissipates ``ω Im k |u|²``: the supports where they are, and the
+    bending and shear stiffness of the rail all along it, on both sides of the force. Each is integrated by
+    itself; that together they are the power at the force, ``-ω Im G(x|x)``, is not used.
     """
     at = np.atleast_1d(finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0))
     field = _Field(track, 2.0 * np.pi * at, real("position of the force (m)", x, "a finite number"))
@@ -90,7 +90,7 @@ class _Field:
         return self._total(*self._nodes()) / self.spacing
 
     def strained(self) -> Array:
-        """Integral along the rail of Im EI |θ'|² and of Im S |w' - θ|², m/N."""
+        """Integral along the rail of Im EI times θ' squared and of Im S times w' - θ squared, m/N."""
         rail, squares = self.track.rail, self.wavenumbers**2
         relative, inertia = rail.losses.at(self.omega), rail.mass_per_length * self.omega**2 - self.held
         bent = rail.bending_stiffness * np.imag(relative)
