@@ -21,7 +21,7 @@ WHEEL = {
     "duration": "40 ms",
     "settling": "20 ms",
     "surface": {"spectrum": "iso3095"},
-    "wheel": {"roughness": "disc"},
+    "wheel": {"roughness": "disc", "section": "rigid"},
     "contact": {"spacing": "1 mm", "samples": 2, "sample_length": "60 mm"},
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
     "sideways": {"contact_place": "5 mm"},

@@ -13,6 +13,7 @@ from asperity.reference.materials import Material
 from asperity.store import Cache, content_key, made
 from asperity.structures.outline import Mesh, checked_outline, mesh_of
 from asperity.text_files import write_csv
+from asperity.threads import one_thread_in_linear_algebra
 
 HEADING = (
     "frequency (Hz)",
@@ -220,7 +221,8 @@ def wheel_modes(
     section, circle = with_running_circle(section)
 
     def make() -> dict[str, Array]:
-        return _found(mesh_of(section, size, circle), section[circle, 0], material, highest)
+        with one_thread_in_linear_algebra():
+            return _found(mesh_of(section, size, circle), section[circle, 0], material, highest)
 
     numbers = [material.youngs_modulus, material.poisson_ratio, material.density, highest, size]
     key = content_key("wheel-modes", FORMAT, section, numbers)
