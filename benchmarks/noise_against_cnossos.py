@@ -18,15 +18,19 @@ from asperity import Track, Wheel
 from asperity.radiation.track import SPEED_OF_SOUND, RailSection, SleeperTop, effective_length
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
+from asperity.reference.materials import MATERIALS
+from asperity.reference.wheels import SECTIONS
 from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, Line, Panel
 from asperity.reporting.figure import write_chart
 from asperity.reporting.panels import frequency_axis
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes.noise import rolling_sound_power
 from asperity.spectra import a_weighted_total, nominal
+from asperity.store import Store
+from asperity.structures.wheel_modes import BEYOND, wheel_modes
+from asperity.structures.wheel_section import WheelSection
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))
-import railway_wheel
 from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 BANDS = 10.0 ** (np.arange(17, 38) / 10.0)  # 50 Hz to 5 kHz
@@ -93,9 +97,11 @@ def total(levels: np.ndarray) -> float:
     return float(a_weighted_total(power[0], BANDS))
 
 
-def wheel_transfer(pads: float) -> np.ndarray:
-    """As `transfer`, of the two wheels of `railway_wheel.py` on an axle."""
-    body, table = track(pads), railway_wheel.table()
+def wheel_transfer(pads: float, section: str) -> np.ndarray:
+    """As `transfer`, of the two wheels of an axle, of a named section, that turn."""
+    outline = WheelSection.named(section).outline(0.46)
+    modes = wheel_modes(outline, MATERIALS["steel"], BEYOND * 5e3, cache=Store())
+    body, table = track(pads), modes.turning(SPEED / 0.46).table()
     wheel = Wheel(600.0, LOAD, *table[:, :3].T)
     radiator = RadiatingWheel(0.46, 0.135, *table[:, 3:].T)
     f = (BANDS[:, None] * 10.0 ** (0.1 * (np.arange(400) - 199.5) / 400.0)).ravel()
@@ -151,14 +157,23 @@ def against_cnossos() -> None:
 
 def wheel_against_cnossos() -> None:
     """Print and draw the wheel beside that of the directive."""
-    ours, theirs = wheel_transfer(PADS["medium"]), cnossos.wheel_transfer("920 mm")[1][: len(BANDS)]
-    print("\n| band / Hz | wheel | CNOSSOS-EU, 920 mm | difference |\n|---:|---:|---:|---:|")
-    for band, own, label in zip(BANDS, ours, theirs, strict=True):
-        print(f"| {nominal(band):g} | {own:.1f} | {label:.1f} | {own - label:+.1f} |")
-    print(f"\nA-weighted, as the tracks: {total(ours):.1f}, CNOSSOS-EU {total(theirs):.1f} dB(A)")
+    ours = {name: wheel_transfer(PADS["medium"], name) for name in SECTIONS}
+    theirs = cnossos.wheel_transfer("920 mm")[1][: len(BANDS)]
+    differences = " | ".join(["difference"] * len(ours))
+    print(f"\n| band / Hz | {' | '.join(ours)} | CNOSSOS-EU, 920 mm | {differences} |")
+    print("|---:|" + "---:|" * (2 * len(ours) + 1))
+    for k, band in enumerate(BANDS):
+        cells = [f"{own[k]:.1f}" for own in ours.values()] + [f"{theirs[k]:.1f}"]
+        cells += [f"{own[k] - theirs[k]:+.1f}" for own in ours.values()]
+        print(f"| {nominal(band):g} | {' | '.join(cells)} |")
+    heard = ", ".join(f"{name} {total(own):.1f}" for name, own in ours.items())
+    print(f"\nA-weighted, as the tracks: {heard}, CNOSSOS-EU {total(theirs):.1f} dB(A)")
     drawn = (
-        Line(BANDS, ours, "by the modes of a drawn wheel", BLUE, marker="o"),
-        Line(BANDS, theirs, "CNOSSOS-EU, 920 mm", BLUE, DASHED),
+        *(
+            Line(BANDS, own, name, colour, marker="o")
+            for (name, own), colour in zip(ours.items(), COLOURS.values(), strict=True)
+        ),
+        Line(BANDS, theirs, "CNOSSOS-EU, 920 mm", INK, DASHED),
     )
     write_chart(Chart((panel(TRANSFER, 20, 125, *drawn, title="Two wheels"),)), "", Path("noise_wheel.png"))
 

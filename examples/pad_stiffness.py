@@ -16,21 +16,13 @@ import numpy as np
 
 import asperity
 
-modes = np.array(  # made up in the range of real wheels; for your own, take them from finite elements
-    [  # Hz, damping ratio, kg, nodal diameters, rms axial and radial velocity per that at the contact
-        [430.0, 1e-2, 3000.0, 2, 3.0, 0.5],
-        [1950.0, 3e-4, 330.0, 2, 0.8, 0.7],
-        [2550.0, 3e-4, 280.0, 3, 0.9, 0.7],
-        [3300.0, 3e-4, 260.0, 4, 1.0, 0.7],
-    ]
-)
 case = asperity.WheelOnRail(
     speed="30 m/s",
     laws=["linear-filtered"],
     duration="0.5 s",
     settling="0.1 s",
     surface={"spectrum": "iso3095"},
-    wheel={"roughness": "disc", "modes": modes},
+    wheel={"roughness": "disc", "section": "straight-web"},
     track={"name": "uic60", "pad_loss_factor": 0.2, "points": ["5 m"]},
     contact={"spacing": "1 mm", "samples": 2},
     numerics={"poles": 60},

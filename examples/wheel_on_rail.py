@@ -2,7 +2,7 @@
 Wheel on rail: the state-dependent contact against a linear one
 ===============================================================
 
-A wheel of 600 kg under 65 kN rolls at 200 km/h on a rail with the roughness of ISO 3095, on the track
+A rigid wheel of 600 kg under 65 kN rolls at 200 km/h on a rail with the roughness of ISO 3095, on the track
 "x2000" (asperity's defaults: the thesis prints none). Against a fully linear contact the thesis finds less
 force at low and more at high frequency, so that the linear contact underestimates A-weighted noise. What is
 found here depends on which constant stiffness the linear contact has:
@@ -25,7 +25,7 @@ case = asperity.WheelOnRail(
     laws=["shifted", "shifted-unfiltered", "printed", "printed-unfiltered", "linear"],
     settling="0.2 s",
     surface={"spectrum": "iso3095"},
-    wheel={"roughness": "disc"},
+    wheel={"roughness": "disc", "section": "rigid"},
     track={"points": ["10 m"]},
     contact={"linearise": "rough"},
     numerics={"poles": 60},

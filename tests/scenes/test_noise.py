@@ -116,8 +116,10 @@ def test_a_label_that_does_not_fit_is_told_with_what_to_do(sections, told):
 def test_a_check_says_whose_sound_power_is_computed():
     found = dict(planned_rows(prepare_case(case())))
     assert found["sound power"] == (
-        "of rail and sleepers, for the wheel is rigid; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
+        "of rail, sleepers and wheel; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
     )
+    rigid = dict(planned_rows(prepare_case(case(wheel={"section": "rigid"}))))["sound power"]
+    assert rigid.startswith("of rail and sleepers, for the wheel is rigid; ")
     with pytest.warns(OutOfRangeWarning, match='those of the class "hard"'):
         planned_rows(prepare_case(case({"track_pad": "hard"})))
     without = prepare_case(case({"track_pad": "hard"}, laws=["hertz"]))

@@ -17,7 +17,7 @@ CASE = {
     "duration": "0.6 s",
     "settling": "0.1 s",
     "surface": {"spectrum": "iso3095"},
-    "wheel": {"roughness": "disc"},
+    "wheel": {"roughness": "disc", "section": "rigid"},
     "track": {"name": "uic60"},
     "contact": {"spacing": "1 mm"},
     "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},

@@ -68,7 +68,7 @@ def on_track(body):
             [FORCE_LEVEL, ACCELERATION_LEVEL],
         ),
         (
-            {"kind": "wheel-on-rail", "wheel": WHEEL} | ON_TRACK,
+            {"kind": "wheel-on-rail", "wheel": WHEEL | {"section": "rigid"}} | ON_TRACK,
             on_track(WHEEL),
             [
                 FORCE_LEVEL, RADIATED_POWER_LEVEL, PASS_BY_MAXIMUM_LEVEL, POINT_VELOCITY_LEVEL,

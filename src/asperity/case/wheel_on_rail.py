@@ -72,7 +72,7 @@ class WheelOnRail(Case, defaults=DEFAULTS):
         mass="600 kg",
         load="65 kN",
         transverse_radius="inf",
-        section="curved-web",
+        section="straight-web",
     )
     track: TrackKeys = section(TrackKeys, "the track that is rolled over")
     contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")

@@ -175,6 +175,31 @@ def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     return show_surface(file, picture, **choices)
 
 
+@_begin("Modes of a wheel by the drawing of its section.", long_work=True)
+@click.argument("section")
+@click.option("--highest", metavar="FREQUENCY", help="Upper end of the spectra. [default: 5 kHz]")
+@click.option("--picture", type=PATH, help="Draw the section to a file, .svg, .pdf or .png.")
+@output("Table of the modes, which wheel.modes of a case names.", "table", "FILE")
+def wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> Document:
+    """Find the modes of a wheel by its SECTION: a named one, an outline (CSV), or a case with a drawn wheel.
+
+    An outline is a closed polygon in a file with the columns 'radius (mm), axial place (mm)', the latter from
+    the running circle, positive away from the flange. Modes go up to 1.25 times the upper end of the spectra.
+
+    Examples
+    --------
+    # frequencies, nodal diameters, damping, modal masses
+    asperity wheel straight-web
+    # of an outline of your own, as a table and with a picture
+    asperity wheel outline.csv -o modes.csv --picture section.svg
+    # of a case, with its dimensions and its damping
+    asperity wheel case.toml --highest '8 kHz'
+    """
+    from asperity.cli.wheel import show_wheel
+
+    return show_wheel(section, highest, table, picture)
+
+
 # --- compute
 
 

@@ -1,0 +1,87 @@
+"""The modes of a wheel by its section: in words, as a table that a case names, and as a picture."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.case.cases import load_case
+from asperity.case.tables import read_outline
+from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.errors import InputError
+from asperity.reference.wheels import SECTIONS
+from asperity.reporting.chart import BLUE, Axis, Chart, Panel, Shape
+from asperity.reporting.figure import write_chart
+from asperity.structures.wheel_modes import with_running_circle
+from asperity.terminal import say
+
+FORMATS = (".png", ".pdf", ".svg")
+COLUMNS = ("Hz", "n", "damping", "modal mass/kg", "axial", "radial")
+
+
+def show_wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> dict[str, Any]:
+    """Print the modes of a wheel, and write and draw them where that is asked for.
+
+    `section` is a named one, the path of an outline, or that of a case whose wheel is drawn; `highest` the
+    upper end of the spectra, with its unit, that of the case by default.
+    """
+    if picture is not None and picture.suffix.lower() not in FORMATS:
+        raise InputError("picture", f"'{picture}'", f"a name that ends in {', '.join(FORMATS)}")
+    case = _case_of(section)
+    if highest is not None:
+        case = case.with_(numerics={"highest_frequency": highest})
+    wheel = case.rolling
+    if not wheel.is_drawn:
+        raise InputError("wheel.section", "a wheel that is not drawn", "a section, which has modes")
+    modes = wheel.standing_modes(case.numerics.highest_frequency)
+    rows = modes.table()
+    say(f"{section}: {wheel.drawn_mass:.4g} kg without its axle, held at a radius of "
+        f"{1e3 * wheel.outline[:, 0].min():.4g} mm; {len(rows)} modes answer to a radial force up to "
+        f"{rows[:, 0].max():.0f} Hz.")  # fmt: skip
+    say("Axial motion of the disc and radial motion of the tread, rms per radial motion at the contact:")
+    say("  {:>8} {:>3} {:>9} {:>14} {:>7} {:>7}".format(*COLUMNS))
+    for frequency, ratio, mass, n, axial, radial in rows:
+        say(f"  {frequency:8.1f} {n:3.0f} {ratio:9.2g} {mass:14.4g} {axial:7.2f} {radial:7.2f}")
+    files = {}
+    if table is not None:
+        files["table"] = modes.write(table)
+        say(f"Table, for wheel.modes: {table.resolve()}")
+    if picture is not None:
+        files["picture"] = write_chart(_chart(wheel.outline), f"Section of a wheel, {section}", picture)
+        say(f"Picture: {picture.resolve()}")
+    names = ("frequency", "damping_ratio", "modal_mass", "nodal_diameters", "axial", "radial")
+    return {"mass": wheel.drawn_mass, "modes": dict(zip(names, rows.T, strict=True)), "files": files}
+
+
+def _case_of(section: str) -> Any:
+    """A wheel on a rail with a section, or a case that has one."""
+    if section.endswith(".toml"):
+        return load_case(Path(section))
+    smooth = {"smooth": True}
+    if section in SECTIONS:
+        return WheelOnRail(surface=smooth, wheel={"section": section})
+    path = Path(section)
+    if not path.is_file():
+        allowed = f"{', '.join(SECTIONS)}, or the path of an outline or of a case"
+        raise InputError("section", f"'{section}'", allowed)
+    outline, circle = with_running_circle(read_outline(path))
+    return WheelOnRail(surface=smooth, wheel={"section": path, "radius": float(outline[circle, 0])})
+
+
+def _chart(outline: Array) -> Chart:
+    """The section, its axle below."""
+    radius, place = 1e3 * np.vstack([outline, outline[:1]]).T
+    shape = Shape(place, radius, BLUE, opacity=0.35)
+    across = Axis("axial place from the running circle / mm", place.min() - 20.0, place.max() + 20.0)
+    return Chart(
+        (
+            Panel(
+                across,
+                Axis("radius / mm", radius.min() - 20.0, radius.max() + 20.0),
+                (shape,),
+                height=7.0,
+                equal=True,
+            ),
+        )
+    )

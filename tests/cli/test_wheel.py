@@ -1,0 +1,68 @@
+"""``asperity wheel``: modes by a section, in words, as a table, and drawn."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from asperity.case.tables import read_mode_table
+from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.structures.wheel_section import WheelSection
+from command_line import call
+
+LOW = ("--highest", "400 Hz")
+
+
+def modes_of(**wheel):
+    case = WheelOnRail(surface={"smooth": True}, wheel=wheel)
+    return case.rolling.standing_modes(400.0).table()
+
+
+def outline(path, scale=1e3):
+    rows = scale * WheelSection.named("bent-web").outline(0.42)
+    path.write_text("radius (mm), axial place (mm)\n" + "\n".join(f"{r!r}, {z!r}" for r, z in rows.tolist()))
+
+
+def test_modes_of_a_named_section_are_told_and_written():
+    told = call("wheel", "straight-web", *LOW, "-o", "modes.csv", "--picture", "section.svg").stdout
+    expected = modes_of(section="straight-web")
+    assert f"{len(expected)} modes" in told
+    assert f"{expected[0, 0]:.1f}" in told
+    assert (read_mode_table(Path("modes.csv")) == expected).all()
+    assert Path("section.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
+
+
+def test_an_outline_brings_its_radius():
+    outline(Path("outline.csv"))
+    call("wheel", "outline.csv", *LOW, "-o", "modes.csv")
+    np.testing.assert_allclose(
+        read_mode_table(Path("modes.csv")), modes_of(section="bent-web", radius=0.42), rtol=1e-6
+    )
+
+
+def test_a_case_brings_dimensions_and_damping():
+    Path("case.toml").write_text(
+        'kind = "wheel-on-rail"\n[surface]\nsmooth = true\n[wheel]\nsection = "straight-web"\n'
+        'web_thickness = "40 mm"\nadded_damping = 0.02\n'
+    )
+    call("wheel", "case.toml", *LOW, "-o", "modes.csv")
+    expected = modes_of(section="straight-web", web_thickness=0.04, added_damping=0.02)
+    assert (read_mode_table(Path("modes.csv")) == expected).all()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("straight",), "allowed: curved-web, straight-web, bent-web, or the path of an outline"),
+        (("rigid.toml",), "a wheel that is not drawn"),
+        (("metres.csv",), "Is the unit of the coordinates right?"),
+        (("straight-web", "--highest", "4"), 'as "5 kHz"'),
+        (("straight-web", "--picture", "section.doc"), "a name that ends in .png, .pdf, .svg"),
+    ],
+)
+def test_what_is_no_section_is_refused(words, told):
+    Path("rigid.toml").write_text(
+        'kind = "wheel-on-rail"\n[surface]\nsmooth = true\n[wheel]\nsection = "rigid"\n'
+    )
+    outline(Path("metres.csv"), 1e6)
+    assert told in call("wheel", *words, code=2).stderr
