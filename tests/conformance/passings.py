@@ -8,6 +8,7 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
+from asperity.radiation.ground import PorousGround
 from asperity.radiation.pass_by import (
     AxleSource,
     Passage,
@@ -19,6 +20,7 @@ from asperity.radiation.pass_by import (
     squared_pressure,
     time_weighted,
 )
+from asperity.reference.grounds import GROUNDS
 
 WATT = np.array([1e-3])
 FLAT = Receiver(7.5, 0.0)
@@ -62,6 +64,39 @@ def weighting():
     expected, slope = 10 * mp.log10(mp.e) / mp.mpf("0.125"), (found[200] - found[201]) / 5e-3
     source = "IEC 61672-1, time constant 125 ms: 34.7 dB/s"
     yield Check("decay of time weighting F", expected, slope, "dB/s", source=source, tolerance=1e-9)
+
+
+def ground():
+    """Reflection of a spherical wave over a plane with impedance, against Sommerfeld's integral, e^{+iωt}."""
+    away, height = mp.mpf("7.5"), mp.mpf("2.2")
+    path = mp.hypot(away, height)
+    for name, f in (("grass", 500), ("lawn", 1000), ("asphalt", 2000)):
+        surface, k = PorousGround(GROUNDS[name]), 2 * mp.pi * f / mp.mpf("343.2")
+        x = mp.mpf(413) / mp.mpf("343.2") * f / mp.mpf(GROUNDS[name])
+        admittance = 1 / (
+            1 + mp.mpf("0.0571") * x ** mp.mpf("-0.754") - 1j * mp.mpf("0.087") * x ** mp.mpf("-0.732")
+        )
+
+        def wave(kappa, k=k, admittance=admittance):
+            vertical = mp.sqrt(k**2 - kappa**2)
+            vertical = -vertical if mp.im(vertical) > 0 else vertical
+            plane = (vertical / k - admittance) / (vertical / k + admittance)
+            turn = mp.exp(-1j * vertical * height)
+            return plane * mp.besselj(0, kappa * away) * turn * kappa / (1j * vertical)
+
+        contour = [
+            0,
+            k / 2 + 0.4j,
+            k + 0.4j,
+            3 * k / 2 + 0.4j,
+            2 * k,
+            *(2 * k + mp.mpf(n) for n in (4, 8, 12, 16)),
+        ]
+        exact = mp.quad(wave, contour) * path * mp.exp(1j * k * path)
+        found = surface.reflection(float(f), float(height / path), float(path))
+        what = f"spherical wave over {name}, {f} Hz, 2.2 m in height and 7.5 m away: |Q|"
+        source = "Sommerfeld's integral, by quadrature"
+        yield Check(what, abs(exact), abs(found), "", source=source, tolerance=0.01)
 
 
 def train():
