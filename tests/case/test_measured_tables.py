@@ -107,7 +107,7 @@ PASSAGE = "time (s), level (dB(A))\n" + "".join(f"{n}, {60 + 5 * min(n, 11 - n)}
         ("passage", PASSAGE[:-20], "9 instants; allowed: at least 10"),
         ("passage", PASSAGE.replace("11, 60", "10, 60"), "times that do not rise; allowed: rising times"),
         ("passage", PASSAGE + "12, 76", "begins at 60.0 and ends at 76.0 dB(A); allowed: one that begins"),
-        ("passage", PASSAGE + "12, 1e3", "a level of 1000 dB; allowed: -20 to 180 dB re 20 uPa. Is it a"),
+        ("passage", PASSAGE + "12, 1e3", "a level of 1e+03 dB re 20 uPa; allowed: -20 to 180 dB"),
         ("passage", "time (s), p (Pa)\n0, 1\n", "the heading 'p (Pa)'; allowed: level in dB(A)"),
         ("bands", "f (Hz), L (dB)\n100, 60\n200, 70", "2 frequencies; allowed: at least 3"),
         ("bands", "f (Hz), L (dB)\n100, 60\n200, 70\n201, 60", "twice the band of 201 Hz"),

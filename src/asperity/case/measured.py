@@ -59,12 +59,8 @@ def read_decay_rates(table: TableSource) -> tuple[Array, Array, Array | None]:
     """
     rows = read_table(table, (_FREQUENCY, _VERTICAL), (_LATERAL,))
     _refuse_few(table, rows)
-    numbers, (least, most) = band_numbers(table, rows[:, 0]), DECAY_RATES
-    rates = rows[:, 1:]
-    if (wrong := (rates < least) | (rates > most)).any():
-        received = f"a decay rate of {rates[wrong][0]:g} dB/m"
-        remedy = "Is the unit right, dB per metre?" if rates[wrong][0] > 0 else "A rail loses vibration."
-        raise InputError(name_of(table), received, f"{least:g} to {most:g} dB/m", remedy)
+    numbers, rates = band_numbers(table, rows[:, 0]), rows[:, 1:]
+    _refuse_beyond(table, rates, DECAY_RATES, "a decay rate", "dB/m")
     return 10.0 ** (0.1 * numbers), rates[:, 0], rates[:, 1] if rates.shape[1] > 1 else None
 
 
@@ -78,14 +74,11 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
     _refuse_few(table, rows)
     frequency = rows[:, 0]
     refuse_disorder(table, frequency)
-    found = rows[:, 1] if rows.shape[1] == 2 else rows[:, 1] + 1j * rows[:, 2]
-    rate = 2.0 * np.pi * frequency if rows.shape[1] == 2 else 2j * np.pi * frequency
-    mobility = found * rate ** FORMS[unit]
-    least, most = MOBILITIES
-    size = mobility if rows.shape[1] == 2 else np.abs(mobility)
-    if (wrong := ~((size > least) & (size < most))).any():
-        received = f"a mobility of {size[wrong][0]:.3g} (m/s)/N"
-        raise InputError(name_of(table), received, f"{least:g} to {most:g} (m/s)/N", "Is the unit right?")
+    whole = rows.shape[1] == 3  # with its phase
+    found, turn = (rows[:, 1] + 1j * rows[:, 2], 1j) if whole else (rows[:, 1], 1.0)
+    mobility = found * (turn * 2.0 * np.pi * frequency) ** FORMS[unit]
+    size = np.asarray(np.abs(mobility) if whole else mobility.real)
+    _refuse_beyond(table, size, MOBILITIES, "a mobility", "(m/s)/N")
     gains = mobility.real < 0.0
     if np.mean(gains) > MOST_GAINS:
         received = f"a rail that gives power to the hammer at {frequency[gains][0]:g} Hz and elsewhere"
@@ -98,7 +91,8 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
 def read_passage(table: TableSource) -> tuple[Array, Array]:
     """Read the level of a passage (n,), dB(A), over rising times (n,), s: it rises and falls by 10 dB."""
     rows, _ = _in_some_unit(table, Column("time", "s"), ("level",), SOUND)
-    time, level = _levels(table, rows)
+    time, level = rows.T
+    _refuse_beyond(table, level, SOUND_LEVELS, "a level", "dB re 20 uPa")
     if len(rows) < FEWEST_INSTANTS:
         raise InputError(name_of(table), f"{len(rows)} instants", f"at least {FEWEST_INSTANTS}")
     if (np.diff(time) <= 0.0).any():
@@ -117,18 +111,18 @@ def read_band_levels(table: TableSource) -> tuple[Array, Array]:
     """
     rows, unit = _in_some_unit(table, _FREQUENCY, ("level",), SOUND[::-1])
     _refuse_few(table, rows)
-    frequency, level = _levels(table, rows)
-    centres = 10.0 ** (0.1 * band_numbers(table, frequency))
+    _refuse_beyond(table, level := rows[:, 1], SOUND_LEVELS, "a level", "dB re 20 uPa")
+    centres = 10.0 ** (0.1 * band_numbers(table, rows[:, 0]))
     return centres, level - (a_weighting(centres) if unit == SOUND[0] else 0.0)
 
 
-def _levels(table: TableSource, rows: Array) -> tuple[Array, Array]:
-    place, level = rows.T
-    least, most = SOUND_LEVELS
-    if (wrong := (level < least) | (level > most)).any():
-        received, allowed = f"a level of {level[wrong][0]:g} dB", f"{least:g} to {most:g} dB re 20 uPa"
-        raise InputError(name_of(table), received, allowed, "Is it a sound pressure level?")
-    return place, level
+def _refuse_beyond(
+    table: TableSource, values: Array, within: tuple[float, float], what: str, unit: str
+) -> None:
+    """Refuse values beyond the limits of what is plausible, and ask for their unit."""
+    if (wrong := (values < within[0]) | (values > within[1])).any():
+        received, allowed = f"{what} of {values[wrong][0]:.3g} {unit}", "{:g} to {:g} ".format(*within) + unit
+        raise InputError(name_of(table), received, allowed, "Is the unit right?")
 
 
 def _in_some_unit(

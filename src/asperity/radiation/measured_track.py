@@ -65,11 +65,10 @@ class HammerTest:
         Decay rates in one-third octaves by their centres, dB/m; mobility over frequencies that rise, Hz,
         (m/s)/N: its phase is that of the computed track if magnitudes are given alone.
         """
-        count, lines = self.frequency.shape
-        rate, found = np.full(count, np.nan), np.full((count, lines), np.nan + 0j)
+        found = np.full(self.frequency.shape, np.nan + 0j)
+        rate = np.full(len(found), np.nan)
         if decay_rates is not None:
-            of_band = dict(zip(numbers_of(decay_rates[0]), decay_rates[1].tolist(), strict=True))
-            rate[:] = [of_band.get(number, np.nan) for number in numbers_of(self.centre)]
+            rate = in_bands(self.centre, *decay_rates)
         if mobility is not None:
             at, given = mobility
             held = (self.frequency[:, -1] > at[0]) & (self.frequency[:, 0] < at[-1])
@@ -109,9 +108,13 @@ class HammerTest:
         return np.nan_to_num(self.driven(other) / computed.driven(other), nan=1.0)
 
 
-def numbers_of(centres: Array) -> list[int]:
-    """Numbers n of one-third octaves 10^(n/10) by their centres."""
-    return [round(10.0 * float(np.log10(centre))) for centre in centres]
+def in_bands(band: Array, centres: Array, values: Array) -> Array:
+    """Values of one-third octaves in bands (b,), both by their centres; NaN in those without one."""
+    numbers, own = (np.rint(10.0 * np.log10(each)) for each in (band, centres))
+    found = np.full(len(band), np.nan)
+    _, at, of = np.intersect1d(numbers, own, return_indices=True)
+    found[at] = values[of]
+    return found
 
 
 def _interpolated(frequency: Array, at: Array, given: NDArray[np.inexact]) -> NDArray[np.inexact]:

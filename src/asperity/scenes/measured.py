@@ -8,7 +8,7 @@ from asperity.arguments import Array
 from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.rolled_over import TrackKeys
 from asperity.errors import Finding, Grade, MeasuredTrackWarning
-from asperity.radiation.measured_track import HammerTest
+from asperity.radiation.measured_track import HammerTest, in_bands
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
 from asperity.schema import Values
@@ -53,8 +53,7 @@ def measured_track(run: Computed) -> tuple[Values, Array, Array] | None:
         laid_out |= {schema.EXPECTED_DECAY_RATE: computed.decay_rate}
         centres, _, lateral = read_decay_rates(keys.decay_rates)
         if lateral is not None:
-            sideways = computed.measured((centres, lateral), None)
-            laid_out |= {schema.MEASURED_LATERAL_DECAY_RATE: sideways.decay_rate}
+            laid_out |= {schema.MEASURED_LATERAL_DECAY_RATE: in_bands(run.band, centres, lateral)}
     if keys.mobility is not None:
         own, expected = found.rms_mobility, computed.rms_mobility
         force = 10.0 * np.log10(louder * (expected / own) ** 2)

@@ -11,7 +11,7 @@ from asperity.case.measured import FALL, read_band_levels, read_passage
 from asperity.case.sections import NoiseKeys
 from asperity.errors import ComputationError, Finding, Grade
 from asperity.radiation import pass_by
-from asperity.radiation.measured_track import numbers_of
+from asperity.radiation.measured_track import in_bands
 from asperity.scenes import schema
 from asperity.schema import Attribute, Values
 
@@ -37,10 +37,7 @@ def measured_passage(
         laid_out[schema.MEASURED_LEVEL] = np.interp(time, at, heard, left=np.nan, right=np.nan)
         laid_out[schema.MEASURED_DURATION_RATIO] = (end - begin) / (last - first)
     if keys.measured_bands is not None:
-        centres, found = read_band_levels(keys.measured_bands)
-        of_band = dict(zip(numbers_of(centres), found.tolist(), strict=True))
-        levels = np.array([of_band.get(number, np.nan) for number in numbers_of(band)])
-        laid_out[schema.MEASURED_BAND_LEVEL] = levels
+        laid_out[schema.MEASURED_BAND_LEVEL] = in_bands(band, *read_band_levels(keys.measured_bands))
     told: dict[Attribute, float | None] = {
         schema.MEASURED_MAXIMUM_LEVEL: keys.measured_maximum_level,
         schema.MEASURED_EQUIVALENT_LEVEL: keys.measured_equivalent_level,

@@ -53,34 +53,33 @@ def over_bands(
     return columns
 
 
+_COLUMNS = {
+    "decay rate, measured / (dB/m)": schema.MEASURED_DECAY_RATE,
+    "computed": schema.EXPECTED_DECAY_RATE,
+    "lateral, measured": schema.MEASURED_LATERAL_DECAY_RATE,
+    "mobility, measured / (dB re 1 m/(N s))": schema.MEASURED_MOBILITY,
+    "computed, mid-span": schema.EXPECTED_MOBILITY,
+    "linear force / dB": schema.MEASURED_FORCE_CHANGE,
+    "rail and sleepers / dB": schema.MEASURED_POWER_CHANGE,
+}
+
+
 def measured_table(tree: DataTree) -> ReportTable | None:
     """Decay rate and mobility in one-third octaves, measured and computed, and what that does to the rail."""
     if not data.present(tree, schema.MEASURED_POWER_CHANGE):
         return None
-    change = data.values(tree, schema.MEASURED_POWER_CHANGE)
-    shown = np.isfinite(change)
-    columns = {"band": band_cells(data.values(tree, BAND)[shown], np.zeros(shown.sum(), dtype=bool))}
-    for head, entry in {
-        "decay rate, measured / (dB/m)": schema.MEASURED_DECAY_RATE,
-        "computed": schema.EXPECTED_DECAY_RATE,
-        "lateral, measured": schema.MEASURED_LATERAL_DECAY_RATE,
-    }.items():
-        if data.present(tree, entry):
-            columns[head] = number_cells(data.values(tree, entry)[shown], "{:.2g}")
-    for head, entry in {
-        "mobility, measured / (dB re 1 m/(N s))": schema.MEASURED_MOBILITY,
-        "computed, mid-span": schema.EXPECTED_MOBILITY,
-    }.items():
-        if data.present(tree, entry):
-            level = 20.0 * np.log10(data.values(tree, entry)[shown])
-            columns[head] = number_cells(level, "{:.1f}")
+    shown = np.isfinite(data.values(tree, schema.MEASURED_POWER_CHANGE))
     doubtful = np.zeros(shown.sum(), dtype=bool)
-    for head, entry in {
-        "linear force / dB": schema.MEASURED_FORCE_CHANGE,
-        "rail and sleepers / dB": schema.MEASURED_POWER_CHANGE,
-    }.items():
+    columns = {"band": band_cells(data.values(tree, BAND)[shown], doubtful)}
+    for head, entry in _COLUMNS.items():
         if data.present(tree, entry):
-            columns[head] = change_cells(data.values(tree, entry)[shown], doubtful)
+            found = data.values(tree, entry)[shown]
+            if entry.units == "dB":
+                columns[head] = change_cells(found, doubtful)
+            elif entry.units == "dB/m":
+                columns[head] = number_cells(found, "{:.2g}")
+            else:
+                columns[head] = number_cells(20.0 * np.log10(found), "{:.1f}")
     note = (
         "Computed: what a hammer at mid-span finds on the computed track, by EN 15461. The sound power of "
         "rail and sleepers goes as |F Y|²/Δ and changes as the last column says, with the force as that of a "
