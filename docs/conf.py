@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import asperity
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "extensions"))
+os.environ["ASPERITY_EXAMPLES"] = str(HERE.parent / "examples")  # cells run in folders of their own
 
 project, author, language = "asperity", "The asperity developers", "en"
 project_copyright = "the asperity developers, BSD-3-Clause"

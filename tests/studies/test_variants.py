@@ -14,7 +14,7 @@ from asperity.errors import CaseError, InputError
 from asperity.scenes import schema
 from asperity.scenes.figures.effects import Effects, effects_chart, effects_table
 from asperity.studies.definition import load_study, study_of
-from asperity.studies.effects import effects, what_helps, with_effects
+from asperity.studies.effects import _order, effects, what_helps, with_effects
 from asperity.studies.variants import AS_IT_IS
 from small_cases import changed
 
@@ -255,6 +255,14 @@ def test_the_quietest_comes_first_and_what_is_left_out_last(table):
     assert (panel.y.low, panel.y.high) == (2.5, -0.5)  # the first on top
     bars = {mark.label: mark for mark in panel.marks if getattr(mark, "label", "")}
     np.testing.assert_allclose(bars["rail"].right - bars["rail"].left, np.abs(of.effect[:3, 1]))
+
+
+def test_the_order_is_that_of_the_whole():
+    """Not of the first part, and the mean over other keys; what has no effect is last."""
+    effect = xarray.DataArray([[-3.0, 1.0], [np.nan, np.nan], [2.0, -1.0]], dims=("variant", "radiator"))
+    assert _order(effect, ["variant"]).tolist() == [2, 0, 1]
+    at_speeds = xarray.concat([effect, effect + 9.0, -3.0 * effect], "speed").transpose("variant", ...)
+    assert _order(at_speeds, ["variant", "speed"]).tolist() == [0, 2, 1]
 
 
 def said(level, effect, error, parts=("rail", "sleepers", "wheel", "total")):
