@@ -7,6 +7,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "Ball": "structures.body",
+    "BallBearing": "structures.ball_bearing",
     "Beam": "structures.beam",
     "Contact": "contact.halfspace",
     "HalfSpace": "contact.halfspace",

@@ -31,6 +31,8 @@ _OTHERS = {
     ("min", "s"): 60.0,
     ("t", "kg"): 1000.0,
 }
+_TURNS = ("1/min", "rpm", "r/min", "min^-1", "min⁻¹")
+"""Turns, where Hz are meant: the unit library would count radians."""
 
 
 _WRITTEN = (
@@ -59,6 +61,8 @@ def factor(unit: str, dimension: str) -> float:
         return _PREFIXES[unit[0]]
     if (unit, dimension) in _OTHERS:
         return _OTHERS[unit, dimension]
+    if dimension == "Hz" and unit in _TURNS:
+        return 1.0 / 60.0
     import pint
 
     allowed = f"a unit that converts to {dimension}" if dimension else "no unit"

@@ -37,15 +37,22 @@ def read_npz(path: Path, hints: Hints) -> list[guards.Surface]:
 
     See `read_npy`.
     """
+    name, data = array_of_archive(path, hints.array)
+    return _surfaces(data, hints, path.name, f"{path.name}:{name}")
+
+
+def array_of_archive(path: Path, name: str | None, what: str = "heights") -> tuple[str, bytes]:
+    """Name and bytes of the array that is named in a ``.npz`` archive, or of the only one that is no scalar.
+
+    `what` it should hold is for messages.
+    """
     with guards.archive(path) as opened:
         names = [name.removesuffix(".npy") for name in opened.namelist() if name.endswith(".npy")]
-        name = hints.array
         if name is None:  # scalars such as a pixel size do not count
-            name = only_one([each for each in names if _has_axes(opened, each)], path.name)
+            name = only_one([each for each in names if _has_axes(opened, each)], path.name, what)
         allowed = f"one of: {listed(names)}"
         require(name in names, f"array in {path.name}", shown(name), allowed, "Choose one.")
-        data = guards.member_bytes(opened, f"{name}.npy", path.name)
-        return _surfaces(data, hints, path.name, f"{path.name}:{name}")
+        return name, guards.member_bytes(opened, f"{name}.npy", path.name)
 
 
 def _has_axes(opened: ZipFile, name: str) -> bool:
@@ -54,29 +61,33 @@ def _has_axes(opened: ZipFile, name: str) -> bool:
         return "'shape': ()" not in stream.read(HEADER).decode("latin-1")
 
 
-def only_one(names: list[str], source: str) -> str:
+def only_one(names: list[str], source: str, what: str = "heights") -> str:
     """Return the only array's name that could be meant, or raise an `InputError` that lists the choice."""
     remedy = advice("array", names[0], "Choose one, as in", "Keep one in the file.") if names else ""
-    what, received = f"arrays of heights in {source}", listed(names) or "none"
-    require(len(names) == 1, what, received, "exactly one", remedy)
+    named, received = f"arrays of {what} in {source}", listed(names) or "none"
+    require(len(names) == 1, named, received, "exactly one", remedy)
     return names[0]
 
 
 def _surfaces(data: bytes, hints: Hints, file: str, source: str) -> list[guards.Surface]:
+    heights = guards.scaled(array_in(data, file), hints.heights_in(source), source)
+    return guards.surfaces_of(heights, hints.spacing_in(source), source)
+
+
+def array_in(data: bytes, file: str) -> NDArray[Any]:
+    """Array that the bytes of a ``.npy`` file hold, once its claims are checked against them."""
     stream = io.BytesIO(data)
     version = np.lib.format.read_magic(stream)
     readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
     received, allowed = f"npy version {version}", "version 1.0 or 2.0"
     require(version in readers, file, received, allowed, "Save it with numpy.save.")
     shape, fortran, kind = readers[version](stream)
-    allowed, remedy = "numbers; Python objects are never unpickled", "Save the heights as a float array."
+    allowed, remedy = "numbers; Python objects are never unpickled", "Save it as a float array."
     numbers = not kind.hasobject and kind.itemsize > 0
     require(numbers, file, f"an array of type {kind}", allowed, remedy)
     points = guards.check_claim(file, shape, kind.itemsize, len(data) - stream.tell()) if shape else 1
     flat: NDArray[Any] = np.frombuffer(data, kind, points, stream.tell())
-    array = flat.reshape(shape, order="F" if fortran else "C")
-    heights = guards.scaled(array, hints.heights_in(source), source)
-    return guards.surfaces_of(heights, hints.spacing_in(source), source)
+    return flat.reshape(shape, order="F" if fortran else "C")
 
 
 def line(x: Array, z: Array, source: str) -> tuple[Array, float]:

@@ -1,0 +1,409 @@
+"""A ball bearing: geometry and contacts, what turns how fast, and which waviness makes which tone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+from numpy.typing import ArrayLike
+
+from asperity.arguments import not_negative, one_of, positive, real, require, whole
+from asperity.contact.hertz import Hertz, in_groove
+from asperity.errors import InputError
+from asperity.parameters import Choice, MaterialOrName, Number, Quantity, parameter
+from asperity.reference.bearings import BEARINGS, CLEARANCE, CONFORMITY, HARDNESS, STATIC_PRESSURE
+from asperity.reference.materials import MATERIALS, Material, contact_modulus
+
+if TYPE_CHECKING:
+    from asperity.structures.bearing_statics import LoadedBearing
+
+PARTS = ("outer", "inner", "ball")
+"""What can be wavy or faulty."""
+STEEL = MATERIALS["steel"]
+_CONFORMITY = Number(above=0.5, at_most=1.0)
+_USUAL = "0.505 to 0.7: grooves lie between"
+
+
+@dataclass(frozen=True)
+class BallBearing:
+    """Ball bearing of one row: equal balls between two rigid grooved rings, held apart by a cage.
+
+    Parameters
+    ----------
+    balls : int
+        Z.
+    ball_diameter, pitch_diameter : float
+        D and d_m, m.
+    inner_conformity, outer_conformity : float
+        Radius of each groove over the ball's diameter, above 0.5.
+    clearance : float, optional
+        Diametral: how far the inner ring moves from side to side, m; below zero the balls are pressed. 0 if
+        neither it nor the contact angle is given.
+    contact_angle : float, optional
+        That at which the balls touch both grooves without load, rad, instead of the clearance.
+    preload : float
+        Constant axial force on the inner ring, as of a spring, N.
+    hardness : float
+        Of the rings, Pa.
+    material, ball_material : Material
+        Of rings and balls.
+    turning : {"inner", "outer"}
+        The ring that turns.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, the balls do not fit side by side, clearance and contact angle are both
+        given, or the balls are pressed beyond the elastic range without any load.
+
+    Notes
+    -----
+    Contacts are elliptic and Hertzian, with R_x of the raceways at the free contact angle. There is no film
+    of lubricant, no friction, no shoulder of a groove, and rings do not bend. T. A. Harris and M. N.
+    Kotzalas, Essential Concepts of Bearing Technology, 5th ed. (2007).
+
+    Examples
+    --------
+    >>> from asperity import BallBearing
+    >>> bearing = BallBearing.named("6205")
+    >>> turning = bearing.kinematics(speed=1797 / 60, contact_angle=0.0)
+    >>> f"{turning.ball_pass_outer:.1f} Hz, {turning.ball_pass_inner:.1f} Hz"
+    '107.4 Hz, 162.2 Hz'
+    >>> loaded = bearing.loaded(radial=100.0)
+    >>> f"{loaded.inner_load.max():.0f} N, {loaded.inner_pressure.max() / 1e9:.2f} GPa"
+    '68 N, 1.06 GPa'
+    """
+
+    balls: int = parameter(
+        Number(at_least=3, whole=True), 9, "number of balls", "3 to 500: bearings lie between"
+    )
+    ball_diameter: float = parameter(
+        Quantity("m", above=0), "7.94 mm", "diameter of a ball", "0.1 mm to 1 m: balls lie between"
+    )
+    pitch_diameter: float = parameter(
+        Quantity("m", above=0),
+        "39.04 mm",
+        "diameter of the circle of the balls' centres",
+        "1 mm to 10 m: bearings lie between",
+    )
+    inner_conformity: float = parameter(
+        _CONFORMITY, 0.52, "groove radius of the inner ring over ball diameter", _USUAL, default=CONFORMITY
+    )
+    outer_conformity: float = parameter(
+        _CONFORMITY, 0.52, "groove radius of the outer ring over ball diameter", _USUAL, default=CONFORMITY
+    )
+    clearance: float | None = parameter(
+        Quantity("m"), "10 um", "diametral clearance; below zero the balls are pressed", default=None
+    )
+    contact_angle: float | None = parameter(
+        Quantity("rad", at_least=0), "15 deg", "free contact angle, instead of the clearance", default=None
+    )
+    preload: float = parameter(
+        Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", default=0.0
+    )
+    hardness: float = parameter(Quantity("Pa", above=0), "7 GPa", "hardness of the rings", default=HARDNESS)
+    material: Material = parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the rings", default=STEEL
+    )
+    ball_material: Material = parameter(  # noqa: RUF009
+        MaterialOrName(), "steel", "material of the balls", default=STEEL
+    )
+    turning: Literal["inner", "outer"] = parameter(
+        Choice(("inner", "outer")), "inner", "the ring that turns", default="inner"
+    )
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "balls", whole("balls", self.balls, "a whole number, 3 or more", at_least=3))
+        for name in ("ball_diameter", "pitch_diameter", "hardness"):
+            positive(f"{name} of a bearing", getattr(self, name))
+        for name in ("inner_conformity", "outer_conformity"):
+            remedy = "It is the radius of the groove over the diameter of the ball, as 0.52."
+            real(name, getattr(self, name), "above 0.5, at most 1", above=0.5, at_most=1.0, remedy=remedy)
+        not_negative("preload (N)", self.preload)
+        one_of("turning", self.turning, ("inner", "outer"))
+        self._check_fit()
+
+    def _check_fit(self) -> None:
+        """Balls beside each other, a gap of the grooves that closes, and no dents before any load."""
+        D, d_m = self.ball_diameter, self.pitch_diameter
+        room = d_m * math.sin(math.pi / self.balls)  # between the centres of neighbours
+        received = f"{self.balls} of {D * 1e3:.4g} mm on a pitch diameter of {d_m * 1e3:.4g} mm"
+        allowed = f"balls that fit side by side: at most {room * 1e3:.4g} mm"
+        require(room >= D, "balls", received, allowed, "Take fewer or smaller balls.")
+        both = self.clearance is not None and self.contact_angle is not None
+        require(not both, "bearing", "both clearance and contact_angle", "one of them", "Remove one.")
+        if self.contact_angle is not None:
+            allowed = "an angle from 0 to 1.4 rad (80 deg)"
+            real("contact_angle (rad)", self.contact_angle, allowed, at_least=0.0, at_most=1.4)
+            return
+        most = 0.5 * self.groove_distance
+        remedy = "Is the unit right? Or give larger conformities."
+        clearance = real("clearance (m)", self.radial_clearance, "a finite number")
+        allowed = f"less than {most * 1e6:.4g} µm, where the balls touch at 41 deg"
+        require(clearance < most, "clearance", f"{clearance * 1e6:.4g} µm", allowed, remedy)
+        if clearance < 0.0:
+            peak = self._pressed_free(-0.5 * clearance)
+            elastic = 2e6 * self._largest_interference
+            received = f"{clearance * 1e6:.4g} µm, which presses the balls with {peak / 1e9:.3g} GPa unloaded"
+            allowed = f"-{elastic:.3g} µm or more, {STATIC_PRESSURE / 1e9:g} GPa, where dents begin (ISO 76)"
+            require(peak <= STATIC_PRESSURE, "clearance", received, allowed, "Take a looser fit.")
+
+    def _pressed_free(self, overlap: float) -> float:
+        """Largest pressure, Pa, of a ball that both rings overlap by so much together, m."""
+        load = self.series_stiffness * overlap**1.5
+        return max(
+            each.peak_pressure(each.approach(load)) for each in (self.inner_contact, self.outer_contact)
+        )
+
+    @property
+    def _largest_interference(self) -> float:
+        """Overlap at which dents begin, m: the peak pressure grows with its square root."""
+        return (STATIC_PRESSURE / self._pressed_free(1e-6)) ** 2 * 1e-6
+
+    @classmethod
+    def named(cls, name: str, **others: Any) -> BallBearing:
+        """A bearing by its designation, with other values for some parameters.
+
+        Parameters
+        ----------
+        name : str
+            As in `asperity.reference.bearings.BEARINGS`, where the dimensions are cited.
+        **others
+            Parameters, in SI.
+
+        Returns
+        -------
+        BallBearing
+            With a clearance of 10 µm and grooves of 0.52 D unless others are given: chosen, not printed.
+        """
+        dimensions: dict[str, Any] = dict(BEARINGS[one_of("bearing", name, BEARINGS)])
+        if others.get("contact_angle") is None:
+            dimensions["clearance"] = CLEARANCE
+        return cls(**(dimensions | others))
+
+    def with_(self, **others: Any) -> BallBearing:
+        """The same bearing with other values for some parameters, in SI."""
+        return replace(self, **others)
+
+    @property
+    def groove_distance(self) -> float:
+        """Distance of the centres of both grooves where the ball touches both, A = r_i + r_o − D, m."""
+        return (self.inner_conformity + self.outer_conformity - 1.0) * self.ball_diameter
+
+    @property
+    def radial_clearance(self) -> float:
+        """Diametral clearance P_d, m; that of the free contact angle is 2A (1 − cos α)."""
+        if self.contact_angle is not None:
+            return 2.0 * self.groove_distance * (1.0 - math.cos(self.contact_angle))
+        return 0.0 if self.clearance is None else self.clearance
+
+    @property
+    def free_angle(self) -> float:
+        """Contact angle without load, rad: cos α = 1 − P_d/2A, zero of one without clearance."""
+        return math.acos(min(1.0, 1.0 - 0.5 * self.radial_clearance / self.groove_distance))
+
+    @property
+    def raceway_radii(self) -> tuple[float, float]:
+        """Radii of inner and outer raceway where a ball touches at the free angle, (d_m ∓ D cos α)/2, m."""
+        half = 0.5 * self.ball_diameter * math.cos(self.free_angle)
+        return 0.5 * self.pitch_diameter - half, 0.5 * self.pitch_diameter + half
+
+    @cached_property
+    def inner_contact(self) -> Hertz:
+        """Contact of a ball and the inner ring."""
+        return self._contact(self.inner_conformity, self.raceway_radii[0])
+
+    @cached_property
+    def outer_contact(self) -> Hertz:
+        """Contact of a ball and the outer ring, in which it lies."""
+        return self._contact(self.outer_conformity, -self.raceway_radii[1])
+
+    def _contact(self, conformity: float, raceway: float) -> Hertz:
+        """Contact in a groove: normal to its surface a raceway of radius R has R/cos α along the path."""
+        modulus, D = contact_modulus(self.material, self.ball_material), self.ball_diameter
+        return in_groove(modulus, 0.5 * D, conformity * D, raceway / math.cos(self.free_angle))
+
+    @property
+    def series_stiffness(self) -> float:
+        """Q/δ^1.5 of both contacts of a ball in series, N/m^1.5."""
+        both = (self.inner_contact, self.outer_contact)
+        return float(sum(each.stiffness_constant ** (-2.0 / 3.0) for each in both) ** -1.5)
+
+    @property
+    def ball_mass(self) -> float:
+        """Mass of a ball, kg."""
+        return math.pi / 6.0 * self.ball_diameter**3 * self.ball_material.density
+
+    def centrifugal_force(self, speed: float) -> float:
+        """Force of a ball outwards, m (d_m/2) (2π f_c)², N, at a speed, turns per second."""
+        cage = 2.0 * math.pi * self.kinematics(speed).cage
+        return 0.5 * self.ball_mass * self.pitch_diameter * cage**2
+
+    def kinematics(
+        self, speed: float, *, contact_angle: float | None = None, slip: float = 0.0
+    ) -> Kinematics:
+        """How fast everything turns where balls roll without sliding, but for a slip of the cage.
+
+        Parameters
+        ----------
+        speed : float
+            Of the ring that turns, turns per second.
+        contact_angle : float, optional
+            At which balls touch while they run, rad; the free one by default.
+        slip : float
+            Share by which the cage is slower than in pure rolling.
+
+        Returns
+        -------
+        Kinematics
+            Frequencies, Hz.
+        """
+        speed = not_negative("speed (1/s)", speed)
+        real("slip", slip, "0 or more, below 1", at_least=0.0, below=1.0)
+        angle = self.free_angle if contact_angle is None else contact_angle
+        gamma = self.ball_diameter / self.pitch_diameter * math.cos(angle)
+        inner, outer = (speed, 0.0) if self.turning == "inner" else (0.0, speed)
+        cage = 0.5 * (inner * (1.0 - gamma) + outer * (1.0 + gamma)) * (1.0 - slip)
+        spin = 0.5 * speed * self.pitch_diameter / self.ball_diameter * (1.0 - gamma**2)
+        return Kinematics(self.balls, inner, outer, cage, spin)
+
+    def loaded(
+        self,
+        radial: float = 0.0,
+        axial: float = 0.0,
+        *,
+        speed: float = 0.0,
+        cage_angles: ArrayLike | None = None,
+    ) -> LoadedBearing:
+        """How it carries a load: of each ball its share, at each angle of the cage.
+
+        Parameters
+        ----------
+        radial, axial : float
+            Forces on the inner ring, N; the preload is added to the axial one.
+        speed : float
+            Turns per second, for the centrifugal force on the balls.
+        cage_angles : array_like (m,), optional
+            Angles of the first ball from the direction of the radial load, rad; by default 24 over the
+            passing of one ball.
+
+        Returns
+        -------
+        LoadedBearing
+            Displacements, loads, contact angles, ellipses, pressures and stiffnesses.
+
+        Raises
+        ------
+        InputError
+            Without a load or preload, or where contacts are no longer small against the grooves.
+
+        Warns
+        -----
+        HalfSpaceWarning
+            Where contacts fill so much of a groove that forces are too large.
+        OutOfRangeWarning
+            Where pressures leave dents, or all balls are pressed at rest and one leaves the inner ring.
+        """
+        from asperity.structures.bearing_statics import load_distribution
+
+        return load_distribution(self, radial, axial, speed, cage_angles)
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Frequencies of a bearing that turns, Hz.
+
+    Parameters
+    ----------
+    balls : int
+        Z.
+    inner, outer : float
+        Turns of each ring.
+    cage : float
+        Turns of the cage.
+    spin : float
+        Turns of a ball about its own axis, as seen from the cage.
+    """
+
+    balls: int
+    inner: float
+    outer: float
+    cage: float
+    spin: float
+
+    @property
+    def turning(self) -> float:
+        """Turns of the ring that turns."""
+        return max(self.inner, self.outer)
+
+    @property
+    def ball_pass_outer(self) -> float:
+        """Balls that pass a spot of the outer raceway (BPFO)."""
+        return self.balls * abs(self.cage - self.outer)
+
+    @property
+    def ball_pass_inner(self) -> float:
+        """Balls that pass a spot of the inner raceway (BPFI)."""
+        return self.balls * abs(self.inner - self.cage)
+
+    @property
+    def ball_defect(self) -> float:
+        """Meetings of a spot of a ball with either raceway (2 BSF)."""
+        return 2.0 * self.spin
+
+    def tone(self, part: str) -> float:
+        """Frequency of a fault of a part: ``"outer"``, ``"inner"`` or ``"ball"``."""
+        passes = (self.ball_pass_outer, self.ball_pass_inner, self.ball_defect)
+        return passes[PARTS.index(one_of("part", part, PARTS))]
+
+    def modulation(self, part: str) -> float:
+        """Turns of a fault of a part past a load that stands still: distance of its side bands."""
+        return (self.outer, self.inner, self.cage)[PARTS.index(one_of("part", part, PARTS))]
+
+    def waviness(self, part: str, order: int, lobes: int) -> tuple[float, ...]:
+        """Tones that a small waviness of a part makes in an axially loaded bearing.
+
+        Parameters
+        ----------
+        part : {"outer", "inner", "ball"}
+            What is wavy.
+        order : int
+            Waves per turn, 1 or more.
+        lobes : int
+            What moves: 0 the ring axially, 1 radially, k ≥ 2 the outer ring as it bends in k lobes.
+
+        Returns
+        -------
+        tuple of float
+            Frequencies above zero, rising, seen where nothing turns; none where the parts of all balls
+            cancel.
+
+        Notes
+        -----
+        Ball j is at ψ_j = 2π f_c t + 2πj/Z and meets cos n(ψ_j − 2π f t) of a raceway that turns with f; only
+        where n ± k = iZ do the Z contributions to cos kψ not cancel. Order 1 of a raceway that turns is its
+        eccentricity. A ball touches with opposite spots, where odd orders cancel. F. P. Wardle, Proc. IMechE
+        202 C (1988) 305.
+        """
+        order = whole("order", order, "a whole number, 1 or more", at_least=1)
+        lobes = whole("lobes", lobes, "a whole number, 0 or more", at_least=0)
+        if one_of("part", part, PARTS) == "ball":
+            found = {abs(order * self.spin + sign * lobes * self.cage) for sign in (-1, 1)}
+            return tuple(sorted(found)) if order % 2 == 0 else ()
+        passed = self.cage - self.modulation(part)
+        matching = [sign for sign in (-1, 1) if (order + sign * lobes) % self.balls == 0]
+        tones = {abs(order * passed + sign * lobes * self.cage) for sign in matching}
+        return tuple(sorted(tone for tone in tones if tone > 1e-9 * self.turning))
+
+
+def bearing_of(name: str | None, given: dict[str, Any]) -> BallBearing:
+    """A named bearing with what is given beside it, or one of dimensions alone, in SI."""
+    if name is not None:
+        return BallBearing.named(name, **given)
+    missing = [each for each in ("balls", "ball_diameter", "pitch_diameter") if each not in given]
+    if missing:
+        named = ", ".join(BEARINGS)
+        raise InputError("bearing", f"no {' and no '.join(missing)}", "these, or a name", f"Names: {named}.")
+    return BallBearing(**given)

@@ -1,0 +1,304 @@
+"""How a ball bearing carries a load at rest: the energy of all contacts is least there, and convex."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from asperity.arguments import Array, finite_array, not_negative, require
+from asperity.contact.hertz import Hertz, check_half_space
+from asperity.errors import ComputationError, Grade, OutOfRangeWarning
+from asperity.reference.bearings import STATIC_PRESSURE
+
+if TYPE_CHECKING:
+    from asperity.structures.ball_bearing import BallBearing
+
+STEPS = 24
+"""Angles of the cage over the passing of a ball."""
+TOLERANCE = 1e-10
+"""Force out of balance over the load."""
+MOST_STEPS = 100
+HALVINGS = 40
+"""Of a step that does not go downhill."""
+SPEEDS = 14
+"""Halvings of the interval that holds the speed at which a ball leaves the inner ring."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedBearing:
+    """A bearing under a load at m angles of its cage, its Z balls at ψ from the radial load.
+
+    Attributes
+    ----------
+    bearing : BallBearing
+        What is loaded.
+    radial, axial, speed : float
+        Load on the inner ring, N, the preload in the axial one, and turns per second.
+    azimuth : ndarray (m, Z)
+        ψ of the balls, rad; those of the first ball are the angles of the cage.
+    displacement : ndarray (m, 3)
+        Of the inner ring: along the radial load, across it (towards ψ = 90°), axially, m.
+    inner_load, outer_load : ndarray (m, Z)
+        Of the contacts, N.
+    inner_angle, outer_angle : ndarray (m, Z)
+        Of the contacts, rad; NaN of balls that do not touch.
+    stiffness : ndarray (m, 3, 3)
+        Derivative of the force by the displacement of the inner ring, N/m.
+    imbalance : float
+        Largest force that is left out of balance, over the load.
+    steps : int
+        Newton steps that it took.
+    """
+
+    bearing: BallBearing
+    radial: float
+    axial: float
+    speed: float
+    azimuth: Array
+    displacement: Array
+    inner_load: Array
+    outer_load: Array
+    inner_angle: Array
+    outer_angle: Array
+    stiffness: Array
+    imbalance: float
+    steps: int
+
+    def semi_axes(self, ring: str) -> tuple[Array, Array]:
+        """Semi-axes of the contacts with the ``"inner"`` or ``"outer"`` ring, along and across (m, Z), m."""
+        contact, load = self._contacts[ring]
+        along, across = contact.semi_axes(contact.approach(1.0))
+        return along * np.cbrt(load), across * np.cbrt(load)
+
+    @property
+    def inner_pressure(self) -> Array:
+        """Peak pressures at the inner ring, (m, Z), Pa."""
+        return self._pressure("inner")
+
+    @property
+    def outer_pressure(self) -> Array:
+        """Peak pressures at the outer ring, (m, Z), Pa."""
+        return self._pressure("outer")
+
+    def _pressure(self, ring: str) -> Array:
+        contact, load = self._contacts[ring]
+        return contact.peak_pressure(contact.approach(1.0)) * np.cbrt(load)
+
+    @property
+    def _contacts(self) -> dict[str, tuple[Hertz, Array]]:
+        of = self.bearing
+        return {"inner": (of.inner_contact, self.inner_load), "outer": (of.outer_contact, self.outer_load)}
+
+    @property
+    def touching(self) -> Array:
+        """How many balls touch the inner ring, at each angle of the cage (m,)."""
+        return np.asarray(np.count_nonzero(self.inner_load, axis=1), dtype=float)
+
+    @property
+    def contact_angle(self) -> float:
+        """Mean angle of the inner contacts, weighted with their loads, rad."""
+        angle = np.where(self.inner_load > 0.0, self.inner_angle, 0.0)
+        return float((angle * self.inner_load).sum() / self.inner_load.sum())
+
+    @property
+    def compliance(self) -> tuple[Array, Array]:
+        """Varying compliance: rms about the mean and peak to peak of the displacement (3,), m."""
+        return self.displacement.std(axis=0), np.ptp(self.displacement, axis=0)
+
+
+def load_distribution(
+    bearing: BallBearing, radial: float, axial: float, speed: float, cage_angles: ArrayLike | None
+) -> LoadedBearing:
+    """Solve for the load distribution and doubt it, see `BallBearing.loaded`."""
+    radial, axial = not_negative("radial load (N)", radial), not_negative("axial load (N)", axial)
+    speed, preloaded = not_negative("speed (1/s)", speed), axial + bearing.preload
+    held = radial + preloaded > 0.0 or bearing.radial_clearance < 0.0
+    allowed, remedy = "a radial or axial load, or a preload", "Without one the inner ring is loose."
+    require(held, "load", "none", allowed, remedy)
+    if cage_angles is None:
+        cage_angles = 2.0 * math.pi / bearing.balls * np.arange(STEPS) / STEPS
+    angles = finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(cage_angles)), shape=(None,))
+    found = _solved(bearing, radial, preloaded, speed, angles)
+    _doubt(found, angles)
+    return found
+
+
+def _link(stretch: Array, length: float, constant: float) -> tuple[Array, Array, Array, Array]:
+    """Energy, force (2), and stiffness (2, 2) of contacts that hold two centres at a length; and the load.
+
+    They are Hertzian: the energy 0.4 K δ^2.5 of the stretch (…, 2), radial and axial, beyond the length.
+    """
+    distance = np.linalg.norm(stretch, axis=-1)
+    normal, overlap = stretch / distance[..., None], np.maximum(distance - length, 0.0)
+    load = constant * overlap**1.5
+    across = (load / distance)[..., None, None]
+    along = (1.5 * constant * np.sqrt(overlap))[..., None, None] - across
+    stiffness = along * normal[..., :, None] * normal[..., None, :] + across * np.eye(2)
+    return 0.4 * constant * overlap**2.5, load[..., None] * normal, stiffness, load
+
+
+def _descended(
+    energy_of: Callable[[Array], tuple[Array, Array, Array]], start: Array, scale: float, what: str
+) -> tuple[Array, float, int]:
+    """Least energies by Newton's method with halved steps: places (…, n), imbalance, and number of steps.
+
+    `energy_of` gives energies (…), gradients (…, n) and Hessians (…, n, n) of convex functions; a gradient
+    counts as zero below `TOLERANCE` of the scale.
+    """
+    place = start
+    energy, gradient, hessian = energy_of(place)
+    for step in range(MOST_STEPS):
+        size = np.linalg.norm(gradient, axis=-1)
+        if size.max() <= TOLERANCE * scale:
+            return place, float(size.max() / scale), step
+        trace = np.trace(hessian, axis1=-2, axis2=-1)
+        ridge = np.maximum(1e-13 * trace, 1e-9 * trace.max())[..., None, None] * np.eye(place.shape[-1])
+        move = -np.linalg.solve(hessian + ridge, gradient[..., None])[..., 0]
+        slope, share = (move * gradient).sum(-1), np.ones(size.shape)
+        for _ in range(HALVINGS):
+            tried = energy_of(place + share[..., None] * move)
+            left = np.linalg.norm(tried[1], axis=-1)
+            lower = tried[0] <= energy + 1e-4 * share * slope
+            down = lower | (left <= np.maximum((1.0 - 1e-4 * share) * size, TOLERANCE * scale))
+            if down.all():
+                break
+            share = np.where(down, share, 0.5 * share)
+        place = place + share[..., None] * move
+        energy, gradient, hessian = tried
+    raise ComputationError(
+        f"{what}: {np.linalg.norm(gradient, axis=-1).max() / scale:.1g} of the load is out of balance after "
+        f"{MOST_STEPS} steps",
+        "another load or clearance",
+    )
+
+
+@dataclass(frozen=True)
+class _Balls:
+    """What the balls of a bearing do between two groove centres that are a stretch (…, 2) apart."""
+
+    bearing: BallBearing
+    lift: float  # centrifugal force, N
+
+    def __post_init__(self) -> None:
+        D, of = self.bearing.ball_diameter, self.bearing
+        constants = of.inner_contact.stiffness_constant, of.outer_contact.stiffness_constant
+        lengths = (of.inner_conformity - 0.5) * D, (of.outer_conformity - 0.5) * D
+        object.__setattr__(self, "inner", (lengths[0], constants[0]))
+        object.__setattr__(self, "outer", (lengths[1], constants[1]))
+
+    inner = outer = (0.0, 0.0)  # length and constant of each link
+
+    def together(self, stretch: Array) -> tuple[Array, Array, Array, Array]:
+        """Energy, force on the inner groove centre, its stiffness, and place of the ball (…, 2)."""
+        series = self.bearing.series_stiffness
+        energy, force, stiffness, load = _link(stretch, self.bearing.groove_distance, series)
+        normal = stretch / np.linalg.norm(stretch, axis=-1)[..., None]
+        length, constant = self.outer
+        ball = (length + (load / constant) ** (2.0 / 3.0))[..., None] * normal
+        if self.lift == 0.0:
+            return energy, force, stiffness, ball
+        free = np.zeros_like(stretch)
+        free[..., 0] = length + (self.lift / constant) ** (2.0 / 3.0)
+        ball, *_ = _descended(
+            lambda at: self._apart(stretch, at),
+            np.where((load > self.lift)[..., None], ball, free),
+            0.1 * max(self.lift, float(load.max())),
+            "balance of a ball",
+        )
+        energy, force, inner, _ = _link(stretch - ball, *self.inner)
+        outer = _link(ball, *self.outer)
+        condensed = inner - inner @ np.linalg.solve(inner + outer[2], inner)
+        return energy + outer[0] - self.lift * ball[..., 0], force, condensed, ball
+
+    def _apart(self, stretch: Array, ball: Array) -> tuple[Array, Array, Array]:
+        """Energy of balls at some places, its gradient and Hessian."""
+        inner, outer = _link(stretch - ball, *self.inner), _link(ball, *self.outer)
+        gradient = outer[1] - inner[1] - self.lift * np.array([1.0, 0.0])
+        return inner[0] + outer[0] - self.lift * ball[..., 0], gradient, inner[2] + outer[2]
+
+
+def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, angles: Array) -> LoadedBearing:
+    """The inner ring in balance at each angle of the cage."""
+    azimuth = angles[:, None] + 2.0 * math.pi / bearing.balls * np.arange(bearing.balls)
+    moved = np.zeros((*azimuth.shape, 2, 3))  # how the stretch follows the inner ring
+    moved[..., 0, 0], moved[..., 0, 1], moved[..., 1, 2] = np.cos(azimuth), np.sin(azimuth), 1.0
+    A, load = bearing.groove_distance, np.array([radial, 0.0, axial])
+    rest = np.array([A - 0.5 * bearing.radial_clearance, 0.0])
+    balls = _Balls(bearing, bearing.centrifugal_force(speed))
+
+    def stretched(ring: Array) -> Array:
+        return rest + np.einsum("mzik,mk->mzi", moved, ring)
+
+    def energy_of(ring: Array) -> tuple[Array, Array, Array]:
+        energy, force, stiffness, _ = balls.together(stretched(ring))
+        gradient = np.einsum("mzik,mzi->mk", moved, force) - load
+        hessian = np.einsum("mzik,mzij,mzjl->mkl", moved, stiffness, moved)
+        return energy.sum(-1) - ring @ load, gradient, hessian
+
+    interference = bearing.series_stiffness * max(-0.5 * bearing.radial_clearance, 0.0) ** 1.5
+    scale = max(radial, axial, interference)
+    start = np.zeros((len(angles), 3))
+    pressed = (5.0 * scale / bearing.balls / bearing.series_stiffness) ** (2.0 / 3.0)
+    start[:, 0] = (max(0.5 * bearing.radial_clearance, 0.0) + pressed) * (radial > 0.0)
+    start[:, 2] = (A * math.sin(bearing.free_angle) + math.sqrt(2.0 * A * pressed)) * (axial > 0.0)
+    ring, imbalance, steps = _descended(energy_of, start, scale, "balance of the inner ring")
+    stretch = stretched(ring)
+    ball = balls.together(stretch)[3]
+    inner, outer = _link(stretch - ball, *balls.inner), _link(ball, *balls.outer)
+    inner_angle, outer_angle = (
+        np.where(link[3] > 0.0, np.arctan2(link[1][..., 1], link[1][..., 0]), np.nan)
+        for link in (inner, outer)
+    )
+    found = azimuth, ring, inner[3], outer[3], inner_angle, outer_angle, energy_of(ring)[2]
+    return LoadedBearing(bearing, radial, axial, speed, *found, imbalance, steps)
+
+
+def _doubt(found: LoadedBearing, angles: Array) -> None:
+    """Refuse or warn of contacts that fill their grooves, of dents, of balls that leave the inner ring."""
+    of = found.bearing
+    sides = zip(("inner", "outer"), (of.inner_conformity, of.outer_conformity), of.raceway_radii, strict=True)
+    for ring, conformity, raceway in sides:
+        contact, load = found._contacts[ring]
+        heaviest, D = float(load.max()), of.ball_diameter
+        check_half_space(
+            contact.semi_axes(contact.approach(heaviest)),
+            0.5 * D,
+            groove_radius=conformity * D,
+            raceway_radius=raceway if ring == "inner" else -raceway,
+            cause=f"{heaviest:.4g} N of one ball on the {ring} ring",
+        )
+        peak = float(found._pressure(ring).max())
+        if peak > min(STATIC_PRESSURE, of.hardness):
+            hard, limit = peak > of.hardness, min(STATIC_PRESSURE, of.hardness) / 1e9
+            means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
+            grade = Grade.OUT if hard else Grade.WARNING
+            message = f"Balls press the {ring} ring with {peak / 1e9:.3g} GPa, above {limit:g} GPa, {means}."
+            warnings.warn(OutOfRangeWarning(f"{message} Lower the load.", grade), stacklevel=4)
+    _doubt_speed(found, angles)
+
+
+def _doubt_speed(found: LoadedBearing, angles: Array) -> None:
+    """Warn where all balls are pressed at rest and one leaves the inner ring, and say from which speed on."""
+    of, balls = found.bearing, found.bearing.balls
+    if found.speed == 0.0 or found.touching.min() == balls:
+        return
+
+    def all_touch(speed: float) -> bool:
+        return bool(_solved(of, found.radial, found.axial, speed, angles).touching.min() == balls)
+
+    low, high = 0.0, found.speed
+    if not all_touch(low):
+        return
+    for _ in range(SPEEDS):
+        low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
+    message = (
+        f"At {60.0 * found.speed:.4g} 1/min centrifugal force lifts balls off the inner ring, all of which "
+        f"are pressed at rest; the first one leaves at {60.0 * high:.4g} 1/min. Raise axial load or preload."
+    )
+    warnings.warn(OutOfRangeWarning(message), stacklevel=5)

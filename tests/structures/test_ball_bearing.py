@@ -1,0 +1,295 @@
+"""A ball bearing at rest: closed forms, another solution, symmetry; its kinematics against all balls."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.optimize import brentq, least_squares
+
+from asperity.errors import HalfSpaceWarning, InputError, OutOfRangeWarning
+from asperity.structures.ball_bearing import BallBearing
+
+B6205 = BallBearing.named("6205")
+TIGHT = B6205.with_(clearance=-4e-6)
+OTHER = BallBearing(11, 6e-3, 30e-3, 0.515, 0.53, contact_angle=math.radians(25.0), preload=20.0)
+
+
+# --- at rest
+
+
+@pytest.mark.parametrize("bearing", [B6205, OTHER])
+def test_under_an_axial_load_all_balls_share_it(bearing):
+    """Q = F/(Z sin α), and the angle at which A (cos α₀/cos α − 1) is the approach under Q."""
+    found, total = bearing.loaded(axial=90.0), 90.0 + bearing.preload
+    free, A, K = bearing.free_angle, bearing.groove_distance, bearing.series_stiffness
+
+    def missing(angle):
+        return (
+            bearing.balls * K * (A * (math.cos(free) / math.cos(angle) - 1.0)) ** 1.5 * math.sin(angle)
+            - total
+        )
+
+    angle = brentq(missing, free, 1.2, xtol=1e-14)
+    np.testing.assert_allclose(found.inner_angle, angle, rtol=1e-10)
+    np.testing.assert_allclose(found.inner_load, total / bearing.balls / math.sin(angle), rtol=1e-9)
+    assert found.contact_angle == pytest.approx(angle)
+
+
+def test_many_balls_carry_a_radial_load_as_the_integral():
+    """Q = F/(Z J), J = 0.2288: 4.37 F/Z (printed by makers for point contacts without clearance)."""
+    J = quad(lambda psi: math.cos(psi) ** 2.5, -0.5 * math.pi, 0.5 * math.pi)[0] / (2.0 * math.pi)
+    assert pytest.approx(0.2288, abs=1e-4) == J
+    many = BallBearing(200, 1e-3, 80e-3, clearance=0.0)
+    found = many.loaded(radial=200.0, cage_angles=[0.0])
+    assert found.inner_load.max() == pytest.approx(200.0 / many.balls / J, rel=1e-4)
+    assert 200.0 / many.balls * 4.37 == pytest.approx(found.inner_load.max(), rel=1e-3)
+    # as stiff as the integral: F = Z K x^1.5 J
+    assert found.stiffness[0, 0, 0] == pytest.approx(1.5 * 200.0 / found.displacement[0, 0], rel=1e-4)
+
+
+def forces_out_of_balance(state, bearing, load, lift, azimuth):
+    """Newtons that are missing at the inner ring and at each ball, from their coordinates."""
+    Z, D = bearing.balls, bearing.ball_diameter
+    ring, balls = state[:3] * 1e-5, state[3:].reshape(Z, 2) * 1e-5
+    left, missing = np.array(load), []
+    for psi, moved in zip(azimuth, balls, strict=True):
+        ball = np.array([0.5 * bearing.pitch_diameter, 0.0]) + moved
+        out = np.array([0.5 * (bearing.pitch_diameter + D) - bearing.outer_conformity * D, 0.0])
+        out[0] += 0.25 * bearing.radial_clearance
+        inn = np.array([0.5 * (bearing.pitch_diameter - D) + bearing.inner_conformity * D, 0.0])
+        inn += [ring[0] * np.cos(psi) + ring[1] * np.sin(psi) - 0.25 * bearing.radial_clearance, ring[2]]
+        on_ball = np.array([lift, 0.0])
+        for centre, share, contact, is_inner in (
+            (out, bearing.outer_conformity, bearing.outer_contact, False),
+            (inn, bearing.inner_conformity, bearing.inner_contact, True),
+        ):
+            towards = centre - ball
+            distance = np.hypot(*towards)
+            force = contact.force(distance - (share - 0.5) * D) * towards / distance
+            on_ball += force
+            if is_inner:
+                left -= [force[0] * np.cos(psi), force[0] * np.sin(psi), force[1]]
+        missing.append(on_ball)
+    return np.concatenate([left, np.ravel(missing)])
+
+
+@pytest.mark.parametrize(
+    ("bearing", "radial", "axial", "speed", "angle"),
+    [
+        (B6205, 100.0, 40.0, 30.0, 0.2),
+        (B6205, 300.0, 10.0, 400.0, 0.1),
+        (TIGHT, 150.0, 0.0, 100.0, 0.3),
+        (OTHER, 30.0, 60.0, 300.0, 0.05),
+        (OTHER.with_(turning="outer"), 30.0, 60.0, 200.0, 0.05),
+    ],
+)
+def test_it_is_in_balance_by_another_solution(bearing, radial, axial, speed, angle):
+    """Of all coordinates at once, from forces alone: finite Z, clearance, preload, centrifugal force."""
+    found = bearing.loaded(radial, axial, speed=speed, cage_angles=[angle])
+    cage = 2.0 * np.pi * bearing.kinematics(speed).cage
+    lift = np.pi / 6 * bearing.ball_diameter**3 * 7850.0 * 0.5 * bearing.pitch_diameter * cage**2
+    load = [radial, 0.0, axial + bearing.preload]
+    azimuth = found.azimuth[0]
+    start = np.zeros(3 + 2 * bearing.balls)
+    start[:3] = found.displacement[0] * 1e5 * [1.3, 1.0, 0.8]
+    start[3::2], start[4::2] = 0.6, 0.4 * start[2]
+    least = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
+    other = least_squares(forces_out_of_balance, start, args=(bearing, load, lift, azimuth), **least)
+    assert np.abs(other.fun).max() < 1e-6
+    np.testing.assert_allclose(other.x[:3] * 1e-5, found.displacement[0], rtol=1e-6, atol=1e-12)
+
+
+@settings(max_examples=30)
+@given(
+    st.floats(0.0, 500.0), st.floats(0.1, 500.0), st.floats(0.0, 300.0), st.floats(-0.5, 2.0),
+    st.sampled_from([B6205, TIGHT, OTHER]),
+)  # fmt: skip
+def test_forces_balance(radial, axial, speed, angle, bearing):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = bearing.loaded(radial, axial, speed=speed, cage_angles=[angle])
+    inner, outer = np.nan_to_num(found.inner_angle), np.nan_to_num(found.outer_angle)
+    inward, along = found.inner_load * np.cos(inner), found.inner_load * np.sin(inner)
+    total, scale = axial + bearing.preload, max(radial, axial + bearing.preload)
+    assert (inward * np.cos(found.azimuth)).sum() == pytest.approx(radial, abs=2e-9 * scale)
+    assert (inward * np.sin(found.azimuth)).sum() == pytest.approx(0.0, abs=2e-9 * scale)
+    assert along.sum() == pytest.approx(total, abs=2e-9 * scale)
+    lift = bearing.centrifugal_force(speed)
+    np.testing.assert_allclose(found.outer_load * np.cos(outer) - inward, lift, atol=1e-8 * scale)
+    np.testing.assert_allclose(found.outer_load * np.sin(outer), along, atol=1e-8 * scale)
+    assert found.imbalance <= 1e-10
+
+
+def test_the_next_ball_is_the_same_and_left_is_right():
+    pitch = 2.0 * np.pi / B6205.balls
+    found = B6205.loaded(100.0, 20.0, cage_angles=[0.1, 0.1 + pitch, -0.1])
+    np.testing.assert_allclose(found.displacement[1], found.displacement[0], rtol=1e-8, atol=1e-16)
+    np.testing.assert_allclose(np.roll(found.inner_load[1], 1), found.inner_load[0], rtol=1e-8)
+    np.testing.assert_allclose(found.displacement[2], found.displacement[0] * [1, -1, 1], rtol=1e-7)
+
+
+@pytest.mark.parametrize(("bearing", "speed"), [(B6205, 0.0), (TIGHT, 0.0), (OTHER, 400.0)])
+def test_its_stiffness_is_what_a_little_more_load_meets(bearing, speed):
+    radial, axial, more = 120.0, 30.0, 1e-3
+    at = {"speed": speed, "cage_angles": [0.15]}
+    found = bearing.loaded(radial, axial, **at)
+    for row, (dr, da) in ((0, (more, 0.0)), (2, (0.0, more))):
+        up, down = (bearing.loaded(radial + s * dr, axial + s * da, **at) for s in (1, -1))
+        moved = (up.displacement[0] - down.displacement[0]) / (2.0 * more)
+        np.testing.assert_allclose(found.stiffness[0] @ moved, np.eye(3)[row], atol=1e-4)
+
+
+def test_the_static_load_rating_is_where_dents_begin():
+    """ISO 76: 4.2 GPa under Q = 5 C₀/Z; C₀ of a 6205 is 7.8 kN in catalogues."""
+    heaviest = 5.0 * 7800.0 / B6205.balls
+    contact = B6205.inner_contact
+    assert contact.peak_pressure(contact.approach(heaviest)) == pytest.approx(4.2e9, rel=0.02)
+
+
+def test_ellipses_are_those_of_hertz_and_the_compliance_varies():
+    found = B6205.loaded(radial=100.0)
+    for ring, contact in (("inner", B6205.inner_contact), ("outer", B6205.outer_contact)):
+        load = getattr(found, f"{ring}_load")[3, 0]
+        along, across = (axis[3, 0] for axis in found.semi_axes(ring))
+        assert (along, across) == pytest.approx(contact.semi_axes(contact.approach(load)))
+        peak = getattr(found, f"{ring}_pressure")[3, 0]
+        assert peak == pytest.approx(1.5 * load / (np.pi * along * across))
+    rms, peak_to_peak = found.compliance
+    assert peak_to_peak[0] == pytest.approx(np.ptp(found.displacement[:, 0]))
+    assert 0.0 < rms[0] < 0.5 * peak_to_peak[0]
+    assert set(found.touching) <= {2.0, 3.0}
+
+
+def test_a_free_ball_leaves_the_inner_ring_where_its_outer_contact_takes_the_interference():
+    lift = TIGHT.outer_contact.force(2e-6)
+    unit = TIGHT.centrifugal_force(1.0)
+    leaves = math.sqrt(lift / unit)
+    assert TIGHT.loaded(speed=0.999 * leaves).touching.min() == 9
+    with pytest.warns(OutOfRangeWarning, match=r"lifts balls off the inner ring") as told:
+        assert TIGHT.loaded(speed=1.2 * leaves).touching.max() == 0
+    (said,) = [float(str(each.message).split("leaves at ")[1].split()[0]) for each in told]
+    assert said == pytest.approx(60.0 * leaves, rel=1e-3)
+
+
+# --- what turns
+
+
+def test_multiples_of_the_speed_are_those_printed_for_it():
+    """Case Western Reserve University, bearing information: SKF 6205-2RS JEM and 6203-2RS JEM."""
+    for dimensions, printed in (
+        ((9, 0.3126, 1.537), (0.39828, 3.5848, 5.4152, 4.7135)),
+        ((8, 0.2656, 1.122), (0.3817, 3.0530, 4.9469, 3.9874)),
+    ):
+        found = BallBearing(*dimensions).kinematics(1.0)
+        told = found.cage, found.ball_pass_outer, found.ball_pass_inner, found.ball_defect
+        assert told == pytest.approx(printed, abs=3e-4)
+
+
+def test_the_ring_that_turns_and_slip():
+    inner, outer = (B6205.with_(turning=ring).kinematics(10.0) for ring in ("inner", "outer"))
+    assert inner.cage + outer.cage == pytest.approx(10.0)
+    for name in ("ball_pass_outer", "ball_pass_inner", "ball_defect"):
+        assert getattr(inner, name) == pytest.approx(getattr(outer, name))
+    slow = B6205.kinematics(10.0, slip=0.01)
+    assert slow.ball_pass_outer == pytest.approx(0.99 * inner.ball_pass_outer)
+    assert slow.ball_pass_outer + slow.ball_pass_inner == pytest.approx(90.0)
+    steep = B6205.kinematics(10.0, contact_angle=1.0)
+    assert steep.cage == pytest.approx(5.0 * (1.0 - 7.94 / 39.04 * math.cos(1.0)))
+
+
+@pytest.mark.parametrize("turning", ["inner", "outer"])
+@pytest.mark.parametrize("part", ["outer", "inner", "ball"])
+def test_waviness_makes_the_tones_that_all_balls_make_together(part, turning):
+    """Sums over the balls, of every order and motion; most of them are zero."""
+    bearing = BallBearing(7, 2e-3, 10e-3, turning=turning)  # the cage turns with 0.4 or 0.6, a ball with 2.4
+    turns = bearing.kinematics(1.0)
+    time = np.arange(4000) / 400.0
+    azimuth = 2.0 * np.pi * (turns.cage * time + np.arange(7)[:, None] / 7)
+    rolled = azimuth - 2.0 * np.pi * {"outer": turns.outer, "inner": turns.inner, "ball": 0}[part] * time
+    heard = 0
+    for order in range(1, 30):
+        met = np.cos(order * rolled)
+        if part == "ball":
+            spot = 2.0 * np.pi * turns.spin * time
+            met = np.zeros_like(azimuth)
+            met[0] = np.cos(order * spot) + np.cos(order * (spot + np.pi))
+        for lobes in range(4):
+            together = (met * np.cos(lobes * azimuth)).sum(0)
+            lines = np.flatnonzero(np.abs(np.fft.rfft(together)) > 1e-6 * time.size)
+            assert turns.waviness(part, order, lobes) == pytest.approx(lines[lines > 0] / 10.0)
+            heard += lines.size
+    assert heard > 20
+
+
+# --- what cannot be
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"balls": 16}, r"balls: received 16 of 7.94 mm on a pitch diameter of 39.04 mm; .* at most 7.6"),
+        ({"balls": 2}, "a whole number, 3 or more"),
+        ({"ball_diameter": 0.0}, "ball_diameter of a bearing"),
+        ({"inner_conformity": 0.5}, "inner_conformity: received 0.5; allowed: above 0.5"),
+        ({"contact_angle": 0.2}, "received both clearance and contact_angle"),
+        ({"clearance": None, "contact_angle": 1.5}, "an angle from 0 to 1.4 rad"),
+        ({"clearance": 1e-3}, r"clearance: received 1000 µm; allowed: less than 158.8 µm"),
+        (
+            {"clearance": -150e-6},
+            r"clearance: received -150 µm, which presses .* GPa unloaded; allowed: -\d+ µm",
+        ),
+        ({"turning": "both"}, "one of inner, outer"),
+        ({"preload": -1.0}, "preload"),
+    ],
+)
+def test_geometries_that_do_not_close(changes, message):
+    with pytest.raises(InputError, match=message):
+        B6205.with_(**changes)
+
+
+def test_the_largest_interference_that_is_named_is_allowed():
+    with pytest.raises(InputError) as refused:
+        B6205.with_(clearance=-150e-6)
+    most = float(refused.value.allowed.split()[0]) * 1e-6
+    B6205.with_(clearance=0.99 * most)
+    with pytest.raises(InputError, match=r"4.2 GPa, where dents begin \(ISO 76\)"):
+        B6205.with_(clearance=1.01 * most)
+
+
+@pytest.mark.parametrize(
+    ("load", "message"),
+    [
+        ({}, "load: received none; allowed: a radial or axial load, or a preload"),
+        ({"radial": -1.0}, "radial load"),
+        ({"radial": 1.0, "cage_angles": ["a"]}, "angles of the cage"),
+        ({"radial": 20e3}, r"of one ball on the inner ring, a contact that fills 0.\d+ rad of the groove"),
+    ],
+)
+def test_loads_that_cannot_be(load, message):
+    with pytest.raises(InputError, match=message):
+        B6205.loaded(**load)
+
+
+def test_doubts_are_told():
+    with pytest.warns(HalfSpaceWarning) as told:
+        B6205.loaded(radial=2000.0)
+    rings = {str(each.message).split(" the contact")[0].split("ball ")[1] for each in told}
+    assert rings == {"on the inner ring", "on the outer ring"}
+    soft, shallow = B6205.with_(hardness=1e9), B6205.with_(inner_conformity=0.7, outer_conformity=0.6)
+    with pytest.warns(OutOfRangeWarning, match=r"inner ring with 1.06 GPa, above 1 GPa, the hardness"):
+        soft.loaded(radial=100.0)
+    with pytest.warns(OutOfRangeWarning, match=r"inner ring with 4.\d+ GPa, above 4.2 GPa, where dents"):
+        shallow.loaded(radial=2500.0)
+    with pytest.raises(InputError, match=r"bearing: received '6209'; allowed: one of 6203, 6205"):
+        BallBearing.named("6209")
+
+
+def test_only_one_ball_right_below_the_load_is_in_balance():
+    """Across it the ring is free within its clearance: the energy is flat there."""
+    loose = B6205.with_(clearance=100e-6).loaded(radial=1.0, cage_angles=[0.0])
+    assert loose.touching[0] == 1
+    assert loose.inner_load[0, 0] == pytest.approx(1.0)
