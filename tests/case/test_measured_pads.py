@@ -10,6 +10,7 @@ from asperity import WheelOnRail
 from asperity.case.cases import parse_case
 from asperity.case.tables import read_dynamic_stiffness
 from asperity.errors import CaseError, InputError
+from asperity.scenes.noise import sleeper_top
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pad_stiffness.csv"
 PARTS = "frequency (Hz), real part (MN/m), imaginary part (MN/m)\n10, 90, 9\n300, 120, 18\n2000, 160, 40\n"
@@ -63,6 +64,17 @@ def test_a_given_stiffness_scales_the_table(tmp_path):
     at = 2.0 * np.pi * np.array([10.0, 2000.0])
     np.testing.assert_allclose(track.springs["pad"].stiffness(at), [180e6 + 18e6j, 320e6 + 80e6j])
     assert (track.pad_damping, track.pad_loss_factor) == (None, None)
+
+
+def test_a_sleeper_that_bends_is_as_long_as_it_sounds():
+    bent = {"name": "uic60", "sleeper_bending_stiffness": "6 MN m^2", "sleeper_length": "2.4 m"}
+    for track, noise, length in (
+        (bent, {}, 2.4),
+        (bent, {"sleeper_length": "2.5 m"}, 2.5),
+        ({"name": "uic60"}, {}, 2.6),
+    ):
+        case = WheelOnRail(surface={"spectrum": "iso3095"}, track=track, noise=noise)
+        assert sleeper_top(case, case.track.model()).length == length
 
 
 def test_the_example_is_a_case_that_reads_as_it_was_written(tmp_path):

@@ -9,11 +9,14 @@ from scipy.linalg import toeplitz
 
 from asperity import Track
 from asperity.errors import InputError
+from asperity.scenes.track import loss_factor_error
 from asperity.structures.bays import Bays
 from asperity.structures.causal_track import causal_track
+from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.support import BendingSleeper, RigidMass, Spring, TunedDamper
 from asperity.structures.track import decay_rate
+from asperity.structures.wheel import Wheel
 
 FREQUENCY = np.array([30.0, 120.0, 400.0, 800.0, 1063.0, 2500.0, 5000.0])
 OMEGA = 2.0 * np.pi * FREQUENCY
@@ -195,6 +198,8 @@ def test_preloads_are_interpolated_and_held_beyond():
         at = stiffness_at_preload(table, preload)
         assert (at.real[1], at.imaginary[1]) == pytest.approx((real, imaginary))
     assert stiffness_at_preload(np.array(rows)).real == (100e6, 120e6, 150e6)
+    third = np.array([(*row[:1], 4 * row[1], row[2], 118e3) for row in rows])
+    assert stiffness_at_preload(np.vstack([table, third]), 93e3).real[1] == pytest.approx(360e6)
 
 
 def maxwell(omega):
@@ -204,7 +209,7 @@ def maxwell(omega):
 
 
 def test_a_causal_table_is_met_in_time():
-    """The force is within 0.2 dB in every band: what is left is the table's interpolation and its ends."""
+    """What is left is the table's interpolation, and its ends."""
     frequency = np.geomspace(5.0, 8e3, 60)
     measured = maxwell(2.0 * np.pi * frequency)
     parts = (tuple(each.tolist()) for each in (frequency, measured.real, measured.imag))
@@ -216,6 +221,44 @@ def test_a_causal_table_is_met_in_time():
     at = 2.0 * np.pi * np.geomspace(8.0, 5e3, 40)
     np.testing.assert_allclose(causal.springs["pad"].stiffness(at), maxwell(at), rtol=0.02)
     assert causal.springs["pad"].static == pytest.approx(2e8, rel=0.02)
+
+
+def test_every_layer_relaxes_in_time():
+    """Passive, and within 0.6 dB of the force in every band, as check says of loss factors in general."""
+    soft = {"under_sleeper_pad_stiffness": 1.5e8, "under_sleeper_pad_loss_factor": 0.2}
+    track = Track.named("nordborg-loss-factor", pad_table=PAD, **soft, **BED)
+    causal = causal_track(track)
+    assert [name for name, each in vars(causal.relaxations).items() if each] == ["rail", *track.springs]
+    assert (causal.receptance(np.geomspace(1.0, 2e4, 200), [0.0, 0.3], [0.0, 0.3]).imag < 0.0).all()
+    error = loss_factor_error(track, Wheel(600.0, 65e3), 1.2e9, 5000.0)
+    assert np.abs(error.force).max() < 0.8
+
+
+@pytest.mark.parametrize(
+    "keys", [{"continuous": True, "ballast_stiffness": math.inf}, {}], ids=["bed", "bays"]
+)
+def test_the_kernel_of_a_contact_at_rest_adds_up_to_the_static_deflection(keys):
+    track = causal_track(timoshenko(pad_table=PAD, **keys, **DAMPERS))
+    kernel = moving_kernel(track, 0.0, 1e-4, duration=0.25, positions=2)
+    found = kernel.weights.sum(axis=1)
+    np.testing.assert_allclose(found, [track.static_deflection(1.0, x) for x in (0.0, 0.3)], rtol=2e-3)
+
+
+def test_named_frequencies_and_critical_speed_are_those_of_the_nominal_chain():
+    soft, bed = {"under_sleeper_pad_stiffness": 1.5e8}, {**BED, "ballast_stiffness": 5e7}
+    track = timoshenko(**soft, **bed, **DAMPERS)
+    below = 1.0 / (1.0 / 1.5e8 + 1.0 / 5e7 + 1.0 / 9e7)
+    assert track.antiresonance_frequency == pytest.approx(
+        math.sqrt((180e6 + below) / 150.0) / (2.0 * math.pi)
+    )
+    for frequency in track.cut_on_frequencies:
+        square = (2.0 * math.pi * frequency) ** 2
+        rail, sleeper = 180e6 - 60.2 * 0.6 * square, 180e6 + below - 150.0 * square
+        assert rail * sleeper == pytest.approx(180e6**2, rel=1e-9)
+    foundation = 1.0 / (1.0 / 180e6 + 1.0 / below) / 0.6
+    heavy = 60.2 + (150.0 + 300.0 + 15.0) / 0.6
+    critical = (4.0 * foundation * track.bending_stiffness / heavy**2) ** 0.25
+    assert track.critical_speed == pytest.approx(critical)
 
 
 @pytest.mark.parametrize(
