@@ -45,6 +45,7 @@ TRUE = np.array([2e-5 + 1e-5j, 1e-5 - 2e-5j, 3e-5 + 0j])
     [
         ("(m/s)/N", TRUE),
         ("m/(N s)", TRUE),
+        ("m/(Ns)", TRUE),
         ("mm/s/kN", 1e6 * TRUE),
         ("m/s^2/N", 1j * OMEGA * TRUE),
         ("(m/s²)/N", 1j * OMEGA * TRUE),
