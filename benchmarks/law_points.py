@@ -114,6 +114,7 @@ def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
     within = point.roughness * min(1.0, point.correlation**-point.hurst)
     window = 2.0 * max(2.5, 1.1 * math.sqrt(2.0 + 5.0 * within)) * semi_axis
     start = f'start = "{START} m"' if point.kind == BALL else ""
+    rigid = 'section = "rigid"' if point.kind == WHEEL else ""
     return parse_case(
         f"""
         kind = "{point.kind}"
@@ -131,6 +132,7 @@ def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
         anisotropy = {point.anisotropy}
         [{section}]
         load = "{point.load} N"
+        {rigid}
         [contact]
         spacing = "{spacing} m"
         window = "{window} m"

@@ -30,7 +30,7 @@ CASES = {
         "laws": ["linear"],
         "duration": "0.3 s",
         "surface": {"spectrum": "iso3095"},
-        "wheel": {"roughness": "disc"},
+        "wheel": {"roughness": "disc", "section": "rigid"},
         "contact": {"linearise": "hertz"},
     },
 }

@@ -53,7 +53,12 @@ def cases():
             yield (
                 f"rail +{above} dB, {seed}",
                 WheelOnRail(
-                    laws=LAWS, seed=seed, duration="0.12 s", settling="20 ms", surface={"spectrum": spectrum}
+                    laws=LAWS,
+                    seed=seed,
+                    duration="0.12 s",
+                    settling="20 ms",
+                    surface={"spectrum": spectrum},
+                    wheel={"section": "rigid"},
                 ),
             )
     for given in BALLS if "balls" in asked else ():

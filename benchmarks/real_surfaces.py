@@ -177,7 +177,7 @@ def walk_wheel(file: Path) -> dict[str, Any]:
         "largest step / um": float(np.nanmax(np.abs(np.diff(lines, axis=1)))),
     }
     keys = {"line": file, "line_array": "flat0p2mm", "line_unit": "um", "line_spacing": "1 mm"}
-    keys |= {"line_distance": "5 mm"}
+    keys |= {"line_distance": "5 mm", "section": "rigid"}
     for name, processing in (("filled", ["fill"]), ("spikes, curvature", ["fill", "spikes", "curvature"])):
         tree = asperity.run(WHEEL | {"wheel": keys | {"processing": processing}})
         told[name] = of_wheel(tree)

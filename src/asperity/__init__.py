@@ -20,6 +20,7 @@ _HOME = {
     "SupportedBeam": "structures.beam",
     "Track": "structures.track",
     "Wheel": "structures.wheel",
+    "WheelSection": "structures.wheel_section",
     "compare": "scenes.comparing",
     "effects": "studies.effects",
     "laws": "laws",
@@ -34,6 +35,7 @@ _HOME = {
     "run": "running",
     "save": "results",
     "study": "studies.running",
+    "wheel_modes": "structures.wheel_modes",
     "what_helps": "studies.effects",
 }
 """Module of each public name; the cases of each kind come beside them."""

@@ -48,6 +48,7 @@ class WheelModes:
     natural_frequencies : ndarray (p,)
         Undamped, Hz.
     damping_ratios : ndarray (p,)
+        ζ, share of critical damping.
     nodal_diameters : ndarray (p,) of int
         n.
     places : ndarray (k,)
@@ -199,6 +200,7 @@ def wheel_modes(
         Its section: radius and axial place, m, the latter from the running circle, positive away from the
         flange. The points of smallest radius are the seat.
     material : Material
+        Elastic, isotropic.
     highest_frequency : float
         Hz.
     size : float, optional
@@ -215,6 +217,14 @@ def wheel_modes(
     ------
     InputError
         If the outline is none of a wheel.
+
+    Examples
+    --------
+    >>> from asperity import WheelSection, material, wheel_modes
+    >>> outline = WheelSection.named("straight-web", web_thickness=0.03).outline(0.46)
+    >>> modes = wheel_modes(outline, material("steel"), 600.0)
+    >>> modes.nodal_diameters.tolist()
+    [1, 0, 2]
     """
     section = checked_outline(outline)
     highest = positive("highest frequency (Hz)", highest_frequency)

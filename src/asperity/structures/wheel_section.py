@@ -23,10 +23,30 @@ class WheelSection:
     Axial places count from the running circle, positive away from the flange, whose back is 70 mm from it.
     The middle of the web goes smoothly from that of the hub to that of the rim, and bends between them.
 
+    Parameters
+    ----------
+    bore_radius, hub_radius, hub_width, hub_offset : float
+        Radii of the seat on the axle and of the hub, its width, and by how much its middle stands outside
+        that of the rim, m.
+    web_thickness, web_thickness_rim, web_bend, fillet_radius : float
+        Thickness of the web at hub and rim, by how much it bends outwards, and the radius of its fillets, m.
+    rim_thickness, rim_width, flange_height, flange_thickness : float
+        Of rim and flange, m.
+    tread_slope : float
+        By how much the radius of the tread falls per length outwards.
+
     Raises
     ------
     InputError
         Of `outline`, if hub, web and rim do not fit into the radius.
+
+    Examples
+    --------
+    >>> from asperity import WheelSection
+    >>> section = WheelSection.named("straight-web", rim_thickness=0.07)
+    >>> outline = section.outline(0.46)  # radius and axial place, m
+    >>> float(outline[:, 0].min())
+    0.0925
     """
 
     bore_radius: float = parameter(
