@@ -22,7 +22,7 @@ EVERY = {
     "bodies": changed("bodies", laws=["table", "direct", "linear-filtered", "linear"]),
 }
 GROUPS = {"scenario", "surface", "contact", "rolling", "spectra"}
-OF_TRACKS = {"track", "pass_by"}
+OF_TRACKS = {"track", "pass_by", "sideways"}
 
 
 @pytest.fixture(params=EVERY)

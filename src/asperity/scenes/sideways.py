@@ -75,10 +75,6 @@ class Sideways:
         scene, mass = self.computed.scene, self.computed.case.rolling.contact_mass
         return wheel_receptances(scene.modes, mass, frequency, scene.place)
 
-    def answer(self, frequency: Array, x: float) -> Complex:
-        """All of it at the contact, A (2, 2, f), m/N."""
-        return at_springs(self.wheel(frequency) + self.rail(frequency, x), *self.stiffness)
-
     # --- as the mean over each line of the spectra, with every resonance of the wheel resolved
 
     @cached_property
@@ -120,9 +116,8 @@ class Sideways:
         computed, middle = self.computed, 0.5 * self.track.track.sleeper_spacing
         normal, _ = self.stiffness
         own = np.abs(1.0 / normal + self.track.track.receptance(self.lines, middle, middle))
-        moved = computed.psd(computed.stacked("rolling_displacement"))[..., self.computed.shown].sum(axis=1)
-        force = computed.force_psd[..., self.computed.shown].sum(axis=1)
-        fine = self.fine[0]
+        motion, fine = computed.psd(computed.stacked("rolling_displacement")), self.fine[0]
+        force, moved = (each[..., computed.shown].sum(axis=1) for each in (computed.force_psd, motion))
         other = np.interp(fine, self.lines, own) ** 2 + np.abs(self.wheel(fine)[0, 0]) ** 2
         return other, own**2 * force + moved
 
@@ -164,10 +159,8 @@ class Sideways:
         spread = np.stack([np.interp(fine, self.lines, each) for each in self.spread]) / PLACES
         share = np.sum(spread * self.shares, axis=0).real if sideways else np.zeros_like(fine)
         square = np.sum(spread * np.abs(self.shares) ** 2, axis=0) if sideways else share
-        omega, (radial, axial) = (
-            2.0 * np.pi * fine,
-            (each[:, None] for each in modes.at(self.computed.scene.place)),
-        )
+        omega, place = 2.0 * np.pi * fine, self.computed.scene.place
+        radial, axial = (each[:, None] for each in modes.at(place))
         answers = modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
         moved = radial**2 + 2.0 * radial * axial * share + axial**2 * square
         rigid = 1.0 / (case.rolling.contact_mass * omega) ** 2
@@ -186,34 +179,28 @@ def sideways_group(computed: Computed) -> Values:
     if not moves_sideways(computed):
         return {}
     found, case, band = Sideways(computed), computed.case, computed.band
-    edges, lines = (band / HALF_BAND, band * HALF_BAND), found.lines
-    contacts = len(computed.scene.offsets)
+    contacts, limit = len(computed.scene.offsets), case.sideways.friction * computed.shape.load
 
     def levels(density: Array) -> Array:
-        """Levels in bands (..., b), dB, of densities on the used lines (..., f)."""
+        """Levels in bands (..., b), dB, of densities on the lines (..., f)."""
         whole = np.zeros((*density.shape[:-1], len(computed.frequency)))
         whole[..., computed.shown] = density
+        energies = band_energies(computed.frequency, whole, band / HALF_BAND, band * HALF_BAND)
         with np.errstate(divide="ignore"):
-            return np.asarray(
-                10.0 * np.log10(np.maximum(band_energies(computed.frequency, whole, *edges), 0.0))
-            )
+            return np.asarray(10.0 * np.log10(np.maximum(energies, 0.0)))
 
     powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
-    wheels = 2.0 * case.axles / contacts
-    power = levels(wheels / PICOWATT * np.stack(powers, axis=1))
+    power = levels(2.0 * case.axles / contacts / PICOWATT * np.stack(powers, axis=1))
     lateral = found.force_psd / contacts
-    step = float(lines[1] - lines[0])
-    limit = case.sideways.friction * computed.shape.load
-    spread = np.sqrt(lateral.sum(axis=-1) * step)
+    spread = np.sqrt(lateral.sum(axis=-1) * (found.lines[1] - found.lines[0]))
     with np.errstate(divide="ignore"):
         slips = [math.erfc(ratio) for ratio in limit / (math.sqrt(2.0) * spread)]
-    middle = 0.5 * found.track.track.sleeper_spacing
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
-    rail, wheel = found.rail(frequency, middle), found.wheel(frequency)
-    alone = np.mean([1.0 / np.abs(each[0, 0]) ** 2 for each in found.fine_answers], axis=0)
-    coupled = [np.abs(vertical_change(each) / each[0, 0]) ** 2 for each in found.fine_answers]
-    change = line_means(np.stack([np.mean(coupled, axis=0), alone]), *found.fine)
-    coupling = np.subtract(*levels(change))
+    rail = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing)
+    wheel, answers = found.wheel(frequency), np.moveaxis(found.fine_answers, 0, -2)
+    free = 1.0 / answers[0, 0]  # vertical force per height of a contact that is free sideways
+    linear = [np.mean(np.abs(each) ** 2, axis=0) for each in (vertical_change(answers) * free, free)]
+    coupling = np.subtract(*levels(line_means(np.stack(linear), *found.fine)))
     return {
         schema.SIDEWAYS_LAW: list(computed.runs),
         schema.SIDEWAYS_FREQUENCY: frequency,

@@ -8,15 +8,15 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, MUTED, Line, Mark, Note, Panel, Rules
-from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.figure import Figure, Lines, Of
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import over_bands
 from asperity.schema import spectra
-from asperity.spectra import a_weighting, energy_sum
+from asperity.spectra import a_weighting
 
 FORCE, POWER, POWER_A = schema.LATERAL_FORCE_LEVEL, schema.LATERAL_POWER_LEVEL, schema.LATERAL_POWER_LEVEL_A
-RAIL, VERTICAL, BOTH = "rail sideways", "wheel, vertical force", "wheel, both forces"
+RAIL, VERTICAL, BOTH, UP = "rail sideways", "wheel, vertical force", "wheel, both forces", "rail up and down"
 
 
 def _force(tree: DataTree, lines: Lines) -> Iterator[Panel]:
@@ -61,12 +61,12 @@ def _answers(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     along = panels.frequency_axis(float(lines.at[0]), float(lines.at[-1]))
     sizes = [series for series in lines.lines if series.units == "m/N" and np.any(series.values > 0)]
     drawn = panels.styled(tree, lines.at, sizes)
-    yield Panel(
-        along, panels.log_axis("|receptance| / (m/N)", [line.y for line in drawn]), tuple(drawn), height=4.0
-    )
-    rates = panels.styled(tree, lines.at, [series for series in lines.lines if series.units == "dB/m"])
-    axis = panels.log_axis("decay rate / (dB/m)", [line.y for line in rates], lowest=0.01)
-    yield Panel(along, axis, tuple(rates), height=2.6)
+    size = panels.log_axis("|receptance| / (m/N)", [line.y for line in drawn])
+    yield Panel(along, size, tuple(drawn), height=4.0)
+    if found := [series for series in lines.lines if series.units == "dB/m"]:
+        rates = panels.styled(tree, lines.at, found)
+        axis = panels.log_axis("decay rate / (dB/m)", [line.y for line in rates], lowest=0.01)
+        yield Panel(along, axis, tuple(rates), height=2.6)
 
 
 def _power(tree: DataTree, lines: Lines) -> list[Panel]:
@@ -76,23 +76,13 @@ def _power(tree: DataTree, lines: Lines) -> list[Panel]:
         RAIL: (chart.VERMILLION, (), 1.8, "o"),
         VERTICAL: (chart.BLUE, (1.5, 1.5), 1.3),
         BOTH: (chart.BLUE, (), 1.8, "^"),
+        UP: (chart.VERMILLION, (1.5, 1.5), 1.3),
     }
-    own = [
+    drawn = [
         Line(lines.at, series.values + weighting, series.label, *looks[series.label])
-        for series in lines.of(POWER, law=main)
+        for series in lines.of(POWER, schema.RADIATED_POWER_LEVEL, law=main)
     ]
-    beside = [
-        Line(lines.at, series.values + weighting, "rail up and down", chart.VERMILLION, (1.5, 1.5), 1.3)
-        for series in lines.of(schema.RADIATED_POWER_LEVEL, law=main)
-    ]
-    return [panels.band_panel(tree, lines, "sound power level / dB(A) re 1 pW", [*own, *beside])]
-
-
-def _rail_up_and_down(tree: DataTree) -> Iterator[Series]:
-    """Sound power of the rail's vertical motion."""
-    for series in Of(schema.RADIATED_POWER_LEVEL, "{radiator}, {law}", "{radiator}")(tree):
-        if series.places.get("radiator") == "rail":
-            yield series
+    return [panels.band_panel(tree, lines, "sound power level / dB(A) re 1 pW", drawn)]
 
 
 SIDEWAYS = (
@@ -103,7 +93,6 @@ SIDEWAYS = (
         (Of(FORCE, "{law}"), Of(spectra.FORCE_LEVEL, "vertical, {law}"), Of(schema.VERTICAL_FORCE_CHANGE)),
         _force,
         _force_caption,
-        any_of=(FORCE,),
     ),
     Figure(
         "lateral_spectrum",
@@ -117,7 +106,10 @@ SIDEWAYS = (
         "lateral_power",
         "Sound power of what moves sideways",
         Of(schema.SIDEWAYS_BAND, "band centre"),
-        (Of(POWER, "{radiator}, {law}", "{radiator}"), _rail_up_and_down),
+        (
+            Of(POWER, "{radiator}, {law}", "{radiator}"),
+            Of(schema.RADIATED_POWER_LEVEL, f"{UP}, {{law}}", UP, one={"radiator": min}),  # the rail
+        ),
         _power,
         "A-weighted one-third octaves. The rail radiates sideways over its height, beside its motion up and "
         "down (dotted); the modes of the wheel answer to both forces at once, beside the vertical one alone "
@@ -157,22 +149,16 @@ def sideways_table(tree: DataTree) -> ReportTable | None:
         return None
     radiators = data.words(tree, schema.SIDEWAYS_RADIATOR)
     own = [dict(zip(radiators, data.of_law(tree, POWER_A, law), strict=True)) for law in laws]
-    up = data.stored_variable(tree, schema.RADIATED_POWER_LEVEL_A)
+    known = data.laws(tree, schema.RADIATED_POWER_LEVEL_A) == laws
+    up = data.stored_variable(tree, schema.RADIATED_POWER_LEVEL_A) if known else None
     columns = {
         "law": text_cells(laws),
         "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), "{:.3g}"),
         "beyond friction": text_cells(map(data.in_percent, data.values(tree, schema.SLIP_SHARE)), "number"),
     }
-    rail = np.full(len(laws), np.nan)
-    if up is not None:
-        rail = np.array([float(up.sel(law=law, radiator="rail")) for law in laws])
-        columns["rail up and down"] = number_cells(rail, "{:.1f}")
-    side = np.array([each[RAIL] for each in own])
-    columns["rail sideways"] = number_cells(side, "{:.1f}")
-    columns["rail, both"] = number_cells(energy_sum(np.stack([rail, side]), axis=0), "{:.1f}", "number total")
-    wheels = {VERTICAL: "wheel, vertical force", BOTH: "wheel, both forces"}
-    for name, head in wheels.items():
-        columns[head] = number_cells([each[name] for each in own], "{:.1f}")
+    levels = {UP: [float(up.sel(law=law, radiator="rail")) for law in laws]} if up is not None else {}
+    levels |= {name: [each[name] for each in own] for name in (RAIL, VERTICAL, BOTH)}
+    columns |= {name: number_cells(level, "{:.1f}") for name, level in levels.items()}
     note = (
         "Sound power in dB(A) re 1 pW, over the bands that were computed. Beyond friction: share of the "
         "time in which a lateral force of this rms, normally distributed, is more than the coefficient of "
