@@ -49,7 +49,7 @@ class HammerTest:
         centre = np.atleast_1d(np.asarray(band, dtype=float))
         steps = (np.arange(LINES) + 0.5) / LINES
         frequency = centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0)
-        half, lines = 0.5 * track.sleeper_spacing, frequency.ravel()
+        half, lines = float(track.mid_spans[0]), frequency.ravel()
         mobility = 2j * np.pi * frequency * track.receptance(lines, half, half).reshape(frequency.shape)
         lengths = 1.0 / decay_rate_en15461(track, lines).reshape(frequency.shape)
         rate = 1.0 / np.average(lengths, axis=1, weights=np.abs(mobility) ** 2)

@@ -43,9 +43,9 @@ class Sideways:
 
     @cached_property
     def track(self) -> LateralTrack:
-        """The track sideways."""
-        keys = self.computed.case.track
-        return self.computed.case.sideways.model(self.computed.track.nominal, keys.rail_foot_width)
+        """The track sideways, of equal bays."""
+        keys, track = self.computed.case.track, self.computed.track.nominal.regular
+        return self.computed.case.sideways.model(track, keys.rail_foot_width)
 
     @cached_property
     def lines(self) -> Array:
