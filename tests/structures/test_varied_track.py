@@ -114,6 +114,18 @@ def test_equal_bays_are_one(track: Track) -> None:
     assert (cell.period, cell.mid_spans[-1]) == pytest.approx((5 * 0.6, 2.7))
 
 
+def test_sleepers_and_mid_spans_are_those_of_the_bays() -> None:
+    track = in_bays(EULER)
+    ends = np.append(track.sleepers, track.period)
+    assert np.diff(ends) == pytest.approx(0.6 * np.array(VARIED.spacing))
+    assert track.mid_spans == pytest.approx(0.5 * (ends[1:] + ends[:-1]))
+    for bay in (-7, 2, 11):
+        at = bay // 6 * track.period
+        near = track.sleeper_near(at + track.sleepers[bay % 6] + 0.1)
+        assert near == pytest.approx((at + track.sleepers[bay % 6], at + track.mid_spans[bay % 6]))
+    assert EULER.sleeper_near(1.9) == pytest.approx((1.8, 2.1))
+
+
 @pytest.mark.parametrize("distance", [0.0, 1.3, -2.5])
 def test_kernels_of_equal_bays_are_that_of_one(distance: float) -> None:
     like = {"duration": 0.03, "positions": 6, "distance": distance}
