@@ -13,7 +13,7 @@ from asperity.reference import cnossos
 from asperity.scenarios.scene import linear_force_psd
 from asperity.spectra import band_levels, psd
 from asperity.structures.bays import Bays
-from asperity.structures.moving_kernel import HatResponse, moving_kernel
+from asperity.structures.moving_kernel import ZONES, HatResponse, moving_kernel
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 from asperity.surfaces.synthesis import from_bands
@@ -146,19 +146,26 @@ def test_a_point_moves_with_the_contact_when_it_is_passed(kernel):
 
 
 @pytest.mark.parametrize(
-    ("struck", "stride", "steps"),
-    [(-1.23, 1.5e-3, 5000), (1.47, 1.5e-3, 5000), (2.999, 1.4e-3, 5000), (1.47, 1.5e-3, 90)],
+    ("struck", "stride", "steps", "zones"),
+    [
+        (-1.23, 1.5e-3, 5000, 1),
+        (1.47, 1.5e-3, 5000, 1),
+        (2.999, 1.4e-3, 5000, 1),
+        (1.47, 1.5e-3, 90, 1),
+        (0.42, 1.5e-3, 200, ZONES),  # near
+        (0.87, 1.5e-3, 200, ZONES),
+    ],
 )
 @pytest.mark.parametrize("track", [TRACK, VARIED], ids=["equal bays", "bays that differ"])
-def test_a_blow_some_bays_away_is_felt_as_the_receptance_has_it(track, struck, stride, steps):
+def test_a_blow_is_felt_as_the_receptance_has_it(track, struck, stride, steps, zones):
     """One step of force at a place that is no node: the transform of hat times receptance."""
-    step, point = stride / SPEED, 0.13
+    step, point, struck = stride / SPEED, 0.73, struck + 0.6
     rail = moving_kernel(track, SPEED, step, duration=0.12, positions=4)
     history = np.zeros(steps)
     history[10] = 1.0
     displacement, _ = passed_points(rail, history[None], struck - 10 * stride, [point])
     taps = rail.weights.shape[1]
-    grid = HatResponse(rail.track, step, 3 * taps, 1)
+    grid = HatResponse(rail.track, step, 3 * taps, zones)
     receptance = grid.waves.receptance(point + 5.4, struck + 5.4)
     expected = grid.response((grid.hat * receptance)[None])[0, : min(steps - 10, taps // 2)]
     found = displacement[0, 0, 10 : 10 + len(expected)]

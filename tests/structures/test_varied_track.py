@@ -134,6 +134,13 @@ def test_kernels_of_equal_bays_are_that_of_one(distance: float) -> None:
     assert np.abs(cell - one).max() < 1e-9 * np.abs(one).max()
 
 
+def test_a_force_over_a_sleeper_is_followed_where_bays_are_not_its_mirror_image() -> None:
+    like = {"duration": 0.02, "positions": 6}
+    track = in_bays(EULER)
+    here, beside = (moving_kernel(track, 56.0, STEP, distance=d, **like).weights for d in (0.0, 1e-9))
+    assert np.abs(here - beside).max() < 1e-6 * np.abs(here).max()
+
+
 def test_a_kernel_at_rest_is_the_receptance_of_its_bay() -> None:
     kernel = moving_kernel(in_bays(EULER), 0.0, STEP, positions=4)
     frequency = np.array([60.0, 400.0, 1300.0])
