@@ -91,8 +91,10 @@ def by_hand(track: Track, omega: float, pad_share: float, ballast_share: float) 
     return pad * below / (pad + below)
 
 
-@pytest.mark.parametrize("named", ["x2000", "uic60"])
-@pytest.mark.parametrize("frequency", [80.0, 160.0, 330.0, 700.0, 1050.0, 1250.0, 2500.0])
+@pytest.mark.parametrize(
+    ("named", "frequency"),
+    [*(("x2000", f) for f in (80.0, 1250.0, 2500.0)), *(("uic60", f) for f in (80.0, 330.0, 1050.0, 1250.0))],
+)
 def test_it_is_a_track_of_120_bays_of_beam_elements(named: str, frequency: float) -> None:
     track = in_bays(Track.named(named, rail_loss_factor=0.02))
     places, x0 = np.array([0.3, 0.61, 2.7]), 0.3
