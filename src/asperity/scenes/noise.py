@@ -260,7 +260,8 @@ def radiation(computed: Computed) -> Values:
     """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels.
 
     That of what was rolled on one rail counts for all axles, each with two wheels, on two rails. The total
-    holds what is known: without a wheel that says how its modes move it, rail and sleepers.
+    holds what is known: without a wheel that says how its modes move it, rail and sleepers. What was measured
+    on the track changes the power of both, and the length that radiates, band by band.
     """
     case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
     edges = band / HALF_BAND, band * HALF_BAND

@@ -79,7 +79,7 @@ def measured_table(tree: DataTree) -> ReportTable | None:
             elif entry.units == "dB/m":
                 columns[head] = number_cells(found, "{:.2g}")
             else:
-                columns[head] = number_cells(20.0 * np.log10(found), "{:.1f}")
+                columns[head] = number_cells(20.0 * np.log10(found), data.signed)
     note = (
         "Computed: what a hammer at mid-span finds on the computed track, by EN 15461. The sound power of "
         "rail and sleepers goes as |F Y|²/Δ and changes as the last column says, with the force as that of a "
