@@ -39,6 +39,21 @@ def test_named_sections_are_meshed_whole(name):
     assert 250.0 < STEEL.density * volume < 450.0
 
 
+def test_a_web_leaves_hub_and_rim_at_right_angles_and_gets_thinner():
+    section = WheelSection.named("curved-web", fillet_radius=0.0, web_bend=0.01)
+    outline = section.outline(RADIUS)
+    points = (len(outline) - 12) // 2
+    outside, inside = outline[3 : 3 + points], outline[-1 - points : -1][::-1]
+    assert (outside[:, 0] == inside[:, 0]).all()
+    share = (outside[:, 0] - section.hub_radius) / (RADIUS - section.rim_thickness - section.hub_radius)
+    assert outside[:, 1] - inside[:, 1] == pytest.approx(0.026 - 0.004 * share)
+    middle = 0.5 * (outside[:, 1] + inside[:, 1])
+    assert middle[[0, -1]] == pytest.approx([0.045 - 0.0025, -0.0025])  # the rim is from −70 to 65 mm
+    assert np.interp(0.5, share, middle) == pytest.approx(0.5 * 0.045 + 0.01 - 0.0025)
+    ends = np.diff(middle)[[0, -1]] / np.diff(share)[[0, -1]]
+    assert np.abs(ends).max() < 0.02 * 0.045
+
+
 def test_a_mesh_follows_the_outline_whatever_its_order_and_its_points():
     corners, share = np.array(SQUARE), np.arange(50)[:, None] / 50
     fine = np.vstack(
@@ -149,6 +164,10 @@ def test_sound_of_a_rigid_motion_is_that_of_the_disc():
     ring, web = ((outer**2 - inner**2) / 0.3**2 / mass for outer, inner in ((0.3, 0.1), (0.1, 0.05)))
     assert ring < modes.disc[axial] ** 2 < ring + 0.5 * web
     assert modes.tread[axial] < 0.01 * modes.disc[axial]
+    # it tilts about a diameter: axially as r cos θ, whose mean square is a quarter of that at the edge
+    tilting = int(np.flatnonzero(modes.nodal_diameters == 1)[0])
+    quarter = 0.25 * modes.at(0.0)[1][tilting] ** 2 * (1.0 - (0.1 / 0.3) ** 4)
+    assert quarter < modes.disc[tilting] ** 2 < 1.01 * quarter
 
 
 def test_the_table_says_all_of_a_contact(modes):
@@ -161,7 +180,7 @@ def test_the_table_says_all_of_a_contact(modes):
     answer = np.sum(radial**2 / (natural**2 - omega**2 + 2j * modes.damping_ratios * natural * omega), axis=1)
     answer = answer - 1.0 / (600.0 * omega[:, 0] ** 2)
     found = Wheel(600.0, 65e3, *table.T[:3]).receptance(frequency)
-    assert found == pytest.approx(answer, rel=1e-6)
+    np.testing.assert_allclose(found, answer, rtol=1e-6)
 
 
 def test_modes_are_kept(modes, tmp_path):
@@ -193,7 +212,7 @@ def test_a_turning_wheel_answers_by_the_mean_of_shifted_receptances(ratio):
     frequency = np.linspace(1700.0, 2300.0, 601)
     shift = n * speed / (2.0 * np.pi)
     mean = 0.5 * (receptance(modes, frequency + shift) + receptance(modes, frequency - shift))
-    assert receptance(modes.turning(speed), frequency) == pytest.approx(mean, rel=1e-9)
+    np.testing.assert_allclose(receptance(modes.turning(speed), frequency), mean, rtol=1e-9)
 
 
 def test_a_turning_wheel_in_time_and_what_radiates():
@@ -224,14 +243,15 @@ def test_a_turning_wheel_in_time_and_what_radiates():
     assert (shape**2) @ waves == pytest.approx(contact, abs=1e-9 * np.abs(contact).max())
     # mean square around the tread: of the standing modes, and of waves by their rms
     around = 0.5 * np.mean(by_cosine**2 + by_sine**2) * (2.0 * 0.7**2)
-    assert np.sum(turning.tread**2 * shape**2 * np.mean(waves**2, axis=1)) == pytest.approx(around, rel=0.01)
+    found = np.sum(turning.tread**2 * shape**2 * np.mean(waves**2, axis=1))
+    assert found / around == pytest.approx(1.0, abs=0.01)
 
 
 def test_modes_without_nodal_diameters_do_not_turn_and_none_turns_without_speed(modes):
     still = modes.turning(0.0)
     assert len(still.natural_frequencies) == len(modes.nodal_diameters) + np.sum(modes.nodal_diameters > 0)
     frequency = np.linspace(100.0, 2400.0, 101)
-    assert receptance(still, frequency) == pytest.approx(receptance(modes, frequency), rel=1e-9)
+    np.testing.assert_allclose(receptance(still, frequency), receptance(modes, frequency), rtol=1e-9)
     breathing = modes.nodal_diameters == 0
     moved = modes.turning(200.0)
     alike = moved.nodal_diameters == 0
