@@ -66,6 +66,7 @@ def values_of(case, changes, *names):
         (250e6, "track.pad_stiffness", 250e6),
         ("250 MN/m", "track.pad_stiffness", 250e6),
         ("cast-iron instead of disc", "wheel.roughness", ["cast-iron"]),
+        ("times 2", "contact.samples", 4),
         ("plus 1", "noise.vehicles", ["the case has no noise.vehicles, which goes with vehicle_length"]),
         ("disc instead of composite", "wheel.roughness", ["wheel.roughness is disc, not composite"]),
         ("times 2", "track.pad_loss_factor", ["the case has no track.pad_loss_factor"]),
@@ -342,4 +343,5 @@ def test_what_helps_stands_in_the_result_of_a_run(table, cache, monkeypatch):
     page = asperity.report(tree, "page").read_text(encoding="utf-8")
     assert '<figure id="what_helps"' in page
     assert "Left out: wheel.roughness is disc, not cast-iron." in page
+    assert "Helps most: smooth, " in page.partition("<main>")[0]
     assert "asperity run case.toml --what-helps" in page

@@ -247,7 +247,8 @@ def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[PageFigure | Report
     """Bars and table of what each variant does."""
     for n, (words, of) in enumerate(told, 1):
         title = f"What helps, {words}" if words else "What helps?"
-        yield PageFigure(f"effects-{n}", title, effects_caption(of), effects_chart(of), EFFECTS)
+        if not all(of.left_out):
+            yield PageFigure(f"effects-{n}", title, effects_caption(of), effects_chart(of), EFFECTS)
         yield replace(effects_table(of), name=f"effects-table-{n}")
 
 

@@ -77,8 +77,6 @@ class Change:
             if content(now) != self.by:
                 raise Unfit(f"{name} is {now}, not {self.by}")
             return self.value
-        if isinstance(now, bool) or not isinstance(now, int | float):
-            raise Unfit(f"{name} is no number in this case")
         found = now * self.by if self.way == "times" else now + self.by * (1 if self.way == "plus" else -1)
         return value_in_toml(found, self.entry.key)
 

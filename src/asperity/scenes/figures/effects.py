@@ -10,6 +10,7 @@ from xarray import DataTree
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, Axis, Boxes, Chart, Mark, Numbers, Panel
 from asperity.reporting.figure import Figure, Lines, Series
+from asperity.reporting.headline import Answers
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.noise import LOOKS, WHOLE
@@ -153,7 +154,12 @@ def _columns(tree: DataTree) -> Iterator[Series]:
 
 def what_helps_table(tree: DataTree) -> ReportTable | None:
     """What each change does, if it was asked."""
-    return effects_table(_of_run(tree)) if data.present(tree, schema.EFFECT) else None
+    return effects_table(_of_run(tree)) if data.present(tree, schema.EFFECT_LEVEL) else None
+
+
+def what_helps_answers(tree: DataTree) -> Answers | None:
+    """What helps most, if it was asked."""
+    return Answers(more=_of_run(tree).best) if data.present(tree, schema.EFFECT) else None
 
 
 def _draw(tree: DataTree, lines: Lines) -> Chart:
