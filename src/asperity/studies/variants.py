@@ -78,7 +78,8 @@ class Change:
                 raise Unfit(f"{name} is {now}, not {self.by}")
             return self.value
         found = now * self.by if self.way == "times" else now + self.by * (1 if self.way == "plus" else -1)
-        return value_in_toml(found, self.entry.key)
+        whole = isinstance(now, int) and found == int(found)
+        return value_in_toml(int(found) if whole else found, self.entry.key)
 
 
 def _value_of(case: Case, entry: CaseKey) -> Any:
