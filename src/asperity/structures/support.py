@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -57,24 +56,31 @@ Losses = ConstantLoss | Relaxation | StiffnessTable
 """How a stiffness depends on frequency, relative to a nominal one."""
 
 
-class Element(Protocol):
-    """One of the things between rail and ground; `below` is the stiffness under it, None on rigid ground."""
+class Element:
+    """One of the things between rail and ground; `below` is the stiffness under it, None on rigid ground.
+
+    By default all of it moves as its top.
+    """
 
     def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
         """Dynamic stiffness at its top, N/m, at angular frequencies, rad/s; None if it cannot move."""
+        raise NotImplementedError
 
     def passed(self, omega: ArrayLike, below: Complex | None) -> Complex:
         """Displacement of its lower end per displacement of its top."""
+        return np.ones(np.shape(omega), complex)
 
     def spread(self, omega: ArrayLike, below: Complex | None) -> Array | float:
         """Mean square displacement over its length per square of that at its top."""
+        return 1.0
 
     def resting(self, below: float | None) -> float | None:
         """Stiffness at its top at rest, N/m."""
+        return below
 
 
 @dataclass(frozen=True)
-class Spring:
+class Spring(Element):
     """A stiffness over frequency: with losses of its own, and a viscous damper beside it."""
 
     nominal: float  # N/m
@@ -101,10 +107,6 @@ class Spring:
         own = self.stiffness(omega)
         return np.zeros_like(own) if below is None else own / (own + below)
 
-    def spread(self, omega: ArrayLike, below: Complex | None) -> float:
-        """All of it moves as its top."""
-        return 1.0
-
     def resting(self, below: float | None) -> float:
         """In line with what is below."""
         own = self.static
@@ -112,7 +114,7 @@ class Spring:
 
 
 @dataclass(frozen=True)
-class RigidMass:
+class RigidMass(Element):
     """A mass that moves as a whole: a sleeper, a block, ballast."""
 
     mass: float  # kg
@@ -121,21 +123,9 @@ class RigidMass:
         """Less its inertia."""
         return None if below is None else below - self.mass * np.asarray(omega, dtype=complex) ** 2
 
-    def passed(self, omega: ArrayLike, below: Complex | None) -> Complex:
-        """All."""
-        return np.ones(np.shape(omega), complex)
-
-    def spread(self, omega: ArrayLike, below: Complex | None) -> float:
-        """All of it moves as its top."""
-        return 1.0
-
-    def resting(self, below: float | None) -> float | None:
-        """That of what is below."""
-        return below
-
 
 @dataclass(frozen=True)
-class BendingSleeper:
+class BendingSleeper(Element):
     """Half of a free Euler-Bernoulli beam that lies, all along, on what is below; both rails press alike.
 
     B w'''' + (s − μω²) w = F δ(x − a) and its mirror image, with mass μ and stiffness s below per length, and
@@ -151,10 +141,6 @@ class BendingSleeper:
     def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
         """Inverse of the receptance at the seat."""
         return None if below is None else 1.0 / self._waves(omega, below).at(0.5 * self.seat_distance)
-
-    def passed(self, omega: ArrayLike, below: Complex | None) -> Complex:
-        """All, under the seat; elsewhere as `spread` says."""
-        return np.ones(np.shape(omega), complex)
 
     def spread(self, omega: ArrayLike, below: Complex | None) -> Array | float:
         """By Gauss's rule from the middle to the seat, and from there to the end."""

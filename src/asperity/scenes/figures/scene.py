@@ -319,7 +319,7 @@ def _track(tree: DataTree, of: Lengths) -> list[Panel]:
     left, right = at - half, at + half
     path = _path(*np.clip([begin, end], left, right))
     sleepers = sleepers_between(tree, left, right, spacing)
-    marks = [*_rail(left, right, sleepers), path, _places(points, -RAIL / 2)]
+    marks = [*_rail(tree, left, right, sleepers), path, _places(points, -RAIL / 2)]
     if radius is not None:
         marks += _rolling_body(at, radius, 1.0, data.number(tree, SPEED), inside=0.12)
     x = Axis("x along the rail / m", left, right)
@@ -327,15 +327,21 @@ def _track(tree: DataTree, of: Lengths) -> list[Panel]:
     return [_view(x, y, marks, "the wheel on the track", 3.6, share=1.9)]
 
 
-def _rail(left: float, right: float, sleepers: Numbers) -> list[Mark]:
-    """Rail, and pads, sleepers and ballast below it."""
-    bottom = -RAIL - PAD - SLEEPER
+def _rail(tree: DataTree, left: float, right: float, sleepers: Numbers) -> list[Mark]:
+    """Rail with its dampers, and below it pads, sleepers and ballast; without sleepers that move a slab."""
     look: dict[str, Any] = {"colour": MUTED, "dashes": (3, 2)}
-    marks: list[Mark] = [_block(left, -RAIL, right - left, RAIL, **look)]
-    for x in sleepers:
-        marks.append(_block(x - 0.08, -RAIL - PAD, 0.16, PAD, fill=MUTED, colour=""))
-        marks.append(_block(x - SLEEPER_WIDTH / 2, bottom, SLEEPER_WIDTH, SLEEPER, **look))
-    return [*marks, _block(left, bottom - BALLAST, right - left, BALLAST, fill="", **look)]
+    width, bottom = right - left, -RAIL - PAD - SLEEPER
+    marks: list[Mark] = [_block(left, -RAIL, width, RAIL, **look)]
+    if data.case_words(tree, "track.rail_damper_mass"):
+        for x in 0.5 * (sleepers[1:] + sleepers[:-1]):
+            marks.append(_block(x - 0.1, -0.8 * RAIL, 0.2, 0.35 * RAIL, fill=MUTED, colour=""))
+    spread = data.case_words(tree, "track.continuous") == "yes"
+    pads = [(left, width)] if spread else [(x - 0.08, 0.16) for x in sleepers]
+    marks += [_block(x, -RAIL - PAD, length, PAD, fill=MUTED, colour="") for x, length in pads]
+    if spread or data.case_words(tree, "track.ballast_stiffness").startswith("inf"):
+        return [*marks, _block(left, bottom - BALLAST, width, SLEEPER + BALLAST, fill="", **look)]
+    marks += [_block(x - SLEEPER_WIDTH / 2, bottom, SLEEPER_WIDTH, SLEEPER, **look) for x in sleepers]
+    return [*marks, _block(left, bottom - BALLAST, width, BALLAST, fill="", **look)]
 
 
 def _track_words(_: DataTree, of: Lengths) -> str:
@@ -343,7 +349,8 @@ def _track_words(_: DataTree, of: Lengths) -> str:
     recorded = "; triangles: where the rail's motion is recorded" if _beginning(of, "point") else ""
     return (
         "Radius of the wheel and distance of the sleepers to scale; dashed: rail, pads, sleepers and "
-        f"ballast, whose shapes are no part of the case. Rolled from {begin:.4g} m to {end:.4g} m{recorded}."
+        "ballast or slab, whose shapes are no part of the case. Rolled from "
+        f"{begin:.4g} m to {end:.4g} m{recorded}."
     )
 
 
