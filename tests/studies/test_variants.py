@@ -140,6 +140,12 @@ def test_what_is_swept_besides_is_changed():
         ({}, "sweep.variant: received {}; allowed: names, each with keys and their values"),
         (["a"], "sweep.variant: received .*; allowed: names"),
         ({"a": {"x": 1}, "b": {"y": 2}}, "2 errors"),
+        ({"a": {"speed": "times " + 100_000 * " " + "\n2"}}, 'a".speed: received'),
+        (
+            {"a": {"track.mass_per_length": "1 kg/m", "track": {"mass_per_length": "2 kg/m"}}},
+            "key more than on",
+        ),
+        ({"a": {f"speed{n}": 1 for n in range(50_000)}}, "20 errors"),
     ],
 )
 def test_what_is_wrong_with_a_variant_is_explained(variant, message):

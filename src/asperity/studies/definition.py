@@ -11,20 +11,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity.arguments import require, shown
 from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
 from asperity.case.chosen_lengths import shared_lengths
-from asperity.case.content import case_key, content, described_value, file_digest, holds_memory
-from asperity.case.describing import CaseKey, entry_of
+from asperity.case.content import case_key, content, file_digest
+from asperity.case.describing import entry_of
 from asperity.case.scene import Case
 from asperity.case.toml import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin
-from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
-from asperity.studies.variants import VARIANT, VariantAxis, as_in_toml, flat, variant_axis
-from asperity.units import factor, unit_in
+from asperity.studies.axes import SweptAxis, as_in_toml, written_out
+from asperity.studies.variants import VARIANT, VariantAxis, flat, variant_axis
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
 _RANGE = re.compile(
@@ -102,51 +100,6 @@ seed = "1..3"                   # every whole number; "6 ratios" in place of ste
 # speed = "times 0.8"             # times, plus or minus what it has, or any value
 # wheel.load = "50 kN"
 """
-
-
-@dataclass(frozen=True, eq=False)
-class SweptAxis:
-    """A key and its values."""
-
-    entry: CaseKey  # the key
-    written: tuple[Any, ...]  # as they stand in TOML
-    values: tuple[Any, ...]  # the same in SI
-
-    @property
-    def name(self) -> str:
-        """The key with its section, as ``"contact.spacing"``."""
-        return self.entry.dotted
-
-    @property
-    def meaning(self) -> str:
-        """What the key is."""
-        return self.entry.key.meaning
-
-    @property
-    def told(self) -> list[Any]:
-        """The values as they stand in TOML."""
-        return list(self.written)
-
-    @property
-    def units(self) -> str:
-        """SI unit of the coordinate; ``"1"`` where the values are words."""
-        return self.entry.unit or "1"
-
-    @property
-    def typed(self) -> dict[str, Any]:
-        """Unit in which its first value was written that has one, and what it is in SI; nothing in SI."""
-        units = (unit_in(value) for value in self.written if isinstance(value, str))
-        unit = next(filter(None, units), self.units)
-        if self.units in ("1", "dB") or unit == self.units:
-            return {}
-        return {TYPED_UNIT: unit, TYPED_FACTOR: factor(unit, self.units)}
-
-    @property
-    def coordinate(self) -> NDArray[Any]:
-        """Values along the axis: numbers in SI, or words as they were written."""
-        if self.entry.unit is not None:
-            return np.array(self.values)
-        return np.array([written_out(value) for value in self.written])
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,17 +217,6 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Map
         With all errors at once, if keys or values are wrong.
     """
     return _checked(*keys_and_origin(case), sweep, "study")
-
-
-def written_out(value: object) -> str:
-    """Write a value of a key for people: words without quotes, lists with commas."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, list | tuple):
-        return ", ".join(map(written_out, value))
-    if isinstance(value, Mapping):
-        return ", ".join(f"{name} {written_out(item)}" for name, item in value.items())
-    return described_value(value) if holds_memory(value) else json.dumps(value, default=str)
 
 
 def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | os.PathLike[str]) -> Study:

@@ -1,13 +1,9 @@
 """Named changes of several keys of a case: to other values, or by as much as is told."""
 
 import math
-import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass
+from typing import Any
 
 from asperity.arguments import require, shown
 from asperity.case.content import content
@@ -15,15 +11,17 @@ from asperity.case.describing import CaseKey, entry_of, value_in_toml
 from asperity.case.form import Section
 from asperity.case.scene import Case
 from asperity.errors import CaseError, InputError
-from asperity.parameters import Origin, keys_of
-from asperity.reference.materials import Material
+from asperity.parameters import Origin, Text, key, keys_of
 from asperity.structures.track import Track
+from asperity.studies.axes import SweptAxis, as_in_toml
 from asperity.units import quantity
 
 VARIANT, AS_IT_IS = "variant", "as it is"
 """Dimension of the named changes, and the name of the first of them, which changes nothing."""
-_BY = re.compile(r"\s*(times|plus|minus)\s+(.+)")
-_INSTEAD = re.compile(r"\s*(.+?)\s+(instead of)\s+(.+?)\s*")
+WAYS = {"times": (None, 0.0), "plus": (1.0, 1.0), "minus": (1.0, -1.0)}
+"""Words before a number: factor of what the case has (None: the number), and sign of what is added to it."""
+MOST_ERRORS = 20
+"""Wrong keys of which each is looked at."""
 
 
 class Unfit(Exception):
@@ -45,39 +43,41 @@ class Change:
 
     entry: CaseKey  # the key
     written: Any  # as it stands in TOML, or in words: "times 0.5"
-    way: str = ""  # "times", "plus", "minus" or "instead of"; empty: what is written is the value
-    by: Any = None  # by how much, in SI, or the value that the case must have
-    value: Any = None  # that it then gets
+    value: Any = None  # that it gets
+    former: Any = None  # that it must have had
+    factor: float | None = None  # of what the case has, in place of a value, and in SI what is added to that
+    added: float = 0.0
 
     @classmethod
     def read(cls, entry: CaseKey, written: Any, origin: Origin) -> "Change":
         """Read a change; an `InputError` says what is wrong with it."""
-        words = written if isinstance(written, str) else ""
-        if entry.unit is not None and (match := _BY.fullmatch(words)):
-            unit = "" if match[1] == "times" or entry.unit == "1" else entry.unit
+        words = written.strip() if isinstance(written, str) else ""
+        way, _, number = words.partition(" ")
+        value, instead, former = words.partition(" instead of ")
+        if entry.unit is not None and way in WAYS:
             try:
-                by = quantity(match[2], unit)
+                by = quantity(number, "" if way == "times" or entry.unit == "1" else entry.unit)
             except InputError as error:
                 raise error.about(entry.dotted) from None
-            require(0.0 < by < math.inf, entry.dotted, shown(written), f"{match[1]} a number greater than 0")
-            return cls(entry, written, match[1], by)
-        if match := _INSTEAD.fullmatch(words):
-            entry.read(match[1], origin)
-            return cls(entry, written, match[2], content(entry.read(match[3], origin)), match[1])
-        found = entry.read(written, origin)
-        return cls(entry, written, value=as_in_toml(written, found, entry))
+            require(0.0 < by < math.inf, entry.dotted, shown(written), f"{way} a number greater than 0")
+            factor, sign = WAYS[way]
+            return cls(entry, written, factor=factor or by, added=sign * by)
+        if instead:
+            entry.read(value, origin)
+            return cls(entry, written, value, content(entry.read(former, origin)))
+        return cls(entry, written, as_in_toml(written, entry.read(written, origin), entry))
 
     def applied(self, case: Case) -> Any:
         """The value that the key gets in a case, as it stands in TOML; `Unfit` says why there is none."""
         _refuse_measured(case, self.entry)
-        if not self.way:
+        if self.factor is None and self.former is None:
             return self.value
-        now, name = _value_of(case, self.entry), self.entry.dotted
-        if self.way == "instead of":
-            if content(now) != self.by:
-                raise Unfit(f"{name} is {now}, not {self.by}")
+        now = _value_of(case, self.entry)
+        if self.factor is None:
+            if content(now) != self.former:
+                raise Unfit(f"{self.entry.dotted} is {now}, not {self.former}")
             return self.value
-        found = now * self.by if self.way == "times" else now + self.by * (1 if self.way == "plus" else -1)
+        found = self.factor * now + self.added
         whole = isinstance(now, int) and found == int(found)
         return value_in_toml(int(found) if whole else found, self.entry.key)
 
@@ -96,21 +96,16 @@ def _value_of(case: Case, entry: CaseKey) -> Any:
 
 
 @dataclass(frozen=True, eq=False)
-class VariantAxis:
+class VariantAxis(SweptAxis):
     """Named changes of a case; the first changes nothing."""
 
     changes: Mapping[str, tuple[Change, ...]]  # by name
-    name: ClassVar[str] = VARIANT
-    meaning: ClassVar[str] = "what is changed of the case"
-    units: ClassVar[str] = "1"
-    typed: Mapping[str, Any] = field(default_factory=dict)
 
-    @property
-    def values(self) -> tuple[str, ...]:
-        """Names of the variants."""
-        return tuple(self.changes)
-
-    written = values
+    @classmethod
+    def of(cls, changes: Mapping[str, tuple[Change, ...]]) -> "VariantAxis":
+        """Name the axis and its places."""
+        entry = CaseKey(VARIANT, key(Text(), None, "what is changed of the case"))
+        return cls(entry, tuple(changes), tuple(changes), changes)
 
     @property
     def told(self) -> dict[str, dict[str, Any]]:
@@ -119,11 +114,6 @@ class VariantAxis:
             name: {change.entry.dotted: change.written for change in changes}
             for name, changes in self.changes.items()
         }
-
-    @property
-    def coordinate(self) -> NDArray[Any]:
-        """Names along the axis."""
-        return np.array(self.values)
 
     def keys(self, name: str, case: Case) -> dict[str, Any]:
         """Keys that a variant changes in a case, with their values; an error says why it changes none.
@@ -150,20 +140,23 @@ def variant_axis(model: type[Section], given: object, origin: Origin) -> tuple[V
         remedy = f'Write [sweep.{VARIANT}."soft pads"], and below it track.pad_stiffness = "times 0.5".'
         errors.append(InputError(VARIANT, shown(given), "names, each with keys and their values", remedy))
     for name, keys in named.items():
-        what, changes = f'{VARIANT}."{name}"', []
+        what, changes = f'{VARIANT}."{name}"', dict[str, Change]()
         if not (isinstance(name, str) and name.strip() and name.isprintable() and name != AS_IT_IS):
             errors.append(InputError(what, "this name", f'a name of one line other than "{AS_IT_IS}"'))
         if not (isinstance(keys, Mapping) and keys):
             errors.append(InputError(what, shown(keys), "one key or more of the case, with their values"))
             continue
         for dotted, value in flat(keys):
+            if len(errors) >= MOST_ERRORS:
+                break
             try:
                 require(dotted != "kind", dotted, "a key that is changed", "one kind of case in a study")
-                changes.append(Change.read(entry_of(model, dotted), value, origin))
+                require(dotted not in changes, dotted, "the key more than once", "each key once")
+                changes[dotted] = Change.read(entry_of(model, dotted), value, origin)
             except InputError as error:
                 errors.append(error.about(f"{what}.{error.what}"))
-        found[name] = tuple(changes)
-    return VariantAxis(found), errors
+        found[name] = tuple(changes.values())
+    return VariantAxis.of(found), errors
 
 
 def flat(keys: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]]:
@@ -173,9 +166,3 @@ def flat(keys: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]
             yield from flat(value, f"{name}.")
         else:
             yield f"{section}{name}", value
-
-
-def as_in_toml(value: Any, found: Any, entry: CaseKey) -> Any:
-    """A value as it would stand in a file: as it was given, but for numbers in SI."""
-    bare = isinstance(value, int | float | np.generic | Material) and not isinstance(value, bool)
-    return value_in_toml(found, entry.key) if bare else value
