@@ -56,6 +56,9 @@ def test_the_wheel_decides_the_preload(tmp_path):
         assert track.pad_stiffness == pytest.approx(150e6 * (1.0 + min(max(place, 0.0), 1.0)), rel=1e-3)
     assert 20e3 < light.track.pad_preload < heavy.track.pad_preload < 60e3
     assert "pad_preload" not in light.to_toml()
+    (said,) = heavy.track.described_pads
+    assert said == "pad.csv at 38.2 kN, measured from 20 to 60 kN: 218.3 MN/m at 300 Hz"
+    assert not list(WheelOnRail(surface={"spectrum": "iso3095"}).track.described_pads)
     assert case_of(table, pad_preload="60 kN").track.model().pad_stiffness == pytest.approx(300e6, rel=1e-3)
 
 

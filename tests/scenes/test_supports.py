@@ -49,6 +49,8 @@ def test_what_there_is_not_is_left_out(run):
     assert all((data.number(tree, fact) is None) == (name == "embedded") for fact in facts)
     sleepers = tree["spectra/radiated_power_level"].sel(radiator="sleepers").values
     assert np.isnan(sleepers).all() == (name == "embedded")
+    why = tree["spectra/radiated_power_level"].attrs["missing"]
+    assert why.startswith("no sleeper moves" if name == "embedded" else "of this wheel it is not known")
     assert np.isfinite(tree["spectra/radiated_power_level_a"].sel(radiator="rail").values).all()
 
 

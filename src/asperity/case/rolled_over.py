@@ -339,6 +339,17 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         scatters = {"spacing": self.spacing_scatter, "pad": self.pad_scatter, "ballast": self.ballast_scatter}
         return Bays.drawn(self.bays, **scatters, seed=self.scatter_seed)
 
+    @property
+    def described_pads(self) -> Iterator[str]:
+        """Say which measured pads these are, and at which preload; nothing of others."""
+        if self.pad_table is None:
+            return
+        preloads, said = preloads_of(self._pad_rows), name_of(self.pad_table)
+        if self.pad_preload is not None:
+            at, least, most = (1e-3 * each for each in (self.pad_preload, preloads[0], preloads[-1]))
+            said += f" at {at:.3g} kN, measured from {least:.3g} to {most:.3g} kN"
+        yield f"{said}: {1e-6 * self._pad.nominal:.4g} MN/m at 300 Hz"
+
     def preloaded(self, load: float) -> Self:
         """With the preload of the pads, where it matters and is not given, under a wheel with this load, N.
 

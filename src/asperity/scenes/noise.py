@@ -275,8 +275,14 @@ def radiation(computed: Computed) -> Values:
             whole[:, 2] = np.nan
         with np.errstate(divide="ignore"):
             level = 10.0 * np.log10(wheels * whole / PICOWATT)
-        total = totals.variable(a_weighted_total(level, band), wheel=silent)
-        return {levels: levels.variable(level, wheel=silent), totals: total}
+        said = {"wheel": silent}
+        if not power[:, 1].any():
+            of_wheel = () if silent == "computed" else (schema.SILENT,)
+            said["missing"] = "; ".join((schema.STILL, *of_wheel))
+        return {
+            levels: levels.variable(level, **said),
+            totals: totals.variable(a_weighted_total(level, band), **said),
+        }
 
     beside: Values = {}
     longer: ArrayLike = 1.0

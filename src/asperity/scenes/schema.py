@@ -204,6 +204,7 @@ CNOSSOS_SOUND_POWER_LEVEL_A = _noise(
 )
 
 SILENT = "of this wheel it is not known how its disc and tread vibrate"
+STILL = "no sleeper moves on this track"
 RADIATOR = _rail_spectra("radiator", "1", "what radiates by its vibration")
 _radiated = partial(_rail_spectra, missing=SILENT, attributes=("wheel",))
 _POWER = "sound power level from the vibration itself, of all axles"

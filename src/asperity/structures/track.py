@@ -302,7 +302,7 @@ class Track(TrackParameters):
     def is_damped(self) -> bool:
         """Whether anything in the track dissipates."""
         damped = any(spring.damping for spring in self.springs.values())
-        return bool(damped or self.nominal.lossy or self.damper)
+        return bool(damped or self.relaxations or self.lossy or self.damper)
 
     def waves(self, omega: ArrayLike) -> PeriodicWaves | CellWaves:
         """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `Chain`.
