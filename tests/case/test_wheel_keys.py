@@ -68,6 +68,12 @@ def test_modes_go_up_to_a_quarter_beyond_the_highest_frequency():
     assert np.sum(more.natural_frequencies <= 1250.0) == len(found.natural_frequencies)
 
 
+def test_modes_that_nobody_hears_are_not_sought(monkeypatch):
+    monkeypatch.setattr("asperity.case.wheel.HIGHEST", 600.0)
+    found = wheel_on_rail(section="curved-web").rolling.standing_modes(1e5)
+    assert 300.0 < found.natural_frequencies.max() <= 600.0
+
+
 def test_a_rigid_wheel_and_a_ball_have_no_modes():
     assert wheel_on_rail(section="rigid").rolling.standing_modes(400.0) is None
     assert as_case({"kind": "bodies", "over": "beam", "surface": {"smooth": True}}).rolling.section == "rigid"

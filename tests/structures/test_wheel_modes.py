@@ -94,6 +94,7 @@ BAD = {
     "not finite": ([[0.1, 0.0], [np.nan, 0.0], [0.2, 0.1]], "received nan"),
     "too many": (np.random.default_rng(1).uniform(0.1, 0.2, (3000, 2)), "3000 different points"),
     "beside the running circle": (np.array(SQUARE) + np.array([0.0, 0.1]), "axial places of 50 mm to 150 mm"),
+    "a foil": ([[0.1, -0.1], [0.46, 0.1], [0.46, 0.10002], [0.1, -0.09998]], "a mean thickness of 0.0175 mm"),
     "no seat": ([[0.1, 0.0], [0.2, -0.05], [0.2, 0.05]], "one point nearest to the axis"),
 }  # fmt: skip
 

@@ -30,6 +30,7 @@ from asperity.structures.outline import checked_outline, volume_of
 from asperity.structures.wheel_modes import (
     BEYOND,
     DAMPING,
+    HIGHEST,
     WheelModes,
     wheel_modes,
     with_running_circle,
@@ -136,7 +137,7 @@ class Ringing(Section, parameters=_DIMENSIONS):
             return WheelModes.from_table(table) if table.shape[1] > len(MODES) else None
         if not self.is_drawn:
             return None
-        found = _computed(self.outline.tobytes(), self.material, BEYOND * highest_frequency)
+        found = _computed(self.outline.tobytes(), self.material, min(BEYOND * highest_frequency, HIGHEST))
         return found.damped(self.modal_damping, self.added_damping, self.added_damping_from)
 
     def turning_modes(self, highest_frequency: float, speed: float) -> WheelModes | None:

@@ -14,6 +14,8 @@ FINENESS = 0.25
 """Size of the triangles over the mean thickness of the section, twice its area over its circumference."""
 BLUNT = 0.01
 """By which part of that size an outline may be straightened."""
+MOST_CELLS = 2e7
+"""Most triangles that fit beside the section, times pieces around it: real wheels have some 10⁵."""
 MOST_SPLITS = 12
 """Times that edges of an outline are halved until triangles meet them."""
 
@@ -103,7 +105,12 @@ def mesh_of(outline: Array, size: float | None = None, kept: ArrayLike = ()) -> 
     By default `FINENESS` times its mean thickness. Points of the outline closer to a straight line than a
     hundredth of this are left out, but those whose numbers are `kept`.
     """
-    step = FINENESS * mean_thickness(outline) if size is None else size
+    thick = mean_thickness(outline)
+    step = FINENESS * thick if size is None else size
+    width, height = np.ptp(outline, axis=0)
+    if width * height * _doubled_area(outline) / thick > MOST_CELLS * step**3:
+        received = f"a mean thickness of {thick * 1e3:.3g} mm on {max(width, height) * 1e3:.3g} mm"
+        raise InputError("outline of the section", received, "a section that is not so thin or jagged")
     around = _divided(_straightened(outline, BLUNT * step, np.atleast_1d(np.asarray(kept, dtype=int))), step)
     inner = _lattice(around, step)
     for _ in range(MOST_SPLITS):

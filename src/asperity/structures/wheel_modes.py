@@ -28,6 +28,8 @@ FORMAT = 1
 """Of modes that are kept: raise it where their computation changes."""
 BEYOND = 1.25
 """Modes are sought up to this multiple of the highest frequency of the spectra."""
+HIGHEST = 12.5e3
+"""And not beyond this frequency, Hz: modes get dense as its square, and nothing is heard of them."""
 DAMPING = (1e-3, 1e-2, 1e-4)
 """Damping ratios of 0, 1, and 2 and more nodal diameters, as usual in the literature on railway wheels."""
 MOST_DIAMETERS = 40
