@@ -76,8 +76,9 @@ def computed_result(
         found += of_measured
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
         found += findings_of_passage(own)
-        own |= sideways.sideways_group(computed)
+        own |= (beside := sideways.sideways_group(computed))
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))
+        sources += sideways.SOURCES if beside else ()
         noise.warn_of_silence(case)
         track.warn_of_loss_factors(losses)
         measured.warn_of_contradictions(of_measured)

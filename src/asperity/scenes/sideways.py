@@ -28,6 +28,13 @@ PLACES = 12
 PICOWATT = 1e-12
 """Of sound power levels, W."""
 
+SOURCES = (
+    "sideways: the rail as in D. Kostovasilis, D. J. Thompson and M. F. M. Hussein, J. Sound Vib. 2017, doi "
+    "10.1016/j.jsv.2016.12.033, without warping; where the case gives no other, UIC 60 and a third of the "
+    "pad stiffness as in the program rolland; friction of 0.3 chosen here.",
+    "R. D. Mindlin, J. Appl. Mech. 16 (1949) 259 (contact in stick).",
+)
+
 
 def moves_sideways(computed: Computed) -> bool:
     """Whether anything does: where the contact is off the middle, or the web of a drawn wheel may be bent."""

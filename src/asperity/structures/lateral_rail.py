@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,8 +23,13 @@ THIRD = 1.0 / 3.0
 """Lateral stiffness of a pad over its vertical one."""
 POLISHED = 2
 """Steps of Newton's on the roots of the dispersion relation."""
-_RAILS = "rails lie between"
-_LENGTH = "1 mm to 1 m: rails lie between"
+_STIFF, _HEAVY, _LONG = "100 N m^2 to 1 GN m^2", "1e-6 kg m to 1000 kg m", "1 mm to 1 m"
+
+
+def _of_rail(unit: str, example: str, words: str, limits: str, default: float, **bounds: Any) -> Any:
+    """Declare a parameter of the rail, above zero where its bounds say nothing else."""
+    kind = Quantity(unit, **({"above": 0} | bounds))
+    return parameter(kind, example, words, f"{limits}: rails lie between", default=default)
 
 
 @dataclass(frozen=True)
@@ -31,7 +37,8 @@ class LateralRail:
     """How a rail resists sideways, beside what a `Track` says of it: UIC 60 by default.
 
     It bends by Timoshenko and twists by St Venant about its centre of twist, which moves centroid, head and
-    foot.
+    foot (D. Kostovasilis, D. J. Thompson and M. F. M. Hussein, J. Sound Vib. 2017, doi
+    10.1016/j.jsv.2016.12.033, whose beam also warps).
 
     Raises
     ------
@@ -45,61 +52,31 @@ class LateralRail:
     restrained warping.
     """
 
-    bending_stiffness: float = parameter(
-        Quantity("N m^2", above=0),
-        "1.08 MN m^2",
-        "lateral bending stiffness of the rail",
-        f"100 N m^2 to 1 GN m^2: {_RAILS}",
-        default=_YOUNG * 5.127e-6,
+    bending_stiffness: float = _of_rail(
+        "N m^2", "1.08 MN m^2", "lateral bending stiffness of the rail", _STIFF, _YOUNG * 5.127e-6
     )
-    shear_stiffness: float = parameter(
-        Quantity("N", above=0, infinite=True),
-        "333 MN",
-        'lateral shear stiffness of the rail, "inf" for Euler-Bernoulli',
-        f"1 kN to 1 TN: {_RAILS}",
-        default=_SHEAR * _AREA * 0.538,
+    shear_stiffness: float = _of_rail(
+        "N", "333 MN", 'its lateral shear stiffness, "inf" for Euler-Bernoulli', "1 kN to 1 TN",
+        _SHEAR * _AREA * 0.538, infinite=True,
+    )  # fmt: skip
+    rotary_inertia: float = _of_rail(
+        "kg m", "0.04 kg m", "its rotary inertia per length in lateral bending", _HEAVY,
+        _DENSITY * 5.127e-6, above=None, at_least=0,
+    )  # fmt: skip
+    torsional_stiffness: float = _of_rail(
+        "N m^2", "179 kN m^2", "torsional stiffness of the rail, G J", _STIFF, _SHEAR * 2.212e-6
     )
-    rotary_inertia: float = parameter(
-        Quantity("kg m", at_least=0),
-        "0.04 kg m",
-        "rotary inertia of the rail per length in lateral bending",
-        f"1e-6 kg m to 1000 kg m: {_RAILS}",
-        default=_DENSITY * 5.127e-6,
+    polar_inertia: float = _of_rail(
+        "kg m", "0.28 kg m", "its polar inertia per length about its centroid", _HEAVY, _DENSITY * 3.55e-5
     )
-    torsional_stiffness: float = parameter(
-        Quantity("N m^2", above=0),
-        "179 kN m^2",
-        "torsional stiffness of the rail, G J",
-        f"10 N m^2 to 1 GN m^2: {_RAILS}",
-        default=_SHEAR * 2.212e-6,
+    head_height: float = _of_rail(
+        "m", "124 mm", "height of the top of the rail above its centre of twist", _LONG, 0.124
     )
-    polar_inertia: float = parameter(
-        Quantity("kg m", above=0),
-        "0.28 kg m",
-        "polar inertia of the rail per length about its centroid",
-        f"1e-6 kg m to 1000 kg m: {_RAILS}",
-        default=_DENSITY * 3.55e-5,
+    foot_depth: float = _of_rail(
+        "m", "48 mm", "depth of its bottom below that", _LONG, 0.048, above=None, at_least=0
     )
-    head_height: float = parameter(
-        Quantity("m", above=0),
-        "124 mm",
-        "height of the top of the rail above its centre of twist",
-        _LENGTH,
-        default=0.124,
-    )
-    foot_depth: float = parameter(
-        Quantity("m", at_least=0),
-        "48 mm",
-        "depth of the bottom of the rail below its centre of twist",
-        _LENGTH,
-        default=0.048,
-    )
-    centroid_height: float = parameter(
-        Quantity("m"),
-        "33 mm",
-        "height of the rail's centroid above its centre of twist",
-        "-1 m to 1 m: rails lie between",
-        default=0.033,
+    centroid_height: float = _of_rail(
+        "m", "33 mm", "height of its centroid above that", "-1 m to 1 m", 0.033, above=None
     )
 
     def __post_init__(self) -> None:
