@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import asperity
 from asperity.cli.studying import varied
 from asperity.running import run
 from asperity.spectra import a_weighting
-from asperity.studies.definition import load_study
+from asperity.studies.definition import load_study, study_of
 from command_line import RAIL, SMALL, call, words_of
+from small_cases import changed
 
 FILTERED = SMALL.replace('["hertz", "linear"]', '["hertz", "linear", "hertz-filtered", "linear-filtered"]')
 FILTERED += 'level = "-20 dB"\n[contact]\nspacing = "10 um"\nwindow = "0.4 mm"\n'
@@ -276,3 +278,19 @@ def test_the_ready_list_is_a_study_and_needs_a_track():
     for command in ("run", "study"):
         told = call(command, "small.toml", "--what-helps", code=2).stderr
         assert "what helps: received a ball-on-beam case; allowed: a case over a track" in told
+
+
+@pytest.mark.long
+def test_a_run_says_what_helps_and_finds_it_again(monkeypatch):
+    case = changed("wheel-on-rail", laws=["linear"], numerics={"highest_frequency": "2 kHz"})
+    Path("rail.toml").write_text(case.to_toml())
+    plan = study_of(case, {"variant": {"a fifth slower": {"speed": "times 0.8"}}})
+    monkeypatch.setattr("asperity.studies.effects.what_helps", lambda case: plan)
+    call("run", "rail.toml", "-o", "out")
+    assert "What helps?" not in Path("out/report.html").read_text(encoding="utf-8")
+    call("run", "rail.toml", "-o", "out", "--what-helps")
+    assert "What helps?" in Path("out/report.html").read_text(encoding="utf-8")
+    found = asperity.open_result("out")["effects"]
+    assert float(found["effect"].sel(radiator="total", variant="a fifth slower")) < 0.0
+    assert next(iter(columns("out/what_helps.csv"))) == "a fifth slower: total [dB]"
+    assert "Nothing to do" in call("run", "rail.toml", "-o", "out", "--what-helps").stderr
