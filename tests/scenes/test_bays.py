@@ -7,8 +7,12 @@ from asperity.case.cases import load_case
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.errors import CaseError
 from asperity.reporting import chart
+from asperity.running import prepare_case
+from asperity.scenarios.preparing import BAY_TIME, expect
 from asperity.scenes.figures.track import TRACK, sleeper_times, sleepers_between
+from asperity.scenes.plan import planned_rows
 from asperity.scenes.report import figures_of
+from asperity.threads import thread_count
 
 CASE = {
     "speed": "30 m/s",
@@ -106,3 +110,15 @@ def test_a_table_of_bays_is_read_in_its_units(tmp_path):
 def test_bays_that_cannot_be_are_refused(keys, message):
     with pytest.raises(CaseError, match=f"(?s){message}"):
         over(**keys)
+
+
+def test_the_plan_counts_bays_starts_and_time():
+    case = over(bays=8, spacing_scatter=0.05)
+    prepared, regular = prepare_case(case), prepare_case(over())
+    rows = dict(planned_rows(prepared))
+    assert "8 in 4.8 m, then they repeat" in rows["bays that differ"]
+    assert "of 192 start positions" in rows["moving kernel"]
+    assert "passed 1.4 times" in rows["moving kernel"]  # 0.22 s at 30 m/s
+    assert "moving kernel" not in dict(planned_rows(regular))
+    work = [expect(each, lambda *_: None).seconds for each in (prepared, regular)]
+    assert work[0] - work[1] > 0.5 * 8 * BAY_TIME / thread_count()

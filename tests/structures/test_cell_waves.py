@@ -30,7 +30,8 @@ def test_equal_bays_answer_as_one(section: dict[str, float], shift: float, count
         assert cell.receptance(x, x0) == pytest.approx(one.receptance(x, x0), rel=1e-9, abs=1e-200)
     slowest = np.abs(one.multipliers).max(axis=0)
     assert np.abs(cell.multipliers).max(axis=0) == pytest.approx(slowest**count, rel=1e-10)
-    assert np.abs(cell.bay(count - 1).multipliers).max(axis=0) == pytest.approx(slowest, rel=1e-10)
+    for bay in (0, count // 2, count - 1):
+        assert np.abs(cell.bay(bay).multipliers).max(axis=0) == pytest.approx(slowest, rel=1e-10)
 
 
 def test_it_is_the_sum_over_very_many_supports() -> None:
@@ -75,6 +76,7 @@ def test_a_stretch_of_it_answers_like_one_bay() -> None:
     nodes = np.linspace(0.0, length, 5)
     for of_nodes, of_places in zip(here.shapes_at_nodes(4), here.symmetric_shapes(nodes), strict=True):
         assert of_nodes == pytest.approx(of_places, rel=1e-12)
+    assert cell.carried(-9, -6) == pytest.approx(cell.carried(1, 4), rel=1e-12)
     assert cell.carried(9, 1) == pytest.approx(
         np.prod([cell.bay(n).multipliers for n in range(1, 9)], axis=0)
     )

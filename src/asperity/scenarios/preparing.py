@@ -28,6 +28,7 @@ from asperity.scenarios.running_in import running_in_passes, running_in_position
 from asperity.scenarios.scene import Scene, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
+from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 from asperity.units import written
@@ -49,6 +50,8 @@ STEP_TIME = 1e-6
 """Time of a step of one contact by a law that looks its force up, and of its spectra and record, s."""
 TRACK_TIME = 2.0
 """Time of the moving kernels of a track, for each of its distances, s."""
+BAY_TIME = 0.6
+"""Processor time of a moving kernel for each bay that differs, s."""
 START_TIME = 2.0
 """Time of starting the program, of laying out a result and of writing its report, s."""
 LONG = 2.0
@@ -290,6 +293,9 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
     seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.scene.points)
     seconds += STEP_TIME * steps * contacts * len(case.laws)
+    if isinstance(prepared.scene.over, Track) and prepared.scene.over.bays:
+        kernels = np.unique(np.round(np.subtract.outer(*[prepared.scene.offsets] * 2), 6)).size
+        seconds += BAY_TIME * kernels * prepared.scene.over.cell_bays / thread_count()
     if trial is not None:
         one = NEIGHBOUR * trial.solution
         seconds += case.contact.samples * len(trial.approaches) * trial.solution

@@ -82,7 +82,7 @@ def _rows_of_bays(case: Case, track: Track) -> Iterator[tuple[str, str]]:
         if np.ptp(stiffness):
             parts.append(f"{name} {stiffness.min():.3g} to {stiffness.max():.3g} MN/m")
     yield "bays that differ", f"{count} in {track.period:.4g} m, then they repeat: {', '.join(parts)}"
-    passes = case.speed * case.rolled_time / track.period
+    passes = case.speed * (case.settled_time + case.rolled_time) / track.period
     words = f"of {STARTS * count} start positions, {count} times that of one bay; passed {passes:.2g} times"
     yield "moving kernel", words
 

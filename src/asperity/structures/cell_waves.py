@@ -18,6 +18,7 @@ from asperity.structures.periodic_rail import refuse_decay
 
 _TRANSMITTED = 1e-9  # amplitude through half a track, from which on its end is not felt: squared it is 1e-18
 _DOUBLINGS = 64
+_SAME = 1e-9  # of the cell: a place as near to a support is at it
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +66,9 @@ class CellWaves:
 
     def carried(self, first: int, last: int, zone: slice = slice(None)) -> Complex:
         """Change of each wave (2, f) from one equal part to another, in either direction, in a zone of f."""
-        begin, end = (self._first_span(bay) for bay in sorted((first, last)))
+        whole, length = replace(self, start=0.0), self.edges[-1] / self.bays
+        begin, end = (whole._span(bay * length)[0] for bay in sorted((first, last)))
         return self._carried(begin, end, zone)
-
-    def _first_span(self, bay: int) -> int:
-        """Span in which an equal part of the cell begins, counted on through the cells."""
-        cell, part = divmod(bay, self.bays)
-        return cell * len(self.steps) + self.bay(part)._span(0.0)[0]
 
     def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= spacing, m."""
@@ -101,9 +98,11 @@ class CellWaves:
 
     def _span(self, x: float) -> tuple[int, float]:
         """Number of the span at a place of the stretch, counted on through the cells, and the place in it."""
-        cell, place = divmod(self.start + x, self.edges[-1])
-        inside = min(int(np.searchsorted(self.edges, place, side="right")) - 1, len(self.steps) - 1)
-        return int(cell) * len(self.steps) + inside, place - self.edges[inside]
+        at, period = self.start + x, self.edges[-1]
+        cell = int(np.floor(at / period + _SAME))
+        place = at - cell * period
+        inside = int(np.searchsorted(self.edges[1:-1], place + _SAME * period, side="right"))
+        return cell * len(self.steps) + inside, place - self.edges[inside]
 
     def _place(self, x: float) -> tuple[int, tuple[int, float]]:
         """Span in which the stretch begins; that of a place and the place in it, refused if too far on."""
@@ -245,13 +244,13 @@ def _waves(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half
     def backwards(span: int, waves: Complex) -> Complex:
         return decays[span][::-1, None] * _times(undone[span], waves)  # times the decay of both waves
 
-    there, return_ = one + 0j * decays[0], one + 0j * decays[0]
+    onwards, returned = one + 0j * decays[0], one + 0j * decays[0]
     for span in range(count):
-        there = _normed(forwards(span, there))[0]
-        return_ = _normed(backwards(count - 1 - span, return_))[0]
-    slow = _range_without(there, _smaller_eigenvalue(there))
-    own = np.sum(slow.conj() * np.einsum("ijf,jf->if", return_, slow), axis=0)
-    fast = _range_without(return_, own)
+        onwards = _normed(forwards(span, onwards))[0]
+        returned = _normed(backwards(count - 1 - span, returned))[0]
+    slow = _range_without(onwards, _smaller_eigenvalue(onwards))
+    own = np.sum(slow.conj() * np.einsum("ijf,jf->if", returned, slow), axis=0)
+    fast = _range_without(returned, own)
     found, steps = np.zeros((count, 2, 2, slow.shape[-1]), complex), np.zeros_like(decays)
     found[0, :, 0], found[0, :, 1] = slow, fast
     for span in range(count):
@@ -294,8 +293,6 @@ def _range_without(a: Complex, eigenvalue: Complex) -> Complex:
 
 _FAR = 40.0
 """Characteristic lengths of a rail on its supports to where a force is not felt: exp(-40)."""
-
-_SAME = 1e-9  # of the cell: a place as near to a support is at it
 
 
 def static_receptance_of_cell(
