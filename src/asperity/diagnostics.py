@@ -109,9 +109,7 @@ def _analytic(values: Array, rate: float, low: float, high: float) -> Array:
     from scipy.fft import fft, ifft
 
     lines, frequency = fft(values), np.fft.fftfreq(values.size, 1.0 / rate)
-    return np.asarray(
-        ifft(np.where((frequency > 0.0) & (frequency >= low) & (frequency <= high), 2.0, 0.0) * lines)
-    )
+    return np.asarray(ifft(np.where((frequency >= low) & (frequency <= high), 2.0, 0.0) * lines))
 
 
 def impulsive_band(signal: ArrayLike, rate: float, least_width: float = 0.0) -> tuple[float, float]:
@@ -215,57 +213,34 @@ def find_lines(
     LineFamily
         At the deviation at which they stand out most.
     """
-    expected, slip = (
-        positive("expected line (Hz)", expected),
-        real("slip", slip, "0 to 0.2", at_least=0, at_most=0.2),
-    )
+    from scipy.ndimage import maximum_filter1d
+
+    expected = positive("expected line (Hz)", expected)
+    slip = real("slip", slip, "0 to 0.2", at_least=0.0, at_most=0.2)
     harmonics = whole("harmonics", harmonics, "a whole number, 1 or more", at_least=1)
     frequency, amplitude = (np.asarray(each, dtype=float) for each in spectrum)
     step = frequency[1] - frequency[0]
     count = min(harmonics, int((frequency[-1] / step - WITHIN - 1) * step / (expected * (1.0 + slip))))
     received, allowed = f"{expected:.4g} Hz", f"less than the spectrum reaches, {frequency[-1]:.4g} Hz"
     require(count >= 1, "expected line", received, allowed, "Take a wider band, or a faster sampling.")
-    require(
-        expected >= 8.0 * step, "expected line", received, f"at least {8.0 * step:.3g} Hz", "Record longer."
-    )
+    allowed = f"at least {8.0 * step:.3g} Hz"
+    require(expected >= 8.0 * step, "expected line", received, allowed, "Record longer.")
     order = np.arange(1, count + 1)
-    half = np.maximum((AROUND * expected * order / step).astype(int), FEWEST)
-    background = np.array(
-        [
-            np.median(amplitude[max(place - n, 1) : place + n])
-            for place, n in _places(order * expected / step, half)
-        ]
-    )
-    highest = _highest(amplitude)
+    spans = [(at, max(AROUND * at, FEWEST)) for at in order * expected / step]
+    background = np.array([np.median(amplitude[max(int(at - n), 1) : int(at + n)]) for at, n in spans])
+    highest = maximum_filter1d(amplitude, 2 * WITHIN + 1)
     shifts = np.linspace(-slip, slip, 2 * int(np.ceil(slip * count * expected / step)) + 1)
     places = np.rint((1.0 + shifts[:, None]) * order * expected / step).astype(int)
     ratio = highest[places] / np.maximum(background, 1e-300)
-    best = np.argmax(
-        np.log(np.clip(ratio, 1.0, COUNTED)).sum(axis=1) + 1e-6 * ratio.sum(axis=1) / ratio.max()
-    )
-    at = np.array(
-        [
-            place - WITHIN + int(amplitude[place - WITHIN : place + WITHIN + 1].argmax())
-            for place in places[best]
-        ]
-    )
-    beside = np.rint((frequency[at][:, None] + distance * np.array([-1.0, 1.0])) / step).astype(int)
+    clear = np.log(np.clip(ratio, 1.0, COUNTED)).sum(axis=1) + 1e-6 * ratio.sum(axis=1) / ratio.max()
+    around = places[np.argmax(clear)][:, None] + np.arange(-WITHIN, WITHIN + 1)
+    at = np.take_along_axis(around, amplitude[around].argmax(axis=1)[:, None], axis=1)[:, 0]
+    beside = at[:, None] + np.rint(distance / step * np.array([-1.0, 1.0])).astype(int)
     inside = (beside > 0) & (beside < amplitude.size) & (distance > 0.0)
     sides = np.where(inside, highest[np.clip(beside, 0, amplitude.size - 1)], 0.0)
-    weight = amplitude[at] / order
+    weight = amplitude[at] * order  # harmonics tell it the more closely
     deviation = float((weight * frequency[at] / order).sum() / weight.sum() / expected - 1.0)
     return LineFamily(expected, distance, deviation, frequency[at], amplitude[at], background, sides)
-
-
-def _places(places: Array, half: Array) -> list[tuple[int, int]]:
-    return list(zip(np.rint(places).astype(int).tolist(), half.tolist(), strict=True))
-
-
-def _highest(amplitude: Array) -> Array:
-    """Largest amplitude within some places of each (f,)."""
-    from scipy.ndimage import maximum_filter1d
-
-    return np.asarray(maximum_filter1d(amplitude, 2 * WITHIN + 1))
 
 
 def explained_lines(

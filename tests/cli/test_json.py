@@ -54,6 +54,7 @@ COMMANDS = {
     "run": ("run", "small.toml", "-o", "a"),
     "check": ("check", "small.toml"),
     "surface": SURFACE,
+    "bearing": ("bearing", "6205", "--radial", "100 N", "-o", "load.png"),
     "wheel": ("wheel", "straight-web", "--highest", "400 Hz", "-o", "modes.csv"),
     "study": ("study", "small.toml", "--vary", "seed=1, 2", "-o", "st", "--workers", "1"),
     "compare": ("compare", "a", "a"),

@@ -51,6 +51,19 @@ def test_many_balls_carry_a_radial_load_as_the_integral():
     assert found.stiffness[0, 0, 0] == pytest.approx(1.5 * 200.0 / found.displacement[0, 0], rel=1e-4)
 
 
+def test_its_geometry_is_that_of_textbooks():
+    """1/R = (2/D) γ/(1 ∓ γ) along the raceways; clearance and free contact angle say the same."""
+    gamma = 0.2 * math.cos(OTHER.free_angle)
+    assert OTHER.free_angle == pytest.approx(math.radians(25.0))
+    assert 1.0 / OTHER.inner_contact.radius_x == pytest.approx(2.0 / 6e-3 * (1.0 + gamma / (1.0 - gamma)))
+    assert 1.0 / OTHER.outer_contact.radius_x == pytest.approx(2.0 / 6e-3 * (1.0 - gamma / (1.0 + gamma)))
+    loose = OTHER.with_(contact_angle=None, clearance=OTHER.radial_clearance)
+    assert loose.free_angle == pytest.approx(OTHER.free_angle)
+    assert OTHER.radial_clearance == pytest.approx(2 * 0.045 * 6e-3 * (1 - math.cos(math.radians(25.0))))
+    assert TIGHT.free_angle == 0.0
+    assert sum(OTHER.raceway_radii) == pytest.approx(30e-3)
+
+
 def forces_out_of_balance(state, bearing, load, lift, azimuth):
     """Newtons that are missing at the inner ring and at each ball, from their coordinates."""
     Z, D = bearing.balls, bearing.ball_diameter
@@ -114,7 +127,8 @@ def test_forces_balance(radial, axial, speed, angle, bearing):
         found = bearing.loaded(radial, axial, speed=speed, cage_angles=[angle])
     inner, outer = np.nan_to_num(found.inner_angle), np.nan_to_num(found.outer_angle)
     inward, along = found.inner_load * np.cos(inner), found.inner_load * np.sin(inner)
-    total, scale = axial + bearing.preload, max(radial, axial + bearing.preload)
+    total = axial + bearing.preload
+    scale = max(radial, total, found.outer_load.max())
     assert (inward * np.cos(found.azimuth)).sum() == pytest.approx(radial, abs=2e-9 * scale)
     assert (inward * np.sin(found.azimuth)).sum() == pytest.approx(0.0, abs=2e-9 * scale)
     assert along.sum() == pytest.approx(total, abs=2e-9 * scale)
@@ -122,6 +136,14 @@ def test_forces_balance(radial, axial, speed, angle, bearing):
     np.testing.assert_allclose(found.outer_load * np.cos(outer) - inward, lift, atol=1e-8 * scale)
     np.testing.assert_allclose(found.outer_load * np.sin(outer), along, atol=1e-8 * scale)
     assert found.imbalance <= 1e-10
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-45, 1.0, 60.0])
+def test_loads_of_almost_nothing_are_in_balance_as_far_as_numbers_tell(speed):
+    found = B6205.loaded(axial=5e-3, speed=speed)
+    along = found.inner_load * np.sin(found.inner_angle)
+    np.testing.assert_allclose(along.sum(axis=1), 5e-3, rtol=1e-6)
+    assert found.imbalance <= 1e-7
 
 
 def test_the_next_ball_is_the_same_and_left_is_right():
@@ -192,6 +214,7 @@ def test_multiples_of_the_speed_are_those_printed_for_it():
 def test_the_ring_that_turns_and_slip():
     inner, outer = (B6205.with_(turning=ring).kinematics(10.0) for ring in ("inner", "outer"))
     assert inner.cage + outer.cage == pytest.approx(10.0)
+    assert inner.turning == outer.turning == 10.0
     for name in ("ball_pass_outer", "ball_pass_inner", "ball_defect"):
         assert getattr(inner, name) == pytest.approx(getattr(outer, name))
     slow = B6205.kinematics(10.0, slip=0.01)

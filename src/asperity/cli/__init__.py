@@ -113,42 +113,7 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 
-_SURFACE = [
-    click.Option(["--array"], help="Name of the array, where the file holds several."),
-    click.Option(
-        ["--index"], type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
-    ),
-    click.Option(["--height-unit"], metavar="UNIT", help="Unit of heights that carry none, as 'um'."),
-    click.Option(["--pixel"], metavar="LENGTH", help="Distance of points that carry none, as '1.5625 um'."),
-    click.Option(["--pixel-unit"], metavar="UNIT", help="Unit of coordinates that carry none, as 'mm'."),
-    click.Option(["--decimal"], metavar="MARK", help="Decimal mark of a text, '.' or ',', where in doubt."),
-    click.Option(["--transpose"], is_flag=True, help="Exchange x and y: roll along the other direction."),
-    click.Option(
-        ["--direction", "--rotate", "direction"],
-        metavar="ANGLE",
-        help="Roll in this direction, from x towards y, as '30 deg'; a bare number is in degrees.",
-    ),
-    click.Option(["--fill"], is_flag=True, help="Fill points without a height."),
-    click.Option(
-        ["--crop"], metavar="LENGTHS", help="Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides)."
-    ),
-    click.Option(["--form"], metavar="FORM", help="Remove plane, quadratic, sphere or cylinder."),
-    click.Option(["--longest"], metavar="LENGTH", help="Nesting index of the L-filter (ISO 16610-21, -61)."),
-    click.Option(["--shortest"], metavar="LENGTH", help="Nesting index of the S-filter, likewise Gaussian."),
-    click.Option(["--recipe"], type=PATH, help="Do what a stored recipe says; options are stronger."),
-    click.Option(["--store"], type=PATH, help="Store all that was done as a recipe that a case can name."),
-    click.Option(["--spikes"], is_flag=True, help="Take spikes for points without a height."),
-    click.Option(
-        ["--lines/--map"],
-        default=None,
-        help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
-    ),
-    click.Option(["--psd"], is_flag=True, help="Write the spectra of the picture as CSV beside it."),
-]
-"""Hints on a measured file, and steps that are taken with it: keys of a recipe."""
-
-
-@_begin("What is in a measured file: size, statistics, spectrum, picture.", params=_SURFACE)
+@_begin("What is in a measured file: size, statistics, spectrum, picture.", params=options.SURFACE)
 @click.argument("file", type=PATH)
 @output("The picture. [default: NAME-surface.png here, with array and index in its name]", "picture", None)
 def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
@@ -198,6 +163,39 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
     from asperity.cli.wheel import show_wheel
 
     return show_wheel(section, highest, table, picture)
+
+
+@_begin("What a ball bearing carries, its tones, and what its signal says.", params=options.BEARING)
+@click.argument("bearing", metavar="NAME|FILE")
+@output("Picture of the load zone, or of the envelope spectrum.", "picture", None)
+def bearing(
+    bearing: str,
+    picture: Path | None,
+    signal: Path | None,
+    radial: str | None,
+    axial: str | None,
+    speed: str | None,
+    clearance: str | None,
+    **hints: Any,
+) -> Document:
+    """Say how a ball bearing carries a load at rest, and its tones; or which of them a signal holds.
+
+    A bearing has a NAME, or its dimensions stand in a FILE (TOML): balls, ball_diameter, pitch_diameter,
+    inner_conformity, outer_conformity, clearance or contact_angle, preload, material, turning, radial, …
+
+    Examples
+    --------
+    # loads, contact ellipses, pressures, stiffness, tones
+    asperity bearing 6205 --radial '100 N' --speed '1797 1/min'
+    # loads of the balls as a picture
+    asperity bearing own.toml --axial '50 N' -o load.png
+    # is there a fault? lines of the envelope beside those expected
+    asperity bearing 6205 --speed '1797 1/min' --signal run.npz --rate '12 kHz' -o envelope.png
+    """
+    from asperity.cli.bearing import show_bearing
+
+    options = {"radial": radial, "axial": axial, "speed": speed, "clearance": clearance}
+    return show_bearing(bearing, signal, picture, options, **hints)
 
 
 # --- compute

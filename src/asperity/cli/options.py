@@ -104,3 +104,58 @@ def _keys(case: Path | None) -> Mapping[str, Collection[str]]:
             found[entry.dotted] = getattr(entry.key.one, "known", getattr(entry.key.one, "words", ()))
     found.pop("kind")  # one in a study
     return found
+
+
+SURFACE = [
+    click.Option(["--array"], help="Name of the array, where the file holds several."),
+    click.Option(
+        ["--index"], type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
+    ),
+    click.Option(["--height-unit"], metavar="UNIT", help="Unit of heights that carry none, as 'um'."),
+    click.Option(["--pixel"], metavar="LENGTH", help="Distance of points that carry none, as '1.5625 um'."),
+    click.Option(["--pixel-unit"], metavar="UNIT", help="Unit of coordinates that carry none, as 'mm'."),
+    click.Option(["--decimal"], metavar="MARK", help="Decimal mark of a text, '.' or ',', where in doubt."),
+    click.Option(["--transpose"], is_flag=True, help="Exchange x and y: roll along the other direction."),
+    click.Option(
+        ["--direction", "--rotate", "direction"],
+        metavar="ANGLE",
+        help="Roll in this direction, from x towards y, as '30 deg'; a bare number is in degrees.",
+    ),
+    click.Option(["--fill"], is_flag=True, help="Fill points without a height."),
+    click.Option(
+        ["--crop"], metavar="LENGTHS", help="Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides)."
+    ),
+    click.Option(["--form"], metavar="FORM", help="Remove plane, quadratic, sphere or cylinder."),
+    click.Option(["--longest"], metavar="LENGTH", help="Nesting index of the L-filter (ISO 16610-21, -61)."),
+    click.Option(["--shortest"], metavar="LENGTH", help="Nesting index of the S-filter, likewise Gaussian."),
+    click.Option(["--recipe"], type=PATH, help="Do what a stored recipe says; options are stronger."),
+    click.Option(["--store"], type=PATH, help="Store all that was done as a recipe that a case can name."),
+    click.Option(["--spikes"], is_flag=True, help="Take spikes for points without a height."),
+    click.Option(
+        ["--lines/--map"],
+        default=None,
+        help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
+    ),
+    click.Option(["--psd"], is_flag=True, help="Write the spectra of the picture as CSV beside it."),
+]
+"""Hints on a measured file, and steps that are taken with it: keys of a recipe."""
+BEARING = [
+    click.Option(["--radial"], metavar="FORCE", help="Radial load on the inner ring, as '100 N'."),
+    click.Option(["--axial"], metavar="FORCE", help="Axial load on it."),
+    click.Option(["--speed"], metavar="SPEED", help="Of the ring that turns, as '1800 1/min'."),
+    click.Option(["--clearance"], metavar="LENGTH", help="Diametral clearance, as '10 um'."),
+    click.Option(["--signal"], type=PATH, help="Acceleration of it: .npz, .npy, .wav or text."),
+    click.Option(["--rate"], metavar="FREQUENCY", help="Sampling rate of the signal, as '12 kHz'."),
+    click.Option(["--array"], help="Name of the signal, where a file holds several."),
+    click.Option(["--column"], type=int, help="Number of its column, from 1, where there are several."),
+    click.Option(
+        ["--band"], help="Frequencies of the envelope: 'all', or as '2 kHz, 4 kHz'. [default: found]"
+    ),
+    click.Option(
+        ["--unit"], help="Of the signal, as 'g', 'm/s^2', 'um/s': says velocities in ISO bands, too."
+    ),
+    click.Option(
+        ["--slip"], default="2 %", show_default=True, help="How far lines may be from pure rolling."
+    ),
+]
+"""What a bearing carries, and where its signal is."""

@@ -1,10 +1,9 @@
 """Named ball bearings: main dimensions as they are printed, and what is chosen here where none are."""
 
-CITATION = (
-    "Case Western Reserve University, Bearing Data Center, bearing information (SKF 6205-2RS JEM, drive end; "
-    "6203-2RS JEM, fan end): ball and pitch diameter in inches, rounded to 10 µm."
+PRINTED_BY = (
+    "the Bearing Data Center of Case Western Reserve University, for SKF 6205-2RS JEM and 6203-2RS JEM"
 )
-"""Of number and diameter of the balls and the pitch diameter. Conformities and clearance are chosen here."""
+"""Diameters of balls and pitch circle, there in inches, here rounded to 10 µm."""
 
 BEARINGS: dict[str, dict[str, float]] = {
     "6203": {"balls": 8, "ball_diameter": 6.75e-3, "pitch_diameter": 28.50e-3},

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from asperity.arguments import not_negative, one_of, positive, real, require, whole
 from asperity.contact.hertz import Hertz, in_groove
-from asperity.errors import InputError
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, parameter
 from asperity.reference.bearings import BEARINGS, CLEARANCE, CONFORMITY, HARDNESS, STATIC_PRESSURE
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
@@ -396,14 +395,3 @@ class Kinematics:
         matching = [sign for sign in (-1, 1) if (order + sign * lobes) % self.balls == 0]
         tones = {abs(order * passed + sign * lobes * self.cage) for sign in matching}
         return tuple(sorted(tone for tone in tones if tone > 1e-9 * self.turning))
-
-
-def bearing_of(name: str | None, given: dict[str, Any]) -> BallBearing:
-    """A named bearing with what is given beside it, or one of dimensions alone, in SI."""
-    if name is not None:
-        return BallBearing.named(name, **given)
-    missing = [each for each in ("balls", "ball_diameter", "pitch_diameter") if each not in given]
-    if missing:
-        named = ", ".join(BEARINGS)
-        raise InputError("bearing", f"no {' and no '.join(missing)}", "these, or a name", f"Names: {named}.")
-    return BallBearing(**given)

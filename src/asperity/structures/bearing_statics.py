@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +24,8 @@ STEPS = 24
 """Angles of the cage over the passing of a ball."""
 TOLERANCE = 1e-10
 """Force out of balance over the load."""
+PATIENCE, ROUNDED = 30, 1e-7
+"""Steps after which this much is taken: where loads are of millinewtons, rounding may allow no better."""
 MOST_STEPS = 100
 HALVINGS = 40
 """Of a step that does not go downhill."""
@@ -51,7 +54,8 @@ class LoadedBearing:
     stiffness : ndarray (m, 3, 3)
         Derivative of the force by the displacement of the inner ring, N/m.
     imbalance : float
-        Largest force that is left out of balance, over the load.
+        Force that is left out of balance, over the load, or over what the interference or the centrifugal
+        force of a ball presses if that is more.
     steps : int
         Newton steps that it took.
     """
@@ -155,7 +159,7 @@ def _descended(
     energy, gradient, hessian = energy_of(place)
     for step in range(MOST_STEPS):
         size = np.linalg.norm(gradient, axis=-1)
-        if size.max() <= TOLERANCE * scale:
+        if size.max() <= (TOLERANCE if step < PATIENCE else ROUNDED) * scale:
             return place, float(size.max() / scale), step
         trace = np.trace(hessian, axis1=-2, axis2=-1)
         ridge = np.maximum(1e-13 * trace, 1e-9 * trace.max())[..., None, None] * np.eye(place.shape[-1])
@@ -185,14 +189,17 @@ class _Balls:
     bearing: BallBearing
     lift: float  # centrifugal force, N
 
-    def __post_init__(self) -> None:
-        D, of = self.bearing.ball_diameter, self.bearing
-        constants = of.inner_contact.stiffness_constant, of.outer_contact.stiffness_constant
-        lengths = (of.inner_conformity - 0.5) * D, (of.outer_conformity - 0.5) * D
-        object.__setattr__(self, "inner", (lengths[0], constants[0]))
-        object.__setattr__(self, "outer", (lengths[1], constants[1]))
+    @cached_property
+    def inner(self) -> tuple[float, float]:
+        """Length and constant of the link to the inner groove centre."""
+        of = self.bearing
+        return (of.inner_conformity - 0.5) * of.ball_diameter, of.inner_contact.stiffness_constant
 
-    inner = outer = (0.0, 0.0)  # length and constant of each link
+    @cached_property
+    def outer(self) -> tuple[float, float]:
+        """Those of the link to the outer one."""
+        of = self.bearing
+        return (of.outer_conformity - 0.5) * of.ball_diameter, of.outer_contact.stiffness_constant
 
     def together(self, stretch: Array) -> tuple[Array, Array, Array, Array]:
         """Energy, force on the inner groove centre, its stiffness, and place of the ball (…, 2)."""
@@ -230,7 +237,6 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     moved[..., 0, 0], moved[..., 0, 1], moved[..., 1, 2] = np.cos(azimuth), np.sin(azimuth), 1.0
     A, load = bearing.groove_distance, np.array([radial, 0.0, axial])
     rest = np.array([A - 0.5 * bearing.radial_clearance, 0.0])
-    balls = _Balls(bearing, bearing.centrifugal_force(speed))
 
     def stretched(ring: Array) -> Array:
         return rest + np.einsum("mzik,mk->mzi", moved, ring)
@@ -242,12 +248,13 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
         return energy.sum(-1) - ring @ load, gradient, hessian
 
     interference = bearing.series_stiffness * max(-0.5 * bearing.radial_clearance, 0.0) ** 1.5
-    scale = max(radial, axial, interference)
+    scale, lift = max(radial, axial, interference), bearing.centrifugal_force(speed)
+    balls = _Balls(bearing, lift if lift > TOLERANCE * scale else 0.0)  # less would be lost in rounding
     start = np.zeros((len(angles), 3))
     pressed = (5.0 * scale / bearing.balls / bearing.series_stiffness) ** (2.0 / 3.0)
     start[:, 0] = (max(0.5 * bearing.radial_clearance, 0.0) + pressed) * (radial > 0.0)
     start[:, 2] = (A * math.sin(bearing.free_angle) + math.sqrt(2.0 * A * pressed)) * (axial > 0.0)
-    ring, imbalance, steps = _descended(energy_of, start, scale, "balance of the inner ring")
+    ring, imbalance, steps = _descended(energy_of, start, max(scale, lift), "balance of the inner ring")
     stretch = stretched(ring)
     ball = balls.together(stretch)[3]
     inner, outer = _link(stretch - ball, *balls.inner), _link(ball, *balls.outer)

@@ -1,0 +1,255 @@
+"""``asperity bearing``: how a ball bearing carries a load, its tones, and which of them its signal holds."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array, require
+from asperity.case.bearing import BearingKeys, read_bearing, read_signal
+from asperity.diagnostics import (
+    ISO_BANDS,
+    LineFamily,
+    amplitude_spectrum,
+    band_velocities,
+    envelope_spectrum,
+    explained_lines,
+    find_lines,
+    impulsive_band,
+)
+from asperity.errors import InputError
+from asperity.reference.bearings import PRINTED_BY
+from asperity.reporting.bearing_figures import envelope_chart, load_zone_chart
+from asperity.reporting.figure import write_chart
+from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
+from asperity.structures.bearing_statics import LoadedBearing
+from asperity.structures.body import GRAVITY
+from asperity.surfaces.readers.hints import on_command_line, spelled
+from asperity.terminal import say, say_table
+from asperity.units import factor, quantity
+
+WIDTH = 122
+NOT_IN_IT = "a film of lubricant, friction, rings that bend or tilt, shoulders of the grooves"
+FAINT = 0.1
+"""Share of the clearest fault below which another one is not told apart from what modulates it."""
+TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "band", "lines", "faults",
+        "verdict", "band_velocities")  # fmt: skip
+"""Names of what is said to programs."""
+NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
+MEANINGS = {
+    "outer": "BPFO: balls pass a spot of it",
+    "inner": "BPFI: balls pass a spot of it",
+    "ball": "2 BSF: a spot of it meets a ring",
+}
+
+
+def show_bearing(
+    source: str, signal: Path | None, picture: Path | None, options: dict[str, Any], **hints: Any
+) -> dict[str, Any]:
+    """Print what a bearing does under its load, or what its signal says, and draw it; return the numbers."""
+    keys = read_bearing(source, options)
+    _say_geometry(keys.name or source, keys.bearing)
+    if keys.name:
+        say(f"Balls and diameters as printed by {PRINTED_BY}; grooves and clearance chosen here or given.")
+    told = _heard(keys, signal, picture, **hints) if signal else _carried(keys, picture)
+    if picture is not None:
+        say(f"Picture: {picture.resolve()}")
+        told["files"] = {"picture": picture}
+    return {"bearing": keys.name or source, **dict.fromkeys(TOLD), **told}
+
+
+def _say_geometry(name: str, of: BallBearing) -> None:
+    say(
+        f"{name}: {of.balls} balls of {of.ball_diameter * 1e3:.4g} mm, pitch diameter "
+        f"{of.pitch_diameter * 1e3:.4g} mm, grooves of {of.inner_conformity:g} D (inner) and "
+        f"{of.outer_conformity:g} D (outer), clearance {of.radial_clearance * 1e6:.3g} µm, free contact "
+        f"angle {math.degrees(of.free_angle):.3g}°"
+    )
+
+
+# --- what it carries
+
+
+def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
+    speed = keys.speed or 0.0
+    found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
+    load = f"{found.radial:.4g} N radial, {found.axial:.4g} N axial"
+    _say_balls(found, load)
+    _say_ring(found)
+    turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
+    _say_tones(turning, f"Hz at {60.0 * speed:.5g} 1/min" if speed else "per turn")
+    say(f"Balance to {found.imbalance:.0e} of the load in {found.steps} steps. Not in it: {NOT_IN_IT}.")
+    if picture is not None:
+        loads = {"inner": found.inner_load[0], "outer": found.outer_load[0]}
+        moved = found.displacement[:, 0], found.stiffness[:, 0, 0]
+        chart = load_zone_chart(found.azimuth[0], loads, found.azimuth[:, 0], *moved)
+        write_chart(chart, f"{keys.name or 'bearing'}, {load}", picture)
+    names = ("azimuth", "inner_load", "outer_load", "inner_angle", "inner_pressure", "outer_pressure")
+    balls = {name: getattr(found, name)[0] for name in names}
+    tones = {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS}
+    ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
+    return {"balls": balls, **ring, "tones": tones if speed else None}
+
+
+def _say_balls(found: LoadedBearing, load: str) -> None:
+    """A row for each ball, one of which is right below the load."""
+    axes = {ring: 1e3 * np.array(found.semi_axes(ring))[:, 0] for ring in ("inner", "outer")}
+    rows = []
+    for ball, azimuth in enumerate(found.azimuth[0]):
+        row = [f"{math.degrees(math.remainder(azimuth, 2.0 * math.pi)):.0f}°"]
+        for ring in ("inner", "outer"):
+            carried, angle, peak = (
+                getattr(found, f"{ring}_{what}")[0, ball] for what in ("load", "angle", "pressure")
+            )
+            size = "{:.3f}×{:.3f}".format(*axes[ring][:, ball])
+            cells = [f"{carried:.4g}", f"{math.degrees(angle):.1f}°", size, f"{peak / 1e9:.2f}"]
+            row += cells if carried else ["–"] * len(cells)
+        rows.append(row)
+    columns = [
+        "ball at",
+        *(f"{each} {unit}" for each in ("in", "out") for unit in ("N", "angle", "mm×mm", "GPa")),
+    ]
+    title = f"Contacts under {load}: half axes along and across, peak pressure"
+    say_table(title, columns, rows, width=WIDTH)
+    most, least = found.touching.max(), found.touching.min()
+    say(
+        f"{least:.0f} to {most:.0f} of {found.bearing.balls} balls touch the inner ring while the cage turns."
+    )
+
+
+def _say_ring(found: LoadedBearing) -> None:
+    micrometres = (1e6 * each for each in (found.displacement[0], *found.compliance))
+    stiffness = 1e-6 * np.diagonal(found.stiffness, axis1=1, axis2=2)
+    ends = [f"{low:.4g} to {high:.4g}" for low, high in zip(stiffness.min(0), stiffness.max(0), strict=True)]
+    numbers = [[f"{number:.4g}" for number in np.round(each, 6) + 0.0] for each in micrometres]
+    rows = zip(("along the radial load", "across it", "axially"), *numbers, ends, strict=True)
+    columns = ["inner ring", "moved / µm", "varies, rms / µm", "peak to peak / µm", "stiffness / (MN/m)"]
+    say_table("While a ball passes", columns, list(rows), width=WIDTH)
+
+
+def _say_tones(turning: Kinematics, unit: str) -> None:
+    """Tones of the kinematics, and those of waviness."""
+    rows = [["cage", f"{turning.cage:.4g}", f"{turning.cage / turning.turning:.4f}", ""]]
+    waves = []
+    for part, words in MEANINGS.items():
+        tone, beside = turning.tone(part), turning.modulation(part)
+        words += f", ± {beside:.4g} as it turns through the load" if beside else ""
+        rows.append([NAMES[part], f"{tone:.4g}", f"{tone / turning.turning:.4f}", words])
+        for order in range(1, 6 if part == "ball" else 2 * turning.balls + 2):
+            heard = [turning.waviness(part, order, lobes) for lobes in (0, 1)]
+            cells = [", ".join(f"{tone:.4g}" for tone in tones) or "–" for tones in heard]
+            waves += [[NAMES[part], str(order), *cells]] if any(heard) else []
+    say_table("Tones of pure rolling", ["of", unit, "orders", "meaning"], rows, width=WIDTH)
+    title = "Waviness that is heard under an axial load; other small waves move nothing"
+    say_table(title, ["of", "waves per turn", f"axial, {unit}", f"radial, {unit}"], waves, width=WIDTH)
+
+
+# --- what its signal says
+
+
+def _heard(
+    keys: BearingKeys,
+    signal: Path,
+    picture: Path | None,
+    *,
+    rate: str | None,
+    array: str | None,
+    column: int | None,
+    band: str | None,
+    unit: str | None,
+    slip: str,
+) -> dict[str, Any]:
+    allowed = "the speed at which it was recorded"
+    require(keys.speed, "speed", "nothing", allowed, 'Give it, as in --speed "1800 1/min".')
+    nominal, most = float(keys.speed or 0.0), quantity(slip, "")
+    given = None if rate is None else quantity(rate, "Hz")
+    with spelled(on_command_line):
+        values, sampled = read_signal(signal, given, array=array, column=column)
+    lines = find_lines(amplitude_spectrum(values, sampled), nominal, slip=most, harmonics=3)
+    speed = nominal * (1.0 + lines.deviation) if lines.found else nominal
+    name, length = f"{signal.name}{f', {array}' if array else ''}", values.size / sampled
+    origin = "by its lines" if lines.found else "as given: it has no clear lines"
+    say(f"{name}: {values.size} samples, {length:.4g} s at {sampled:g} Hz; {60.0 * speed:.5g} 1/min {origin}")
+    turning = keys.bearing.kinematics(speed, contact_angle=None if keys.axial else 0.0)
+    within = _band(values, sampled, band, 5.0 * turning.ball_pass_inner)
+    spectrum = envelope_spectrum(values, sampled, within)
+    tones = {part: turning.tone(part) for part in PARTS}
+    families = {part: (tone, turning.modulation(part)) for part, tone in tones.items()}
+    found = explained_lines(spectrum, families | {"turns": (speed, 0.0)}, slip=most)
+    faults = _faults(found)
+    _say_lines(found, faults, speed, unit or "unit of the file", within)
+    there = [f"lines of the {NAMES[each]} at {found[each].frequency[0]:.1f} Hz" for each in faults]
+    verdict = f"There are {' and '.join(there)}." if there else "No lines of rings or balls stand out."
+    say(verdict)
+    velocities = None if unit is None else _say_velocities(values, sampled, unit)
+    if picture is not None:
+        marked = {part: np.stack([found[part].frequency, found[part].amplitude], axis=1) for part in faults}
+        chart = envelope_chart(spectrum, tones, marked, unit or "unit of the file")
+        write_chart(chart, f"{name}: {verdict}", picture)
+    names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
+    told = {part: {name: getattr(found[part], name) for name in names} for part in PARTS}
+    heard = {"speed": speed, "band": within, "lines": told, "faults": faults, "verdict": verdict}
+    return heard | {"band_velocities": velocities}
+
+
+def _band(values: Array, rate: float, band: str | None, least: float) -> tuple[float, float] | None:
+    """Band of the envelope, Hz: found, given as ``"2 kHz, 4 kHz"``, or none for ``"all"``."""
+    if band is None:
+        return impulsive_band(values, rate, least)
+    edges = [] if band == "all" else [quantity(part.strip(), "Hz") for part in band.split(",")]
+    require(len(edges) in (0, 2), "--band", band, '"all", or two frequencies, as "2 kHz, 4 kHz"')
+    return (edges[0], edges[1]) if edges else None
+
+
+def _faults(found: dict[str, LineFamily]) -> list[str]:
+    """Parts whose lines are there, the clearest first; not those that are faint beside it."""
+    there = [part for part in found if part in PARTS and found[part].found]
+    most = max((found[part].amplitude[0] for part in there), default=0.0)
+    return [part for part in there if found[part].amplitude[0] >= FAINT * most]
+
+
+def _say_lines(
+    found: dict[str, LineFamily], faults: list[str], speed: float, unit: str, band: tuple[float, float] | None
+) -> None:
+    rows = []
+    for part in PARTS:
+        lines = found[part]
+        line, height = lines.frequency[0], lines.amplitude[0]
+        sides = "±{:.4g}: {:.2f}, {:.2f}".format(lines.distance, *lines.side_bands[0] / height)
+        stand = " ".join(str(n + 1) for n in np.flatnonzero(lines.prominent))
+        seen = [f"{line:.2f}", f"{line / speed:.3f}", f"{100 * lines.deviation:+.2f} %"]
+        seen += [stand, sides if lines.distance else "–"]
+        heights = [f"{height:.3g}", f"{height / lines.background[0]:.1f}"]
+        rows.append(
+            [NAMES[part], f"{lines.expected:.2f}", *heights, *(seen if part in faults else ["–"] * 5)]
+        )
+    columns = [
+        "of",
+        "expected / Hz",
+        f"there, {unit}",
+        "over median",
+        "found / Hz",
+        "orders",
+        "off by",
+        "harmonics",
+    ]
+    where = "all frequencies" if band is None else f"{band[0]:g} to {band[1]:g} Hz"
+    say_table(f"Lines in the envelope of {where}", [*columns, "side bands / line"], rows, width=WIDTH)
+
+
+def _say_velocities(values: Array, rate: float, unit: str) -> Array:
+    """Rms velocities in the bands of ISO 15242-2 of a signal in a unit of velocity or acceleration."""
+    size, kind = GRAVITY, "acceleration"
+    if unit != "g":
+        try:
+            size = factor(unit, "m/s^2")
+        except InputError:
+            size, kind = factor(unit, "m/s"), "velocity"
+    found = band_velocities(values * size, rate, quantity=kind)
+    told = [
+        f"{low:g} to {high:g} Hz: " + ("beyond its sampling" if math.isnan(rms) else f"{1e6 * rms:.4g} µm/s")
+        for (low, high), rms in zip(ISO_BANDS, found, strict=True)
+    ]
+    say(f"Rms velocity of this record in the bands of ISO 15242-2: {'; '.join(told)}")
+    return found

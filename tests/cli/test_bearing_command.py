@@ -1,0 +1,181 @@
+"""``asperity bearing``: what it prints of a bearing and of its signal, and what it refuses."""
+
+import importlib
+import json
+import re
+import wave
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import call, words_of
+
+RATE = 12_000
+TIME = np.arange(2 * RATE) / RATE
+OWN = """
+balls = 9
+ball_diameter = "7.94 mm"
+pitch_diameter = "39.04 mm"
+clearance = "0 um"
+radial = "1 kN"
+speed = "3000 1/min"
+"""
+
+
+@pytest.fixture(autouse=True)
+def drawn(monkeypatch):
+    """Charts and titles of pictures, which are not drawn here."""
+    found = []
+    module = importlib.import_module("asperity.cli.bearing")
+    monkeypatch.setattr(module, "write_chart", lambda chart, title, path: found.append((chart, title)))
+    return found
+
+
+def pulses(tone, seed=0):
+    """Blows that ring at 3 kHz, in noise."""
+    struck = np.zeros(TIME.size)
+    struck[(np.arange(int(2 * tone)) / tone * RATE).astype(int)] = 1.0
+    rung = np.convolve(struck, np.exp(-900 * TIME[:150]) * np.sin(2 * np.pi * 3000 * TIME[:150]))
+    return rung[: TIME.size] + 0.02 * np.random.default_rng(seed).normal(size=TIME.size)
+
+
+def heard(signal, *words, code=0):
+    np.save("run.npy", signal)
+    given = ("--speed", "1800 1/min", "--signal", "run.npy", "--rate", "12 kHz")
+    return call("bearing", "6205", *given, *words, code=code)
+
+
+def test_loads_tones_and_waviness(drawn):
+    said = call("bearing", "6205", "--radial", "100 N", "--speed", "1797 1/min", "-o", "a.png").stdout
+    words = words_of(said)
+    assert "9 balls of 7.94 mm, pitch diameter 39.04 mm, grooves of 0.52 D (inner)" in words
+    assert re.search(r" 0° +68.15 +0.0° +0.057×0.536 +1.06 +68.38 ", words)
+    assert re.search(r" -40° +20.79 ", words)
+    assert "2 to 3 of 9 balls touch the inner ring" in words
+    assert re.search(r"along the radial load +8.752 +0.01239 +0.04462 +44.35 to 48.88", words)
+    assert re.search(r"outer ring +107.4 +3.5848 ", words)
+    assert re.search(r"inner ring +162.2 +5.4152 .* ± 29.95 as it turns", words)
+    assert re.search(r"inner ring +10 +– +192.1 ", words)
+    assert re.search(r"ball +2 +141.2 +129.2, 153.1 ", words)
+    assert "Not in it: a film of lubricant" in words
+    ((chart, title),) = drawn
+    assert title == "6205, 100 N radial, 0 N axial"
+    inner, outer = chart.panels[0].marks
+    assert (inner.y.max(), inner.x[inner.y.argmax()]) == (pytest.approx(68.15, abs=0.01), 0.0)
+    assert (outer.y > inner.y).all()
+    assert f"Picture: {Path('a.png').resolve()}" in said
+
+
+def test_a_bearing_of_ones_own_and_options_that_are_stronger():
+    Path("own.toml").write_text(OWN)
+    document = json.loads(call("bearing", "own.toml", "--axial", "200 N", "--json").stdout)
+    load, angle, azimuth = (np.array(document["balls"][n]) for n in ("inner_load", "inner_angle", "azimuth"))
+    touching = load > 0.0
+    along = (load * np.cos(azimuth))[touching] @ np.cos(angle[touching].astype(float))
+    assert along == pytest.approx(1000.0)
+    assert document["tones"]["outer"] == pytest.approx(180.0, rel=0.01)
+    louder = json.loads(call("bearing", "own.toml", "--radial", "2 kN", "--json").stdout)
+    assert max(louder["balls"]["inner_load"]) > 1.5 * max(document["balls"]["inner_load"])
+    assert ["fills" in each["message"] for each in louder["warnings"]] == [True, True]
+    assert "per turn" in call("bearing", "6205", "--axial", "10 N").stdout
+
+
+def test_a_fault_is_heard_and_drawn(drawn):
+    said = words_of(heard(pulses(108.0), "--unit", "g", "-o", "b.png").stdout)
+    assert "There are lines of the outer ring at 108." in said
+    assert "1800 1/min as given: it has no clear lines" in said
+    assert re.search(r"outer ring +107.5\d .*? 108.\d+ +3.6\d+ +\+0.\d+ % +1 2 3 4 5 ", said)
+    assert "50 to 300 Hz: " in said
+    assert "1800 to 10000 Hz: beyond its sampling" in said
+    ((chart, title),) = drawn
+    assert title.startswith("run.npy: There are lines of the outer ring")
+    found = chart.panels[0].marks[-1]
+    np.testing.assert_allclose(found.x, 108.0 * np.arange(1, 6), atol=1.0)
+
+
+def test_noise_is_no_fault_and_lines_of_the_turns_give_the_speed():
+    turns = sum(0.05 * np.sin(2 * np.pi * n * 29.8 * TIME) for n in (1, 2, 3))
+    said = heard(pulses(1e-9) + turns, "--band", "all").stdout
+    assert "No lines of rings or balls stand out." in said
+    speed = float(re.search(r"([\d.]+) 1/min by its lines", said)[1])
+    assert speed == pytest.approx(60 * 29.8, abs=2.0)
+
+
+def test_velocities_in_bands_follow_the_unit():
+    sine = 1e-3 * np.sqrt(2) * np.sin(2 * np.pi * 150 * TIME)
+    assert "50 to 300 Hz: 1 µm/s" in heard(sine, "--unit", "mm/s").stdout
+    assert "50 to 300 Hz: 1.061 µm/s" in heard(sine, "--unit", "m/s^2").stdout
+    assert "50 to 300 Hz: 10.41 µm/s" in heard(sine, "--unit", "g").stdout
+
+
+@pytest.mark.parametrize("kind", ["npz", "txt", "wav"])
+def test_signals_come_in_files_of_several_kinds(kind):
+    signal, words = pulses(108.0), ["--rate", "12 kHz"]
+    if kind == "npz":
+        np.savez("run.npz", a=signal, b=np.zeros(4))
+        words += ["--array", "a"]
+    elif kind == "txt":
+        np.savetxt("run.txt", np.stack([TIME, signal], axis=1), header="time acceleration", comments="")
+        words += ["--column", "2"]
+    else:
+        with wave.open("run.wav", "wb") as file:
+            file.setparams((1, 2, RATE, 0, "NONE", ""))
+            file.writeframes((signal / np.abs(signal).max() * 32000).astype("<i2").tobytes())
+        words = []
+    told = call("bearing", "6205", "--speed", "1800 1/min", "--signal", f"run.{kind}", *words).stdout
+    assert "There are lines of the outer ring at 108." in told
+    assert "2 s at 12000 Hz" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("6209", "allowed: the path of a bearing file (TOML). Named bearings: 6203, 6205."),
+        ("6205", "load: received none; allowed: a radial or axial load, or a preload."),
+        ("6205 --radial 5", "radial: received '5'; allowed: a force at least 0, with its unit"),
+        ("6205 --radial 5_kg", "radial"),
+        ("few.toml", "bearing: received no ball_diameter and no pitch_diameter; allowed: these, or a name."),
+        ("both.toml", "received both clearance and contact_angle"),
+        ("wrong.toml", "ball_diametre: received an unknown key"),
+        ("crowd.toml", "balls: received 30 of 7.94 mm on a pitch diameter of 39.04 mm"),
+        ("6205 --signal s.npy --rate 12_kHz", "speed: received nothing; allowed: the speed at which"),
+        ("6205 --speed 30_Hz --signal s.npy", 'allowed: samples per second. Give it, as in --rate "12 kHz".'),
+        (
+            "6205 --speed 30_Hz --signal two.npz --rate 12_kHz",
+            "arrays of signals in two.npz: received a, b; allowed: exactly one.",
+        ),
+        (
+            "6205 --speed 30_Hz --signal two.npz --rate 12_kHz --array a",
+            "received 3 columns; allowed: one of 1 to 3. Choose it with --column.",
+        ),
+        ("6205 --speed 30_Hz --signal two.npz --rate 12_kHz --array b", "an array of shape (2, 2, 2)"),
+        (
+            "6205 --speed 30_Hz --signal words.txt --rate 12_kHz",
+            "words in line 3; allowed: numbers below the heading.",
+        ),
+        (
+            "6205 --speed 30_Hz --signal uneven.txt --rate 12_kHz",
+            "uneven.txt: received 1 cells in line 2; allowed: 2.",
+        ),
+        ("6205 --speed 30_Hz --signal none.txt --rate 12_kHz", "none.txt: received no numbers"),
+        ("6205 --speed 30_Hz --signal bad.wav", "an intact wav file"),
+        ("6205 --speed 30_Hz --signal s.npy --rate 12_kHz --band 1_kHz", "--band: received 1 kHz"),
+        ("6205 --speed 0.1_Hz --signal s.npy --rate 12_kHz", "Record longer."),
+    ],
+)
+def test_what_cannot_be_is_told(words, message):
+    Path("few.toml").write_text("balls = 9\n")
+    Path("both.toml").write_text(
+        'name = "6205"\nclearance = "1 um"\ncontact_angle = "15 deg"\naxial = "9 N"\n'
+    )
+    Path("wrong.toml").write_text(OWN.replace("ball_diameter", "ball_diametre"))
+    Path("crowd.toml").write_text(OWN.replace("balls = 9", "balls = 30"))
+    np.save("s.npy", pulses(100.0))
+    np.savez("two.npz", a=np.ones((9, 3)), b=np.ones((2, 2, 2)))
+    Path("words.txt").write_text("time\n1.0\nbroken\n")
+    Path("uneven.txt").write_text("1 2\n3\n")
+    Path("none.txt").write_text("nothing here\n")
+    Path("bad.wav").write_bytes(b"RIFF\x10\x00\x00\x00WAVEfmt ")
+    told = call("bearing", *(word.replace("_", " ") for word in words.split()), code=2).stderr
+    assert message in told
