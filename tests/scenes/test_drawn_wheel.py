@@ -4,10 +4,17 @@ import numpy as np
 import pytest
 
 from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.radiation.wheel import RadiatingWheel
+from asperity.scenarios.scene import mean_square_transfer
 from asperity.scenes import schema
 from asperity.scenes.figures.wheel import LOUDEST, wheel_table
 from asperity.scenes.noise import mode_by_mode
+from asperity.spectra import a_weighted_total
+from asperity.structures.modal import modal_answers
+from asperity.structures.outline import FINENESS, mean_thickness
+from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
+from asperity.structures.wheel_modes import wheel_modes
 
 CASE = {
     "laws": ["linear"],
@@ -92,3 +99,46 @@ def test_turning_splits_the_resonances_of_the_run():
     assert np.argmax(np.abs(still.receptance(frequency))) == np.argmin(
         np.abs(frequency - standing.natural_frequencies[at])
     )
+
+
+# --- without rolling: sound of the linear contact per roughness, of two wheels on a track
+
+BANDS = 10.0 ** (np.arange(28, 35) / 10.0)  # 630 Hz to 2.5 kHz
+TRACK = Track.named("uic60")
+SMOOTH = {"surface": {"smooth": True}, "numerics": {"highest_frequency": 2.5e3}}
+
+
+def sound(modes):
+    """A-weighted level of the wheel per roughness that is the same in all bands, dB."""
+    table = modes.turning(30.0 / 0.46).table()
+    wheel, radiator = Wheel(600.0, 65e3, *table[:, :3].T), RadiatingWheel(0.46, 0.135, *table[:, 3:].T)
+    f = (BANDS[:, None] * 10.0 ** (0.1 * (np.arange(1000) - 499.5) / 1000.0)).ravel()
+    force = mean_square_transfer(f, wheel, TRACK, 1.2e9, positions=3)
+    omega = 2.0 * np.pi * f
+    answer = modal_answers(f, *table[:, :2].T).T / table[:, 2:3]
+    power = radiator.power(f, np.abs(omega * answer) ** 2 * force).reshape(len(BANDS), -1).mean(axis=1)
+    return a_weighted_total(10.0 * np.log10(power), BANDS)
+
+
+@pytest.mark.parametrize("section", ["straight-web", pytest.param("curved-web", marks=pytest.mark.long)])
+def test_the_sound_has_converged(section):
+    wheel = WheelOnRail(wheel={"section": section}, **SMOOTH).rolling
+    usual = sound(wheel.standing_modes(2.5e3))
+    outline, steel = wheel.outline, wheel.material
+    finer = wheel_modes(outline, steel, 1.25 * 2.5e3, size=0.7 * FINENESS * mean_thickness(outline))
+    assert sound(finer) == pytest.approx(usual, abs=0.3)
+    assert sound(wheel_modes(outline, steel, 2.0 * 2.5e3)) == pytest.approx(usual, abs=0.3)
+
+
+def test_dampers_make_a_wheel_quieter():
+    """Wheel damping: D. J. Thompson, Railway Noise and Vibration (2009)."""
+    levels = [
+        sound(
+            WheelOnRail(
+                wheel={"section": "curved-web", "added_damping": ratio}, **SMOOTH
+            ).rolling.standing_modes(2.5e3)
+        )
+        for ratio in (0.0, 1e-3, 1e-2)
+    ]
+    assert levels[0] > levels[1] + 1.0
+    assert levels[1] > levels[2] + 4.0
