@@ -163,6 +163,18 @@ def test_measured_lines_are_as_high_as_seen_before():
 
 
 @measured
+@pytest.mark.parametrize("speed", [1797, 1730])
+@pytest.mark.parametrize("size", [7, 21])
+def test_lines_of_both_rings_say_one_contact_angle(speed, size):
+    """About 9°, as under an axial preload: the outer ones are above those of 0°, the inner ones below."""
+    gamma, angles = 7.94 / 39.04, []
+    for record, part, sign in (("OR_at_6", "outer", 1.0), ("IR", "inner", -1.0)):
+        off = sign * lines_of(f"{speed}_{record}_{size}")[part].deviation
+        angles.append(np.degrees(np.arccos(1.0 - off * (1.0 - sign * gamma) / gamma)))
+    assert angles == pytest.approx([9.0, 9.0], abs=1.7)
+
+
+@measured
 def test_the_harmonics_of_measured_small_pits_keep_their_order():
     """Of the outer pit the fifth comes before the third, of the inner one the fifth before the second."""
     outer, inner = (lines_of(f"1797_{name}_7") for name in ("OR_at_6", "IR"))

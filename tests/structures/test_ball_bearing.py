@@ -61,6 +61,7 @@ def test_its_geometry_is_that_of_textbooks():
     assert loose.free_angle == pytest.approx(OTHER.free_angle)
     assert OTHER.radial_clearance == pytest.approx(2 * 0.045 * 6e-3 * (1 - math.cos(math.radians(25.0))))
     assert TIGHT.free_angle == 0.0
+    assert BallBearing.named("6205", contact_angle=0.3).free_angle == pytest.approx(0.3)
     assert sum(OTHER.raceway_radii) == pytest.approx(30e-3)
 
 

@@ -108,14 +108,12 @@ def _say_balls(found: LoadedBearing, load: str) -> None:
         rows.append(row)
     columns = [
         "ball at",
-        *(f"{each} {unit}" for each in ("in", "out") for unit in ("N", "angle", "mm×mm", "GPa")),
+        *(f"{each} {unit}" for each in ("inner", "outer") for unit in ("N", "angle", "mm×mm", "GPa")),
     ]
     title = f"Contacts under {load}: half axes along and across, peak pressure"
     say_table(title, columns, rows, width=WIDTH)
-    most, least = found.touching.max(), found.touching.min()
-    say(
-        f"{least:.0f} to {most:.0f} of {found.bearing.balls} balls touch the inner ring while the cage turns."
-    )
+    ends = dict.fromkeys(f"{each:.0f}" for each in (found.touching.min(), found.touching.max()))
+    say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
 
 
 def _say_ring(found: LoadedBearing) -> None:
@@ -178,14 +176,14 @@ def _heard(
     families = {part: (tone, turning.modulation(part)) for part, tone in tones.items()}
     found = explained_lines(spectrum, families | {"turns": (speed, 0.0)}, slip=most)
     faults = _faults(found)
-    _say_lines(found, faults, speed, unit or "unit of the file", within)
+    _say_lines(found, faults, speed, unit, within)
     there = [f"lines of the {NAMES[each]} at {found[each].frequency[0]:.1f} Hz" for each in faults]
     verdict = f"There are {' and '.join(there)}." if there else "No lines of rings or balls stand out."
     say(verdict)
     velocities = None if unit is None else _say_velocities(values, sampled, unit)
     if picture is not None:
         marked = {part: np.stack([found[part].frequency, found[part].amplitude], axis=1) for part in faults}
-        chart = envelope_chart(spectrum, tones, marked, unit or "unit of the file")
+        chart = envelope_chart(spectrum, tones, marked, unit or "unit of the file", speed)
         write_chart(chart, f"{name}: {verdict}", picture)
     names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
     told = {part: {name: getattr(found[part], name) for name in names} for part in PARTS}
@@ -210,7 +208,11 @@ def _faults(found: dict[str, LineFamily]) -> list[str]:
 
 
 def _say_lines(
-    found: dict[str, LineFamily], faults: list[str], speed: float, unit: str, band: tuple[float, float] | None
+    found: dict[str, LineFamily],
+    faults: list[str],
+    speed: float,
+    unit: str | None,
+    band: tuple[float, float] | None,
 ) -> None:
     rows = []
     for part in PARTS:
@@ -227,7 +229,7 @@ def _say_lines(
     columns = [
         "of",
         "expected / Hz",
-        f"there, {unit}",
+        f"amplitude, {unit}" if unit else "amplitude",
         "over median",
         "found / Hz",
         "orders",

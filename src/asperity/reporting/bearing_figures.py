@@ -37,9 +37,16 @@ def load_zone_chart(
 
 
 def envelope_chart(
-    spectrum: tuple[Numbers, Numbers], tones: Mapping[str, float], found: Mapping[str, Numbers], unit: str
+    spectrum: tuple[Numbers, Numbers],
+    tones: Mapping[str, float],
+    found: Mapping[str, Numbers],
+    unit: str,
+    speed: float,
 ) -> Chart:
-    """Envelope spectrum over frequency, Hz, with tones expected and harmonics found of each part (h, 2)."""
+    """Envelope spectrum over frequency, Hz, with tones expected and harmonics found of each part (h, 2).
+
+    Opposite stand multiples of the speed, turns per second.
+    """
     highest = CONTEXT * max([5.0 * max(tones.values()), *(float(lines[-1, 0]) for lines in found.values())])
     frequency, amplitude = (each[spectrum[0] <= highest] for each in spectrum)
     marks: list[Mark] = [Line(frequency, amplitude, colour=MUTED, width=0.8)]
@@ -49,7 +56,6 @@ def envelope_chart(
         marks.append(chart.Rules(at[at < highest], label=named, colour=COLOURS[part], dashes=(2.0, 2.0)))
     for part, lines in found.items():
         marks.append(Line(lines[:, 0], lines[:, 1], f"{part}: found", COLOURS[part], width=0.0, marker="o"))
-    label = f"amplitude of the envelope / {unit}"
-    return Chart(
-        (Panel(Axis("frequency / Hz", 0.0, highest), Axis(label, low=0.0), tuple(marks), height=4.2),)
-    )
+    along = Axis("frequency / Hz", 0.0, highest, second=chart.Second("orders of the speed", 1.0 / speed))
+    across = Axis(f"amplitude of the envelope / {unit}", low=0.0)
+    return Chart((Panel(along, across, tuple(marks), height=4.2),))

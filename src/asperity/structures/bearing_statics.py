@@ -106,9 +106,9 @@ class LoadedBearing:
 
     @property
     def contact_angle(self) -> float:
-        """Mean angle of the inner contacts, weighted with their loads, rad."""
-        angle = np.where(self.inner_load > 0.0, self.inner_angle, 0.0)
-        return float((angle * self.inner_load).sum() / self.inner_load.sum())
+        """Mean angle of both contacts, of balls that touch the inner ring weighted with that load, rad."""
+        angle = np.where(self.inner_load > 0.0, 0.5 * (self.inner_angle + self.outer_angle), 0.0)
+        return float((angle * self.inner_load).sum() / max(self.inner_load.sum(), 1e-300))
 
     @property
     def compliance(self) -> tuple[Array, Array]:
