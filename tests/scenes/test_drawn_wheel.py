@@ -8,7 +8,7 @@ from asperity.radiation.wheel import RadiatingWheel
 from asperity.scenarios.scene import mean_square_transfer
 from asperity.scenes import schema
 from asperity.scenes.figures.wheel import LOUDEST, wheel_table
-from asperity.scenes.noise import mode_by_mode
+from asperity.scenes.noise import mode_by_mode, radiating_wheel
 from asperity.spectra import a_weighted_total
 from asperity.structures.modal import modal_answers
 from asperity.structures.outline import FINENESS, mean_thickness
@@ -79,6 +79,17 @@ def test_a_mode_radiates_in_the_band_in_which_it_rings():
     assert level[0] == -np.inf
     assert level[1] == pytest.approx(63.0, abs=0.02)
     assert level[2] == pytest.approx(63.0 - 3.2, abs=0.1)
+
+
+def test_modes_that_ring_off_the_middle_alone_are_told_where_the_contact_is():
+    half = [[0.1, 0.08], [0.15, 0.08], [0.15, 0.015], [0.4, 0.015], [0.4, 0.06], [0.46, 0.06]]
+    mirrored = np.vstack([half, (np.array(half) * [1.0, -1.0])[::-1]])
+    aside = case_of(section=mirrored).with_(sideways={"contact_place": 0.015})
+    heard = len(aside.rolling.standing_modes(1600.0).table(0.015))
+    assert heard > len(aside.rolling.standing_modes(1600.0).table())
+    power = np.ones((1, len(radiating_wheel(aside).axial), 1))
+    found = mode_by_mode(aside, power, np.array([1000.0]))
+    assert len(found[schema.WHEEL_MODE]) == heard + 1
 
 
 def test_turning_splits_the_resonances_of_the_run():

@@ -312,7 +312,7 @@ def mode_by_mode(case: Any, power: Array, band: Array) -> Values:
 
     The rigid motion comes first; of the two waves in which turning splits a mode the powers are added.
     """
-    modes = case.rolling.standing_modes(case.numerics.highest_frequency).table()
+    modes = case.rolling.standing_modes(case.numerics.highest_frequency).table(case.contact_place)
     frequency, damping, _, diameters, *_ = np.vstack([[0.0, 0.0, 1.0, 1.0, 0.0, 0.0], modes]).T
     number = np.arange(len(diameters))
     mode = np.append(0, np.repeat(number[1:], np.where(diameters[1:] > 0.0, 2, 1)))
