@@ -172,6 +172,12 @@ def test_a_force_at_rest_is_felt_at_the_other_place_alike() -> None:
     assert np.abs(np.roll(behind, -12, axis=0) - ahead).max() < 1e-9 * np.abs(ahead).max()
 
 
+def test_more_bays_than_memory_holds_are_refused() -> None:
+    track = in_bays(EULER, Bays.equal(100))
+    with pytest.raises(InputError, match=r"received 100, for a kernel of 0.4 s.*at most 31 of them"):
+        moving_kernel(track, 56.0, 5e-6, duration=0.4)
+
+
 def test_static_deflection_is_the_limit_of_the_receptance() -> None:
     for track in (in_bays(EULER), in_bays(UIC60)):
         for x in (0.0, 0.25, 2.9):

@@ -147,15 +147,16 @@ def cell_waves(
     decays = np.exp(-1j * wavenumbers * np.asarray(lengths)[:, None, None])  # (n, 2, f)
     right = _half(amplitudes, supports, decays)
     left = _half(amplitudes, supports[::-1], np.roll(decays, 1, axis=0)[::-1]).reflection[::-1]
-    forth, steps = _waves(amplitudes, supports, decays, right)
-    back = np.einsum("nijf,njlf->nilf", np.roll(right.reflection, -1, axis=0), decays[:, :, None] * forth)
-    unit = amplitudes[:, None]
-    paired = forth / unit - np.einsum("nlif,nljf->nijf", left, back * decays[:, :, None] / unit)  # (n, i, j)
-    dual = np.stack([_inverse(each.swapaxes(0, 1)) for each in paired])
-    grown = np.stack([np.einsum("nijf,njlf->nilf", left, dual), dual / decays[:, :, None]], axis=1)
+    decaying, growing = np.empty((2, len(supports), 2, 2, 2, decays.shape[-1]), complex)
+    steps = _carry(amplitudes, supports, decays, right, decaying[:, 0])
+    for span, decay in enumerate(decays[:, :, None]):
+        forth = decaying[span, 0]
+        decaying[span, 1] = back = _times(right.reflection[(span + 1) % len(supports)], decay * forth)
+        leak = _times((back * decay / amplitudes[:, None]).swapaxes(0, 1), left[span])
+        dual = _inverse((forth / amplitudes[:, None]).swapaxes(0, 1) - leak)
+        growing[span] = _times(left[span], dual), dual / decay
     edges = np.concatenate([[0.0], np.cumsum(lengths)])
-    decaying = np.stack([forth, back], axis=1)
-    return CellWaves(wavenumbers, edges, decaying, grown, steps, 0.0, float(edges[-1]), bays)
+    return CellWaves(wavenumbers, edges, decaying, growing, steps, 0.0, float(edges[-1]), bays)
 
 
 class _Half(NamedTuple):
@@ -227,22 +228,25 @@ def _inverse(a: Complex) -> Complex:
     return np.array([[a[1, 1], -a[0, 1]], [-a[1, 0], a[0, 0]]]) / determinant
 
 
-def _waves(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half) -> tuple[Complex, Complex]:
-    """Amplitudes (n, i, wave, f) of the decaying waves behind each support, and their steps (n, wave, f).
+def _carry(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half, found: Complex) -> Complex:
+    """Write amplitudes of the decaying waves behind each support (n, i, wave, f); return steps (n, wave, f).
 
     The slower wave is carried forwards, the faster backwards: so rounding dies away.
     """
     count, one = len(supports), np.eye(2)[:, :, None]
     behind = np.arange(1, count + 1) % count  # the support behind each span
-    outer = amplitudes[:, None] * right.felt[:, None]  # (n, 2, 2, f)
-    through = (one - right.force[:, None, None] * outer)[behind]
-    undone = (one + supports[:, None, None] * outer)[behind]
 
     def forwards(span: int, waves: Complex) -> Complex:
-        return _times(through[span], decays[span][:, None] * waves)
+        sent, support = decays[span][:, None] * waves, behind[span]
+        felt = np.sum(right.felt[support][:, None] * sent, axis=0)
+        return np.asarray(sent - right.force[support] * amplitudes[:, None] * felt)
 
     def backwards(span: int, waves: Complex) -> Complex:
-        return decays[span][::-1, None] * _times(undone[span], waves)  # times the decay of both waves
+        """Before the span, times the decay of both waves."""
+        felt = np.sum(right.felt[behind[span]][:, None] * waves, axis=0)
+        return np.asarray(
+            decays[span][::-1, None] * (waves + supports[behind[span]] * amplitudes[:, None] * felt)
+        )
 
     onwards, returned = one + 0j * decays[0], one + 0j * decays[0]
     for span in range(count):
@@ -251,7 +255,7 @@ def _waves(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half
     slow = _range_without(onwards, _smaller_eigenvalue(onwards))
     own = np.sum(slow.conj() * np.einsum("ijf,jf->if", returned, slow), axis=0)
     fast = _range_without(returned, own)
-    found, steps = np.zeros((count, 2, 2, slow.shape[-1]), complex), np.zeros_like(decays)
+    steps = np.zeros_like(decays)
     found[0, :, 0], found[0, :, 1] = slow, fast
     for span in range(count):
         moved = forwards(span, found[span, :, :1])[:, 0]
@@ -267,7 +271,7 @@ def _waves(amplitudes: Complex, supports: Complex, decays: Complex, right: _Half
         else:
             change = np.sum(fast.conj() * moved, axis=0)
         steps[span, 1] = np.prod(decays[span], axis=0) / change
-    return found, steps
+    return steps
 
 
 def _normed(values: Complex) -> tuple[Complex, Complex]:

@@ -69,6 +69,8 @@ STARTS = 24
 """Start positions in one sleeper bay, by default."""
 SHORTEST, LONGEST = 0.12, 0.6
 """Between these lengths, s, the kernel grows until it has died away."""
+MOST_LINES = 10**7
+"""Frequencies times bays that differ, of which waves are held at once: five gigabytes."""
 DIED_AWAY = 1e-3
 """Largest value in the last tenth of a kernel, relative to its largest of all, by which it has died away."""
 
@@ -158,6 +160,7 @@ def moving_kernel(
 
     def kernel_of(length: float) -> MovingKernel:
         taps = max(8, round(length / time_step))
+        _refuse_size(track, length, ZONES * taps + 1)
         weights = _weights(HatResponse(track, time_step, taps, ZONES), speed, positions, distance, progress)
         return MovingKernel(track, speed, time_step, weights, distance)
 
@@ -179,6 +182,14 @@ def moving_kernel(
             stacklevel=2,
         )
     return kernel
+
+
+def _refuse_size(track: Track, length: float, lines: int) -> None:
+    """Refuse more bays that differ than fit into memory, for a kernel of a length, s, and its frequencies."""
+    if track.bays and track.cell_bays * lines > MOST_LINES:
+        received = f"{track.cell_bays}, for a kernel of {length:.2g} s at {lines} frequencies"
+        remedy = "Take fewer bays, a lower highest frequency, or more damping, so that the kernel is shorter."
+        raise InputError("bays that differ", received, f"at most {MOST_LINES // lines} of them", remedy)
 
 
 def _lacks_damping(kernel: MovingKernel) -> tuple[float, str]:
