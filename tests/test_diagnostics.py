@@ -89,6 +89,7 @@ def test_the_band_that_rings_is_found_among_louder_tones():
     low, high = impulsive_band(loud, RATE, 200.0)
     assert low <= 4600.0 <= high
     assert low > 1300.0
+    assert impulsive_band(loud, RATE, high - low + 1.0) == (0.0, 6000.0)
 
 
 def test_what_one_family_explains_counts_for_no_other():
@@ -104,6 +105,15 @@ def test_what_one_family_explains_counts_for_no_other():
     assert found["outer"].found
     assert not found["inner"].prominent[:2].any()
     assert not found["inner"].found
+
+
+def test_a_single_line_is_no_fault():
+    carrier = (1.0 + 0.6 * np.cos(2 * np.pi * 87.0 * TIME)) * np.cos(2 * np.pi * 2500.0 * TIME)
+    spectrum = envelope_spectrum(carrier + 0.1 * noise(), RATE, (2000.0, 3000.0))
+    assert find_lines(spectrum, 87.5, harmonics=1).found
+    five = find_lines(spectrum, 87.5)
+    assert five.prominent.tolist() == [1.0, 0.0, 0.0, 0.0, 0.0]
+    assert not five.found
 
 
 def test_noise_has_no_lines():

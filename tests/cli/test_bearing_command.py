@@ -94,6 +94,14 @@ def test_a_fault_is_heard_and_drawn(drawn):
     np.testing.assert_allclose(found.x, 108.0 * np.arange(1, 6), atol=1.0)
 
 
+@pytest.mark.parametrize(("share", "faults"), [(0.05, ["outer"]), (0.6, ["outer", "ball"])])
+def test_of_two_faults_a_faint_one_is_left_to_what_modulates_the_clear_one(share, faults):
+    both = pulses(108.0) + share * pulses(142.0)
+    document = json.loads(heard(both, "--json", "--band", "1 kHz, 5 kHz").stdout)
+    assert document["lines"]["ball"]["found"]
+    assert document["faults"] == faults
+
+
 def test_noise_is_no_fault_and_lines_of_the_turns_give_the_speed():
     turns = sum(0.05 * np.sin(2 * np.pi * n * 29.8 * TIME) for n in (1, 2, 3))
     said = heard(pulses(1e-9) + turns, "--band", "all").stdout

@@ -145,6 +145,7 @@ def test_loads_of_almost_nothing_are_in_balance_as_far_as_numbers_tell(speed):
     along = found.inner_load * np.sin(found.inner_angle)
     np.testing.assert_allclose(along.sum(axis=1), 5e-3, rtol=1e-6)
     assert found.imbalance <= 1e-7
+    assert B6205.loaded(radial=7.0, axial=1.0, speed=7e-46, cage_angles=[0.0]).imbalance <= 1e-10
 
 
 def test_the_next_ball_is_the_same_and_left_is_right():
