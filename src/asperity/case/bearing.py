@@ -22,7 +22,7 @@ from asperity.text_files import lines_of_cells, number_in, read_text
 
 DIMENSIONS = keys_of(BallBearing, otherwise="that of the named bearing")
 NEEDED = ("balls", "ball_diameter", "pitch_diameter")
-LARGEST_TEXT = 256 * 2**20  # bytes
+LARGEST_TEXT = 64 * 2**20  # bytes
 _LOADS = "0 N to 100 MN: bearings carry less"
 
 

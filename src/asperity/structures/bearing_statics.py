@@ -305,7 +305,7 @@ def _doubt_speed(found: LoadedBearing, angles: Array) -> None:
     for _ in range(SPEEDS):
         low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
     message = (
-        f"At {60.0 * found.speed:.4g} 1/min centrifugal force lifts balls off the inner ring, all of which "
-        f"are pressed at rest; the first one leaves at {60.0 * high:.4g} 1/min. Raise axial load or preload."
+        f"At {60.0 * found.speed:.5g} 1/min centrifugal force lifts balls off the inner ring, all of which "
+        f"are pressed at rest; the first one leaves at {60.0 * high:.5g} 1/min. Raise axial load or preload."
     )
     warnings.warn(OutOfRangeWarning(message), stacklevel=5)
