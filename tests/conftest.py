@@ -104,3 +104,13 @@ def browser():
     What drives it has an event loop, which tests of other modules must not find running.
     """
     yield from chromium()
+
+
+@pytest.fixture(scope="module")
+def members_in_this_process():
+    """Members of studies need no processes of their own where those are not the question."""
+    from asperity.studies import running
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(running, "locally", lambda members, _: running._in_this_process(members))
+        yield

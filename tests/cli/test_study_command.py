@@ -21,6 +21,8 @@ from asperity.studies.definition import load_study, study_of
 from command_line import RAIL, SMALL, call, words_of
 from small_cases import changed
 
+pytestmark = pytest.mark.usefixtures("members_in_this_process")
+
 FILTERED = SMALL.replace('["hertz", "linear"]', '["hertz", "linear", "hertz-filtered", "linear-filtered"]')
 FILTERED += 'level = "-20 dB"\n[contact]\nspacing = "10 um"\nwindow = "0.4 mm"\n'
 STUDY = """
