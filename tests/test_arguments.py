@@ -143,6 +143,7 @@ def test_hints_of_the_wrong_kind(tmp_path, hints, message):
 
 
 @pytest.mark.usefixtures("own_cache")
+@pytest.mark.usefixtures("members_in_this_process")
 def test_a_mapping_of_keys_is_run_as_its_toml_text_and_studied():
     result = asperity.run(KEYS)
     again = asperity.run(parse_case(result.attrs["case"]))

@@ -221,7 +221,7 @@ KNOWN = {
 }
 
 
-@settings(max_examples=50, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
+@settings(max_examples=30, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
 @given(st.data())
 @pytest.mark.parametrize("kind", sorted(BASES))
 def test_a_case_that_is_written_and_read_is_the_same(kind, data):

@@ -165,9 +165,9 @@ MODES = "frequency (Hz), damping ratio, modal mass (kg)\n" + "".join(
     ("text", "load", "largest"),
     [
         (DAMPED.format("1e6"), 65e3, 2.0),
-        (DAMPED.format("1e9"), 65e3, 2.0),
+        pytest.param(DAMPED.format("1e9"), 65e3, 2.0, marks=pytest.mark.long),
         (LIGHT, 5.0, 5.0),
-        (f'{WHEEL}[wheel]\nmodes = "modes.csv"\n', 65e3, 3.0),
+        pytest.param(f'{WHEEL}[wheel]\nmodes = "modes.csv"\n', 65e3, 3.0, marks=pytest.mark.long),
     ],
     ids=["damping of 1e6 N s/m", "damping of 1e9 N s/m", "a ball of 1e-5 kg", "200 modes of 100 kg"],
 )

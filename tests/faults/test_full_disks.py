@@ -87,6 +87,7 @@ def test_a_full_file_system(undisturbed, small, tmp_path, what, full):
             assert "finished work is not kept" in told
 
 
+@pytest.mark.long
 def test_a_study_needs_no_cache(small, tmp_path):
     """Its table holds all members, and it is said once that they are not kept."""
     sweep = 'case = "case.toml"\n[sweep]\nseed = [1, 2, 3]\n'

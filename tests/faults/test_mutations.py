@@ -14,7 +14,7 @@ from asperity.errors import AsperityError, InputError
 from asperity.results import read_result
 from asperity.surfaces.readers import read_surface
 
-MUTATIONS = 100_000 if LONG else 500
+MUTATIONS = 100_000 if LONG else 250
 SECONDS = 5
 HINTS = {"height_unit": "um", "pixel": "2 um"}
 HEIGHTS = np.arange(12.0).reshape(3, 4)

@@ -55,10 +55,9 @@ def study(folder, address):
     return program(folder, "study", "study.toml", "--scheduler", address, code=IMPATIENT)
 
 
+@pytest.mark.long
 @posix
-@pytest.mark.parametrize(
-    "end", [signal.SIGKILL, pytest.param(signal.SIGSTOP, marks=pytest.mark.long)], ids=["dies", "hangs"]
-)
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP], ids=["dies", "hangs"])
 def test_a_scheduler_that_is_lost_half_way(served, tmp_path, end):
     scheduler, address = served
     with study(tmp_path, address) as running:

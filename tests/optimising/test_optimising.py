@@ -150,6 +150,7 @@ def test_a_limit_is_kept_and_each_band_takes_its_share():
     assert "limit" in found.active
 
 
+@pytest.mark.long
 def test_a_rail_is_judged_by_its_sound_power():
     case = WHEEL | {"surface": {"spectrum": "iso3095"}, "duration": "0.2 s"}
     found = asperity.optimise(case, budget=30.0, law="linear-filtered", verify="linear-filtered")

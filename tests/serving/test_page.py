@@ -278,7 +278,7 @@ def test_a_report_can_ask_nothing_of_the_server(tab, served, tmp_path):
     assert opened.evaluate("() => self.origin") == "null"
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.long), signal.SIGKILL])
 def test_a_server_that_ends_leaves_no_orphan_and_keeps_its_runs(tab, served, tmp_path, number):
     """Quietly where it may end in order."""
     have_a_run(tab, tmp_path)

@@ -121,6 +121,7 @@ def test_warnings_are_counted_by_member(monkeypatch):
     assert json.loads(computed({"seed": [1, 2, 3]}).attrs["warnings"]) == expected
 
 
+@pytest.mark.long
 def test_digits_depend_on_no_executor(monkeypatch):
     """Processes, threads and this process write the same file; who computes elsewhere keeps it here, too."""
 
