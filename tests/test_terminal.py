@@ -98,7 +98,7 @@ def test_a_reader_that_ends_is_no_failure(tmp_path, command):
 
 
 @posix
-@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
 def test_closed_streams_are_no_failure(tmp_path, closed):
     run(f"asperity check case.toml {closed}", tmp_path)
     run(f"asperity check absent.toml {closed}", tmp_path, code=2)

@@ -110,6 +110,7 @@ def test_an_interrupt_while_a_process_starts_waits_for_it(tmp_path):
     assert "interrupted" in told
 
 
+@pytest.mark.long
 def test_runs_beside_each_other_are_the_same(undisturbed, tmp_path):
     folder = prepared(tmp_path / "beside")
     outs = [f"out{n}" for n in range(8 if LONG else 2)]

@@ -101,6 +101,7 @@ def overlaps(job, rows, planes):
     return {"forces": forces, "counts": np.zeros(4, dtype=np.int64)}
 
 
+@pytest.mark.long
 def test_memory_does_not_grow_with_the_path(tmp_path, monkeypatch):
     """Beyond a few bytes a position (names of blocks, planes); the strip alone would take 120 a row."""
     monkeypatch.setattr("asperity.contact.scan.BLOCK", 64)

@@ -63,7 +63,7 @@ def recorded(monkeypatch, owner, name):
 
 @pytest.mark.usefixtures("cache_of_module")
 @pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
-@pytest.mark.parametrize("case", [BALL, WHEEL])
+@pytest.mark.parametrize("case", [BALL, pytest.param(WHEEL, marks=pytest.mark.long)])
 def test_laws_textures_and_state_functions_do_not_outlive_what_they_were_for(monkeypatch, case):
     laws, states = recorded(monkeypatch, LawMaterials, "build"), recorded(monkeypatch, compute, "reduce")
     computed = compute.compute(prepare_case(as_case(case)), lambda *_: None)

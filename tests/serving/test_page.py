@@ -314,7 +314,9 @@ def left_of(processes):
     return left
 
 
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (360, "dark")])
+@pytest.mark.parametrize(
+    ("width", "scheme"), [(1280, "light"), pytest.param(360, "dark", marks=pytest.mark.long)]
+)
 def test_nothing_serious_bars_anybody(tab, tmp_path, width, scheme):
     """The rules of axe-core, with a run that is done."""
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe-core is not installed")

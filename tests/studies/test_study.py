@@ -182,11 +182,8 @@ def started(script, *words):
     return subprocess.Popen(program, stdout=pipe, stderr=pipe, text=True, process_group=0)
 
 
-@pytest.mark.parametrize(
-    "end",
-    [pytest.param(signal.SIGKILL, marks=pytest.mark.long), signal.SIGINT],
-    ids=["killed", "interrupted"],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT], ids=["killed", "interrupted"])
 def test_a_study_that_is_ended_goes_on_and_leaves_no_process(end):
     seeds = {"seed": list(range(12))}
     Path("study.toml").write_text(f'case = "ball.toml"\n[sweep]\nseed = {seeds["seed"]}\n')
