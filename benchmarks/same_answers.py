@@ -14,6 +14,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -79,10 +80,13 @@ def forces(folder: str, only: str) -> None:
     import asperity
 
     warnings.simplefilter("ignore")
+    rings = find_spec("asperity.structures.wheel_section") is not None  # earlier wheels are rigid
     for name, case in CASES.items():
         if only in name:
             if "modes" in case.get("wheel", {}):
                 case = case | {"wheel": {"modes": np.array(MODES)}}
+            elif rings and case["kind"] == "wheel-on-rail":
+                case = case | {"wheel": {"section": "rigid"} | case.get("wheel", {})}
             rolling = asperity.run(case)["rolling"].to_dataset()
             found = rolling["contact_forces" if "contact_forces" in rolling else "contact_force"]
             force = found.values if "contact" in found.dims else found.values[:, None]
