@@ -67,13 +67,14 @@ def on_track(body):
             {"kind": "bodies", "body": {"load": "30 N"}} | ON_BEAM,
             [FORCE_LEVEL, ACCELERATION_LEVEL],
         ),
-        (
+        pytest.param(
             {"kind": "wheel-on-rail", "wheel": WHEEL | {"section": "rigid"}} | ON_TRACK,
             on_track(WHEEL),
             [
                 FORCE_LEVEL, RADIATED_POWER_LEVEL, PASS_BY_MAXIMUM_LEVEL, POINT_VELOCITY_LEVEL,
                 LINEAR_REFERENCE_LEVEL, SOUND_POWER_LEVEL_A,
             ],
+            marks=pytest.mark.long,
         ),
     ],
     ids=["beam", "track"],

@@ -208,6 +208,7 @@ def test_without_the_token_there_is_nothing(served):
         assert served.ask(f"{path}{away}")[0] == 404
 
 
+@pytest.mark.long
 def test_two_tabs_reload_cancel_and_go_on(tab, served, tmp_path):
     fill(tab, tmp_path, SMALL)
     other = tab.context.new_page()

@@ -54,6 +54,7 @@ def test_a_study_survives_a_killed_worker(scheduler, monkeypatch):
     xarray.testing.assert_identical(there, asperity.study("rough.toml", sweep, executor=Here()))
 
 
+@pytest.mark.long
 def test_the_command_line_computes_on_a_cluster(scheduler):
     Path("study.toml").write_text('case = "ball.toml"\n[sweep]\nseed = [1, 2]\nstart = ["0 m", "0.99 m"]\n')
     said = call("study", "study.toml", "-o", "out", "--scheduler", scheduler).stderr
