@@ -26,6 +26,17 @@ WHEEL = {
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
     "sideways": {"contact_place": "5 mm"},
 }
+HEARD = {
+    "laws": ["linear"],
+    "duration": "0.2 s",
+    "settling": "0.1 s",
+    "surface": {"spectrum": "iso3095"},
+    "wheel": {"roughness": "disc", "section": "rigid"},
+    "track": {"name": "uic60"},
+    "contact": {"spacing": "1 mm"},
+    "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
+}
+"""Keys of a wheel on a rail whose sound is looked at."""
 BODIES = {
     "kind": "bodies",
     "over": "beam",

@@ -2,6 +2,11 @@
 
 import re
 
+import pytest
+
+from asperity.case.cases import parse_case
+from asperity.errors import CaseError, InputError
+
 SURFACES = {
     "ball-on-beam": 'rms = "0.5 um"',
     "wheel-on-rail": 'spectrum = "iso3095"',
@@ -36,3 +41,16 @@ def write_files(folder):
     for name in ("line.csv", "map.npy", "tread.csv", "rail.csv", "beam.x3p", "wheels.csv", "recipe.toml"):
         (folder / name).write_bytes(b"heights")
     return folder / "case.toml"
+
+
+def refusal_of_table(read, keys, key, file, text):
+    """What is said of a wrong table, by its reader; and of a case whose key names it, alike."""
+    file.write_text(text + "\n")
+    with pytest.raises(InputError) as caught:
+        read(file)
+    with pytest.raises(CaseError) as refused:
+        parse_case(case_text("wheel-on-rail", keys), file.parent / "case.toml")
+    (error,) = refused.value.errors
+    assert error.startswith(f"{key}: received ")
+    assert f"in {file.name}" in error
+    return str(caught.value), error

@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-from case_texts import case_text, write_files
+from case_texts import refusal_of_table, write_files
 
 from asperity import WheelOnRail
-from asperity.case.cases import parse_case
 from asperity.case.measured import read_band_levels, read_decay_rates, read_mobility, read_passage
-from asperity.errors import CaseError, InputError
 
 RATES = "frequency (Hz), decay rate (dB/m)\n"
 MOBILITY = "frequency (Hz), mobility ((m/s)/N)\n"
@@ -117,13 +115,6 @@ PASSAGE = "time (s), level (dB(A))\n" + "".join(f"{n}, {60 + 5 * min(n, 11 - n)}
 )  # fmt: skip
 def test_tables_that_are_wrong(name, text, message, source):
     """By themselves, and as the key of a case that names them."""
-    read, keys, key = READ[name]
-    (source.parent / f"{name}.csv").write_text(text + "\n")
-    with pytest.raises(InputError) as caught:
-        read(source.parent / f"{name}.csv")
-    assert message in str(caught.value)
-    with pytest.raises(CaseError) as caught:
-        parse_case(case_text("wheel-on-rail", keys), source)
-    (error,) = caught.value.errors
-    assert error.startswith(f"{key}: received ")
-    assert message.partition(";")[0] in error
+    told, of_case = refusal_of_table(*READ[name], source.parent / f"{name}.csv", text)
+    assert message in told
+    assert message.partition(";")[0] in of_case

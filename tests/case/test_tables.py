@@ -5,7 +5,7 @@ import math
 import h5netcdf
 import numpy as np
 import pytest
-from case_texts import case_text, write_files
+from case_texts import case_text, refusal_of_table, write_files
 
 from asperity import WheelOnRail
 from asperity.case import tables
@@ -144,17 +144,9 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
 )
 def test_tables_that_are_wrong(name, text, message, source):
     """By themselves, and as the key of a case that names them."""
-    read, keys, key = READ[name]
-    (source.parent / f"{name}.csv").write_text(text + "\n")
-    with pytest.raises(InputError) as caught:
-        read(source.parent / f"{name}.csv")
-    assert message in str(caught.value)
-    with pytest.raises(CaseError) as caught:
-        parse_case(case_text("wheel-on-rail", keys), source)
-    (error,) = caught.value.errors
-    assert error.startswith(f"{key}: received ")
-    assert message.partition(";")[0] in error
-    assert f"in {name}.csv" in error
+    told, of_case = refusal_of_table(*READ[name], source.parent / f"{name}.csv", text)
+    assert message in told
+    assert message.partition(";")[0] in of_case
 
 
 @pytest.mark.parametrize(

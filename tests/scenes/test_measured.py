@@ -13,23 +13,14 @@ from asperity.scenes.figures.measured import MEASURED, measured_table
 from asperity.scenes.figures.noise import RADIATED, noise_answers, radiated_table
 from asperity.scenes.figures.track import TRACK
 from asperity.scenes.plan import planned_rows
+from small_cases import HEARD
 
-CASE = {
-    "laws": ["linear"],
-    "duration": "0.2 s",
-    "settling": "0.1 s",
-    "surface": {"spectrum": "iso3095"},
-    "wheel": {"roughness": "disc", "section": "rigid"},
-    "track": {"name": "uic60"},
-    "contact": {"spacing": "1 mm"},
-    "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
-}
 BAND = 1000.0 * 10.0 ** (np.arange(-8, 6) / 10.0)  # 160 Hz to 3.15 kHz
 
 
 @pytest.fixture(scope="module")
 def plain(runs):
-    return runs(WheelOnRail(**CASE))
+    return runs(WheelOnRail(**HEARD))
 
 
 def own_data(case):
@@ -41,7 +32,7 @@ def own_data(case):
 
 
 def with_track(**keys):
-    return WheelOnRail(**CASE | {"track": CASE["track"] | keys})
+    return WheelOnRail(**HEARD | {"track": HEARD["track"] | keys})
 
 
 def warned(tree):
@@ -51,7 +42,7 @@ def warned(tree):
 
 
 def test_own_data_fed_back_change_nothing(plain, runs):
-    rates, mobility = own_data(WheelOnRail(**CASE))
+    rates, mobility = own_data(WheelOnRail(**HEARD))
     tree = runs(with_track(decay_rates=rates, mobility=mobility))
     for name in ("radiated_power_level", "band_decay_rate"):
         np.testing.assert_allclose(tree["spectra"][name], plain["spectra"][name], rtol=1e-9)
@@ -67,7 +58,7 @@ def test_own_data_fed_back_change_nothing(plain, runs):
 @pytest.fixture(scope="module")
 def damped(runs):
     """Four times the decay of the computed track from 500 Hz to 1 kHz, with rates sideways."""
-    rates, _ = own_data(WheelOnRail(**CASE))
+    rates, _ = own_data(WheelOnRail(**HEARD))
     some = np.column_stack([rates[5:9, 0], 4.0 * rates[5:9, 1], np.full(4, 0.5)])
     return runs(with_track(decay_rates=some))
 
@@ -92,7 +83,7 @@ def test_a_contradiction_is_warned_of_with_its_bands(damped):
 
 
 def test_a_plan_warns_of_it_too():
-    rates, _ = own_data(WheelOnRail(**CASE))
+    rates, _ = own_data(WheelOnRail(**HEARD))
     rates[3, 1] *= 0.3
     with pytest.warns(MeasuredTrackWarning, match="farthest from 1: 0.3 ") as caught:
         planned_rows(prepare_case(with_track(decay_rates=rates)))
@@ -129,7 +120,7 @@ def test_the_report_shows_both(damped):
 
 
 def test_a_mobility_changes_force_and_rail_and_is_drawn_as_a_receptance(runs):
-    _, mobility = own_data(WheelOnRail(**CASE))
+    _, mobility = own_data(WheelOnRail(**HEARD))
     tree = runs(with_track(mobility=np.column_stack([mobility[:, 0], 2.0 * mobility[:, 1:]])))
     names = "measured_mobility", "expected_mobility", "measured_force_change", "measured_power_change"
     own, expected, force, power = (tree["spectra"][f"{name}"].values for name in names)

@@ -11,17 +11,9 @@ from asperity.reporting.chart import Line
 from asperity.scenes.figures.noise import RADIATED, noise_answers, radiated_table
 from asperity.scenes.noise import RADIATORS, rail_section, silent_wheel
 from asperity.spectra import HALF_BAND, band_energies, psd
+from small_cases import HEARD
 
-CASE = {
-    "laws": ["linear"],
-    "duration": "0.6 s",
-    "settling": "0.1 s",
-    "surface": {"spectrum": "iso3095"},
-    "wheel": {"roughness": "disc", "section": "rigid"},
-    "track": {"name": "uic60"},
-    "contact": {"spacing": "1 mm"},
-    "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
-}
+CASE = HEARD | {"duration": "0.6 s"}
 MODES = np.array(
     [  # frequency, damping ratio, modal mass, nodal diameters, axial, radial
         [430.0, 1e-2, 3000.0, 2, 3.0, 0.5],

@@ -15,17 +15,9 @@ from asperity.spectra import HALF_BAND, band_energies
 from asperity.structures.lateral_contact import wheel_receptances
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.modal import modal_answers
+from small_cases import HEARD
 
-CASE = {
-    "laws": ["linear"],
-    "duration": "0.3 s",
-    "settling": "0.1 s",
-    "surface": {"spectrum": "iso3095"},
-    "wheel": {"roughness": "disc", "section": "rigid"},
-    "track": {"name": "uic60"},
-    "contact": {"spacing": "1 mm"},
-    "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
-}
+CASE = HEARD | {"duration": "0.3 s"}
 PLACE = 0.01
 RINGING = {"roughness": "disc", "section": "straight-web"}
 
