@@ -38,7 +38,7 @@ READ = [
     ("value", "dimension", "text"), [(v, d, text) for v, d, all_ in READ for text in all_]
 )
 def test_quantities(text, dimension, value):
-    assert quantity(text, dimension) == pytest.approx(value, rel=1e-14)
+    assert quantity(text, dimension) == pytest.approx(value, rel=1e-14, abs=0.0)
 
 
 @given(

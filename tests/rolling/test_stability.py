@@ -126,11 +126,11 @@ def test_what_alternating_forces_meet_is_that_of_masses_springs_and_long_runs(po
     # of a free mass that of Newmark's β = 1/6 at the highest frequency: −h²/12m, as of a slow mode
     h, mass = 1e-4, 0.3
     slow = alternating_of_modes(modal_coefficients([1e-3], [0.0], h))[0] / mass
-    assert slow == pytest.approx(-(h**2) / 12 / mass, rel=1e-6)
-    assert of_body(Body.rigid(mass, 1.0), h) == pytest.approx(slow, rel=1e-6)
+    assert slow == pytest.approx(-(h**2) / 12 / mass, rel=1e-6, abs=0.0)
+    assert of_body(Body.rigid(mass, 1.0), h) == pytest.approx(slow, rel=1e-6, abs=0.0)
     # a mode far above the frequency of the steps answers statically
     stiff = alternating_of_modes(modal_coefficients([1e7], [0.5], 1e-3))[0]
-    assert stiff == pytest.approx(1.0 / 1e14, rel=1e-3)
+    assert stiff == pytest.approx(1.0 / 1e14, rel=1e-3, abs=0.0)
     # modes that are stepped for long
     a, shape = (
         modal_coefficients(2 * np.pi * np.array([90.0, 1300.0, 2700.0]), [0.3] * 3, 2e-4),
@@ -141,14 +141,14 @@ def test_what_alternating_forces_meet_is_that_of_masses_springs_and_long_runs(po
         p = np.array(shape) * force
         q, v = a[0] * q + a[1] * v + (a[2] - a[3]) * p, a[4] * q + a[5] * v + (a[6] - a[7]) * p
         force = -force
-    assert np.square(shape) @ alternating_of_modes(a) == pytest.approx(force * (shape @ q), rel=1e-9)
+    assert np.square(shape) @ alternating_of_modes(a) == pytest.approx(force * (shape @ q), rel=1e-9, abs=0.0)
     # the mode of a wheel by itself, as an oscillator, and a rail
     heavy = Body.rigid(1e30, 65e3).with_modes([3000.0], [0.2], [20.0])
     mode = alternating_of_modes(modal_coefficients([2 * np.pi * 3000.0], [0.2], RAIL_STEP))[0] / 20.0
     assert of_body(heavy, RAIL_STEP) == pytest.approx(mode, rel=1e-6)
     ground = ground_of(RailBetween(poles, {}), Path(np.zeros((1, 2)), 56.0, RAIL_STEP), np.zeros(0))
     least = min(row @ (-1.0) ** np.arange(row.size) for row in poles.kernel.weights)
-    assert (ground.alternating, ground.thrown) == (pytest.approx(least, rel=1e-12), 0.0)
+    assert (ground.alternating, ground.thrown) == (pytest.approx(least, rel=1e-12, abs=0.0), 0.0)
     assert ground.limit == ("the passing of sleepers v/L", pytest.approx(56.0 / 0.6), 20.0)
 
 
@@ -180,7 +180,7 @@ def test_modes_too_fast_for_the_step_answer_statically():
 def test_a_contact_is_softened_for_impacts_or_to_be_stable(compliances, stiffness, damping, softer, told):
     arrays = (np.array([value]) for value in (*compliances, *stiffness, damping, 1e11))
     with pytest.warns(CoarseSamplingWarning, match=told) if told else nullcontext():
-        assert steps.softening(*arrays, 1e-5)[0] == pytest.approx(softer)
+        assert steps.softening(*arrays, 1e-5)[0] == pytest.approx(softer, rel=1e-6, abs=0.0)
 
 
 def test_softened_contact_has_the_frequency_of_newmark():
