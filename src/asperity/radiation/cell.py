@@ -9,7 +9,7 @@ from asperity.arguments import Array, Complex
 from asperity.structures.cell_waves import CellWaves
 from asperity.structures.track import Track
 
-FEWEST_NODES = 4  # of Gauss's rule between two supports, beside one per radian of the shortest wave
+FEWEST_NODES = 6  # of Gauss's rule between two supports, beside one per radian of the shortest wave
 
 
 class CellMobility:
