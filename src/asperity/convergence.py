@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.case.content import case_key, content, file_digest
 from asperity.case.scene import Case
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning

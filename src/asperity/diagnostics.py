@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, finite_array, one_of, positive, real, require, whole
+from asperity.arguments import Array, ArrayLike, finite_array, one_of, positive, real, require, whole
 from asperity.spectra import band_energies, psd
 
 ISO_BANDS = ((50.0, 300.0), (300.0, 1800.0), (1800.0, 10_000.0))

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array, nearest, no_file, shown
+from asperity.arguments import Array, NDArray, nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import factor, quantity, written

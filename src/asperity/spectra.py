@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, require
+from asperity.arguments import Array, ArrayLike, Complex, require
 
 HALF_BAND = 10.0 ** (1.0 / 20.0)
 """Ratio of a one-third octave's upper edge to its centre, base 10 (IEC 61260-1)."""

@@ -17,9 +17,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import no_file
+from asperity.arguments import NDArray, no_file
 from asperity.errors import ComputationError, InputError
 from asperity.files import amount, atomic_write, claimed_file, is_sealed
 

@@ -9,8 +9,8 @@ from asperity.scenes.report import page_of
 from asperity.schema import UNKNOWN, Entry
 from asperity.schema.spectra import NO_SIGNAL
 
-LEVEL = Entry("spectra", "level", ("band",), "dB re 1 N", "level", missing=NO_SIGNAL)
-FORCE = Entry("rolling", "force", ("time",), "N", "force")
+LEVEL = Entry("spectra", "level(band)", "dB re 1 N", "level", missing=NO_SIGNAL)
+FORCE = Entry("rolling", "force(time)", "N", "force")
 
 
 def test_what_is_not_finite_is_missing_with_a_reason_or_a_warning():

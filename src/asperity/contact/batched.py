@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array, require, shown
+from asperity.arguments import Array, NDArray, require, shown
 from asperity.contact.halfspace import HalfSpace, edge_share
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import batched

@@ -9,10 +9,9 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from asperity import arguments
-from asperity.arguments import Array, real, require
+from asperity.arguments import Array, ArrayLike, real, require
 from asperity.errors import Outcome, UnconvergedWarning
 from asperity.kernels.batched import convolve_padded, padded_spectrum, unit_indentation
 from asperity.kernels.box import foundation_approach

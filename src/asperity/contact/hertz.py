@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, positive, require
+from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.errors import HalfSpaceWarning, percent
 
 HALVINGS = 56

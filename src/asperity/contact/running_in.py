@@ -6,9 +6,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
+from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array, NDArray
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import UnconvergedWarning

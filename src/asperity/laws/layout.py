@@ -1,9 +1,8 @@
 """Laying laws out on a path: a force curve that follows a texture, or a table."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, not_negative
+from asperity.arguments import Array, ArrayLike, not_negative
 from asperity.kernels.piecewise import continued_to_touch, monotone_slopes, zero_crossing
 from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law

@@ -7,10 +7,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, ArrayLike, NDArray, require
 from asperity.kernels.piecewise import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
 from asperity.spectra import hann_window

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, positive, require
+from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.contact import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.kernels.piecewise import continued_to_touch, cubic_coefficients, monotone_slopes

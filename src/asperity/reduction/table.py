@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, finite_array, require
+from asperity.arguments import Array, ArrayLike, finite_array, require
 from asperity.contact.scan import FORCE_ACCURACY, ScanJob, ScannedForces, solved_blocks, total
 from asperity.errors import ComputationError
 from asperity.kernels.along import OVERLAP, splines_along

@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 
-from asperity.arguments import Array, positive, require
+from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.kernels.along import splines_along
 from asperity.surfaces.strip import Rows, Strip
 

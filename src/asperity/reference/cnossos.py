@@ -12,9 +12,8 @@ from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, positive
+from asperity.arguments import Array, ArrayLike, positive
 from asperity.errors import InputError
 
 CITATION = "Directive (EU) 2015/996, appendix G, as amended by Delegated Directive (EU) 2021/1226"

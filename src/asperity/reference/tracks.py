@@ -1,9 +1,8 @@
 """Named sets of track parameters, each value with its source; least decay rate for tests of vehicles."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, one_of
+from asperity.arguments import Array, ArrayLike, one_of
 
 _NORDBORG = "A. Nordborg, J. Acoust. Soc. Am., 2002 (not seen), as used by a public re-implementation"
 _NORDBORG_VISCOUS = "viscous variant of " + _NORDBORG

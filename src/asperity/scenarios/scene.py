@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, require
+from asperity.arguments import Array, ArrayLike, Complex, require
 from asperity.case.scene import Case
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal, modal_receptance

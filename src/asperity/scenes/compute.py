@@ -8,10 +8,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity import __version__
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.case.content import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces

@@ -6,9 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.errors import Finding, InhomogeneousWarning, ShortRecordWarning
 from asperity.reduction.filter import punch_filter, punch_taps, response
 from asperity.scenarios.geometry import Geometry

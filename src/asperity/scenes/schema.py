@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, Entry, entry
+from asperity.schema import Attribute, Entry
 from asperity.schema.spectra import BAND_TIME_PRODUCT, NO_SIGNAL
 
-_rolling, _spectra = partial(entry, "rolling"), partial(entry, "spectra")
+_rolling, _spectra = partial(Entry, "rolling"), partial(Entry, "spectra")
 
 # --- what is rolled over, and what rolls
 
@@ -78,9 +78,9 @@ POINT_VELOCITY_LEVEL = _rail_spectra(
 
 # --- the track by itself
 
-_track = partial(entry, "track", condition=_TRACK)
+_track = partial(Entry, "track", condition=_TRACK)
 _fact = partial(Attribute, "track", condition=_TRACK)
-_losses = partial(entry, "track", condition="where the track has loss factors")
+_losses = partial(Entry, "track", condition="where the track has loss factors")
 _BAND = "one-third-octave band centre"
 
 TRACK_FREQUENCY = _track("frequency", "Hz", "frequency")
@@ -112,7 +112,7 @@ _RAIL = "level of the rail's receptance in time over that of constant loss facto
 LOSS_FACTOR_RAIL_ERROR = _losses("loss_factor_rail_error(band)", "dB", _RAIL)
 _TABLE = "of this layer it is measured over frequency"
 LOSS_FACTOR = _losses("loss_factor(layer)", "1", "constant loss factor", missing=_TABLE)
-_measured = partial(entry, "track", condition="where the pad is measured over frequency")
+_measured = partial(Entry, "track", condition="where the pad is measured over frequency")
 MEASURED_STIFFNESS = _measured(
     "measured_stiffness(band)", "1", "measured stiffness of the pad over the nominal"
 )
@@ -120,7 +120,7 @@ MEASURED_LOSS_FACTOR = _measured("measured_loss_factor(band)", "1", "measured lo
 RELAXED_STIFFNESS = _losses("relaxed_stiffness(layer, band)", "1", "stiffness in time over the nominal one")
 RELAXED_LOSS_FACTOR = _losses("relaxed_loss_factor(layer, band)", "1", "loss factor in time")
 
-_bays = partial(entry, "track", condition="where bays differ")
+_bays = partial(Entry, "track", condition="where bays differ")
 BAY = _bays("bay", "1", "bay of the cell, the first behind the sleeper at zero")
 BAY_LENGTH = _bays("bay_length(bay)", "m", "distance to the next sleeper")
 BAY_PAD_STIFFNESS = _bays("bay_pad_stiffness(bay)", "N/m", "stiffness of the pad with which a bay begins")
@@ -264,7 +264,7 @@ WHEEL_REVOLUTION_FREQUENCY = _tone("wheel_revolution_frequency", "Hz", "turns of
 
 # --- the pass-by
 
-_pass_by = partial(entry, "pass_by", condition=_TRACK)
+_pass_by = partial(Entry, "pass_by", condition=_TRACK)
 _heard = partial(_pass_by, missing=SILENT)
 _place = partial(Attribute, "pass_by")
 _LENGTH = "where the train has a length: not of one axle without vehicle_length"
@@ -327,7 +327,7 @@ MEASURED_DURATION_RATIO = _passage("measured_duration_ratio", "1", _RATIO)
 
 # --- what helps
 
-_effects = partial(entry, "effects", condition="where it was asked what helps")
+_effects = partial(Entry, "effects", condition="where it was asked what helps")
 _changed = partial(_effects, missing=f"the case cannot take this change; or {SILENT}")
 EFFECT_VARIANT = _effects("variant", "1", "what is changed of the case")
 EFFECT_RADIATOR = _effects("radiator", "1", "what radiates by its vibration")
@@ -354,7 +354,7 @@ REFERENCE_CONDITIONS = _place("reference_conditions", "JSON", _ISO, _ASKED)
 # --- what moves sideways
 
 _SIDE = "where the contact of a wheel and a rail is off the middle, or the wheel is drawn"
-_side = partial(entry, "sideways", condition=_SIDE)
+_side = partial(Entry, "sideways", condition=_SIDE)
 _side_fact = partial(Attribute, "sideways", condition=_SIDE)
 SIDEWAYS_LAW = _side("law", "1", "contact law")
 SIDEWAYS_FREQUENCY = _side("frequency", "Hz", "frequency")

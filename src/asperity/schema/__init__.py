@@ -28,13 +28,24 @@ class Entry:
     """A variable of a result file."""
 
     group: str  # where it stands
-    name: str  # what it is called there
-    dims: tuple[str, ...]  # its dimensions; those of a coordinate are its own name
+    # what it is called there, with its dimensions, as ``"filter(approach, wavenumber)"``; a coordinate, as
+    # ``"approach"``, has its own name as its dimension
+    place: str
     units: str  # in SI; ``"1"`` for a pure number, ``"dB re 1 N"`` for a level
     long_name: str  # what it is
     condition: str = ""  # which results have it, where not all have
     missing: str = ""  # why values may be missing (NaN)
     attributes: tuple[str, ...] = ()  # what else is said of it
+
+    @property
+    def name(self) -> str:
+        """What it is called in its group."""
+        return self.place.partition("(")[0]
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Names of its dimensions."""
+        return tuple((self.place.removesuffix(")").partition("(")[2] or self.place).split(", "))
 
     @property
     def path(self) -> str:
@@ -56,26 +67,6 @@ class Entry:
                 warnings.warn(PhysicsWarning(message, Grade.OUT), stacklevel=2)
             numbers = np.where(finite, numbers, np.nan)
         return xarray.Variable(self.dims, numbers, attrs)
-
-
-def entry(
-    group: str,
-    place: str,
-    units: str,
-    long_name: str,
-    condition: str = "",
-    missing: str = "",
-    attributes: tuple[str, ...] = (),
-) -> Entry:
-    """Make the entry of a variable of a group.
-
-    Its place is as ``"filter(approach, wavenumber)"``, with its dimensions; as ``"approach"`` that of a
-    coordinate, whose dimension is its own name.
-    """
-    name, _, dims = place.removesuffix(")").partition("(")
-    return Entry(
-        group, name, tuple((dims or name).split(", ")), units, long_name, condition, missing, attributes
-    )
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,11 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, Entry, entry
+from asperity.schema import Attribute, Entry
 
 SAMPLED = "where there are samples"
 _NO_FILTER = "the samples do not touch in these states, or have no waves of these lengths"
-_entry, _attribute = partial(entry, "contact"), partial(Attribute, "contact")
+_entry, _attribute = partial(Entry, "contact"), partial(Attribute, "contact")
 _sampled = partial(_entry, condition=SAMPLED)
 
 _STATE = "approach from the plane that the nominal patch feels: heights under its flat-punch weight"

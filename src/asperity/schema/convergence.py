@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, entry
+from asperity.schema import Attribute, Entry
 
 _ASKED = "where convergence was asked for"
-_entry = partial(entry, "convergence", condition=_ASKED)
+_entry = partial(Entry, "convergence", condition=_ASKED)
 _changed = partial(_entry, missing="this setting was not changed, or changes nothing of the kind")
 
 PATH_LENGTH = "path length"

@@ -2,9 +2,9 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, entry
+from asperity.schema import Attribute, Entry
 
-_entry = partial(entry, "rolling")
+_entry = partial(Entry, "rolling")
 CONTACTS = "number of the contact, body by body, each from its rearmost"
 
 LAW = _entry("law", "1", "contact law")

@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from asperity.schema import Entry, entry
+from asperity.schema import Entry
 from asperity.schema.rolling import CONTACTS
 
-_entry = partial(entry, "spectra")
+_entry = partial(Entry, "spectra")
 NO_SIGNAL = "there is no signal in these bands, and nothing has no level"
 _level = partial(_entry, missing=NO_SIGNAL)
 

@@ -2,10 +2,10 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, entry
+from asperity.schema import Attribute, Entry
 from asperity.schema.contact import RUN_IN, SAMPLED
 
-_entry, _attribute = partial(entry, "surface"), partial(Attribute, "surface")
+_entry, _attribute = partial(Entry, "surface"), partial(Attribute, "surface")
 _sampled = partial(_entry, condition=SAMPLED)
 _beside = partial(_entry, condition="where texture lies beside the line")
 _rough = partial(_entry, condition="where the path is rough")

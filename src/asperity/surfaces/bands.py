@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy import fft, linalg
 from scipy.special import k1
 
-from asperity.arguments import Array, require, two_lengths
+from asperity.arguments import Array, ArrayLike, NDArray, require, two_lengths
 from asperity.spectra import HALF_BAND, band_energies, band_levels, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import check_shape

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 import scipy
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.errors import MissingPointsWarning
 
 if TYPE_CHECKING:

@@ -4,10 +4,9 @@ import math
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import fft
 
-from asperity.arguments import Array, not_negative, positive, require
+from asperity.arguments import Array, ArrayLike, not_negative, positive, require
 from asperity.surfaces.heightmap import Profile
 
 FlatShape = Literal["fresh", "worn"]

@@ -9,9 +9,8 @@ from html import escape
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, real, real_array, require, two, two_lengths, whole
+from asperity.arguments import Array, ArrayLike, real, real_array, require, two, two_lengths, whole
 from asperity.printable import printable
 from asperity.surfaces import cleaning, levelling
 from asperity.units import written

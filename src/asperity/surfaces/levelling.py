@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-from asperity.arguments import FORMS, Array, real, require, shown
+from asperity.arguments import FORMS, Array, NDArray, real, require, shown
 from asperity.errors import ComputationError, ShortRecordWarning
 
 if TYPE_CHECKING:

@@ -11,10 +11,9 @@ from itertools import pairwise
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from asperity.arguments import Array, positive, require
+from asperity.arguments import Array, ArrayLike, NDArray, positive, require
 from asperity.errors import CoarseSamplingWarning, PhysicsWarning, ShortRecordWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.surfaces.bands import LIKELY_WAVELENGTHS, band_levels_of, likely_band

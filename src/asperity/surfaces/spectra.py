@@ -4,10 +4,9 @@ import warnings
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 from scipy import fft
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, NDArray, require
 from asperity.errors import ShortRecordWarning
 from asperity.spectra import hann_window
 from asperity.surfaces.heightmap import HeightMap, Profile

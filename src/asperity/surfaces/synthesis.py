@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import fft
 
-from asperity.arguments import Array, require, two_lengths
+from asperity.arguments import Array, ArrayLike, require, two_lengths
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness

@@ -7,9 +7,8 @@ from typing import Any
 from zipfile import ZipFile
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array, listed, require, shown
+from asperity.arguments import Array, NDArray, listed, require, shown
 from asperity.surfaces.readers import guards
 from asperity.surfaces.readers.hints import Hints, advice
 

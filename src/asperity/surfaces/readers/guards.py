@@ -9,9 +9,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array, file_path, listed, no_file, require
+from asperity.arguments import Array, NDArray, file_path, listed, no_file, require
 from asperity.errors import InputError, reason
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers.hints import advice

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import require
+from asperity.arguments import NDArray, require
 from asperity.surfaces.readers import guards
 from asperity.surfaces.readers.hints import Hints
 from asperity.text_files import number_in
