@@ -200,6 +200,9 @@ bodies: [beam] supports = [] → beam.supports: received an empty list
 bodies: [beam] supports = ["0.3 m", "1.2 m"] → different positions on the beam of 1 m
 bodies: [beam] supports = ["0.3 m"] | support = "free" → two supports or more
 bodies: [noise] axles = 2 → noise: received a [noise] of what is rolled over a beam: axles
+bodies: [sideways] friction = 0.2 → sideways: received a [sideways] of what is rolled over a beam: friction
+bodies: over = "track" | [sideways] contact_place = "40 mm" → received 40 mm; allowed: at most 36 mm off the
+ball: [sideways] friction = 0.2 → sideways: received an unknown key
 """
 
 

@@ -1,20 +1,28 @@
 """What moves sideways in a run: nothing in the middle; off it by the formulas, at every place of a bay."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from asperity.case.bodies import Bodies
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.contact.tangential import stick_stiffness
 from asperity.radiation.sideways import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference.materials import MATERIALS
+from asperity.scenarios.preparing import prepare
+from asperity.scenarios.scene import scene_of
+from asperity.scenes.compute import compute
+from asperity.scenes.figures.contacts import contacts_table
 from asperity.scenes.figures.sideways import SIDEWAYS, sideways_table
+from asperity.scenes.sideways import sideways_group
 from asperity.spectra import HALF_BAND, band_energies
 from asperity.structures.lateral_contact import wheel_receptances
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.modal import modal_answers
+from asperity.surfaces.heightmap import Profile
 from small_cases import HEARD
 
 CASE = HEARD | {"duration": "0.3 s"}
@@ -142,3 +150,38 @@ def test_the_chapter_says_where_how_loud_and_whether_it_slips(runs, off):
         assert row["beyond friction"] == "0.0 %"
         assert float(row["rail up and down"]) > float(row["rail sideways"]) > 80.0
     assert float(row["wheel, both forces"]) > 100.0
+
+
+ONE = {"radius": 0.46, "mass": 600.0, "load": 65e3, "transverse_radius": "inf", "section": "straight-web"}
+STEP = 1.5e-3 / 56.0
+BOGIE = {"type": "bogie", "masses": [3000.0], "springs": [1.2e6], "dampers": [2e4], "distance": 30.0}
+
+
+def bodies(body, surface):
+    over = {name: each for name, each in HEARD.items() if name != "wheel"} | {"speed": 56.0, "start": "20 m"}
+    own = {"body": body, "surface": surface, "sideways": {"contact_place": PLACE}}
+    return Bodies(**over | own | {"over": "track", "numerics": HEARD["numerics"] | {"time_step": STEP}})
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")  # of a coarse grid
+def test_one_body_is_the_wheel_on_the_rail():
+    """Of one and the same motion, to the last bit."""
+    own = WheelOnRail(**HEARD | {"wheel": RINGING, "sideways": {"contact_place": PLACE}})
+    own = own.with_(**{"numerics.time_step": STEP})
+    computed, other = compute(prepare(own), lambda *_: None), bodies(ONE, CASE["surface"])
+    found = sideways_group(replace(computed, case=other, scene=scene_of(other)))
+    for entry, expected in sideways_group(computed).items():
+        np.testing.assert_array_equal(found[entry], expected)
+
+
+def test_a_bogie_on_two_equal_wheels_far_apart_is_twice_as_loud_as_one(runs):
+    """Both roll over the same line, 3 m long; a frame that moves is felt below 500 Hz."""
+    heights = 2e-6 * np.random.default_rng(3).normal(size=3000)
+    line = {"line": Profile(heights, 1e-3), "continuation": "repeat"}
+    one, two = (runs(bodies(ONE | more, line)) for more in ({}, BOGIE))
+    change = two["sideways"]["lateral_power_level"] - one["sideways"]["lateral_power_level"]
+    louder, twice = change.values[0][:, change["band"] > 500.0], 10.0 * math.log10(2.0)
+    np.testing.assert_allclose(louder, twice, atol=0.02)
+    each = two["sideways"]["lateral_contact_force_rms"].values[0]
+    np.testing.assert_allclose(each, one["sideways"]["lateral_force_rms"].values[0], rtol=0.01)
+    assert contacts_table(two).head[-1] == "lateral force, rms, linear"

@@ -8,6 +8,7 @@ from asperity.case.form import section
 from asperity.case.rolled_over import BeamKeys, RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
+from asperity.case.sideways import SidewaysKeys
 from asperity.errors import InputError
 from asperity.parameters import Choice, key
 
@@ -49,6 +50,9 @@ class Bodies(Case):
     contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")
     numerics: NumericsKeys = section(NumericsKeys, "how finely time is resolved")
     noise: NoiseKeys = section(NoiseKeys, "what radiates, where a track is rolled over")
+    sideways: SidewaysKeys = section(
+        SidewaysKeys, "where a rail is touched, and what moves sideways, by frequency"
+    )
 
     @property
     def rolled_over(self) -> RolledOver:
@@ -73,8 +77,9 @@ class Bodies(Case):
             remedy = 'As file = "guide.csv".'
             yield InputError("structure.file", "nothing", "the file of its modes, or receptances", remedy)
             return
-        if self.over != "track" and (given := self.noise.given()):
-            received = f"a [noise] of what is rolled over a {self.over}: {', '.join(sorted(given))}"
-            remedy = "Remove it: a track alone sounds here."
-            yield InputError("noise", received, 'over = "track"', remedy)
+        for name, verb in (("noise", "sounds"), ("sideways", "moves sideways")):
+            if self.over != "track" and (given := getattr(self, name).given()):
+                received = f"a [{name}] of what is rolled over a {self.over}: {', '.join(sorted(given))}"
+                remedy = f"Remove it: a track alone {verb} here."
+                yield InputError(name, received, 'over = "track"', remedy)
         yield from super().problems()

@@ -497,11 +497,21 @@ class Case(Section):
         yield from self.rolled_over.problems_of_run(self.speed, start + min(ahead), last + max(ahead))
         if isinstance(self.rolled_over, TrackKeys):
             yield from self.noise.problems_of_train(self.contacts_behind)
+            yield from self._problem_of_place()
             return
         for dotted in OF_A_TRACK:
             title, _, name = dotted.partition(".")
             if name in getattr(self, title).given():
                 yield InputError(dotted, "a key of a track", f"what a {self.over_name} has", "Remove it.")
+
+    def _problem_of_place(self) -> Iterator[InputError]:
+        """A contact on the rail head."""
+        place, half = self.contact_place, 0.5 * self.track.rail_head_width
+        if abs(place) > half:
+            received = written(place, "m", "mm")
+            allowed = f"at most {written(half, 'm', 'mm')} off the middle"
+            remedy = "The rail head, track.rail_head_width, is no wider."
+            yield InputError("sideways.contact_place", received, allowed, remedy)
 
 
 def _change(data: dict[str, Any], changes: Mapping[str, Any]) -> None:

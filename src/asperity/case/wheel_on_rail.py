@@ -114,18 +114,6 @@ class WheelOnRail(Case, defaults=DEFAULTS):
             yield InputError("wheel.load", received, allowed, remedy)
         yield from self._problems_of_levels()
         yield from self._problem_of_length()
-        yield from self._problem_of_place()
-
-    def _problem_of_place(self) -> Iterator[InputError]:
-        """A contact on tread and rail head."""
-        place, half = self.sideways.contact_place, 0.5 * self.track.rail_head_width
-        if abs(place) > half:
-            received, allowed = (
-                written(place, "m", "mm"),
-                f"at most {written(half, 'm', 'mm')} off the middle",
-            )
-            remedy = "The rail head, track.rail_head_width, is no wider."
-            yield InputError("sideways.contact_place", received, allowed, remedy)
 
     def _problems_of_levels(self) -> Iterator[InputError]:
         """Band levels that no wheel or rail has ask for their unit."""

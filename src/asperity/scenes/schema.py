@@ -3,6 +3,7 @@
 from functools import partial
 
 from asperity.schema import Attribute, Entry
+from asperity.schema.rolling import CONTACTS
 from asperity.schema.spectra import BAND_TIME_PRODUCT, NO_SIGNAL
 
 _rolling, _spectra = partial(Entry, "rolling"), partial(Entry, "spectra")
@@ -383,9 +384,15 @@ LATERAL_POWER_LEVEL_A = _side(
 )
 _CHANGE = "level of the linear vertical force with the lateral one over that without, which runs leave out"
 VERTICAL_FORCE_CHANGE = _side("vertical_force_change(band)", "dB", _CHANGE)
-_SLIP = "share of the time in which the lateral force would be beyond friction, of a normal distribution"
+_SLIP = (
+    "share of the time in which the lateral force would be beyond friction, of a normal distribution, mean "
+    "of the contacts"
+)
 SLIP_SHARE = _side("slip_share(law)", "1", _SLIP)
 LATERAL_FORCE_SPREAD = _side("lateral_force_rms(law)", "N", f"rms of the {_FORCE}")
+SIDEWAYS_CONTACT = _side("contact", "1", CONTACTS)
+_EACH = "rms of the lateral force of each contact, in stick"
+LATERAL_CONTACT_SPREAD = _side("lateral_contact_force_rms(law, contact)", "N", _EACH)
 _PLACE = "of the contact across tread and rail head, from their middle, positive towards the field side"
 CONTACT_PLACE = _side_fact("contact_place", "m", _PLACE)
 STICK_STIFFNESS = _side_fact("stick_stiffness", "N/m", "lateral stiffness of the contact in stick, Mindlin")

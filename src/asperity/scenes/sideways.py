@@ -116,7 +116,7 @@ class Sideways:
 
     @cached_property
     def seen(self) -> tuple[Array, Array]:
-        """Square of a compliance |α₀|² + |α_W|² (k,), and |α₀|² S_F + S_x (laws, f) of all contacts.
+        """Square of a compliance |α₀|² + |α_W|² (k,), and |α₀|² S_F + S_x (laws, contacts, f).
 
         The second over the first is S_F, and changes little within a line (`asperity.radiation.wheel`).
         """
@@ -124,9 +124,14 @@ class Sideways:
         normal, _ = self.stiffness
         own = np.abs(1.0 / normal + self.track.track.receptance(self.lines, middle, middle))
         motion, fine = computed.psd(computed.stacked("rolling_displacement")), self.fine[0]
-        force, moved = (each[..., computed.shown].sum(axis=1) for each in (computed.force_psd, motion))
+        force, moved = (each[..., computed.shown] for each in (computed.force_psd, motion))
         other = np.interp(fine, self.lines, own) ** 2 + np.abs(self.wheel(fine)[0, 0]) ** 2
         return other, own**2 * force + moved
+
+    @cached_property
+    def seen_of_all(self) -> Array:
+        """Its second part, the sum over all contacts (laws, f)."""
+        return np.asarray(self.seen[1].sum(axis=1))
 
     def means(self, values: Array) -> Array:
         """Means over the lines (n, f) of values per square of the vertical force (n, k)."""
@@ -139,7 +144,7 @@ class Sideways:
 
     @cached_property
     def force_psd(self) -> Array:
-        """PSD of the lateral force (laws, f), N²/Hz, of all contacts together."""
+        """PSD of the lateral force of each contact (laws, contacts, f), N²/Hz."""
         return np.asarray(np.mean(self.spread * self.squares, axis=0) * self.seen[1])
 
     def rail_power(self) -> Array:
@@ -150,7 +155,7 @@ class Sideways:
         one = self.means(np.ones((1, len(self.fine[0]))))
         of_force = forms[:, 0, 0].real * one + forms[:, 1, 1].real * self.squares
         of_force += 2.0 * (forms[:, 0, 1] * together).real
-        square = np.mean(self.spread * of_force, axis=0) * self.seen[1]
+        square = np.mean(self.spread * of_force, axis=0) * self.seen_of_all
         side = SideOfRail(rail.height, case.track.rail_foot_width, case.track.rail_head_width)
         return side.power(self.lines, square)
 
@@ -162,7 +167,7 @@ class Sideways:
         """
         modes, case, fine = self.computed.scene.modes, self.computed.case, self.fine[0]
         if modes is None:
-            return np.zeros_like(self.seen[1])
+            return np.zeros_like(self.seen_of_all)
         spread = np.stack([np.interp(fine, self.lines, each) for each in self.spread]) / PLACES
         share = np.sum(spread * self.shares, axis=0).real if sideways else np.zeros_like(fine)
         square = np.sum(spread * np.abs(self.shares) ** 2, axis=0) if sideways else share
@@ -175,7 +180,7 @@ class Sideways:
         numbers = np.concatenate([[1, 0], modes.nodal_diameters])
         disc, tread = np.append([0.0, 1.0], modes.disc), np.append([math.sqrt(0.5), 0.0], modes.tread)
         radiator = RadiatingWheel(case.rolling.radius, case.noise.wheel_width, numbers, disc, tread)
-        return radiator.power(self.lines, self.means(velocity)) * self.seen[1]
+        return radiator.power(self.lines, self.means(velocity)) * self.seen_of_all
 
 
 RADIATORS = ("rail sideways", "wheel, vertical force", "wheel, both forces")
@@ -187,6 +192,7 @@ def sideways_group(computed: Computed) -> Values:
         return {}
     found, case, band = Sideways(computed), computed.case, computed.band
     contacts, limit = len(computed.scene.offsets), case.sideways.friction * computed.shape.load
+    step = found.lines[1] - found.lines[0]
 
     def levels(density: Array) -> Array:
         """Levels in bands (..., b), dB, of densities on the lines (..., f)."""
@@ -198,10 +204,12 @@ def sideways_group(computed: Computed) -> Values:
 
     powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
     power = levels(2.0 * case.axles / contacts / PICOWATT * np.stack(powers, axis=1))
-    lateral = found.force_psd / contacts
-    spread = np.sqrt(lateral.sum(axis=-1) * (found.lines[1] - found.lines[0]))
+    lateral, of_each = (
+        found.force_psd.sum(axis=1) / contacts,
+        np.sqrt(found.force_psd.sum(axis=-1) * step),
+    )
     with np.errstate(divide="ignore"):
-        slips = [math.erfc(ratio) for ratio in limit / (math.sqrt(2.0) * spread)]
+        slips = np.vectorize(math.erfc)(limit / (math.sqrt(2.0) * of_each)).mean(axis=1)
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
     rail = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing)
     wheel, answers = found.wheel(frequency), np.moveaxis(found.fine_answers, 0, -2)
@@ -224,7 +232,9 @@ def sideways_group(computed: Computed) -> Values:
         schema.LATERAL_POWER_LEVEL_A: a_weighted_total(power, band),
         schema.VERTICAL_FORCE_CHANGE: coupling,
         schema.SLIP_SHARE: slips,
-        schema.LATERAL_FORCE_SPREAD: spread,
+        schema.LATERAL_FORCE_SPREAD: np.sqrt(lateral.sum(axis=-1) * step),
+        schema.SIDEWAYS_CONTACT: 1 + np.arange(contacts),
+        schema.LATERAL_CONTACT_SPREAD: of_each,
         schema.CONTACT_PLACE: computed.scene.place,
         schema.STICK_STIFFNESS: found.stiffness[1],
         schema.SLIP_FORCE: limit,

@@ -89,6 +89,8 @@ def contacts_table(tree: DataTree) -> ReportTable | None:
         "static force": number_cells(data.values(tree, rolling.STATIC_LOAD), "N"),
         f"out of contact, {main}": number_cells(100.0 * lost, "{:.3g} %"),
     }
+    for lateral in Of(schema.LATERAL_CONTACT_SPREAD)(tree):
+        columns[f"lateral force, rms, {main}"] = number_cells(lateral.values, "N")
     return table("where_contacts_are", "Contacts", columns, "Static forces as on a rigid plane.")
 
 
