@@ -23,7 +23,7 @@ RECEPTANCE = "f (Hz), real (m/N), imaginary (m/N)\n"
 TWELVE = "".join(f"{n}, 1, 1\n" for n in range(1, 13))
 READ = {
     "levels": (tables.read_levels, '[surface] spectrum = "levels.csv"', "surface.spectrum"),
-    "modes": (tables.read_modes, '[wheel] modes = "modes.csv"', "wheel.modes"),
+    "modes": (lambda path: tables.read_mode_table(path).T, '[wheel] modes = "modes.csv"', "wheel.modes"),
     "ratios": (tables.read_ratios, '[noise] rail_radiation = "ratios.csv"', "noise.rail_radiation"),
     "receptance": (tables.read_receptance, '[wheel] receptance = "receptance.csv"', "wheel.receptance"),
 }
@@ -174,10 +174,8 @@ def test_levels_in_another_unit_ask_for_it(source):
 def test_modes_say_how_they_move_the_wheel(tmp_path):
     path, row = tmp_path / "modes.csv", np.array([[2000.0, 1e-4, 300.0, 2.0, 4.0, 0.5]])
     path.write_text(SHAPES.replace("Hz", "kHz") + "2, 1e-4, 300, 2, 4, 0.5\n")
-    assert [list(each) for each in tables.read_modes(path)] == [[2000.0], [1e-4], [300.0]]
-    for table in (path, row):
-        assert tables.read_mode_shapes(table).tolist() == [[2.0, 4.0, 0.5]]
-    assert tables.read_mode_shapes(row[:, :3]) is None
+    for table in (path, row, row[:, :3]):
+        assert tables.read_mode_table(table).tolist() == (row if table is path else table).tolist()
     with pytest.raises(CaseError, match=r"an array of shape \(n, 3\) or \(n, 6\) of real numbers"):
         WheelOnRail(surface={"spectrum": "iso3095"}, wheel={"modes": np.ones((2, 4))})
 

@@ -138,43 +138,28 @@ def fitted_to(table: TableSource) -> Iterator[None]:
         raise error.about(f"{error.what} in {name_of(table)}") from None
 
 
-def read_modes(table: TableSource) -> tuple[Array, Array, Array]:
-    """Read the modes of a wheel: frequencies, Hz, damping ratios and modal masses, kg, (n,) each."""
-    frequency, ratio, mass = read_table(table, MODES, RADIATION)[:, : len(MODES)].T
-    read_mode_shapes(table)  # which may stand beside them
-    for name, values, right, allowed in (
-        ("frequency", frequency, frequency > 0, "greater than 0 Hz"),
-        ("damping ratio", ratio, (ratio > 0) & (ratio < 1), "greater than 0 and less than 1"),
-        ("modal mass", mass, mass > 0, "greater than 0 kg"),
-    ):
-        if not right.all():
-            raise InputError(name_of(table), f"a {name} of {values[~right][0]:g}", allowed)
-    return frequency, ratio, mass
-
-
 def read_mode_table(table: TableSource) -> Array:
-    """Read all that a table of the modes of a wheel holds (n, 3) or (n, 6), see `read_modes`."""
-    read_modes(table)
-    return read_table(table, MODES, RADIATION)
+    """Read the modes of a wheel (n, 3), `MODES`, or with how they move disc and tread (n, 6), `RADIATION`."""
+    rows = read_table(table, MODES, RADIATION)
+    frequency, ratio, mass, diameters, *velocities = np.pad(rows, ((0, 0), (0, 6 - rows.shape[1]))).T
+    whole, allowed = "a whole number, zero or more", "zero or more, per radial velocity at the contact"
+    for what, values, wrong, right in (
+        ("a number of nodal diameters", diameters, (diameters < 0) | (diameters % 1 != 0), whole),
+        *(("an rms velocity", each, each < 0, allowed) for each in velocities),
+        ("a frequency", frequency, frequency <= 0, "greater than 0 Hz"),
+        ("a damping ratio", ratio, (ratio <= 0) | (ratio >= 1), "greater than 0 and less than 1"),
+        ("a modal mass", mass, mass <= 0, "greater than 0 kg"),
+    ):
+        refuse_where(table, values, wrong, what, right)
+    return rows
 
 
-def read_mode_shapes(table: TableSource) -> Array | None:
-    """Read how the modes of a wheel move its disc and tread, the further columns (n, 3); None without them.
-
-    Number of nodal diameters, rms axial velocity over the disc and rms radial velocity of the tread, both per
-    radial velocity of the mode at the contact.
-    """
-    shapes = read_table(table, MODES, RADIATION)[:, len(MODES) :]
-    if not shapes.shape[1]:
-        return None
-    diameters, ratios = shapes[:, 0], shapes[:, 1:]
-    if (wrong := (diameters < 0) | (diameters % 1 != 0)).any():
-        received = f"a number of nodal diameters of {diameters[wrong][0]:g}"
-        raise InputError(name_of(table), received, "a whole number, zero or more")
-    if (ratios < 0).any():
-        received = f"an rms velocity of {ratios[ratios < 0][0]:g}"
-        raise InputError(name_of(table), received, "zero or more, per radial velocity at the contact")
-    return shapes
+def refuse_where(
+    table: TableSource, values: Array, wrong: NDArray[np.bool_], what: str, allowed: str, remedy: str = ""
+) -> None:
+    """Refuse the first of the values of a table that are wrong, if there is one."""
+    if wrong.any():
+        raise InputError(name_of(table), f"{what} of {values[wrong][0]:g}", allowed, remedy)
 
 
 def read_outline(table: TableSource) -> Array:
@@ -188,9 +173,7 @@ def read_ratios(table: TableSource) -> tuple[Array, Array]:
     """Read radiation ratios (n,) over rising frequencies (n,), Hz, all above zero."""
     frequency, ratio = read_table(table, RATIOS).T
     refuse_disorder(table, frequency)
-    if (ratio <= 0).any():
-        received = f"a radiation ratio of {ratio[ratio <= 0][0]:g}"
-        raise InputError(name_of(table), received, "greater than 0")
+    refuse_where(table, ratio, ratio <= 0, "a radiation ratio", "greater than 0")
     return frequency, ratio
 
 

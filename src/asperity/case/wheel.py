@@ -17,7 +17,6 @@ from asperity.case.tables import (
     MODES,
     TableFile,
     read_mode_table,
-    read_modes,
     read_outline,
     read_receptance,
 )
@@ -56,7 +55,7 @@ class Ringing(Section, parameters=_DIMENSIONS):
     material: Material
 
     modes: Path | Array | None = optional(
-        TableFile(columns=(3, 6), read=read_modes),
+        TableFile(columns=(3, 6), read=read_mode_table),
         "modes.csv",
         "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
         "modal mass (kg); the sound of wheels needs three columns more: number of nodal diameters, by which "
@@ -152,12 +151,12 @@ class Ringing(Section, parameters=_DIMENSIONS):
 
         At a place across the tread, m from the running circle, positive away from the flange.
         """
-        turning = self.turning_modes(highest_frequency, speed)
-        if turning is not None:
-            frequency, ratio, mass = turning.table(place).T[:3]
-            return frequency, ratio, mass
-        none = np.zeros(0)
-        return (none, none, none) if self.modes is None else read_modes(self.modes)
+        if (turning := self.turning_modes(highest_frequency, speed)) is not None:
+            table = turning.table(place)
+        else:
+            table = np.zeros((0, 3)) if self.modes is None else read_mode_table(self.modes)
+        frequency, ratio, mass = table[:, :3].T
+        return frequency, ratio, mass
 
     @property
     def drawn_mass(self) -> float:

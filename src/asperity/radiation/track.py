@@ -1,16 +1,14 @@
 """Sound power of rail and sleepers from vibration along the track."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import h2vp, j1
 
-from asperity.arguments import Array, Complex, finite_array, positive, whole
-from asperity.radiation.cell import FEWEST_NODES, CellMobility
+from asperity.arguments import Array, finite_array, positive, whole
+from asperity.radiation.mobility import ForceOverBay, Mobility
 from asperity.structures.track import Track
 
 SPEED_OF_SOUND = 343.2
@@ -75,10 +73,6 @@ def _positive(ka: ArrayLike) -> Array:
     return finite_array("wavenumber times radius", ka, "finite positive numbers", above=0.0)
 
 
-ForceOverBay = Callable[[Array], Array]
-"""Mean square of the force at places (n,), m from a sleeper, at the frequencies (n, f), in any unit."""
-
-
 def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Integral along the rail of the squared mobility, mean over the places of the force in a bay.
 
@@ -108,19 +102,9 @@ def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | N
     -----
     Both waves and their products: u_j is wave j in the bay after that of the force, and Σ_p Σ_ij u_i u_j*
     (λ_i λ_j*)^p = Σ_ij u_i u_j*/(1 − λ_i λ_j*) over all bays. Within a bay by Gauss's rule, in that of the
-    force from the force on. A bay is its own mirror image, so both sides of the force are alike in the mean;
-    of a cell of bays that differ both are summed, and the mean is over all of it.
+    force from the force on, on both of its sides; of bays that differ the mean is over all of their cell.
     """
-    if track.has_cells:
-        return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).rail(force)
-    bay = _Bay(track, frequency)
-    along = np.stack([bay.waves.outgoing(x) for x in bay.node])  # (x, j, f)
-    total = bay.over_bays(np.einsum("x,xif,xjf->ijf", bay.weight, along, along.conj(), optimize=True))
-    for row, (x0, sent) in enumerate(zip(bay.node, bay.sent, strict=True)):
-        places, lengths = bay.gauss(track.sleeper_spacing - x0)
-        for x, length in zip(x0 + places, lengths, strict=True):
-            total[row] += length * np.abs(np.sum(sent * bay.waves.outgoing(x), axis=0)) ** 2
-    return 2.0 * bay.mean(total, force)
+    return Mobility(track, 2.0 * np.pi * above_zero(frequency)).rail(force)
 
 
 def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
@@ -133,20 +117,12 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
     if track.continuous:
         moved = track.support.sleeper_square(2.0 * np.pi * above_zero(frequency))
         return moved * squared_mobility(track, frequency, force) / track.sleeper_spacing
-    if track.has_cells:
-        return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).sleepers(force)
-    bay = _Bay(track, frequency)
-    above = bay.waves.outgoing(0.0)
-    total = bay.over_bays(above[:, None] * above.conj()[None, :])
-    return 2.0 * track.support.sleeper_square(bay.omega) * bay.mean(total, force)
+    return Mobility(track, 2.0 * np.pi * above_zero(frequency)).sleepers(force)
 
 
 def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
-    if track.has_cells:
-        return CellMobility(track, 2.0 * np.pi * above_zero(frequency)).point(force)
-    bay = _Bay(track, frequency)
-    return bay.mean(np.stack([np.abs(bay.waves.receptance(x0, x0)) ** 2 for x0 in bay.node]), force)
+    return Mobility(track, 2.0 * np.pi * above_zero(frequency)).point(force)
 
 
 def effective_length(track: Track, frequency: ArrayLike) -> Array:
@@ -161,38 +137,6 @@ def effective_length(track: Track, frequency: ArrayLike) -> Array:
 def above_zero(frequency: ArrayLike) -> Array:
     """Frequencies (f,), Hz, or an `InputError` where one is not positive."""
     return np.atleast_1d(finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0))
-
-
-class _Bay:
-    """Places of a force all over a bay, by Gauss's rule, and the waves that it sends out."""
-
-    def __init__(self, track: Track, frequency: ArrayLike) -> None:
-        self.omega = 2.0 * np.pi * above_zero(frequency)
-        self.waves = track.waves(self.omega)
-        self.node, self.weight = self.gauss(track.sleeper_spacing)
-
-    def gauss(self, length: float) -> tuple[Array, Array]:
-        """Nodes and weights on 0 to a length, m, fine enough for the shortest wave."""
-        count = FEWEST_NODES + math.ceil(float(np.abs(self.waves.wavenumbers).max()) * length)
-        node, weight = np.polynomial.legendre.leggauss(count)
-        return 0.5 * length * (node + 1.0), 0.5 * length * weight
-
-    @cached_property
-    def sent(self) -> Complex:
-        """How strongly a force at each place sends out the waves (n, 2, f)."""
-        return np.stack([self.waves.coefficients * self.waves.incoming(x0) for x0 in self.node])
-
-    def over_bays(self, within: Complex) -> Array:
-        """Sum over the bays behind that of the force (n, f), of products of waves in one bay (i, j, f)."""
-        product = self.waves.multipliers[:, None] * self.waves.multipliers.conj()[None, :]
-        behind = within * product / (1.0 - product)
-        return np.einsum("xif,xjf,ijf->xf", self.sent, self.sent.conj(), behind, optimize=True).real
-
-    def mean(self, values: Array, force: ForceOverBay | None) -> Array:
-        """Mean of ω² times values (n, f), by the weights of Gauss's rule and of the force."""
-        square = 1.0 if force is None else force(self.node)
-        weights = self.weight[:, None] * np.broadcast_to(square, values.shape)
-        return np.asarray(self.omega**2 * np.average(values, axis=0, weights=weights))
 
 
 def dipole_ratio(frequency: Array, dipole_area: float, width: float) -> Array:

@@ -13,7 +13,7 @@ from asperity.arguments import Array, Complex, finite_array, positive
 from asperity.errors import InputError
 from asperity.parameters import Quantity, keys_of, parameter
 from asperity.structures.periodic_rail import refuse_decay
-from asperity.structures.support import BendingSleeper, Element, RigidMass
+from asperity.structures.support import BendingSleeper, RigidMass, Spring
 from asperity.structures.track import VANISHING_DAMPING, Track
 
 # UIC 60 as in the program rolland: E = 210 GPa, G = 80.769 GPa, A = 76.7 cm², I_z = 512.7 cm⁴, J = 221.2 cm⁴,
@@ -296,11 +296,11 @@ class LateralTrack:
             if isinstance(element, RigidMass | BendingSleeper):
                 below = RigidMass(element.mass).on(omega, below)
             else:
-                below = _in_line(shares.get(name, 1.0) * _alone(element, omega), below)
+                below = _scaled(vertical.springs[name], shares.get(name, 1.0)).on(omega, below)
         assert below is not None
         found = np.multiply.outer(np.outer(self.rail.foot, self.rail.foot), below)
         roll = _share(self.pad_roll_stiffness, vertical.pad_stiffness, even)
-        found[1, 1] += roll * _alone(vertical.elements["pad"], omega)
+        found[1, 1] += roll * vertical.springs["pad"].stiffness(omega)
         return np.asarray(found)
 
     def waves(self, omega: ArrayLike) -> LateralWaves:
@@ -349,18 +349,12 @@ class LateralTrack:
         return np.asarray(-20.0 * np.log10(largest) / self.track.sleeper_spacing)
 
 
-def _alone(spring: Element, omega: ArrayLike) -> Complex:
-    own = spring.on(omega, None)
-    assert own is not None
-    return own
+def _scaled(spring: Spring, share: float) -> Spring:
+    return replace(spring, nominal=share * spring.nominal, damping=share * spring.damping)
 
 
 def _share(stiffness: float | None, vertical: float, usual: float) -> float:
     return usual if stiffness is None else stiffness / vertical
-
-
-def _in_line(own: Complex, below: Complex | None) -> Complex:
-    return own if below is None else own * below / (own + below)
 
 
 def contact_shapes(rail: LateralRail, place: float) -> Array:

@@ -35,6 +35,21 @@ class PeriodicWaves:
         """Itself, as every bay: `asperity.structures.cell_waves.CellWaves` has others."""
         return self
 
+    @property
+    def spans(self) -> list[PeriodicWaves]:
+        """Stretches from each support to the next, as of `CellWaves`."""
+        return [self]
+
+    @property
+    def steps(self) -> Complex:
+        """Change of each wave from a span to the next (1, 2, f)."""
+        return self.multipliers[None]
+
+    @property
+    def edges(self) -> Array:
+        """Places of the support, zero, and of the end of the bay, m."""
+        return np.array([0.0, self.spacing])
+
     def carried(self, first: int, last: int, zone: slice = slice(None)) -> Complex:
         """Change of each wave (2, f) from one bay to another one, in either direction, in a zone of f."""
         return self.multipliers[:, zone] ** abs(last - first)

@@ -28,6 +28,9 @@ from asperity.structures.support import (
 )
 from asperity.structures.track_parameters import LAYERS, TrackParameters
 
+_LOSSES = [(f"{layer}_damping", f"{layer}_loss_factor") for layer in LAYERS]
+_INSTEAD = [*_LOSSES, *((b, a) for a, b in _LOSSES), *(("pad_table", each) for each in _LOSSES[0])]
+"""Pairs of parameters of which the first, where it is given, replaces the second."""
 _SCALED = ("stiffness", "damping")
 """Of pads and ballast, in bays that differ."""
 VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
@@ -131,14 +134,9 @@ class Track(TrackParameters):
         for key in overrides:
             if key not in _PARAMETERS:
                 raise InputError("track parameter", repr(key), "one of " + ", ".join(_PARAMETERS))
-            element, _, loss = key.rpartition("_")
-            element, loss = (element.removesuffix("_loss"), "loss") if loss == "factor" else (element, loss)
-            other = {"damping": [f"{element}_loss_factor"], "loss": [f"{element}_damping"]}.get(loss, [])
-            if key == "pad_table":
-                other = ["pad_damping", "pad_loss_factor"]
-            for each in other:
-                if overrides[key] is not None and each not in overrides:
-                    parameters.pop(each, None)
+        for one, other in _INSTEAD:
+            if overrides.get(one) is not None and other not in overrides:
+                parameters.pop(other, None)
         if overrides.get("pad_table") is not None:
             overrides = {"pad_stiffness": overrides["pad_table"].nominal} | overrides
         sources = {key: source for key, (_, source) in parameters.items()}
@@ -152,39 +150,24 @@ class Track(TrackParameters):
         """All that its motion depends on, by name."""
         return {key: value for key, value in asdict(self).items() if key not in ("name", "sources")}
 
-    def _losses(self, part: str, factor: float | None) -> Losses:
+    def _losses(self, part: str) -> Losses:
+        measured = self.pad_table if part == "pad" else None
         relaxed: Losses | None = getattr(self.relaxations, part, None)
-        if relaxed is not None:
-            return relaxed
-        return self.pad_table if part == "pad" and self.pad_table else ConstantLoss(factor)
+        return relaxed or measured or ConstantLoss(getattr(self, f"{part}_loss_factor"))
 
     @property
     def rail(self) -> Rail:
         """The rail without supports."""
-        section = self.shear_stiffness, self.rotary_inertia
-        return Rail(
-            self.bending_stiffness,
-            self.mass_per_length,
-            self._losses("rail", self.rail_loss_factor),
-            *section,
-        )
+        section, losses = (self.shear_stiffness, self.rotary_inertia), self._losses("rail")
+        return Rail(self.bending_stiffness, self.mass_per_length, losses, *section)
 
     @property
     def springs(self) -> dict[str, Spring]:
         """Springs between rail and ground by their names of `LAYERS`, those that give way at all."""
-        layers = (
-            (self.pad_stiffness, self.pad_damping, self.pad_loss_factor),
-            (
-                self.under_sleeper_pad_stiffness,
-                self.under_sleeper_pad_damping,
-                self.under_sleeper_pad_loss_factor,
-            ),
-            (self.ballast_stiffness, self.ballast_damping, self.ballast_loss_factor),
-            (self.subgrade_stiffness, self.subgrade_damping, self.subgrade_loss_factor),
-        )
+        found = {layer: getattr(self, f"{layer}_stiffness") for layer in LAYERS}
         return {
-            layer: Spring(stiffness, self._losses(layer, factor), damping or 0.0)
-            for layer, (stiffness, damping, factor) in zip(LAYERS, layers, strict=True)
+            layer: Spring(stiffness, self._losses(layer), getattr(self, f"{layer}_damping") or 0.0)
+            for layer, stiffness in found.items()
             if stiffness is not None and stiffness < np.inf
         }
 

@@ -23,7 +23,7 @@ from asperity.progress import Progress
 from asperity.scenes import schema
 from asperity.schema import Entry, spectra
 from asperity.studies.definition import Study, study_of
-from asperity.studies.ensemble import SEED
+from asperity.studies.ensemble import SEED, student
 from asperity.studies.variants import AS_IT_IS, VARIANT
 
 SEEDS = 3
@@ -144,7 +144,7 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     effect, level = change.mean(several), base.mean(several)
     found = {
         schema.EFFECT: effect,
-        schema.EFFECT_ERROR: _error(change) if several else effect * np.nan,
+        schema.EFFECT_ERROR: student(change, SEED, CONFIDENCE)[0] if several else effect * np.nan,
         schema.LEFT_OUT: _left_out(table, effect),
     }
     told = xarray.Dataset(
@@ -158,16 +158,6 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
 def _attributes(entry: Entry) -> dict[str, str]:
     held = {"units": entry.units, "long_name": entry.long_name}
     return held | {"missing": entry.missing} if entry.missing else held
-
-
-def _error(change: xarray.DataArray) -> xarray.DataArray:
-    """Half of the confidence interval of a mean over the seeds; NaN of fewer than two."""
-    from scipy import stats
-
-    count = change.notnull().sum(SEED)
-    n = count.where(count >= 2)
-    reach = stats.t.ppf(0.5 * (1.0 + CONFIDENCE), n - 1)
-    return change.std(SEED, ddof=1) * reach / np.sqrt(n)
 
 
 def _left_out(table: xarray.Dataset, effect: xarray.DataArray) -> xarray.DataArray:

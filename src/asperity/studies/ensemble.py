@@ -86,22 +86,24 @@ def prediction_band(table: xarray.Dataset, over: str = SEED, share: float = SHAR
 
 def _band(name: str, values: xarray.DataArray, over: str, share: float) -> dict[str, xarray.Variable]:
     """Mean and ends of the band of a quantity."""
-    axis = values.dims.index(over)
-    numbers = np.where(np.isfinite(values.values), values.values, np.nan)
-    count = np.isfinite(numbers).sum(axis=axis)
-    enough = count >= 2
-    n = np.where(enough, count, 2)
-    mean = np.nansum(numbers, axis=axis) / np.maximum(count, 1)
-    square = np.nansum((numbers - np.expand_dims(mean, axis)) ** 2, axis=axis)
-    reach = stats.t.ppf(0.5 * (1.0 + share), n - 1) * np.sqrt(square / (n - 1) * (1.0 + 1.0 / n))
-    dims = [str(dim) for dim in values.dims if dim != over]
+    finite = values.where(np.isfinite(values))
+    reach, count = student(finite, over, share)
+    reach, mean = reach * np.sqrt(count + 1.0), finite.mean(over).where(count >= 2)
     units, what = values.attrs["units"], values.attrs["long_name"]
-    told = {"missing": "fewer than two members have it"} if not enough.all() else {}
+    told = {"missing": "fewer than two members have it"} if (count < 2).any() else {}
     ends = {"": (mean, "mean"), "_low": (mean - reach, "low end"), "_high": (mean + reach, "high end")}
     return {
-        f"{name}{end}": variable(dims, np.where(enough, of, np.nan), units, f"{what}, {which}", **told)
+        f"{name}{end}": variable(list(map(str, of.dims)), of.values, units, f"{what}, {which}", **told)
         for end, (of, which) in ends.items()
     }
+
+
+def student(values: xarray.DataArray, over: str, share: float) -> tuple[xarray.DataArray, xarray.DataArray]:
+    """Half of the confidence interval of a mean over a key, t s/√n, NaN of fewer than two; and n."""
+    count = values.notnull().sum(over)
+    n = count.where(count >= 2)
+    reach = stats.t.ppf(0.5 * (1.0 + share), n - 1)
+    return values.std(over, ddof=1) * reach / np.sqrt(n), count
 
 
 def mean_and_scatter(table: xarray.Dataset, over: str = SEED) -> xarray.Dataset:

@@ -1,18 +1,23 @@
-"""Vibration of a track whose bays differ, summed along it, mean over the places of a force in its cell."""
+"""Vibration of a track, summed along it, mean over the places of a force in the cell that repeats."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from asperity.arguments import Array, Complex
 from asperity.structures.cell_waves import CellWaves
+from asperity.structures.periodic_rail import PeriodicWaves
 from asperity.structures.track import Track
 
+Span = CellWaves | PeriodicWaves
+"""Waves between two supports."""
+ForceOverBay = Callable[[Array], Array]
+"""Mean square of the force at places (n,), m from a sleeper, at the frequencies (n, f), in any unit."""
 FEWEST_NODES = 6  # of Gauss's rule between two supports, beside one per radian of the shortest wave
 
 
-class CellMobility:
+class Mobility:
     """Places of a force all over a cell, by Gauss's rule, and what it does on both sides.
 
     Span by span, from a support to the next. What is sent to one side by a force at x0 of a span is sum_j
@@ -22,8 +27,8 @@ class CellMobility:
 
     def __init__(self, track: Track, omega: Array) -> None:
         waves = track.waves(omega)
-        assert isinstance(waves, CellWaves)
-        self.track, self.omega, self.spans, self.steps = track, omega, waves.spans, waves.steps
+        self.track, self.omega, self.steps = track, omega, waves.steps
+        self.spans: Sequence[Span] = waves.spans
         self.edges, shortest = waves.edges, float(np.abs(waves.wavenumbers).max())
         self.count = FEWEST_NODES + math.ceil(shortest * float(np.diff(waves.edges).max()))
 
@@ -32,12 +37,12 @@ class CellMobility:
         node, weight = np.polynomial.legendre.leggauss(self.count)
         return begin + 0.5 * (end - begin) * (node + 1.0), 0.5 * (end - begin) * weight
 
-    def rail(self, force: Callable[[Array], Array] | None) -> Array:
+    def rail(self, force: ForceOverBay | None) -> Array:
         """Integral along the rail of the squared mobility (f,), mean over the places of the force."""
         ahead, behind = self._beyond(*(self._forms(waves) for waves in ("outgoing", "incoming")))
 
-        def squares(number: int, span: CellWaves, x0: float) -> Array:
-            right, left = span.incoming(x0), span.outgoing(x0)
+        def squares(number: int, span: Span, x0: float) -> Array:
+            right, left = _sent(span, x0)
             total = _squared(right, ahead[number]) + _squared(left, behind[number])
             for x, length in zip(*self.gauss(x0, span.spacing), strict=True):
                 total = total + length * np.abs(np.sum(right * span.outgoing(x), axis=0)) ** 2
@@ -47,7 +52,7 @@ class CellMobility:
 
         return self._mean(squares, force)
 
-    def sleepers(self, force: Callable[[Array], Array] | None) -> Array:
+    def sleepers(self, force: ForceOverBay | None) -> Array:
         """Sum over all half sleepers of the squared mobility (f,), mean over the places of the force."""
         every, zero = len(self.spans) // self.track.cell_bays, np.zeros(self.omega.shape)
         moved = [zero] * len(self.spans)
@@ -57,16 +62,17 @@ class CellMobility:
         ahead, behind = self._beyond(forms[:, 0], forms[:, 1])
         behind = behind + forms[:, 1]  # a span begins with its own support
 
-        def squares(number: int, span: CellWaves, x0: float) -> Array:
-            return _squared(span.incoming(x0), ahead[number]) + _squared(span.outgoing(x0), behind[number])
+        def squares(number: int, span: Span, x0: float) -> Array:
+            right, left = _sent(span, x0)
+            return _squared(right, ahead[number]) + _squared(left, behind[number])
 
         return self._mean(squares, force)
 
-    def point(self, force: Callable[[Array], Array] | None) -> Array:
+    def point(self, force: ForceOverBay | None) -> Array:
         """Squared mobility of the rail at the force (f,), mean over its places."""
 
-        def squares(number: int, span: CellWaves, x0: float) -> Array:
-            return np.abs(np.sum(span.outgoing(x0) * span.incoming(x0), axis=0)) ** 2
+        def squares(number: int, span: Span, x0: float) -> Array:
+            return np.abs(np.sum(span.outgoing(x0) * _sent(span, x0)[0], axis=0)) ** 2
 
         return self._mean(squares, force)
 
@@ -97,9 +103,7 @@ class CellMobility:
                 before[span % count] = step[span - 1] * (growing[span - 1] + beyond)
         return after, before
 
-    def _mean(
-        self, squares: Callable[[int, CellWaves, float], Array], force: Callable[[Array], Array] | None
-    ) -> Array:
+    def _mean(self, squares: Callable[[int, Span, float], Array], force: ForceOverBay | None) -> Array:
         """Mean of ω² times squares, by the weights of Gauss's rule and of the force."""
         places, lengths = zip(*(self.gauss(0.0, span.spacing) for span in self.spans), strict=True)
         values = np.array(
@@ -114,3 +118,8 @@ class CellMobility:
 def _squared(sent: Complex, form: Complex) -> Array:
     """Sum over i and j of s_i s_j* form_ij (f,)."""
     return np.asarray(np.einsum("if,jf,ijf->f", sent, sent.conj(), form).real)
+
+
+def _sent(span: Span, x0: float) -> tuple[Complex, Complex]:
+    """How strongly a force at a place sends out the waves to the right and to the left, (2, f) each."""
+    return span.coefficients * span.incoming(x0), span.coefficients * span.outgoing(x0)
