@@ -1,7 +1,5 @@
 """A ball bearing under a load, as keys of a file or options; and the signal of one, read from a file."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path

@@ -8,17 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
-from asperity.case.body import DAMPING
-from asperity.case.form import Section
-from asperity.case.measured import read_band_levels, read_passage
-from asperity.case.rolled_over import FREQUENCY
-from asperity.case.surface import LENGTH, POSITION
-from asperity.case.tables import TableFile, read_ratios
+from asperity.case import body, form, measured, rolled_over, surface, tables
 from asperity.errors import InputError
 from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
-from asperity.reference.cnossos import DIRECTIVITIES, EVEN, PAD_CLASSES, WHEEL_TRANSFER
-from asperity.reference.grounds import GROUNDS, HARD
-from asperity.reference.tsi_noise import LIMITS
+from asperity.reference import cnossos, grounds, tsi_noise
 from asperity.units import written
 
 if TYPE_CHECKING:
@@ -31,18 +24,18 @@ _HEARD, _NOTHING = "0 dB to 180 dB: sound that is heard lies between", "nothing 
 DURATION_OR_ZERO = Quantity("s", at_least=0)
 
 
-class ContactKeys(Section):
+class ContactKeys(form.Section):
     """How the rough contact is solved and reduced."""
 
     spacing: float = optional(
-        LENGTH,
+        surface.LENGTH,
         "8 um",
         "grid spacing of the contact solution",
         "a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
         "1 nm to 10 mm: an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
     )
     window: float = optional(
-        LENGTH,
+        surface.LENGTH,
         "0.5 mm",
         "side of the square window in which contact is solved; wider than the contact",
         "that of the smooth contact under three times the load, wider by roughness and by a flat",
@@ -54,7 +47,7 @@ class ContactKeys(Section):
         "number of surface samples for the stiffness and the filters",
     )
     sample_length: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "2 mm",
         "length of the strips from which filters are estimated",
         "16 windows, or the length of the map",
@@ -68,7 +61,7 @@ class ContactKeys(Section):
         "-10 mm to 10 mm: contacts are closer than that",
     )
     damping: float = key(
-        DAMPING,
+        body.DAMPING,
         "0 N s/m",
         "damping of the contact",
         "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid",
@@ -144,11 +137,11 @@ class ContactKeys(Section):
             yield InputError("contact.sample_length", received, f"at least two windows, {allowed}")
 
 
-class NumericsKeys(Section):
+class NumericsKeys(form.Section):
     """How finely time, and a track, are resolved."""
 
     highest_frequency: float = key(
-        FREQUENCY,
+        rolled_over.FREQUENCY,
         "5 kHz",
         "upper end of the spectra",
         "0.1 Hz to 10 MHz: rolling is slower than ultrasound",
@@ -191,38 +184,38 @@ class NumericsKeys(Section):
             yield InputError("poles", self.poles, "an even number", "Poles come in conjugate pairs.")
 
 
-class NoiseKeys(Section):
+class NoiseKeys(form.Section):
     """What radiates where a track is rolled over, the labels of CNOSSOS-EU, and the train that passes."""
 
     ALTERNATIVES = (("axle_positions", "wheelbase"), ("ground", "flow_resistivity"))
 
     rail_radiation: Path | Array | None = optional(
-        TableFile(columns=(2,), read=read_ratios),
+        tables.TableFile(columns=(2,), read=tables.read_ratios),
         "rail_radiation.csv",
         "table of the rail's radiation ratio: frequency (Hz), ratio of its sound power per length to "
         "impedance of air, twice the width of its foot and mean square velocity",
         "that of a section with the widths of foot and head",
     )
     sleeper_length: float = key(
-        LENGTH, "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
+        surface.LENGTH, "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
     )
     sleeper_width: float = key(
-        LENGTH,
+        surface.LENGTH,
         "0.25 m",
         "width of a sleeper that radiates: of its top, with its sloping sides",
         "10 mm to 10 m: sleepers lie between",
     )
     wheel_width: float = key(
-        LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
+        surface.LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
     )
     track_pad: str | None = optional(
-        Choice(tuple(PAD_CLASSES)),
+        Choice(tuple(cnossos.PAD_CLASSES)),
         "medium",
         "rail pads of CNOSSOS-EU's transfer to the sound power of the track, on mono-block sleepers",
         "those nearest to track.pad_stiffness",
     )
     wheel_transfer: str | None = optional(
-        Choice(tuple(WHEEL_TRANSFER)),
+        Choice(tuple(cnossos.WHEEL_TRANSFER)),
         "920 mm",
         "wheel diameter of CNOSSOS-EU's transfer to the sound power of the wheel",
         "that nearest to twice the rolling radius",
@@ -234,21 +227,21 @@ class NoiseKeys(Section):
         "one for each contact",
     )
     axle_positions: tuple[float, ...] | None = optional(
-        ListOf(POSITION),
+        ListOf(surface.POSITION),
         ["0 m", "2.5 m", "19 m", "21.5 m"],
         "axles of the vehicle that passes, behind its first; each has two wheels",
         "the contacts that roll",
         "0 m to 1 km: trains are shorter",
     )
     wheelbase: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "2.5 m",
         "distance of the two axles of a bogie that passes, instead of axle_positions",
         "the contacts that roll",
         "0.1 m to 100 m: axles are as far apart",
     )
     vehicle_length: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "26.4 m",
         "length of the vehicle over its buffers, from which the pass-by time follows",
         "half a mean distance of the axles beyond the outer ones",
@@ -261,26 +254,26 @@ class NoiseKeys(Section):
         goes_with="vehicle_length",
     )
     vehicle: str | None = optional(
-        Choice(tuple(LIMITS)),
+        Choice(tuple(tsi_noise.LIMITS)),
         "emu",
         "type of vehicle, whose limit of TSI Noise the level is held to",
         "no limit",
         goes_with="vehicle_length",
     )
     receiver_distance: float = key(
-        LENGTH,
+        surface.LENGTH,
         "7.5 m",
         "distance of the receiver from the middle of the track",
         "1 m to 1 km: farther away air and weather decide",
     )
     receiver_height: float = key(
-        POSITION,
+        surface.POSITION,
         "1.2 m",
         "height of the receiver above the rail head",
         "1 mm to 100 m: sound comes over ground",
     )
     ground: str | None = optional(
-        Choice((HARD, *GROUNDS)),
+        Choice((grounds.HARD, *grounds.GROUNDS)),
         "grass",
         "ground beside the track, by its flow resistivity: direct and reflected sound interfere",
         "hard: the energy of both adds up, as it does in the mean",
@@ -293,46 +286,46 @@ class NoiseKeys(Section):
         "1 kPa s/m^2 to 1 GPa s/m^2: snow is no softer, and rock no harder",
     )
     ground_depth: float = key(
-        POSITION,
+        surface.POSITION,
         "0.5 m",
         "depth of that ground below the rail head",
         "1 mm to 20 m: embankments lie between",
         goes_with="ground or flow_resistivity",
     )
     directivity: str = key(
-        Choice(DIRECTIVITIES),
-        EVEN,
+        Choice(cnossos.DIRECTIVITIES),
+        cnossos.EVEN,
         "how rail, sleepers and wheel radiate: evenly, or by CNOSSOS-EU with the same power",
     )
     rail_distance: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "1.5 m",
         "distance of both rails, each with half of the power",
         "both in the middle of the track",
         "0.1 m to 1.9 m: receivers stand beside the track",
     )
     rail_height: float = key(
-        POSITION,
+        surface.POSITION,
         "0 m",
         "height above the rail head at which rail and sleepers radiate; 0.5 m in CNOSSOS-EU",
         "1 mm to 10 m: vehicles are lower",
     )
     wheel_height: float | None = optional(
-        POSITION,
+        surface.POSITION,
         "0.5 m",
         "height above the rail head at which wheels radiate; 0.5 m in CNOSSOS-EU",
         "that of their middle, the rolling radius",
         "1 mm to 10 m: vehicles are lower",
     )
     measured_passage: Path | Array | None = optional(
-        TableFile(columns=(2,), read=read_passage),
+        tables.TableFile(columns=(2,), read=measured.read_passage),
         "passage.csv",
         "what was measured beside the track as this train passed, to compare: time (s), A-weighted sound "
         "pressure level with time weighting F (dB)",
         _NOTHING,
     )
     measured_bands: Path | Array | None = optional(
-        TableFile(columns=(2,), read=read_band_levels),
+        tables.TableFile(columns=(2,), read=measured.read_band_levels),
         "bands.csv",
         "measured sound pressure levels over the pass-by time: one-third octave (Hz), level (dB, or in a "
         "file dB(A))",
@@ -376,15 +369,15 @@ class NoiseKeys(Section):
         """The ground, in words."""
         if self.flow_resistivity is not None:
             return f"ground of {written(self.flow_resistivity, 'Pa s/m^2', 'kPa s/m^2')}"
-        return self.ground or HARD
+        return self.ground or grounds.HARD
 
     def sound_path(self, band: Array) -> SoundPath | None:
         """What stands between rails and receiver, in one-third octaves, Hz, where anything does."""
         from asperity.radiation.ground import PorousGround
         from asperity.radiation.sound_path import SoundPath
 
-        resistivity = self.flow_resistivity or GROUNDS.get(self.ground or HARD)
-        if resistivity is None and self.directivity == EVEN and self.rail_distance is None:
+        resistivity = self.flow_resistivity or grounds.GROUNDS.get(self.ground or grounds.HARD)
+        if resistivity is None and self.directivity == cnossos.EVEN and self.rail_distance is None:
             return None
         ground = None if resistivity is None else PorousGround(resistivity)
         apart = self.rail_distance or 0.0

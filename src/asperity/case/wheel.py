@@ -1,7 +1,5 @@
 """How a wheel rings: by the drawing of its section, its modes or its receptance; or it is rigid."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -12,14 +10,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.form import Section
-from asperity.case.tables import (
-    MODES,
-    TableFile,
-    read_mode_table,
-    read_outline,
-    read_receptance,
-)
+from asperity.case import form, tables
 from asperity.errors import InputError
 from asperity.parameters import Either, ListOf, Number, key, keys_of, optional
 from asperity.reference.materials import Material
@@ -48,14 +39,14 @@ _DIMENSIONS = {
 _OF_DRAWN = ("modal_damping", "added_damping", "added_damping_from")
 
 
-class Ringing(Section, parameters=_DIMENSIONS):
+class Ringing(form.Section, parameters=_DIMENSIONS):
     """Resonances of what touches, the same at each contact."""
 
     radius: float
     material: Material
 
     modes: Path | Array | None = optional(
-        TableFile(columns=(3, 6), read=read_mode_table),
+        tables.TableFile(columns=(3, 6), read=tables.read_mode_table),
         "modes.csv",
         "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
         "modal mass (kg); the sound of wheels needs three columns more: number of nodal diameters, by which "
@@ -64,14 +55,14 @@ class Ringing(Section, parameters=_DIMENSIONS):
         "those of the section",
     )
     receptance: Path | Array | None = optional(
-        TableFile(columns=(3,), read=read_receptance),
+        tables.TableFile(columns=(3,), read=tables.read_receptance),
         "receptance.csv",
         "table of the receptance of a mass, which is fitted by modes: frequency (Hz), real and imaginary "
         "part (m/N)",
         "modes, or rigid",
     )
     section: str | Path | Array = key(
-        Either((RIGID, *SECTIONS), TableFile(columns=(2,), read=read_outline)),
+        Either((RIGID, *SECTIONS), tables.TableFile(columns=(2,), read=tables.read_outline)),
         RIGID,
         "section of a wheel, whose modes are computed: drawn here from main dimensions, or an outline as a "
         "table, radius (mm) and axial place (mm) from the running circle, positive away from the flange",
@@ -115,7 +106,7 @@ class Ringing(Section, parameters=_DIMENSIONS):
         """Outline of the drawn section (n, 2): radius and axial place, m."""
         if isinstance(self.section, str):
             return WheelSection.named(self.section, **self.dimensions).outline(self.radius)
-        return read_outline(self.section)
+        return tables.read_outline(self.section)
 
     def default_of(self, name: str) -> Any:
         """Value of a key that is left out: a dimension of the named section."""
@@ -132,8 +123,8 @@ class Ringing(Section, parameters=_DIMENSIONS):
     def standing_modes(self, highest_frequency: float) -> WheelModes | None:
         """Modes of the wheel at rest, for spectra up to a frequency, Hz; None without nodal diameters."""
         if self.modes is not None:
-            table = read_mode_table(self.modes)
-            return WheelModes.from_table(table) if table.shape[1] > len(MODES) else None
+            table = tables.read_mode_table(self.modes)
+            return WheelModes.from_table(table) if table.shape[1] > len(tables.MODES) else None
         if not self.is_drawn:
             return None
         found = _computed(self.outline.tobytes(), self.material, min(BEYOND * highest_frequency, HIGHEST))
@@ -154,7 +145,7 @@ class Ringing(Section, parameters=_DIMENSIONS):
         if (turning := self.turning_modes(highest_frequency, speed)) is not None:
             table = turning.table(place)
         else:
-            table = np.zeros((0, 3)) if self.modes is None else read_mode_table(self.modes)
+            table = np.zeros((0, 3)) if self.modes is None else tables.read_mode_table(self.modes)
         frequency, ratio, mass = table[:, :3].T
         return frequency, ratio, mass
 

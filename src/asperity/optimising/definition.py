@@ -11,10 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array
-from asperity.case.cases import as_case, case_of, read_with_case
-from asperity.case.describing import commented
-from asperity.case.form import Section
-from asperity.case.scene import LAW, Case
+from asperity.case import cases, describing, form, scene
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
 from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
@@ -26,7 +23,7 @@ from asperity.spectra import HALF_BAND, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile
 
-C = TypeVar("C", bound=Case)
+C = TypeVar("C", bound=scene.Case)
 ROWS = 2**17
 """Most rows of a path whose levels are taken."""
 HOLLOW = 80.0
@@ -67,7 +64,7 @@ class Bands:
         return self.wavelength[self.changed]
 
 
-def bands_of(case: Case, longest: float | None, shortest: float | None) -> Bands:
+def bands_of(case: scene.Case, longest: float | None, shortest: float | None) -> Bands:
     """Take the bands of a case's texture: of its spectrum, else of its path.
 
     Those between two wavelengths, m, may be changed; by default those that are heard, from 20 Hz to the
@@ -97,7 +94,7 @@ def bands_of(case: Case, longest: float | None, shortest: float | None) -> Bands
     return Bands(wavelength, levels, changed, lateral)
 
 
-def _measured(case: Case) -> tuple[Array, Array]:
+def _measured(case: scene.Case) -> tuple[Array, Array]:
     """Levels of the path, mean over its lines, at the wavelengths that it holds, the longest first."""
     textures, spacing = prepare_case(case).textures, case.contact.spacing
     line = Profile(textures.line - textures.line.mean(), spacing)
@@ -133,7 +130,7 @@ _LEVELS = "-200 dB to 120 dB: 1e-10 um to 1 m in one band"
 _PRICE = Number(at_least=0)
 
 
-class Aim(Section):
+class Aim(form.Section):
     """What the texture of a case shall be."""
 
     quantity: str = key(
@@ -148,8 +145,8 @@ class Aim(Section):
         "the quantity is made as small as the bounds allow",
         "-400 dB to 400 dB: levels lie between",
     )
-    law: str = key(LAW, "areal", "law of the contact force that is rolled while searching")
-    verify: str = key(LAW, "table", "law with which the texture is rolled before and after")
+    law: str = key(scene.LAW, "areal", "law of the contact force that is rolled while searching")
+    verify: str = key(scene.LAW, "table", "law with which the texture is rolled before and after")
     longest: float | None = optional(
         LENGTH, "10 mm", "longest wavelength that is changed", "the longest that is heard", _TEXTURES
     )
@@ -244,24 +241,24 @@ def _for_each(name: str, values: tuple[float, ...] | None, otherwise: Array) -> 
 class Assignment:
     """A case and what its texture shall be."""
 
-    case: Case
+    case: scene.Case
     aim: Aim
 
 
 def load_assignment(path: str | os.PathLike[str]) -> Assignment:
     """Read a assignment from a TOML file: ``case``, a path or a section, and the keys of `Aim`."""
     remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
-    keys, base, origin = read_with_case(path, "optimisation", remedy)
-    return Assignment(case_of(base, origin), Aim.read(keys, Origin.file(path)))
+    keys, base, origin = cases.read_with_case(path, "optimisation", remedy)
+    return Assignment(cases.case_of(base, origin), Aim.read(keys, Origin.file(path)))
 
 
 def assignment_of(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Case, keys: Mapping[str, Any]
+    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case, keys: Mapping[str, Any]
 ) -> Assignment:
     """Make a assignment of a case in any of its forms and the keys of `Aim`."""
-    return Assignment(as_case(case), Aim(**keys))
+    return Assignment(cases.as_case(case), Aim(**keys))
 
 
 def assignment_template() -> str:
     """A commented assignment."""
-    return _HEAD + commented(Aim, {"rms_at_least": '"0.5 um"'})
+    return _HEAD + describing.commented(Aim, {"rms_at_least": '"0.5 um"'})

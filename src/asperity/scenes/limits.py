@@ -7,9 +7,7 @@ import xarray
 
 from asperity.arguments import Array
 from asperity.radiation.pass_by import Receiver
-from asperity.reference import tsi_noise
-from asperity.reference.cnossos import rail_roughness
-from asperity.reference.tracks import iso_3095_decay_rate
+from asperity.reference import cnossos, tracks, tsi_noise
 from asperity.scenes import schema
 from asperity.schema import Values, spectra
 from asperity.spectra import nominal_frequency
@@ -69,7 +67,7 @@ def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
         return []
     levels = over_frequency[schema.ROUGHNESS_LEVEL.name]
     of_rail = levels.sel(part="rail" if "rail" in levels["part"] else "combined").values
-    wavelength, limit = rail_roughness("iso3095")
+    wavelength, limit = cnossos.rail_roughness("iso3095")
     wavelength, limit = wavelength[likely_band(wavelength)], limit[likely_band(wavelength)]
     apart = np.abs(np.log10(levels["surface_band"].values[:, None] / wavelength))
     known = apart.min(axis=0) < 0.03
@@ -84,7 +82,7 @@ def _of_decay(over_frequency: xarray.Dataset) -> Condition:
     if schema.MEASURED_DECAY_RATE.name in over_frequency:
         measured = over_frequency[schema.MEASURED_DECAY_RATE.name].values
         rate = np.where(np.isfinite(measured), measured, rate)
-    limit = iso_3095_decay_rate(band)
+    limit = tracks.iso_3095_decay_rate(band)
     known = np.isfinite(limit) & np.isfinite(rate)
     names = [nominal_frequency(float(f)) for f in band[known]]
     asked = f"at least the limit in {known.sum()} bands"

@@ -17,10 +17,7 @@ from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
 from asperity.reference import cnossos, grounds, tsi_noise
 from asperity.scenarios.scene import force_transfer
-from asperity.scenes import schema
-from asperity.scenes.compute import Computed
-from asperity.scenes.limits import held_to_limits
-from asperity.scenes.measured import measured_track
+from asperity.scenes import compute, limits, measured, schema
 from asperity.scenes.measured_passage import measured_passage
 from asperity.schema import Entry, Values, spectra
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
@@ -144,7 +141,7 @@ def _numbers(centres: ArrayLike) -> NDArray[np.int64]:
     return np.rint(10.0 * np.log10(centres)).astype(np.int64)
 
 
-def noise(computed: Computed) -> Values:
+def noise(computed: compute.Computed) -> Values:
     """Sound power of each law: that of the linear contact, changed in each band by as much as the force.
 
     Several contacts count by the energy mean of their changes, all with the roughness of the first. The
@@ -174,7 +171,7 @@ def noise(computed: Computed) -> Values:
     }
 
 
-def _linear(computed: Computed, contact_filter: Table | None) -> tuple[Array, Array]:
+def _linear(computed: compute.Computed, contact_filter: Table | None) -> tuple[Array, Array]:
     """Sound power of CNOSSOS-EU in the bands for which there are roughness and force."""
     case, textures, band = computed.case, computed.textures, computed.band
     parts = textures.parts or {"rail": textures.line, "wheel": np.zeros(len(textures.line))}
@@ -256,7 +253,7 @@ def warn_of_silence(case: Any) -> None:
         warnings.warn(MissingSourceWarning(message, Grade.NOTE), stacklevel=2)
 
 
-def radiation(computed: Computed) -> Values:
+def radiation(computed: compute.Computed) -> Values:
     """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels.
 
     That of what was rolled on one rail counts for all axles, each with two wheels, on two rails. The total
@@ -286,7 +283,7 @@ def radiation(computed: Computed) -> Values:
 
     beside: Values = {}
     longer: ArrayLike = 1.0
-    if (found := measured_track(computed)) is not None:
+    if (found := measured.measured_track(computed)) is not None:
         beside = laid_out(power, schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWER_LEVEL_A)
         own, louder, longer = found
         beside |= own
@@ -329,7 +326,7 @@ def mode_by_mode(case: Any, power: Array, band: Array) -> Values:
     }
 
 
-def _radiated(computed: Computed) -> tuple[Array, Array]:
+def _radiated(computed: compute.Computed) -> tuple[Array, Array]:
     """Sound power (laws, 3, f), W/Hz, of rail, sleepers and wheels, of what was rolled on one rail.
 
     And that of the wheel's rigid motion and each of its modes (laws, modes, f), none where they are unknown.
@@ -421,7 +418,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
         laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = np.stack([each.transit_exposure for each in levels])
         laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
-        laid_out |= held_to_limits(case, over_frequency, laid_out[schema.PASS_BY_EQUIVALENT_LEVEL])
+        laid_out |= limits.held_to_limits(case, over_frequency, laid_out[schema.PASS_BY_EQUIVALENT_LEVEL])
     main = laid_out[schema.PASS_BY_LEVEL][0, -1]
     return laid_out | measured_passage(case.noise, time[kept], main, passage.passed, band)
 

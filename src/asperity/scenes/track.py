@@ -16,9 +16,7 @@ from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
 from asperity.reference.tracks import iso_3095_decay_rate
 from asperity.scenarios.scene import AtContact, Scene, linear_force_psd
-from asperity.scenes import noise, schema
-from asperity.scenes.compute import Computed
-from asperity.scenes.validity import signed_level
+from asperity.scenes import compute, noise, schema, validity
 from asperity.schema import Entry, Values
 from asperity.spectra import (
     LEAST_PRODUCT,
@@ -27,17 +25,14 @@ from asperity.spectra import (
     nominal_frequency,
     third_octave_bands,
 )
+from asperity.structures import rail_poles, stiffness_table, track_parameters, track_power
 from asperity.structures.causal_track import causal_track
-from asperity.structures.rail_poles import RailPoles
-from asperity.structures.stiffness_table import StiffnessTable
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
-from asperity.structures.track_parameters import LAYERS
-from asperity.structures.track_power import dissipated_power
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
 
-def track_spectra(computed: Computed) -> Values:
+def track_spectra(computed: compute.Computed) -> Values:
     """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track."""
     shown, case = computed.shown, computed.case
     reference, texture = linear_reference(computed)
@@ -73,7 +68,7 @@ MOST_PLACES = 120
 """In a cell of bays that differ."""
 
 
-def linear_reference(computed: Computed) -> tuple[Array, Array]:
+def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
     """One-sided PSDs (f,) of the force of the linear contact, N²/Hz, and of the texture passed, m²/Hz.
 
     In the frequency domain, of several contacts their mean; the track is the nominal one, with constant loss
@@ -134,7 +129,7 @@ def coupled_force_psd(
     return np.asarray(density / at.size)
 
 
-def _roughness(computed: Computed) -> Values:
+def _roughness(computed: compute.Computed) -> Values:
     """Band levels of rail and wheel over wavelength, without flat and joint."""
     textures, spacing = computed.textures, computed.case.contact.spacing
     lines = {**textures.parts, "combined": textures.line}
@@ -150,7 +145,7 @@ def _roughness(computed: Computed) -> Values:
     }
 
 
-def tones(computed: Computed) -> Values:
+def tones(computed: compute.Computed) -> Values:
     """Frequencies that speed, track and wheel have of themselves; of spread supports that of the wheel."""
     case, pinned = computed.case, computed.track.pinned_pinned_frequency
     turns: Values = {schema.WHEEL_REVOLUTION_FREQUENCY: case.speed / (2.0 * math.pi * case.rolling.radius)}
@@ -179,7 +174,7 @@ KERNEL_LAG = 0.25
 """Longest lag of the moving kernel that is kept in a result, s."""
 
 
-def track_group(computed: Computed, losses: LossFactorError) -> Values:
+def track_group(computed: compute.Computed, losses: LossFactorError) -> Values:
     """Lay out what the wheel rolls on: receptances, decay rates, moving kernel, loss factors and numbers.
 
     None of it depends on what has rolled.
@@ -214,7 +209,7 @@ def track_group(computed: Computed, losses: LossFactorError) -> Values:
         **power_shares(track, frequency),
         **_bays(track, frequency),
     }
-    if isinstance(rail.direct, RailPoles):
+    if isinstance(rail.direct, rail_poles.RailPoles):
         laid_out |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.direct.fit_error}
         laid_out |= {schema.KERNEL_POLES: rail.direct.count}
     return laid_out
@@ -231,7 +226,7 @@ def power_shares(track: Track, frequency: Array) -> Values:
 
     Of bays that differ, the nominal one.
     """
-    parts = dissipated_power(track.regular, frequency, 0.5 * track.sleeper_spacing)
+    parts = track_power.dissipated_power(track.regular, frequency, 0.5 * track.sleeper_spacing)
     powers = np.array(list(parts.values()))
     return {schema.POWER_PART: list(parts), schema.POWER_SHARE: powers / powers.sum(axis=0)}
 
@@ -262,7 +257,7 @@ DOUBTFUL = 0.75
 """Error of a band, dB, from which on it is warned of."""
 LEAST_SHOWN = 0.05
 """Errors below this, dB, are not listed."""
-PARTS = ("rail", *LAYERS)
+PARTS = ("rail", *track_parameters.LAYERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,7 +297,7 @@ def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest:
     return LossFactorError(track, bands, force, rail)
 
 
-def error_of_losses(computed: Computed) -> LossFactorError:
+def error_of_losses(computed: compute.Computed) -> LossFactorError:
     """Error of the contact force in bands, for the contact stiffness at the load."""
     return loss_factor_error(
         computed.track, computed.scene.first, computed.stiffness, computed.case.numerics.highest_frequency
@@ -345,7 +340,7 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
     return [
         Finding(
             "error of the contact force for constant loss factors, at most",
-            f"{signed_level(level)} dB ({nominal_frequency(frequency)})",
+            f"{validity.signed_level(level)} dB ({nominal_frequency(frequency)})",
             f"up to {DOUBTFUL:g} dB",
             Grade.WARNING if off else None,
             f"{meaning}.",
@@ -378,7 +373,7 @@ def relaxed(error: LossFactorError) -> Values:
     }
 
 
-def table_of(table: StiffnessTable, bands: Array) -> tuple[Array, Array]:
+def table_of(table: stiffness_table.StiffnessTable, bands: Array) -> tuple[Array, Array]:
     """Stiffness over the nominal one and loss factor of a table (b,) in the middle of bands, Hz."""
     measured = table.at(2.0 * np.pi * bands)
     return measured.real, measured.imag / measured.real
@@ -393,7 +388,7 @@ def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str,
     if nominal.is_causal or track.relaxations is None:
         return
     off = [
-        f"{nominal_frequency(band)} {signed_level(level)}"
+        f"{nominal_frequency(band)} {validity.signed_level(level)}"
         for band, level in zip(error.bands, error.force, strict=True)
         if abs(level) >= LEAST_SHOWN
     ]

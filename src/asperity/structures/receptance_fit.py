@@ -1,7 +1,5 @@
 """Fitted modes that can be rolled over: smooth shapes, and an even stiffness of modes above the band."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import replace

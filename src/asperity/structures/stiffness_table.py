@@ -1,7 +1,5 @@
 """The dynamic stiffness of a pad as it was measured: over frequency, at one preload or several."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -11,11 +11,9 @@ from numpy.typing import ArrayLike
 from asperity.arguments import Array, Complex, finite_array, shown
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
-from asperity.structures.bays import Bays, Share
+from asperity.structures import bays, periodic_rail, stiffness_table, track_parameters
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
-from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
 from asperity.structures.rail import Rail
-from asperity.structures.stiffness_table import StiffnessTable
 from asperity.structures.support import (
     BendingSleeper,
     Chain,
@@ -26,9 +24,8 @@ from asperity.structures.support import (
     Spring,
     TunedDamper,
 )
-from asperity.structures.track_parameters import LAYERS, TrackParameters
 
-_LOSSES = [(f"{layer}_damping", f"{layer}_loss_factor") for layer in LAYERS]
+_LOSSES = [(f"{layer}_damping", f"{layer}_loss_factor") for layer in track_parameters.LAYERS]
 _INSTEAD = [*_LOSSES, *((b, a) for a, b in _LOSSES), *(("pad_table", each) for each in _LOSSES[0])]
 """Pairs of parameters of which the first, where it is given, replaces the second."""
 _SCALED = ("stiffness", "damping")
@@ -37,7 +34,7 @@ VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in t
 
 
 @dataclass(frozen=True)
-class Track(TrackParameters):
+class Track(track_parameters.TrackParameters):
     """Rail of infinite length on supports, Euler-Bernoulli or Timoshenko.
 
     Each support is a chain: a pad on a half sleeper, rigid or bending, on a pad of its own if there is one,
@@ -164,7 +161,7 @@ class Track(TrackParameters):
     @property
     def springs(self) -> dict[str, Spring]:
         """Springs between rail and ground by their names of `LAYERS`, those that give way at all."""
-        found = {layer: getattr(self, f"{layer}_stiffness") for layer in LAYERS}
+        found = {layer: getattr(self, f"{layer}_stiffness") for layer in track_parameters.LAYERS}
         return {
             layer: Spring(stiffness, self._losses(layer), getattr(self, f"{layer}_damping") or 0.0)
             for layer, stiffness in found.items()
@@ -205,7 +202,8 @@ class Track(TrackParameters):
         return {
             part: losses
             for part, losses in parts.items()
-            if isinstance(losses, StiffnessTable) or (isinstance(losses, ConstantLoss) and losses.factor)
+            if isinstance(losses, stiffness_table.StiffnessTable)
+            or (isinstance(losses, ConstantLoss) and losses.factor)
         }
 
     @property
@@ -241,9 +239,9 @@ class Track(TrackParameters):
     @property
     def bay_tracks(self) -> list[Track]:
         """Tracks of equal bays, one for each bay of the cell, on such supports as it begins with."""
-        return [self.regular._scaled(each) for each in (self.bays or Bays.equal()).shares]
+        return [self.regular._scaled(each) for each in (self.bays or bays.Bays.equal()).shares]
 
-    def _scaled(self, share: Share) -> Track:
+    def _scaled(self, share: bays.Share) -> Track:
         """With pads and ballast scaled, their damping with them."""
         scaled = {f"{part}_{what}": factor for part, factor in share._asdict().items() for what in _SCALED}
         given = {key: factor * getattr(self, key) for key, factor in scaled.items() if getattr(self, key)}
@@ -287,7 +285,7 @@ class Track(TrackParameters):
         damped = any(spring.damping for spring in self.springs.values())
         return bool(damped or self.relaxations or self.lossy or self.damper)
 
-    def waves(self, omega: ArrayLike) -> PeriodicWaves | CellWaves:
+    def waves(self, omega: ArrayLike) -> periodic_rail.PeriodicWaves | CellWaves:
         """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `Chain`.
 
         Without any damping the outgoing wave is that of a damping which vanishes. An `InputError` says if the
@@ -301,9 +299,9 @@ class Track(TrackParameters):
             foundation = self.support.stiffness(omega) / spacing
             if damper is not None:
                 foundation = foundation + damper.stiffness(omega) / spacing
-            return periodic_waves(*rail.waves(omega, foundation), np.zeros_like(omega), spacing)
+            return periodic_rail.periodic_waves(*rail.waves(omega, foundation), np.zeros_like(omega), spacing)
         if not self.has_cells:
-            return periodic_waves(*rail.waves(omega), self.support.stiffness(omega), spacing)
+            return periodic_rail.periodic_waves(*rail.waves(omega), self.support.stiffness(omega), spacing)
         points, lengths = np.array([each.support.stiffness(omega) for each in self.bay_tracks]), self._lengths
         if damper is not None:
             hung = np.broadcast_to(damper.stiffness(omega), points.shape)
@@ -368,7 +366,7 @@ class Track(TrackParameters):
         if self.continuous:
             return force * self.rail.deflection_on(self.foundation_stiffness)
         if not self.bays:
-            return force * static_receptance(*rail, self.support.static, spacing, x % spacing)
+            return force * periodic_rail.static_receptance(*rail, self.support.static, spacing, x % spacing)
         supports = np.array([each.support.static for each in self.bay_tracks])
         return force * static_receptance_of_cell(*rail, supports, self._lengths, x)
 

@@ -1,7 +1,5 @@
 """What a track is made of: its parameters, each declared once, and what must fit together."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

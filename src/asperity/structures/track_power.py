@@ -1,7 +1,5 @@
 """Where the power goes that a harmonic force feeds into a track: into rail, pads, ballast, rail dampers."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise

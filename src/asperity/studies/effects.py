@@ -1,7 +1,5 @@
 """What each variant of a case does to a level: its difference to the case as it is, and how sure that is."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Collection, Mapping
@@ -14,10 +12,7 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.arguments import one_of, shown
-from asperity.case.cases import as_case
-from asperity.case.rolled_over import TrackKeys
-from asperity.case.scene import Case
-from asperity.case.toml import read_toml
+from asperity.case import cases, rolled_over, scene, toml
 from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.scenes import schema
@@ -37,7 +32,7 @@ def ready_list() -> str:
 
 
 def what_helps(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Mapping[str, Any] | None = None
+    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case, sweep: Mapping[str, Any] | None = None
 ) -> Study:
     """Make the study that answers what makes a case over a track quieter.
 
@@ -66,10 +61,10 @@ def what_helps(
     >>> sorted(plan.sweep), plan.sweep["variant"]["a fifth slower"]
     (['seed', 'variant'], {'speed': 'times 0.8'})
     """
-    given = as_case(case)
-    if not isinstance(given.rolled_over, TrackKeys):
+    given = cases.as_case(case)
+    if not isinstance(given.rolled_over, rolled_over.TrackKeys):
         raise InputError("what helps", f"a {given.kind} case", "a case over a track, which is heard")
-    listed = read_toml(ready_list(), "study", "what_helps.toml")["sweep"][VARIANT]
+    listed = toml.read_toml(ready_list(), "study", "what_helps.toml")["sweep"][VARIANT]
     own = {"wheel": given.ROLLING}  # of bodies, the section is called otherwise
     variants = {name: {own.get(key, key): keys[key] for key in keys} for name, keys in listed.items()}
     seeds = [given.seed + more for more in range(SEEDS)]
@@ -77,7 +72,7 @@ def what_helps(
     return study_of(given.with_(laws=given.laws[:1]), asked)
 
 
-def with_effects(case: Case, result: DataTree, progress: Progress | None = None) -> DataTree:
+def with_effects(case: scene.Case, result: DataTree, progress: Progress | None = None) -> DataTree:
     """Compute what helps a case, and add it to the result of its run."""
     from asperity.studies.running import study
 

@@ -7,11 +7,8 @@ import numpy as np
 import xarray
 from xarray import DataTree
 
-from asperity.reporting import chart, data, panels
+from asperity.reporting import chart, data, figure, headline, panels, tables
 from asperity.reporting.chart import INK, Axis, Boxes, Chart, Mark, Numbers, Panel
-from asperity.reporting.figure import Figure, Lines, Series
-from asperity.reporting.headline import Answers
-from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.noise import LOOKS, WHOLE
 
@@ -118,23 +115,23 @@ def effects_caption(of: Effects) -> str:
     return f"{of.what}, by {of.law}: with each change, less that of the case as it is. {sure}"
 
 
-def effects_table(of: Effects) -> ReportTable:
+def effects_table(of: Effects) -> tables.ReportTable:
     """What each variant does, the quietest first, in numbers and in words."""
-    columns = {"change": text_cells(["as it is", *of.variants], "name")}
+    columns = {"change": tables.text_cells(["as it is", *of.variants], "name")}
     for p, part in enumerate(of.parts):
         cells = [_cell(*pair) for pair in zip(of.effect[:, p], of.error[:, p], strict=True)]
-        columns[part or "level"] = [Cell(f"{of.level[p]:.1f}", "number"), *cells]
+        columns[part or "level"] = [tables.Cell(f"{of.level[p]:.1f}", "number"), *cells]
     first = f"Loudest: {of.loudest()}." if of.loudest() else ""
-    columns["in words"] = text_cells([first, *of.in_words.values()])
+    columns["in words"] = tables.text_cells([first, *of.in_words.values()])
     note = f"As it is: {of.units}; below, differences in dB. In grey and in brackets: not surely any change."
-    return table("effects", "What each change does, the quietest first", columns, note)
+    return tables.table("effects", "What each change does, the quietest first", columns, note)
 
 
-def _cell(effect: float, error: float) -> Cell:
+def _cell(effect: float, error: float) -> tables.Cell:
     if not np.isfinite(effect):
-        return Cell("–", "number")
+        return tables.Cell("–", "number")
     text = data.signed(effect) + (f" ± {error:.1f}" if np.isfinite(error) else "")
-    return Cell(f"({text})", "number faint") if abs(effect) <= error else Cell(text, "number")
+    return tables.Cell(f"({text})", "number faint") if abs(effect) <= error else tables.Cell(text, "number")
 
 
 # --- in the report of a run
@@ -144,29 +141,29 @@ def _of_run(tree: DataTree) -> Effects:
     return Effects.of(tree[schema.EFFECT.group].to_dataset())
 
 
-def _columns(tree: DataTree) -> Iterator[Series]:
+def _columns(tree: DataTree) -> Iterator[figure.Series]:
     """One row: a column for each variant and part."""
     of = _of_run(tree)
     for name, effect in zip(of.variants, of.effect, strict=True):
         for part, value in zip(of.parts, effect, strict=True):
-            yield Series(f"{name}: {part}", "dB", np.array([value]), schema.EFFECT)
+            yield figure.Series(f"{name}: {part}", "dB", np.array([value]), schema.EFFECT)
 
 
-def what_helps_table(tree: DataTree) -> ReportTable | None:
+def what_helps_table(tree: DataTree) -> tables.ReportTable | None:
     """What each change does, if it was asked."""
     return effects_table(_of_run(tree)) if data.present(tree, schema.EFFECT_LEVEL) else None
 
 
-def what_helps_answers(tree: DataTree) -> Answers | None:
+def what_helps_answers(tree: DataTree) -> headline.Answers | None:
     """What helps most, if it was asked."""
-    return Answers(more=_of_run(tree).best) if data.present(tree, schema.EFFECT) else None
+    return headline.Answers(more=_of_run(tree).best) if data.present(tree, schema.EFFECT) else None
 
 
-def _draw(tree: DataTree, lines: Lines) -> Chart:
+def _draw(tree: DataTree, lines: figure.Lines) -> Chart:
     return effects_chart(_of_run(tree))
 
 
-WHAT_HELPS = Figure(
+WHAT_HELPS = figure.Figure(
     "what_helps",
     "What helps?",
     None,

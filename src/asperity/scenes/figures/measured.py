@@ -6,17 +6,8 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import chart, data, panels
+from asperity.reporting import chart, data, figure, panels, tables
 from asperity.reporting.chart import Line, Panel
-from asperity.reporting.figure import Columns, Figure, Lines, Of, Series
-from asperity.reporting.tables import (
-    ReportTable,
-    band_cells,
-    change_cells,
-    number_cells,
-    table,
-    text_cells,
-)
 from asperity.scenes import schema
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND
@@ -32,13 +23,13 @@ def over_bands(
     look: tuple[Any, ...] = _LOOK,
     label: str = MEASURED,
     frequency: Entry = schema.TRACK_FREQUENCY,
-) -> Columns:
+) -> figure.Columns:
     """Column of what holds for one-third octaves, at the frequencies of a figure of the track.
 
     As one of the figure's own `of`: a mobility as a receptance.
     """
 
-    def columns(tree: DataTree) -> Iterator[Series]:
+    def columns(tree: DataTree) -> Iterator[figure.Series]:
         if not data.present(tree, entry):
             return
         at, band = data.values(tree, frequency), data.values(tree, BAND)
@@ -48,7 +39,7 @@ def over_bands(
         if entry.units == "(m/s)/N":
             found = found / (2.0 * np.pi * at)
         if np.isfinite(found).any():
-            yield Series(entry.name, of.units, found, of, label, look=look)
+            yield figure.Series(entry.name, of.units, found, of, label, look=look)
 
     return columns
 
@@ -64,29 +55,29 @@ _COLUMNS = {
 }
 
 
-def measured_table(tree: DataTree) -> ReportTable | None:
+def measured_table(tree: DataTree) -> tables.ReportTable | None:
     """Decay rate and mobility in one-third octaves, measured and computed, and what that does to the rail."""
     if not data.present(tree, schema.MEASURED_POWER_CHANGE):
         return None
     shown = np.isfinite(data.values(tree, schema.MEASURED_POWER_CHANGE))
     doubtful = np.zeros(shown.sum(), dtype=bool)
-    columns = {"band": band_cells(data.values(tree, BAND)[shown], doubtful)}
+    columns = {"band": tables.band_cells(data.values(tree, BAND)[shown], doubtful)}
     for head, entry in _COLUMNS.items():
         if data.present(tree, entry):
             found = data.values(tree, entry)[shown]
             if entry.units == "dB":
-                columns[head] = change_cells(found, doubtful)
+                columns[head] = tables.change_cells(found, doubtful)
             elif entry.units == "dB/m":
-                columns[head] = number_cells(found, "{:.2g}")
+                columns[head] = tables.number_cells(found, "{:.2g}")
             else:
-                columns[head] = number_cells(20.0 * np.log10(found), data.signed)
+                columns[head] = tables.number_cells(20.0 * np.log10(found), data.signed)
     note = (
         "Computed: what a hammer at mid-span finds on the computed track, by EN 15461. The sound power of "
         "rail and sleepers goes as |F Y|²/Δ and changes as the last column says, with the force as that of a "
         "linear contact changes: on a softer rail it is smaller. Bands that were not measured stay as "
         "computed, and so does the contact force of this run in all its figures."
     )
-    return table("measured_track", "Track: measured against computed", columns, note)
+    return tables.table("measured_track", "Track: measured against computed", columns, note)
 
 
 # --- beside the track
@@ -102,16 +93,16 @@ def moved_words(tree: DataTree) -> str:
     )
 
 
-def _over_pass_by(tree: DataTree) -> Iterator[Series]:
+def _over_pass_by(tree: DataTree) -> Iterator[figure.Series]:
     """Levels of the main law over the pass-by time, A-weighted, by what radiates; then those measured."""
     band, level = data.values(tree, schema.PASS_BY_BAND), schema.SOUND_EXPOSURE_LEVEL
     front, rear = (float(data.stated(tree, end)) for end in (schema.FRONT_TIME, schema.REAR_TIME))
     weighting, found = a_weighting(band), data.variable_of(tree, level)
     for number in data.with_numbers(found, "radiator"):
         name, values = str(found["radiator"].values[number]), found[0, number].values
-        yield Series(name, _SOUND, values - 10.0 * np.log10(rear - front) + weighting, level, name)
+        yield figure.Series(name, _SOUND, values - 10.0 * np.log10(rear - front) + weighting, level, name)
     own = schema.MEASURED_BAND_LEVEL
-    yield Series("measured", _SOUND, data.values(tree, own) + weighting, own, "measured")
+    yield figure.Series("measured", _SOUND, data.values(tree, own) + weighting, own, "measured")
 
 
 _SOUND = "dB(A) re 20 uPa"
@@ -124,17 +115,17 @@ _LOOKS: dict[str, tuple[Any, ...]] = {
 }
 
 
-def _bands(tree: DataTree, lines: Lines) -> list[Panel]:
+def _bands(tree: DataTree, lines: figure.Lines) -> list[Panel]:
     drawn = [Line(lines.at, s.values, s.label, *_LOOKS.get(s.label, ())) for s in lines.lines]
     told = [line.y for line in drawn if line.label in ("total", "measured")]
     axis = panels.levels_axis("sound pressure level / dB(A) re 20 µPa", told, span=50.0)
     return [Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)]
 
 
-PASS_BY_BANDS = Figure(
+PASS_BY_BANDS = figure.Figure(
     "pass_by_bands",
     "Pass-by in one-third octaves, computed and measured",
-    Of(schema.PASS_BY_BAND, "band centre"),
+    figure.Of(schema.PASS_BY_BAND, "band centre"),
     (_over_pass_by,),
     _bands,
     "A-weighted equivalent levels over the pass-by time. Computed: the energy of the whole passage, by the "
@@ -159,16 +150,18 @@ def compared_numbers(tree: DataTree) -> dict[str, tuple[float, float]]:
     return found
 
 
-def passage_table(tree: DataTree) -> ReportTable | None:
+def passage_table(tree: DataTree) -> tables.ReportTable | None:
     """Single numbers of a passage, measured and computed, and what lies between them."""
     if not (found := compared_numbers(tree)):
         return None
     measured, computed = np.array(list(found.values())).T
     columns = {
-        "": text_cells(found),
-        "measured / dB(A)": number_cells(measured, "{:.1f}"),
-        "computed / dB(A)": number_cells(computed, "{:.1f}"),
-        "computed over measured / dB": change_cells(computed - measured, np.zeros(len(found), dtype=bool)),
+        "": tables.text_cells(found),
+        "measured / dB(A)": tables.number_cells(measured, "{:.1f}"),
+        "computed / dB(A)": tables.number_cells(computed, "{:.1f}"),
+        "computed over measured / dB": tables.change_cells(
+            computed - measured, np.zeros(len(found), dtype=bool)
+        ),
     }
     note = f"Re 20 µPa. Computed by {data.laws(tree, schema.PASS_BY_MAXIMUM_LEVEL)[0]}, all that is known."
     ratio = data.number(tree, schema.MEASURED_DURATION_RATIO)
@@ -176,4 +169,4 @@ def passage_table(tree: DataTree) -> ReportTable | None:
         note += (
             f" The measured passage lasted {ratio:.2f} times the computed one, within 10 dB of the maximum."
         )
-    return table("measured_passage", "Pass-by: measured against computed", columns, note)
+    return tables.table("measured_passage", "Pass-by: measured against computed", columns, note)

@@ -12,9 +12,7 @@ from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
-from asperity.scenes.figures import track
-from asperity.scenes.figures.contacts import tone_rules, tones_words
-from asperity.scenes.figures.force import around_peak
+from asperity.scenes.figures import contacts, force, track
 from asperity.schema import rolling
 from asperity.schema.spectra import BAND, FREQUENCY
 from asperity.spectra import a_weighting, energy_sum
@@ -66,7 +64,7 @@ def _bodies_caption(tree: DataTree) -> str:
     main = data.laws(tree, schema.BODY_ACCELERATION_PSD)[0]
     return (
         f"Acceleration of the bodies by the main law, {main}; {panels.DRAWN}.{some}"
-        f"{tones_words(tree)}{panels.shaded_words(tree)}"
+        f"{contacts.tones_words(tree)}{panels.shaded_words(tree)}"
     )
 
 
@@ -75,7 +73,7 @@ BODIES = Figure(
     "Acceleration of the bodies",
     Of(FREQUENCY),
     (Of(schema.BODY_ACCELERATION_PSD, "{degree}"),),
-    panels.draw_spectrum(*_SPECTRUM, tone_rules, slice(-MOST_LINES, None)),
+    panels.draw_spectrum(*_SPECTRUM, contacts.tone_rules, slice(-MOST_LINES, None)),
     _bodies_caption,
 )
 
@@ -135,7 +133,7 @@ def _displacement_caption(tree: DataTree) -> str:
 
 
 def _piece(tree: DataTree) -> slice:
-    return around_peak(tree, PIECE) if data.present(tree, rolling.CONTACT_FORCE) else slice(None)
+    return force.around_peak(tree, PIECE) if data.present(tree, rolling.CONTACT_FORCE) else slice(None)
 
 
 DISPLACEMENT = Figure(
