@@ -147,24 +147,33 @@ class Track(track_parameters.TrackParameters):
         """All that its motion depends on, by name."""
         return {key: value for key, value in asdict(self).items() if key not in ("name", "sources")}
 
-    def _losses(self, part: str) -> Losses:
+    def _losses(self, part: str, factor: float | None) -> Losses:
         measured = self.pad_table if part == "pad" else None
         relaxed: Losses | None = getattr(self.relaxations, part, None)
-        return relaxed or measured or ConstantLoss(getattr(self, f"{part}_loss_factor"))
+        return relaxed or measured or ConstantLoss(factor)
 
     @property
     def rail(self) -> Rail:
         """The rail without supports."""
-        section, losses = (self.shear_stiffness, self.rotary_inertia), self._losses("rail")
+        section, losses = (
+            (self.shear_stiffness, self.rotary_inertia),
+            self._losses("rail", self.rail_loss_factor),
+        )
         return Rail(self.bending_stiffness, self.mass_per_length, losses, *section)
 
     @property
     def springs(self) -> dict[str, Spring]:
         """Springs between rail and ground by their names of `LAYERS`, those that give way at all."""
-        found = {layer: getattr(self, f"{layer}_stiffness") for layer in track_parameters.LAYERS}
+        own = self.under_sleeper_pad_stiffness, self.under_sleeper_pad_damping
+        layers = (
+            (self.pad_stiffness, self.pad_damping, self.pad_loss_factor),
+            (*own, self.under_sleeper_pad_loss_factor),
+            (self.ballast_stiffness, self.ballast_damping, self.ballast_loss_factor),
+            (self.subgrade_stiffness, self.subgrade_damping, self.subgrade_loss_factor),
+        )
         return {
-            layer: Spring(stiffness, self._losses(layer), getattr(self, f"{layer}_damping") or 0.0)
-            for layer, stiffness in found.items()
+            layer: Spring(stiffness, self._losses(layer, factor), damping or 0.0)
+            for layer, (stiffness, damping, factor) in zip(track_parameters.LAYERS, layers, strict=True)
             if stiffness is not None and stiffness < np.inf
         }
 
