@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import asperity
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.contact.batched import Device, gpu, processor
 from asperity.contact.scan import BLOCK, ScanJob, scan_forces
 from asperity.errors import InputError

@@ -35,7 +35,7 @@ def scanned(positions: int, approaches: int, workers: int, stored: bool) -> dict
     import hashlib
     import resource
 
-    from asperity.contact import HalfSpace, Hertz
+    from asperity import HalfSpace, Hertz
     from asperity.contact.scan import FORCE_ACCURACY, ScanJob, rtol_for, scan_forces
     from asperity.reduction.table import scan_into
     from asperity.store import Store

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from step_clock import Clock
 
-from asperity.contact import Hertz as HertzContact
+from asperity import Hertz as HertzContact
 from asperity.laws import HertzLaw, Law, Linear, Shifted, Table
 from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve

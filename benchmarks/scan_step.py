@@ -31,7 +31,7 @@ from pathlib import Path
 import numpy as np
 
 import asperity
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine

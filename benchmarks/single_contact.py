@@ -24,8 +24,8 @@ from unittest.mock import patch
 import numpy as np
 from solve_profile import bare
 
-from asperity import HalfSpace
-from asperity.contact import Hertz, halfspace
+from asperity import HalfSpace, Hertz
+from asperity.contact import halfspace
 from asperity.kernels.box import empty_box
 from asperity.kernels.influence import convolution
 from asperity.kernels.options import LOOP, compiled

@@ -26,7 +26,8 @@ import numpy as np
 from numba import njit
 from scan_step import MODULUS, problem
 
-from asperity.contact import HalfSpace, halfspace
+from asperity import HalfSpace
+from asperity.contact import halfspace
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels import projected_cg as cg
 from asperity.kernels import scanning

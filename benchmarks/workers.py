@@ -22,7 +22,7 @@ def serve(positions: int, approaches: int) -> None:
     """Scan with as many workers as each line of standard input says; write how long it took."""
     import time
 
-    from asperity.contact import HalfSpace, Hertz
+    from asperity import HalfSpace, Hertz
     from asperity.contact.scan import FORCE_ACCURACY, ScanJob, rtol_for, scan_forces
     from asperity.surfaces.strip import Rows
     from asperity.surfaces.synthesis import long_self_affine

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from asperity.contact import HalfSpace
+from asperity import HalfSpace
 from asperity.errors import InputError
 from asperity.threads import in_order, one_thread_in_linear_algebra, processors, refuse_to_go_on, thread_count
 

@@ -4,7 +4,7 @@ import json
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray
@@ -27,6 +27,8 @@ from asperity.schema import Entry, Values, contact, convergence, group, provenan
 from asperity.spectra import band_levels, nominal_frequency, psd
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
+
+Taken = TypeVar("Taken")
 
 FORMAT = 1
 """Raise it when kept levels no longer mean what they meant."""
@@ -99,21 +101,20 @@ def unchangeable(prepared: PreparedCase, states: np.ndarray) -> dict[str, str]:
         warnings.simplefilter("ignore", PhysicsWarning)
         for setting in settings_for(prepared, states):
             if setting.name != convergence.PATH_LENGTH:
-                found[setting.name] = _refusal(prepared, setting)
+                taken = _first_way(setting, lambda way: changed_case(prepared, way))
+                found[setting.name] = taken if isinstance(taken, str) else ""
     return found
 
 
-def _refusal(prepared: PreparedCase, setting: Setting) -> str:
-    """Why no way of changing a setting can be computed; empty where one can."""
-    reason = setting.limit
+def _first_way(setting: Setting, take: Callable[[Way], Taken]) -> tuple[Way, Taken] | str:
+    """The first way of changing a setting that can be computed, and what it gives; else why there is none."""
+    limit = setting.limit
     for way in setting.ways:
         try:
-            changed_case(prepared, way)
-        except InputError as error:
-            reason = reason or brief(error)
-            continue
-        return ""
-    return reason
+            return way, take(way)
+        except AsperityError as error:
+            limit = limit or brief(error)
+    return limit
 
 
 def _named(setting: Setting, progress: Progress) -> Progress:
@@ -132,15 +133,10 @@ def _compared(prepared: PreparedCase, result: DataTree, setting: Setting, progre
     if setting.name == convergence.PATH_LENGTH:
         whole, half = halves(result, prepared.case.time_step, prepared.case.numerics.highest_frequency)
         return Comparison(setting.name, setting.ways[0].words, "", _over(half, whole, base))
-    limit = setting.limit
-    for way in setting.ways:
-        try:
-            finer, coarser = _both(prepared, base, setting, way, progress)
-        except AsperityError as error:
-            limit = limit or brief(error)
-            continue
-        return Comparison(setting.name, way.words, "", _over(finer, coarser, base))
-    return Comparison(setting.name, "", limit, xarray.full_like(base, np.nan))
+    taken = _first_way(setting, lambda way: _both(prepared, base, setting, way, progress))
+    if isinstance(taken, str):
+        return Comparison(setting.name, "", taken, xarray.full_like(base, np.nan))
+    return Comparison(setting.name, taken[0].words, "", _over(*taken[1], base))
 
 
 def _both(
@@ -295,7 +291,8 @@ def _sentences(group: xarray.Dataset, main: str) -> Iterator[str]:
         yield _told_of_others(first, others, size)
         stiffness = dict(zip(names, group[convergence.STIFFNESS_CHANGE.name].values.tolist(), strict=True))
         most = max(tried, key=lambda name: abs(stiffness[name]))
-        yield f"The mean contact stiffness depends most on {most} ({_percent(stiffness[most])})."
+        share = f"{100 * stiffness[most]:+.2f} %".replace("-", "−")
+        yield f"The mean contact stiffness depends most on {most} ({share})."
     if convergence.PATH_LENGTH in known:
         yield f"The first half of the record is up to {size[convergence.PATH_LENGTH]:.1f} dB from all of it."
     if unchanged := [name for name in names if limits[name]]:
@@ -312,10 +309,6 @@ def _told_of_others(first: str, others: Sequence[str], size: dict[str, float]) -
     if others:
         return f"The others change them by up to {size[others[0]]:.2f} dB."
     return ""
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:+.2f} %".replace("-", "−")
 
 
 def brief(error: AsperityError) -> str:

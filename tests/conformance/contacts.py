@@ -11,7 +11,7 @@ import numpy as np
 from ledger import Check
 from make_peers import ball_on_cells, gaps_of
 
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.contact.hertz import in_groove
 
 DATA = Path(__file__).parent / "data"

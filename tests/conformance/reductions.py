@@ -9,7 +9,7 @@ import numpy as np
 from ledger import Check
 from scipy.integrate import cumulative_trapezoid
 
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.laws import HertzLaw, Linear, Printed, Shifted
 from asperity.laws.layout import force
 from asperity.reduction.filter import punch_taps, response

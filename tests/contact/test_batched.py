@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from asperity import HalfSpace, Hertz
 from asperity.cli import main
-from asperity.contact import HalfSpace, Hertz
 from asperity.contact.batched import choose_device, find_device, gpu, processor
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import ComputationError, InputError

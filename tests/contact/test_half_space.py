@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from asperity.contact import HalfSpace, Hertz, halfspace
+from asperity import HalfSpace, Hertz
+from asperity.contact import halfspace
 from asperity.errors import Outcome, UnconvergedWarning
 
 MODULUS = 1e11

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.contact.hertz import FORCE_LOST, check_half_space, groove_gap, in_groove, relative_radius
 from asperity.errors import HalfSpaceWarning, InputError
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.contact import HalfSpace
+from asperity import HalfSpace
 from asperity.contact.in_place import ContactInPlace
 
 MODULUS, DX, N, RADIUS, RTOL = 115e9, 5e-6, 41, 10e-3, 1e-7

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from asperity import HalfSpace, HeightMap, Profile
-from asperity.contact import Hertz
+from asperity import HalfSpace, HeightMap, Hertz, Profile
 from asperity.contact.hertz import in_groove
 from asperity.errors import InputError
 

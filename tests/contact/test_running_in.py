@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from asperity.contact import HalfSpace
+from asperity import HalfSpace
 from asperity.contact.running_in import RunningIn, run_in
 from asperity.errors import TruncatedContactWarning, UnconvergedWarning
 from asperity.store import Store

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError, TruncatedContactWarning
 from asperity.laws import Areal, Direct, Printed, Shifted, Table

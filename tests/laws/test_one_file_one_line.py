@@ -77,7 +77,7 @@ print("all follows")
 def test_a_law_is_one_file_and_one_line(tmp_path):
     package = shutil.copytree(Path(asperity.__file__).parent, tmp_path / "src" / "asperity")
     (package / "laws" / "cubic.py").write_text(FILE, encoding="utf-8")
-    registry = package / "laws" / "registry.py"
+    registry = package / "laws" / "__init__.py"
     lines = registry.read_text(encoding="utf-8").splitlines()
     lines.insert(lines.index('    "direct",') + 1, '    "cubic",')
     registry.write_text("\n".join(lines) + "\n", encoding="utf-8")

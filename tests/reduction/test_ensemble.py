@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.contact.scan import FORCE_ACCURACY, ScanJob, first_touch, rtol_for, scan_forces
 from asperity.errors import InputError
 from asperity.reduction import stiffness

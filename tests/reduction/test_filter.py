@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from asperity.contact import HalfSpace, Hertz
+from asperity import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError
 from asperity.reduction import filter

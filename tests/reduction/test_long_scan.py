@@ -12,7 +12,7 @@ from itertools import count
 import numpy as np
 import pytest
 
-from asperity.contact import HalfSpace
+from asperity import HalfSpace
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import ComputationError
 from asperity.reduction.table import ForceTable, scan_into

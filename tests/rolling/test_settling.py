@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.contact import HalfSpace
+from asperity import HalfSpace
 from asperity.laws import Direct
 from asperity.reference.materials import material
 from asperity.rolling import stepper as stepping

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity import Bodies, Profile
-from asperity.contact import Hertz
+from asperity import Bodies, Hertz, Profile
 from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
 from asperity.scenarios.geometry import geometry_of
 from small_cases import changed

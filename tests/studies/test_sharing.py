@@ -11,8 +11,8 @@ from executors import ROUGH, Here
 from scipy.ndimage import gaussian_filter
 
 import asperity
+from asperity import HalfSpace
 from asperity.case.cases import as_case
-from asperity.contact import HalfSpace
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.running import prepare_case, run
 from asperity.store import Store

@@ -213,13 +213,9 @@ def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
     """Numbers of each law's force, in SI: mean, rms about it, largest, and losses of contact."""
     group = tree["rolling"].to_dataset().isel({rolling.CONTACT.name: 0}, missing_dims="ignore")
     force = group[rolling.CONTACT_FORCE.name]
-    lost = (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS)
-    numbers = {
-        "mean_force": force.mean("time"),
-        "rms_force": force.std("time"),
-        "peak_force": force.max("time"),
-        **{entry.name: group[entry.name] for entry in lost if entry.name in group},
-    }
+    reduced = zip(rolling.FORCES, (force.mean, force.std, force.max), strict=True)
+    numbers = {name: of("time") for name, of in reduced}
+    numbers |= {entry.name: group[entry.name] for entry in rolling.LOSSES if entry.name in group}
     return [
         {"law": law} | {name: float(values.sel(law=law)) for name, values in numbers.items()}
         for law in group["law"].values.tolist()

@@ -20,6 +20,7 @@ from asperity.parameters import Origin
 from asperity.reporting.figure import write_chart
 from asperity.reporting.texture_figures import lines_chart, surface_chart
 from asperity.spectra import nominal
+from asperity.surfaces import statistics
 from asperity.surfaces.cleaning import FILLED_SHARE_WARNED, nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.homogeneity import TILES, homogeneity
@@ -28,13 +29,6 @@ from asperity.surfaces.likeness import FLAT
 from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.spectra import psd_1d, psd_radial
-from asperity.surfaces.statistics import (
-    Statistic,
-    areal_statistics,
-    line_statistics,
-    material_ratio_curve,
-    profile_statistics,
-)
 from asperity.surfaces.steps import stepped
 from asperity.terminal import say
 from asperity.text_files import write_csv
@@ -148,9 +142,9 @@ def _show_first(
         title += f", the first of {len(surfaces)} maps"
     band, section = _filtered(first, steps)
     if isinstance(first, HeightMap):
-        items, spacing = areal_statistics(first, band), first.spacing
+        items, spacing = statistics.areal_statistics(first, band), first.spacing
     else:
-        items, spacing = profile_statistics(first, band, section), (first.spacing, first.spacing)
+        items, spacing = statistics.profile_statistics(first, band, section), (first.spacing, first.spacing)
     say(f"Levelled; wavelengths {_band(items[0])}:")
     for item in items:
         say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}")
@@ -172,7 +166,7 @@ def _show_lines(
     if steps.lines is None:
         say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
     levelled = [line.levelled() for line in lines]
-    items = line_statistics(levelled, *_filtered(levelled[0], steps))
+    items = statistics.line_statistics(levelled, *_filtered(levelled[0], steps))
     say(f"Each line levelled; wavelengths {_band(items[0][0])}; mean (lowest to highest of a line):")
     for item, *ends in items:
         spread = " to ".join(_scaled(replace(item, value=value)) for value in ends)
@@ -192,7 +186,7 @@ def _numbers(heights: Array, octaves: ThirdOctaves | None) -> dict[str, Any]:
     """The material ratio curve, shares of points and heights, m, that they reach; and one-third octaves."""
     names = ("wavelength", "limit", "measured", "processed")
     bands = octaves and {name: getattr(octaves, name)[octaves.limited] for name in names}
-    curve = dict(zip(("ratio", "height"), material_ratio_curve(heights), strict=True))
+    curve = dict(zip(("ratio", "height"), statistics.material_ratio_curve(heights), strict=True))
     return {"material_ratio": curve, "third_octaves": bands}
 
 
@@ -258,11 +252,11 @@ def _filtered(
     return (shortest, steps.longest or float(np.max(surface.size))), steps.longest
 
 
-def _band(item: Statistic) -> str:
+def _band(item: statistics.Statistic) -> str:
     return " to ".join(_lengths([float(f"{wavelength:.3g}")]) for wavelength in item.bandwidth)
 
 
-def _scaled(item: Statistic) -> str:
+def _scaled(item: statistics.Statistic) -> str:
     if not math.isfinite(item.value):
         return "–"
     if item.unit == "rad":

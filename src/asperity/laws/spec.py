@@ -266,9 +266,8 @@ class Materials:
     load: float  # working load, N
     hertz_constant: float  # K of F = K s^1.5 between the smooth bodies, N/m^1.5
     modulus: float  # contact modulus E*, Pa
-    working_point: tuple[
-        float, float
-    ]  # approach, m, and stiffness, N/m, of the linear contact under the load
+    # approach, m, and stiffness, N/m, of the linear contact under the load
+    working_point: tuple[float, float]
     start: float  # position of the first row of `heights`, m
     body: Array  # (nx, ny), smooth body on the contact grid, m, zero at its lowest point
     spacing: tuple[float, float]  # steps of the contact grid, (dx, dy), m

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, positive, require
-from asperity.contact import HalfSpace
+from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.kernels.piecewise import continued_to_touch, cubic_coefficients, monotone_slopes
 from asperity.progress import Progress

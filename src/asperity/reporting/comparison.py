@@ -23,22 +23,14 @@ NO_VALUE = "the run does not have it"
 DEVIATION = "level_deviation"
 MAIN = "main law"
 """Stands for the first law of each run where those differ."""
+_REDUCED: tuple[Callable[[Any], Any], ...] = (np.nanmean, np.nanstd, np.nanmax)
 OF_FORCE: Mapping[str, tuple[str, Entry, Callable[[Any], Any]]] = {
-    "mean_force": ("mean contact force", rolling.CONTACT_FORCE, np.nanmean),
-    "rms_force": ("rms of the contact force about its mean", rolling.CONTACT_FORCE, np.nanstd),
-    "peak_force": ("largest contact force", rolling.CONTACT_FORCE, np.nanmax),
-    **{
-        entry.name: (entry.long_name, entry, float)
-        for entry in (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS)
-    },
-}
+    name: (what, rolling.CONTACT_FORCE, reduce)
+    for (name, what), reduce in zip(rolling.FORCES.items(), _REDUCED, strict=True)
+} | {entry.name: (entry.long_name, entry, float) for entry in rolling.LOSSES}
 """Numbers of each law: what they are, what they are taken from, and how."""
-OF_CONTACT = (
-    contact.WORKING_LOAD,
-    contact.WORKING_APPROACH,
-    contact.WORKING_STIFFNESS,
-    contact.CONTACT_AREA_RATIO,
-)
+_WORKING = (contact.WORKING_LOAD, contact.WORKING_APPROACH, contact.WORKING_STIFFNESS)
+OF_CONTACT = (*_WORKING, contact.CONTACT_AREA_RATIO)
 """Attributes of the reduced contact that are compared."""
 Variables = dict[str, xarray.Variable]
 Curve = tuple[Numbers, Numbers]
@@ -225,12 +217,8 @@ def _weighted(name: str, level: Numbers, band: Numbers, units: str, meaning: str
     own, first = (a_weighted_total(np.where(shared, each, np.nan), band) for each in (level, level[:1]))
     what, total = f"A-weighted {meaning}", a_weighted_total(level, band)
     told = f"{what}, less that of the first run, over the bands of both"
-    return {
-        f"{name}_a": _variable(
-            ("law",), total, units.replace("dB", "dB(A)"), f"{what}, all bands of the run"
-        ),
-        f"{name}_a_difference": _variable(("law",), own - first, "dB", told),
-    }
+    weighted = _variable(("law",), total, units.replace("dB", "dB(A)"), f"{what}, all bands of the run")
+    return {f"{name}_a": weighted, f"{name}_a_difference": _variable(("law",), own - first, "dB", told)}
 
 
 # --- numbers by law and by run
@@ -244,15 +232,11 @@ def _of_laws(runs: Sequence[NamedRun], laws: Sequence[str]) -> Variables:
         found = [float(reduce(data.of_law(run.tree, entry, law))) for law in names]
         return DataArray(found, {"law": names}) if names else None
 
-    return {
-        name: _variable(
-            ("law",),
-            _by_law(runs, laws, [numbers(run, entry, reduce) for run in runs]),
-            entry.units,
-            meaning,
-        )
-        for name, (meaning, entry, reduce) in OF_FORCE.items()
-    }
+    found: Variables = {}
+    for name, (meaning, entry, reduce) in OF_FORCE.items():
+        by_law = _by_law(runs, laws, [numbers(run, entry, reduce) for run in runs])
+        found[name] = _variable(("law",), by_law, entry.units, meaning)
+    return found
 
 
 def _of_contacts(runs: Sequence[NamedRun]) -> Variables:
@@ -289,9 +273,8 @@ def _stiffness(runs: Sequence[NamedRun]) -> Variables:
     axis = variable("approach", approach, "m", contact.APPROACH.long_name)
     meaning, units = "contact stiffness F/r, mean of the samples", contact.STIFFNESS.units
     numbers = _between(approach, held)
-    return {"approach": axis} | _with_difference(
-        "stiffness", ("approach",), numbers, units, meaning, ratio=True
-    )
+    found = _with_difference("stiffness", ("approach",), numbers, units, meaning, ratio=True)
+    return {"approach": axis} | found
 
 
 def _filters(runs: Sequence[NamedRun]) -> Variables:

@@ -1,7 +1,5 @@
 """A figure of the report, declared: which numbers of a result, how they are drawn, what is said of them."""
 
-from __future__ import annotations
-
 import dataclasses
 import difflib
 import re
@@ -9,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from xarray import DataTree
@@ -19,12 +17,10 @@ from asperity.errors import InputError
 from asperity.files import atomic_write, write_bytes
 from asperity.reporting import data
 from asperity.reporting.chart import Chart, Numbers, Panel
+from asperity.reporting.headline import Answers
+from asperity.reporting.tables import ReportTable
 from asperity.schema import Entry
 from asperity.text_files import csv_text
-
-if TYPE_CHECKING:
-    from asperity.reporting.headline import Answers
-    from asperity.reporting.tables import ReportTable
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +32,9 @@ class Series:
     values: Numbers
     entry: Entry | None = None  # whose numbers these are
     label: str = ""  # what it is called where it is drawn
-    places: Mapping[str, Any] = dataclasses.field(
-        default_factory=dict
-    )  # along the dimensions that are told apart
-    look: tuple[
-        Any, ...
-    ] = ()  # of its line, where no law or sequence gives it: colour, dashes, width, marker
+    places: Mapping[str, Any] = dataclasses.field(default_factory=dict)  # along dimensions told apart
+    # of its line, where no law or sequence gives it: colour, dashes, width, marker
+    look: tuple[Any, ...] = ()
 
     @property
     def law(self) -> str:

@@ -161,8 +161,7 @@ def force_answers(tree: DataTree) -> Answers | None:
 def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
     if main not in data.laws(tree, rolling.CONTACT_LOSS_SHARE):
         return
-    entries = (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS)
-    share, count, longest = (float(data.of_law(tree, entry, main)) for entry in entries)
+    share, count, longest = (float(data.of_law(tree, entry, main)) for entry in rolling.LOSSES)
     value, told = data.in_percent(share), f"lost {'once' if count == 1 else f'{count:.0f} times'}, longest "
     told += data.engineering(longest, "s")
     if data.law_entry(tree, main).may_pull:

@@ -1,10 +1,8 @@
 """Figures of surfaces: maps, heights, paths, spectra; of results, and of what a surface file holds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from xarray import DataTree
@@ -15,10 +13,8 @@ from asperity.reporting.data import length_unit
 from asperity.reporting.figure import Figure, Lines, Of, Series, field
 from asperity.schema import contact, surface
 from asperity.spectra import nominal
+from asperity.surfaces.measured_lines import ThirdOctaves
 from asperity.surfaces.statistics import material_ratio_curve
-
-if TYPE_CHECKING:
-    from asperity.surfaces.measured_lines import ThirdOctaves
 
 SLENDER = 2.5
 """Times longer than wide: such a map gets the whole width."""

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 
 import numpy as np
 
-from asperity.contact import HalfSpace
+from asperity.contact.halfspace import HalfSpace
 from asperity.errors import PhysicsWarning
 from asperity.kernels import box, pointforce
 from asperity.kernels.options import is_kept

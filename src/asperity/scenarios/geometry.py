@@ -14,8 +14,8 @@ import scipy
 from asperity.arguments import Array, require
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
-from asperity.contact import HalfSpace, Hertz
-from asperity.contact.hertz import check_half_space, groove_gap
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning
 from asperity.scenarios.records import read_section

@@ -163,9 +163,8 @@ class LawChoice:
     """What the map says of a case."""
 
     place: Place
-    expected: tuple[
-        ExpectedError, ...
-    ]  # of the laws of the case, and of those that may be taken; the best first
+    # of the laws of the case, and of those that may be taken; the best first
+    expected: tuple[ExpectedError, ...]
     loss: float  # expected share of the time out of contact
     distance: float  # to the nearest point, in half decades
     nearest: MappedPoint

@@ -12,8 +12,9 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
-from asperity.contact import Contact, HalfSpace, scan
+from asperity.contact import scan
 from asperity.contact.batched import find_device
+from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import ContactFilterWarning, InputError
 from asperity.laws import LawSpec, Need, spec_of
 from asperity.progress import Progress

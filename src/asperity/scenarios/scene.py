@@ -22,14 +22,13 @@ POSITIONS = 4
 
 @dataclass(frozen=True)
 class BodyAtContact:
-    """What rolls, as one of its contacts feels it."""
+    """What rolls, as its first contact feels it."""
 
     body: Body
-    contact: int = 0
 
     def receptance(self, frequency: ArrayLike) -> Complex:
         """Displacement of the contact per harmonic force there (f,), m/N, e^{+iωt}; frequencies in Hz."""
-        return self.body.receptance(frequency)[:, self.contact, self.contact]
+        return self.body.receptance(frequency)[:, 0, 0]
 
 
 @dataclass(frozen=True)

@@ -20,4 +20,11 @@ CONTACT_LOSS_SHARE = _entry("contact_loss_share(law, contact)", "1", "share of t
 CONTACT_LOSS_EVENTS = _entry("contact_loss_events(law, contact)", "1", "losses of contact")
 LONGEST_LOSS = _entry("longest_loss(law, contact)", "s", "longest time without contact")
 
+LOSSES = (CONTACT_LOSS_SHARE, CONTACT_LOSS_EVENTS, LONGEST_LOSS)
+FORCES = {
+    "mean_force": "mean contact force",
+    "rms_force": "rms of the contact force about its mean",
+    "peak_force": "largest contact force",
+}
+"""Numbers that tables give of a contact force, N, and what they are."""
 SPEED = Attribute("rolling", "speed", "m/s", "speed of the contacts")

@@ -7,7 +7,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.scene import Case
-from asperity.contact import Contact, HalfSpace
+from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import CaseError, InputError
 from asperity.reduction.stiffness import patches
 from asperity.reduction.texture import punch_weights

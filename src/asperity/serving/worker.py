@@ -23,17 +23,10 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
+from asperity import errors
 from asperity.case.cases import case_of, demo_case, load_case
 from asperity.case.scene import Case
 from asperity.case.toml import read_toml
-from asperity.errors import (
-    TOO_MUCH_MEMORY,
-    AsperityError,
-    CaseError,
-    InputError,
-    MissingPointsWarning,
-    reason,
-)
 from asperity.files import alone_in
 from asperity.parameters import Origin
 from asperity.progress import Progress
@@ -117,9 +110,9 @@ def examined(path: str) -> Told:
     """Say what is in an uploaded file, or what a case has to say of it; an `InputError` if none reads it."""
     try:
         with spelled(in_case("surface", _HINTS)), warnings.catch_warnings():
-            warnings.simplefilter("ignore", MissingPointsWarning)  # said below
+            warnings.simplefilter("ignore", errors.MissingPointsWarning)  # said below
             first = read_surface(path, index=0)
-    except InputError as error:
+    except errors.InputError as error:
         if "in [surface]" not in error.remedy:
             raise
         return {"words": "", "needs": str(error).replace(path, Path(path).name)}
@@ -170,7 +163,7 @@ def answered(line: str) -> Told:
     module, _, function = _QUESTIONS[question.pop("question")].partition(".")
     try:
         found: Told = getattr(import_module(f"asperity.serving.{module}"), function)(**question)
-    except CaseError as error:
+    except errors.CaseError as error:
         return {"refused": error.errors}
     except Exception as error:
         memory = "This needs more memory than the page takes. Run the case with 'asperity run'."
@@ -180,9 +173,9 @@ def answered(line: str) -> Told:
 
 def _why(error: Exception, memory: str) -> str:
     """What went wrong: the input, too little memory, or the program, which must not end the page."""
-    if isinstance(error, AsperityError):
+    if isinstance(error, errors.AsperityError):
         return str(error)
-    return memory if isinstance(error, MemoryError) else f"The program failed with {reason(error)}."
+    return memory if isinstance(error, MemoryError) else f"The program failed with {errors.reason(error)}."
 
 
 # --- runs
@@ -207,7 +200,7 @@ def roll_run() -> None:
         _roll(Path(sys.argv[-1]), progress)
         _tell(told, {"state": "done"})
     except Exception as error:
-        _tell(told, {"state": "failed", "message": _why(error, TOO_MUCH_MEMORY)})
+        _tell(told, {"state": "failed", "message": _why(error, errors.TOO_MUCH_MEMORY)})
 
 
 def _roll(folder: Path, progress: Progress) -> None:
@@ -222,7 +215,7 @@ def _roll(folder: Path, progress: Progress) -> None:
         progress(0, 1, "preparing")
         tree = run(prepare_case(load_case(folder / stored_runs.CASE), "the case"), progress=progress)
         progress(0, 1, "writing")
-        with suppress(InputError):  # nothing to listen to
+        with suppress(errors.InputError):  # nothing to listen to
             listen(tree, folder / stored_runs.SOUNDS)
         save(tree, folder / stored_runs.RESULT)
 

@@ -28,9 +28,7 @@ KEPT = (
     spectra.START_SHARE,
     *spectra.FORCE_LEVEL_DIFFERENCES.values(),
     spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
-    rolling.CONTACT_LOSS_SHARE,
-    rolling.CONTACT_LOSS_EVENTS,
-    rolling.LONGEST_LOSS,
+    *rolling.LOSSES,
     contact.TRACK_RMS,
     contact.TRACK_STIFFNESS,
 )
@@ -39,11 +37,6 @@ OF_CONTACTS = spectra.CONTACT_FORCE_LEVEL
 """What is kept of every contact, where there are several; all else by contact is that of the first."""
 FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE)
 """Attributes of a result that are kept."""
-FORCES = {
-    "mean_force": "mean contact force",
-    "rms_force": "rms of the contact force about its mean",
-    "peak_force": "largest contact force",
-}
 LEVEL = "dB re"
 """Beginning of the units of levels."""
 PLACES = ("sensor", "point")
@@ -67,7 +60,7 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
     if every.sizes[rolling.CONTACT.name] > 1:
         found[OF_CONTACTS.name] = every
     force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name].isel(first, drop=True)
-    for (name, what), of in zip(FORCES.items(), (force.mean, force.std, force.max), strict=True):
+    for (name, what), of in zip(rolling.FORCES.items(), (force.mean, force.std, force.max), strict=True):
         found[name] = _described(of("time"), "N", what)
     lowering = contact.RUNNING_IN_LOWERING
     if lowering.name in tree[lowering.group]:
@@ -89,7 +82,7 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
 def names_kept() -> dict[str, str]:
     """Names that the table of a study may have, each with which results have it, if not all."""
     entries = (*KEPT, contact.RUNNING_IN_LOWERING, *scene.KEPT)
-    found = dict.fromkeys(FORCES, "") | {entry.name: entry.condition for entry in entries}
+    found = dict.fromkeys(rolling.FORCES, "") | {entry.name: entry.condition for entry in entries}
     found |= {fact.name: fact.condition for fact in FACTS} | {OF_CONTACTS.name: "of several contacts"}
     for entry in (*entries, OF_CONTACTS):
         if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"):

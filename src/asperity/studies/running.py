@@ -26,7 +26,7 @@ from asperity.arguments import require, shown, whole
 from asperity.case.scene import Case
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
-from asperity.laws.registry import comes_with_the_program
+from asperity.laws import comes_with_the_program
 from asperity.progress import shown_progress
 from asperity.studies.cluster import Heart
 from asperity.studies.definition import Member, Study, load_study, study_of

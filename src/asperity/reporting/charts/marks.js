@@ -200,10 +200,6 @@ function drawRules(view, mark) {
 function drawField(view, mark) {
   mark.picture ??= pictureOf(mark);
   const { ctx } = view, [left, right] = mark.x.map(view.x), [bottom, top] = mark.y.map(view.y);
-  if (mark.colours === "inferno_r") {  // it runs from light to black, on a dark page, too
-    ctx.fillStyle = "#f6f6f6";
-    ctx.fillRect(left, top, right - left, bottom - top);
-  }
   ctx.imageSmoothingEnabled = false;
   ctx.translate(left, top);
   ctx.scale((right - left) / mark.picture.width, (bottom - top) / mark.picture.height);
