@@ -1,7 +1,5 @@
 """A small real run of each kind of case, as small as the chain goes."""
 
-from __future__ import annotations
-
 from asperity.case.cases import as_case
 
 BALL = {

@@ -1,7 +1,5 @@
 """The examples are run, and hold what they assert, where the gallery is built; here, that they stay short."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

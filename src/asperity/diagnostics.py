@@ -1,7 +1,5 @@
 """What is read from the signal of a bearing: its envelope spectrum, lines in it, and velocities in bands."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Checks of beams, balls, wheels and springs that relax."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

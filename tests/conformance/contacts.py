@@ -1,7 +1,5 @@
 """Checks of the contact: Hertz, Love, the program CONTACT, peers, hardness, and traps."""
 
-from __future__ import annotations
-
 import json
 from functools import partial
 from pathlib import Path

@@ -5,8 +5,6 @@
 Expected values come from outside: closed forms evaluated by mpmath, printed values, other programs.
 """
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import math

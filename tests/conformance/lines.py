@@ -1,7 +1,5 @@
 """Checks of spectra, bands and weighting."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import mpmath as mp

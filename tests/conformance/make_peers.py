@@ -5,8 +5,6 @@
 Runs in an environment that holds the two programs, without this project.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from importlib.metadata import version

@@ -1,7 +1,5 @@
 """Checks of railway tables and of sound power."""
 
-from __future__ import annotations
-
 import json
 from functools import partial
 from pathlib import Path

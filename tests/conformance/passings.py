@@ -1,7 +1,5 @@
 """Checks of the level beside the track while axles pass."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import mpmath as mp

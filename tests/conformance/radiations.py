@@ -1,7 +1,5 @@
 """Checks of sound radiation from vibration."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import mpmath as mp

@@ -1,7 +1,5 @@
 """Checks of contact filters, laws and rolling."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import mpmath as mp

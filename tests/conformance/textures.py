@@ -1,7 +1,5 @@
 """Checks of roughness processing, statistics and files."""
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from functools import partial

@@ -1,7 +1,5 @@
 """Checks of several contacts at once."""
 
-from __future__ import annotations
-
 import mpmath as mp
 import numpy as np
 from ledger import Check

@@ -1,7 +1,5 @@
 """Checks of the track: closed forms, and a superposition of supports in full precision."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import mpmath as mp

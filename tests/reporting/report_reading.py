@@ -1,7 +1,5 @@
 """Reading a written report back, its page and its CSV files; results that lack something."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import hashlib

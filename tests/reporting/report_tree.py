@@ -1,7 +1,5 @@
 """A synthetic result with the shape and the size of a real run, made from closed forms and noise."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

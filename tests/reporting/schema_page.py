@@ -1,7 +1,5 @@
 """Writes docs/result_file.md from the schema: ``python tests/reporting/schema_page.py``."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from asperity.scenes import schema

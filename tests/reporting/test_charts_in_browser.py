@@ -1,7 +1,5 @@
 """Charts as the script draws them: on screens and paper, for eyes and ears, by mouse and keys."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

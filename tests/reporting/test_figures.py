@@ -1,7 +1,5 @@
 """Figures that all kinds share, as charts: what is drawn, how far axes reach, what is shaded and said."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Charts as a browser gets them: numbers within a hair, once, in little room, and harmless."""
 
-from __future__ import annotations
-
 import base64
 import json
 import zlib

@@ -1,7 +1,5 @@
 """The report of a real run of each kind: whole, by itself, its numbers exact, and what lacks left out."""
 
-from __future__ import annotations
-
 import json
 import re
 

@@ -1,7 +1,5 @@
 """The figures and tables that only a wheel on a rail has, on a real run."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

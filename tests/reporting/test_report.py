@@ -1,7 +1,5 @@
 """The report: everything on one page, nothing from elsewhere, hostile text harmless, numbers exact."""
 
-from __future__ import annotations
-
 import html
 import json
 import re

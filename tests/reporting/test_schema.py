@@ -1,7 +1,5 @@
 """The schema is what is written and what is drawn: no name more, no name less, on either side."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

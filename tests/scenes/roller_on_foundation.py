@@ -3,8 +3,6 @@
 The foundation is massless: w = F/k. The roller is what rolls in any scene, with other defaults.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What moves sideways, by frequency: the lateral force that the vertical one makes, and its sound."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property
