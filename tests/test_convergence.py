@@ -13,7 +13,7 @@ from asperity.case.cases import as_case
 from asperity.convergence import changed_case, halves, on_the_surface_of, settings_for
 from asperity.errors import InputError
 from asperity.reporting.page import page
-from asperity.reporting.uncertainty import changes_table, settings_table
+from asperity.reporting.tables import changes_table, settings_table
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted
 from asperity.scenes.report import CHAPTERS

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from asperity.contact.tangential import stick_stiffness
+from asperity.contact.hertz import stick_stiffness
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 

@@ -17,8 +17,7 @@ from asperity.reporting.chart import envelope, smooth_on_log_axis
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
 from asperity.reporting.headline import deciding_bands, force_answers, lights
 from asperity.reporting.page import literature
-from asperity.reporting.tables import practice_table, reference_table
-from asperity.reporting.uncertainty import uncertainty_table
+from asperity.reporting.tables import practice_table, reference_table, uncertainty_table
 from asperity.scenes.figures.motion import acceleration_answers
 from asperity.scenes.report import page_of, report
 from asperity.spectra import a_weighting, nominal_frequency

@@ -8,7 +8,7 @@ import pytest
 
 from asperity.case.bodies import Bodies
 from asperity.case.wheel_on_rail import WheelOnRail
-from asperity.contact.tangential import stick_stiffness
+from asperity.contact.hertz import stick_stiffness
 from asperity.radiation.sideways import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference.materials import MATERIALS

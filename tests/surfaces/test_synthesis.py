@@ -10,11 +10,11 @@ from scipy import fft, integrate, stats
 from asperity import spectra
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.homogeneity import homogeneity, more_than_chance
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.likeness import gaussian_correlation, height_table
 from asperity.surfaces.readers import read_surfaces
 from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, psd_2d
+from asperity.surfaces.statistics import homogeneity, more_than_chance
 from asperity.surfaces.synthesis import close, extend, from_map, long_self_affine, self_affine
 
 UM = 1e-6

@@ -23,7 +23,6 @@ from asperity.spectra import nominal
 from asperity.surfaces import statistics
 from asperity.surfaces.cleaning import FILLED_SHARE_WARNED, nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.homogeneity import TILES, homogeneity
 from asperity.surfaces.levelling import level
 from asperity.surfaces.likeness import FLAT
 from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
@@ -266,7 +265,7 @@ def _scaled(item: statistics.Statistic) -> str:
 
 def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
     """Print whether the texture of a map is the same everywhere; return its numbers, none of a line."""
-    if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(TILES):
+    if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(statistics.TILES):
         return None
     whole, what = nearly_complete(surface), "Homogeneity, Std and spectra are those of"
     if whole is None:
@@ -276,7 +275,7 @@ def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
     if np.ptp(level(whole).heights) <= FLAT:
         say("Homogeneity: a plane has no texture to be tested")
         return None
-    found = homogeneity(whole)
+    found = statistics.homogeneity(whole)
     tiles = " × ".join(map(str, found.tile_rms.shape))
     verdict = "the same everywhere, as far as chance tells"
     if not found.homogeneous:

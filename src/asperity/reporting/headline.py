@@ -8,8 +8,7 @@ from xarray import DataTree
 
 from asperity.reporting import data
 from asperity.reporting.chart import Numbers
-from asperity.reporting.tables import ReportTable
-from asperity.reporting.uncertainty import OFF, error_on_map, setting_names, setting_numbers
+from asperity.reporting.tables import OFF, ReportTable, error_on_map, setting_names, setting_numbers
 from asperity.schema import contact, convergence, provenance, rolling
 from asperity.spectra import nominal_frequency
 

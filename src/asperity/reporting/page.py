@@ -16,8 +16,7 @@ from asperity.printable import printable
 from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Chart, Line, Numbers, colour_variables
 from asperity.reporting.figure import Chapter, Figure, Lines
-from asperity.reporting.tables import ReportTable
-from asperity.reporting.uncertainty import setting_names
+from asperity.reporting.tables import ReportTable, setting_names
 from asperity.schema import provenance
 
 _UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"

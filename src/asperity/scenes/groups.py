@@ -17,14 +17,17 @@ from asperity.scenes.compute import Computed
 from asperity.schema import Values, contact, surface
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.homogeneity import SIGNIFICANCE, TILES, homogeneity, more_than_chance
 from asperity.surfaces.spectra import psd_1d
 from asperity.surfaces.statistics import (
     BINS,
+    SIGNIFICANCE,
+    TILES,
     Statistic,
     StripSurvey,
     areal_statistics,
+    homogeneity,
     line_statistics,
+    more_than_chance,
     profile_statistics,
     survey_strip,
 )

@@ -10,7 +10,7 @@ from xarray import DataTree
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
-from asperity.reporting import contact_figures, headline, tables, texture_figures, uncertainty
+from asperity.reporting import contact_figures, headline, tables, texture_figures
 from asperity.reporting.figure import Chapter, Figure, figure_format, write_columns, write_figures
 from asperity.reporting.page import drawable_figures, page
 from asperity.scenes.figures import (
@@ -84,7 +84,7 @@ CHAPTERS = (
         "uncertainty",
         "Uncertainty",
         (),
-        (uncertainty.uncertainty_table, uncertainty.settings_table, uncertainty.changes_table),
+        (tables.uncertainty_table, tables.settings_table, tables.changes_table),
     ),
 )
 """In the order of the page; what a result lacks is left out."""

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from asperity.arguments import Array, Complex
-from asperity.contact.tangential import stick_stiffness
+from asperity.contact.hertz import stick_stiffness
 from asperity.radiation.sideways import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
 from asperity.scenarios.scene import force_transfer
