@@ -1,5 +1,7 @@
 """Beams in bending by their modes: of one span, and on any supports."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
