@@ -11,9 +11,7 @@ from asperity.case.surface import read_recipe
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
 from asperity.scenarios.records import read_maps
-from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import GAUSSIAN_CONSTANT, band_limit, level
-from asperity.surfaces.steps import rotated, stepped
+from asperity.surfaces import heightmap, levelling, steps
 
 BEGUN = """height_unit = "um"
 pixel = "2 um"
@@ -51,16 +49,16 @@ def test_a_stored_recipe_gives_a_case_the_map_of_the_command_line(measured, tmp_
     said = CliRunner().invoke(main, arguments)
     assert said.exit_code == 0, said.output
     found = read_maps(parse_case(case('recipe = "recipe.toml"'), tmp_path / "case.toml").surface)[0]
-    surface = HeightMap(measured * 1e-6, (2e-6, 2e-6)).without_spikes().transposed().filled()
-    surface = level(surface.crop((10e-6, 20e-6), (180e-6, 160e-6)), 2)
-    expected = rotated(band_limit(surface, longest=1e-4, shortest=8e-6), np.radians(30.0))
+    surface = heightmap.HeightMap(measured * 1e-6, (2e-6, 2e-6)).without_spikes().transposed().filled()
+    surface = levelling.level(surface.crop((10e-6, 20e-6), (180e-6, 160e-6)), 2)
+    expected = steps.rotated(levelling.band_limit(surface, longest=1e-4, shortest=8e-6), np.radians(30.0))
     assert found.spacing == expected.spacing
     np.testing.assert_array_equal(found.heights, expected.heights)
     points = " × ".join(map(str, expected.shape))
     assert f"a map of {points} points" in said.output
     assert "wavelengths 8 µm to 0.1 mm" in said.output
     rms = float(re.search(r"Sq +([\d.]+) µm", said.output)[1])
-    assert rms == pytest.approx(1e6 * level(expected).heights.std(), rel=1e-3)
+    assert rms == pytest.approx(1e6 * levelling.level(expected).heights.std(), rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -87,13 +85,13 @@ def test_what_a_recipe_says_is_not_said_twice(measured, tmp_path):
 
 
 def test_pieces_are_given_by_as_many_lengths_as_they_need():
-    line, surface = Profile(np.arange(9.0), 1.0), HeightMap(np.eye(9), (1.0, 1.0))
-    assert stepped(line, crop=[2.0, 3.0]).heights.tolist() == [2.0, 3.0, 4.0]
-    assert stepped(surface, crop=[2.0, 3.0, 4.0, 2.0]).shape == (4, 2)
+    line, surface = heightmap.Profile(np.arange(9.0), 1.0), heightmap.HeightMap(np.eye(9), (1.0, 1.0))
+    assert steps.stepped(line, crop=[2.0, 3.0]).heights.tolist() == [2.0, 3.0, 4.0]
+    assert steps.stepped(surface, crop=[2.0, 3.0, 4.0, 2.0]).shape == (4, 2)
     with pytest.raises(InputError, match="crop: received 2 lengths; allowed: four of a map"):
-        stepped(surface, crop=[2.0, 3.0])
+        steps.stepped(surface, crop=[2.0, 3.0])
     with pytest.raises(InputError, match="crop: received 4 lengths; allowed: two of a line"):
-        stepped(line, crop=[2.0, 3.0, 4.0, 2.0])
+        steps.stepped(line, crop=[2.0, 3.0, 4.0, 2.0])
 
 
 @pytest.mark.parametrize("direction", [0.0, 0.5, np.pi / 2])
@@ -103,9 +101,9 @@ def test_the_areal_filters_halve_a_wave_of_their_nesting_index_in_every_directio
     across = x * np.cos(direction) + y * np.sin(direction)
     inner = (slice(70, -70), slice(70, -70))
     for wave in (30.0, 15.0, 60.0):
-        surface = HeightMap(np.cos(2 * np.pi * across / wave), (1.0, 1.0))
-        passed = np.exp(-np.pi * (GAUSSIAN_CONSTANT * 30.0 / wave) ** 2)
+        surface = heightmap.HeightMap(np.cos(2 * np.pi * across / wave), (1.0, 1.0))
+        passed = np.exp(-np.pi * (levelling.GAUSSIAN_CONSTANT * 30.0 / wave) ** 2)
         assert passed == pytest.approx(2.0 ** -((30.0 / wave) ** 2))
         for part, kept in (({"shortest": 30.0}, passed), ({"longest": 30.0}, 1.0 - passed)):
-            found = stepped(surface, **part).heights[inner]
+            found = steps.stepped(surface, **part).heights[inner]
             np.testing.assert_allclose(found, kept * surface.heights[inner], atol=2e-4)

@@ -96,11 +96,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("levels", LEVELS + "0.1, 3\n0.09, 1", "bands closer than one-third octaves between 100 mm and 90"),
         ("levels", LEVELS + "0.1, 3\n0.1, 1", "bands closer than one-third octaves"),
         ("levels", LEVELS + "0.1, 3\n0, 1", "a wavelength of 0 m"),
-        (
-            "levels",
-            LEVELS + "0.1, 3\n0.08",
-            "'0.08' in line 3; allowed: a table with the columns wave",
-        ),
+        ("levels", LEVELS + "0.1, 3\n0.08", "'0.08' in line 3; allowed: a table with the columns wave"),
         ("levels", LEVELS + "0.1, 3\n0.08, nan", "'0.08, nan' in line 3"),
         ("levels", LEVELS + "0.1, 3\n0.08, inf", "'0.08, inf' in line 3"),
         ("levels", "wavelength (kg), level (dB)\n0.1, 3", "'wavelength (kg)'; allowed: wavelength in m"),
@@ -123,11 +119,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("modes", SHAPES + "2000, 0.1, 300, 1.5, 4, 0.5", "nodal diameters of 1.5; allowed: a whole number"),
         ("modes", SHAPES + "2000, 0.1, 300, -1, 4, 0.5", "a number of nodal diameters of -1"),
         ("modes", SHAPES + "2000, 0.1, 300, 2, -4, 0.5", "an rms velocity of -4; allowed: zero or more, per"),
-        (
-            "modes",
-            SHAPES + "2000, 0.1, 300, 2, 4",
-            "or with these and nodal diameters (1), axial velo",
-        ),
+        ("modes", SHAPES + "2000, 0.1, 300, 2, 4", "or with these and nodal diameters (1), axial velo"),
         ("modes", SHAPES + "2000, 0.1, 300, 2, 4, 1\n2100, 0.1, 300", "'2100, 0.1, 300' in line 3"),
         ("ratios", RATIOS + "100, 0.1\n100, 0.2", "do not rise; allowed: rising frequencies, all above 0 Hz"),
         ("ratios", RATIOS + "0, 0.1\n100, 0.2", "frequencies that do not rise"),
@@ -135,11 +127,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("receptance", RECEPTANCE + "100, 1, 1\n" * 3, "3 frequencies; allowed: at least 10"),
         ("receptance", RECEPTANCE + "100, 1, 1\n" * 12, "frequencies that do not rise"),
         ("receptance", RECEPTANCE + "0, 1, 1\n" + TWELVE, "frequencies that do not rise; allowed: rising"),
-        (
-            "receptance",
-            "f (Hz), imaginary (m/N), real (m/N)\n" + TWELVE,
-            "'imaginary (m/N)' for the real",
-        ),
+        ("receptance", "f (Hz), imaginary (m/N), real (m/N)\n" + TWELVE, "'imaginary (m/N)' for the real"),
     ],
 )
 def test_tables_that_are_wrong(name, text, message, source):

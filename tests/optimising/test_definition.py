@@ -8,6 +8,7 @@ from asperity.case.toml import read_toml
 from asperity.errors import InputError
 from asperity.optimising.definition import Aim, assignment_template, bands_of, load_assignment, with_texture
 from asperity.parameters import FROM_PYTHON
+from refusals import refusals
 from small_cases import COARSE, WHEEL
 
 CASE = COARSE | {"start": "0.2 m", "duration": "0.2 s"}
@@ -24,26 +25,21 @@ def test_the_template_is_an_aim():
     assert Aim.read(data, FROM_PYTHON).rms_at_least == pytest.approx(0.5e-6)
 
 
-@pytest.mark.parametrize(
-    ("aim", "message"),
-    [
-        ({"rms_at_least": None}, "without, the smoothest is the quietest"),
-        ({"colour": "red"}, "unknown key"),
-        ({"rms_at_least": "2 um", "rms_at_most": "1 um"}, "at most rms_at_most"),
-        ({"longest": "1 mm", "shortest": "2 mm"}, "at least shortest"),
-        ({"limit": "100 dB", "price": [0.0]}, "a price that tells"),
-        ({"lateral": [2.0, 1.0]}, "two numbers, the least first"),
-        ({"quantity": "loudness"}, "quantity"),
-        ({"lowest": ["-40 dB", "-30 dB"]}, "one for each band"),
-        ({"lowest": ["-20 dB"], "highest": ["-30 dB"]}, "lowest below highest"),
-        ({"longest": "0.3 mm", "shortest": "0.29 mm"}, "Change longest or shortest"),
-        ({"case": SPECTRUM, "lateral": [0.5, 2.0]}, "a line, which has no lay"),
-        ({"case": ON_PLANE, "quantity": "rms acceleration"}, '"rms acceleration" of bodies'),
-    ],
+test_wrong_aims_are_refused_with_all_that_is_wrong = refusals(
+    ({"rms_at_least": None}, "without, the smoothest is the quietest"),
+    ({"colour": "red"}, "unknown key"),
+    ({"rms_at_least": "2 um", "rms_at_most": "1 um"}, "at most rms_at_most"),
+    ({"longest": "1 mm", "shortest": "2 mm"}, "at least shortest"),
+    ({"limit": "100 dB", "price": [0.0]}, "a price that tells"),
+    ({"lateral": [2.0, 1.0]}, "two numbers, the least first"),
+    ({"quantity": "loudness"}, "quantity"),
+    ({"lowest": ["-40 dB", "-30 dB"]}, "one for each band"),
+    ({"lowest": ["-20 dB"], "highest": ["-30 dB"]}, "lowest below highest"),
+    ({"longest": "0.3 mm", "shortest": "0.29 mm"}, "Change longest or shortest"),
+    ({"case": SPECTRUM, "lateral": [0.5, 2.0]}, "a line, which has no lay"),
+    ({"case": ON_PLANE, "quantity": "rms acceleration"}, '"rms acceleration" of bodies'),
+    of=lambda aim: asperity.optimise(**{"case": CASE, "rms_at_least": "1 um"} | aim),
 )
-def test_wrong_aims_are_refused_with_all_that_is_wrong(aim, message):
-    with pytest.raises(InputError, match=message):
-        asperity.optimise(**{"case": CASE, "rms_at_least": "1 um"} | aim)
 
 
 @pytest.mark.parametrize(

@@ -20,8 +20,7 @@ def fed(computed, own, *, magnitude=False):
     """The own test of a track, written out as tables and read back for another one."""
     mobility = own.mobility.ravel()
     return computed.measured(
-        (own.centre, own.decay_rate),
-        (own.frequency.ravel(), np.abs(mobility) if magnitude else mobility),
+        (own.centre, own.decay_rate), (own.frequency.ravel(), np.abs(mobility) if magnitude else mobility)
     )
 
 
@@ -97,10 +96,7 @@ def rail_power(track, own):
     return (bay * squared_mobility(track, lines.ravel(), force)).reshape(lines.shape).mean(axis=1)
 
 
-@pytest.mark.parametrize(
-    ("share", "worst", "rms"),
-    [(0.5, 1.0, 0.4), (2.0, 1.6, 0.7)],
-)
+@pytest.mark.parametrize(("share", "worst", "rms"), [(0.5, 1.0, 0.4), (2.0, 1.6, 0.7)])
 def test_a_track_is_predicted_from_its_hammer_test_on_another_one(share, worst, rms):
     """On other pads; far nearer than without."""
     real = Track.named("uic60", pad_stiffness=share * BASE.pad_stiffness)

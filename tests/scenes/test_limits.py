@@ -15,6 +15,7 @@ from asperity.scenes.figures.limits import limit_sentence, limits_table
 from asperity.scenes.figures.noise import pass_by_answers
 from asperity.scenes.noise import pass_by_group, sources_of
 from asperity.schema import group
+from refusals import refusals
 
 BAND = 1000.0 * 10.0 ** (np.arange(-7, 8) / 10.0)
 KMH = 1.0 / 3.6
@@ -151,16 +152,9 @@ def test_without_a_type_of_vehicle_nothing_is_said():
         assert len(sources_of(WheelOnRail(surface={"spectrum": "iso3095"}, noise=noise))) == count
 
 
-@pytest.mark.parametrize(
-    ("noise", "message"),
-    [
-        ({"vehicle": "emu"}, "only together with vehicle_length"),
-        (
-            {"vehicle": "tram", "vehicle_length": "30 m"},
-            'allowed: "electric-locomotive", "diesel-locomotive"',
-        ),
-    ],
+test_vehicles_that_cannot_be = refusals(
+    ({"vehicle": "emu"}, "only together with vehicle_length"),
+    ({"vehicle": "tram", "vehicle_length": "30 m"}, 'allowed: "electric-locomotive", "diesel-locomotive"'),
+    of=lambda noise: WheelOnRail(surface={"spectrum": "iso3095"}, noise=noise),
+    error=CaseError,
 )
-def test_vehicles_that_cannot_be(noise, message):
-    with pytest.raises(CaseError, match=message):
-        WheelOnRail(surface={"spectrum": "iso3095"}, noise=noise)

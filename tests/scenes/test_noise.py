@@ -5,13 +5,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity import WheelOnRail
-from asperity.errors import Grade, InputError, OutOfRangeWarning
+from asperity.errors import Grade, OutOfRangeWarning
 from asperity.reference import cnossos
 from asperity.running import prepare_case
 from asperity.scenes import noise
 from asperity.scenes.noise import rolling_sound_power
 from asperity.scenes.plan import planned_rows
 from asperity.spectra import a_weighted_total
+from refusals import refusals
 
 RAIL = cnossos.rail_roughness("iso3095")
 DISC = cnossos.wheel_roughness("disc")
@@ -69,16 +70,11 @@ def test_wheels_have_the_nearest_diameter(diameter, name):
     assert noise.wheel_label(case({"wheel_transfer": "680 mm"}, wheel=wheel)) == "680 mm"
 
 
-@pytest.mark.parametrize(
-    ("nearest", "message"),
-    [
-        (cnossos.nearest_pad_class, "stiffness of a rail pad"),
-        (cnossos.nearest_wheel_transfer, "wheel diameter"),
-    ],
+test_what_is_not_positive_has_no_class = refusals(
+    (cnossos.nearest_pad_class, "stiffness of a rail pad"),
+    (cnossos.nearest_wheel_transfer, "wheel diameter"),
+    of=lambda nearest: nearest(0.0),
 )
-def test_what_is_not_positive_has_no_class(nearest, message):
-    with pytest.raises(InputError, match=message):
-        nearest(0.0)
 
 
 NO_PADS = "It has no class for such pads; take the sound power from the vibration."

@@ -8,11 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
-from asperity.errors import (
-    ComputationError,
-    ExtrapolationWarning,
-    InputError,
-)
+from asperity.errors import ComputationError, ExtrapolationWarning, InputError
 from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
@@ -22,6 +18,7 @@ from asperity.rolling.roll import contact_losses
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
 from one_contact import roll_ball
+from refusals import refusals
 
 STEEL = material("steel")
 BALL = Ball(0.025, STEEL)
@@ -261,24 +258,19 @@ def test_a_record_after_a_run_in_is_the_end_of_a_longer_run():
 # --- bad input and doubtful physics -----------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"speed": 0.0}, r"speed \(m/s\)"),
-        ({"duration": np.nan}, r"duration \(s\)"),
-        ({"time_step": np.inf}, r"time step \(s\)"),
-        ({"settling": -0.1}, r"settling \(s\)"),
-        ({"duration": 1e-6}, "at least one time step"),
-        ({"duration": 0.8}, r"path of contact 1 .*received 0.3 to 1.1; allowed: 0 to 1, on the structure"),
-        ({"settling": 0.4}, "path .* -0.1 to"),
-        ({"start": -0.1}, "Choose start, duration, run-in"),
-        ({"sensors": [1.2]}, "positions on the beam"),
-        ({"duration": 0.1}, "longer texture"),
-    ],
+test_bad_paths_are_refused = refusals(
+    ({"speed": 0.0}, r"speed \(m/s\)"),
+    ({"duration": np.nan}, r"duration \(s\)"),
+    ({"time_step": np.inf}, r"time step \(s\)"),
+    ({"settling": -0.1}, r"settling \(s\)"),
+    ({"duration": 1e-6}, "at least one time step"),
+    ({"duration": 0.8}, r"path of contact 1 .*received 0.3 to 1.1; allowed: 0 to 1, on the structure"),
+    ({"settling": 0.4}, "path .* -0.1 to"),
+    ({"start": -0.1}, "Choose start, duration, run-in"),
+    ({"sensors": [1.2]}, "positions on the beam"),
+    ({"duration": 0.1}, "longer texture"),
+    of=lambda change: rolled(HertzLaw(K, rough_texture(1e-7)), **change),
 )
-def test_bad_paths_are_refused(change, message):
-    with pytest.raises(InputError, match=message):
-        rolled(HertzLaw(K, rough_texture(1e-7)), **change)
 
 
 def test_continuation_beyond_the_data_is_named():

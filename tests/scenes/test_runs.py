@@ -10,15 +10,8 @@ import asperity
 from asperity import Beam, HeightMap, ModalStructure, Profile, material
 from asperity.laws.layout import force
 from asperity.running import prepare_case
+from asperity.scenes import schema
 from asperity.scenes.compute import compute
-from asperity.scenes.schema import (
-    ACCELERATION_LEVEL,
-    LINEAR_REFERENCE_LEVEL,
-    PASS_BY_MAXIMUM_LEVEL,
-    POINT_VELOCITY_LEVEL,
-    RADIATED_POWER_LEVEL,
-    SOUND_POWER_LEVEL_A,
-)
 from asperity.schema.spectra import FORCE_LEVEL
 from asperity.surfaces.synthesis import from_bands
 from small_cases import changed
@@ -65,14 +58,14 @@ def on_track(body):
         (
             {"kind": "ball-on-beam", "ball": {"load": "30 N"}} | ON_BEAM,
             {"kind": "bodies", "body": {"load": "30 N"}} | ON_BEAM,
-            [FORCE_LEVEL, ACCELERATION_LEVEL],
+            [FORCE_LEVEL, schema.ACCELERATION_LEVEL],
         ),
         pytest.param(
             {"kind": "wheel-on-rail", "wheel": WHEEL | {"section": "rigid"}} | ON_TRACK,
             on_track(WHEEL),
             [
-                FORCE_LEVEL, RADIATED_POWER_LEVEL, PASS_BY_MAXIMUM_LEVEL, POINT_VELOCITY_LEVEL,
-                LINEAR_REFERENCE_LEVEL, SOUND_POWER_LEVEL_A,
+                FORCE_LEVEL, schema.RADIATED_POWER_LEVEL, schema.PASS_BY_MAXIMUM_LEVEL,
+                schema.POINT_VELOCITY_LEVEL, schema.LINEAR_REFERENCE_LEVEL, schema.SOUND_POWER_LEVEL_A,
             ],
             marks=pytest.mark.long,
         ),
@@ -117,7 +110,7 @@ def test_coupled_wheels_follow_the_coupled_reference(bogie, body):
     """Where waves between the wheels interfere, one wheel by itself is decibels off."""
     fine = bogie["spectra/band"].values > 150.0
     level = held(bogie, FORCE_LEVEL, law="linear")
-    off, alone = ((level - held(each, LINEAR_REFERENCE_LEVEL))[fine] for each in (bogie, body))
+    off, alone = ((level - held(each, schema.LINEAR_REFERENCE_LEVEL))[fine] for each in (bogie, body))
     strongest = np.argmax(np.abs(alone))  # 800 Hz
     assert abs(off[strongest]) < 0.3 < 2.0 < abs(alone[strongest])
     assert np.sqrt(np.mean(off**2)) < 0.7 < 1.0 < np.sqrt(np.mean(alone**2))
@@ -132,7 +125,7 @@ def test_two_wheels_radiate_what_their_forces_ask_for(bogie, body, law):
         both.mean(axis=0), 10.0 ** (held(bogie, FORCE_LEVEL, law=law) / 10.0), rtol=1e-9
     )
     at = {"law": law, "radiator": "sleepers"}
-    power = held(bogie, RADIATED_POWER_LEVEL, **at) - held(body, RADIATED_POWER_LEVEL, **at)
+    power = held(bogie, schema.RADIATED_POWER_LEVEL, **at) - held(body, schema.RADIATED_POWER_LEVEL, **at)
     change = 10.0 * np.log10(both.sum(axis=0)) - held(body, FORCE_LEVEL, law=law)
     missed = np.abs(power - change)[3:]  # where the spectrum within a band differs
     assert np.median(missed) < 0.2

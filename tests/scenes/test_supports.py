@@ -12,11 +12,7 @@ from asperity.scenes.report import figures_of
 from small_cases import WHEEL
 
 PAD = Path(__file__).parents[2] / "examples" / "pad_stiffness.csv"
-DAMPERS = {
-    "rail_damper_mass": "15 kg",
-    "rail_damper_frequency": "900 Hz",
-    "rail_damper_loss_factor": 0.35,
-}
+DAMPERS = {"rail_damper_mass": "15 kg", "rail_damper_frequency": "900 Hz", "rail_damper_loss_factor": 0.35}
 TRACKS = {
     "embedded": {"name": "embedded"},
     "blocks": {"name": "slab-blocks", "pad_table": str(PAD), **DAMPERS},

@@ -10,13 +10,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.structures.beam import Beam
-from asperity.structures.modal import ModalStructure
-from asperity.structures.modal_files import read_modal_structure
+from asperity.structures import beam, modal, modal_files
 
-BEAM = Beam(1.0, 100.0, 4.0, highest_frequency=400.0, loss_factor=0.02)
+BEAM = beam.Beam(1.0, 100.0, 4.0, highest_frequency=400.0, loss_factor=0.02)
 X = np.linspace(0.0, 1.0, 41)
-TABLE = ModalStructure(X, BEAM.natural_frequencies, BEAM.damping_ratios, BEAM.shapes(X)[0])
+TABLE = modal.ModalStructure(X, BEAM.natural_frequencies, BEAM.damping_ratios, BEAM.shapes(X)[0])
 MODES = len(TABLE.frequencies)
 F = np.array([5.0, 31.0, 200.0])
 RESIDUAL = 1e-6 * np.sin(np.pi * X) ** 2
@@ -46,17 +44,17 @@ def text_of(separator=", ", scale=1.0):
 )
 def test_a_text_table(tmp_path, text):
     (tmp_path / "beam.csv").write_text(text)
-    found = read_modal_structure(tmp_path / "beam.csv")
+    found = modal_files.read_modal_structure(tmp_path / "beam.csv")
     the_same(found, 1e-12)
     assert_allclose(found.residual_flexibility, RESIDUAL, rtol=1e-12)
     with pytest.raises(InputError, match=r"force: received 'z'; allowed: nothing: it is for universal"):
-        read_modal_structure(tmp_path / "beam.csv", force="z")
+        modal_files.read_modal_structure(tmp_path / "beam.csv", force="z")
 
 
 def test_the_table_of_the_documentation_is_one(tmp_path):
     page = (Path(__file__).parents[2] / "docs" / "bodies.md").read_text(encoding="utf-8")
     (tmp_path / "page.csv").write_text(page.partition("```text\n")[2].partition("```")[0])
-    found = read_modal_structure(tmp_path / "page.csv")
+    found = modal_files.read_modal_structure(tmp_path / "page.csv")
     assert found.frequencies.tolist() == [52.4, 209.8]
     assert found.extent == (0.0, 1.0)
     assert found.residual_flexibility[4] == pytest.approx(69e-9, rel=1e-6, abs=0.0)
@@ -83,7 +81,7 @@ def netcdf(path, *, without=(), **changed):
 
 @pytest.mark.parametrize("shapes", [{}, {"mode_shapes": (("mode", "position"), TABLE.mode_shapes.T, "")}])
 def test_netcdf(tmp_path, shapes):
-    found = read_modal_structure(netcdf(tmp_path / "beam.nc", **shapes))
+    found = modal_files.read_modal_structure(netcdf(tmp_path / "beam.nc", **shapes))
     assert_allclose(found.residual_flexibility, RESIDUAL)
     the_same(found, 1e-12)
 
@@ -120,7 +118,7 @@ def test_files_that_hold_no_modes(tmp_path, name, content, message):
     if content is not None:
         (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError, match=message):
-        read_modal_structure(tmp_path / name)
+        modal_files.read_modal_structure(tmp_path / name)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +138,7 @@ def test_files_that_hold_no_modes(tmp_path, name, content, message):
 )
 def test_netcdf_that_lacks_a_variable_or_has_another_unit(tmp_path, changed, message):
     with pytest.raises(InputError, match=message):
-        read_modal_structure(netcdf(tmp_path / "beam.nc", **changed))
+        modal_files.read_modal_structure(netcdf(tmp_path / "beam.nc", **changed))
 
 
 def test_files_that_claim_too_much(tmp_path, monkeypatch):
@@ -151,18 +149,18 @@ def test_files_that_claim_too_much(tmp_path, monkeypatch):
         for variable in ("positions", "mode_shapes"):
             file.create_variable(variable, ("position",), "f8", chunks=(100_000,))
     with pytest.raises(InputError, match=r"40000000 points in \d+ bytes"):
-        read_modal_structure(tmp_path / "bomb.nc")
+        modal_files.read_modal_structure(tmp_path / "bomb.nc")
     monkeypatch.setattr("asperity.structures.modal_files.LARGEST_FILE", 5)
     (tmp_path / "large.csv").write_text("frequency, 1")
     with pytest.raises(InputError, match=r"large.csv: received 12 bytes"):
-        read_modal_structure(tmp_path / "large.csv")
+        modal_files.read_modal_structure(tmp_path / "large.csv")
 
 
 @pytest.mark.skipif(importlib.util.find_spec("pyuff") is not None, reason="pyuff is installed")
 def test_without_pyuff_it_is_said_how_to_get_it(tmp_path):
     (tmp_path / "beam.uff").write_text("    -1\n")
     with pytest.raises(InputError, match=r'a universal file; allowed.*pip install "asperity\[uff\]"'):
-        read_modal_structure(tmp_path / "beam.uff", along="x", force="z")
+        modal_files.read_modal_structure(tmp_path / "beam.uff", along="x", force="z")
 
 
 # --- universal files, written by pyuff ------------------------------------------------------------
@@ -232,7 +230,7 @@ def universal(tmp_path):
 def test_modes_of_a_universal_file(universal, make, sets, options):
     """Numbers of a dataset 55 have six digits; 200 Hz are 2 % from a resonance."""
     file = universal(*sets, *map(make, range(MODES)))
-    the_same(read_modal_structure(file, **CHOSEN, **options), 2e-4)
+    the_same(modal_files.read_modal_structure(file, **CHOSEN, **options), 2e-4)
 
 
 @pytest.mark.parametrize(
@@ -252,7 +250,7 @@ def test_modes_of_a_universal_file(universal, make, sets, options):
 )
 def test_universal_files_that_do_not_say_enough(universal, sets, options, message):
     with pytest.raises(InputError, match=message):
-        read_modal_structure(universal(*sets), **(CHOSEN | options))
+        modal_files.read_modal_structure(universal(*sets), **(CHOSEN | options))
 
 
 def test_damaged_universal_files(universal):
@@ -263,4 +261,4 @@ def test_damaged_universal_files(universal):
         damaged[rng.integers(0, len(damaged))] = rng.integers(0, 256)
         file.write_bytes(bytes(damaged))
         with pytest.raises(InputError):
-            read_modal_structure(file, **CHOSEN)
+            modal_files.read_modal_structure(file, **CHOSEN)

@@ -12,6 +12,7 @@ from asperity.structures.bays import Bays
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import decay_rate, decay_rate_en15461
+from refusals import refusals
 
 EULER = Track.named("x2000")
 UIC60 = Track.named("uic60")
@@ -212,21 +213,15 @@ def test_draws_are_those_of_their_seed_alone() -> None:
         assert np.std(values) == pytest.approx(scatter, rel=0.25)
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (
-            lambda: Bays.drawn(20, spacing=0.9, seed=1),
-            "spacing of the bays: received -.*times the nominal one in bay",
-        ),
-        (lambda: Bays.drawn(50, ballast=0.6, seed=1), "ballast of the bays: .*Lower its scatter"),
-        (lambda: Bays.drawn(5, pad=-0.1), "scatter of the pad"),
-        (lambda: Bays.drawn(101), "bays of a cell"),
-        (lambda: Bays((1.0, 1.0), (1.0,), (1.0, 1.0)), "pad of the bays: received 1 values"),
-        (lambda: Bays((1.0, 1.2), (1.0, 1.0), (1.0, 1.0)), "mean spacing"),
-        (lambda: Bays((1.0,), (np.nan,), (1.0,)), "pad of the bays"),
-    ],
+test_bays_that_cannot_be_are_refused = refusals(
+    (
+        lambda: Bays.drawn(20, spacing=0.9, seed=1),
+        "spacing of the bays: received -.*times the nominal one in bay",
+    ),
+    (lambda: Bays.drawn(50, ballast=0.6, seed=1), "ballast of the bays: .*Lower its scatter"),
+    (lambda: Bays.drawn(5, pad=-0.1), "scatter of the pad"),
+    (lambda: Bays.drawn(101), "bays of a cell"),
+    (lambda: Bays((1.0, 1.0), (1.0,), (1.0, 1.0)), "pad of the bays: received 1 values"),
+    (lambda: Bays((1.0, 1.2), (1.0, 1.0), (1.0, 1.0)), "mean spacing"),
+    (lambda: Bays((1.0,), (np.nan,), (1.0,)), "pad of the bays"),
 )
-def test_bays_that_cannot_be_are_refused(make, message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        make()

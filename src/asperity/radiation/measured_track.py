@@ -56,9 +56,7 @@ class HammerTest:
         return cls(frequency, rate, mobility)
 
     def measured(
-        self,
-        decay_rates: tuple[Array, Array] | None,
-        mobility: tuple[Array, NDArray[np.inexact]] | None,
+        self, decay_rates: tuple[Array, Array] | None, mobility: tuple[Array, NDArray[np.inexact]] | None
     ) -> HammerTest:
         """What was measured, in the bands of this test of the computed track.
 

@@ -163,11 +163,7 @@ def divergence(length: float, distance: float, along: ArrayLike) -> Array:
 
 
 def squared_pressure(
-    source: AxleSource,
-    passage: Passage,
-    receiver: Receiver,
-    time: ArrayLike,
-    path: SoundPath | None = None,
+    source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike, path: SoundPath | None = None
 ) -> Array:
     """Mean square sound pressure (..., b, t), Pa², of what all axles make radiate, at times (t,), s.
 

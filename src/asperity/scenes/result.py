@@ -47,11 +47,7 @@ EXPECTED = ("G. Matheron, Economic Geology 58 (1963) 1246 (kriging, of the expec
 
 
 def computed_result(
-    prepared: PreparedCase,
-    progress: Progress,
-    caught: list[warnings.WarningMessage],
-    *,
-    brief: bool = False,
+    prepared: PreparedCase, progress: Progress, caught: list[warnings.WarningMessage], *, brief: bool = False
 ) -> xarray.DataTree:
     """Compute a case and lay its result out: surface, contact, rolling and spectra; a track and its pass-by.
 

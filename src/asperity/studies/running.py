@@ -281,9 +281,7 @@ def _planned(
 
 
 def _outcomes(
-    members: Sequence[Member],
-    compute: Callable[[Sequence[Member]], Outcomes],
-    report: Progress,
+    members: Sequence[Member], compute: Callable[[Sequence[Member]], Outcomes], report: Progress
 ) -> tuple[dict[tuple[int, ...], xarray.Dataset], dict[tuple[int, ...], Failure]]:
     """Results and failures of all members by their places; every result is kept as soon as it is there."""
     from asperity.store import Store

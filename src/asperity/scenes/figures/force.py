@@ -109,11 +109,7 @@ def _linear_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     at, levels = thinned(lines.at), [replace(s, values=decibels(thinned(s.values))) for s in lines.lines]
     laws = [s for s in levels if s.law]
     axis = panels.levels_axis("contact force PSD / dB re 1 N²/Hz", [s.values for s in laws])
-    behind = (
-        *panels.shaded_bands(tree),
-        *track.sleeper_tones(tree, high),
-        *track.split_rules(tree, high),
-    )
+    behind = (*panels.shaded_bands(tree), *track.sleeper_tones(tree, high), *track.split_rules(tree, high))
     drawn = [  # hundreds of lines side by side
         replace(line, width=1.5 if line.law == laws[0].law else 0.9) for line in panels.styled(tree, at, laws)
     ]

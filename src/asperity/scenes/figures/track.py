@@ -425,9 +425,5 @@ LOSS_FACTORS = Figure(
     ),
     _loss,
     _loss_caption,
-    further=(
-        schema.LOSS_FACTOR,
-        schema.RELAXED_STIFFNESS,
-        schema.RELAXED_LOSS_FACTOR,
-    ),
+    further=(schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR),
 )
