@@ -14,7 +14,7 @@ from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling import steps
-from asperity.rolling.assembly import alternating, system_of
+from asperity.rolling.assembly import alternating, body_loads, system_of
 from asperity.rolling.ground import Path, ground_of
 from asperity.rolling.roll import roll_bodies
 from asperity.rolling.steps import alternating_of_modes, modal_coefficients, resolved_step
@@ -118,8 +118,8 @@ def test_no_step_of_a_wheel_grows(poles, mass, stiffness, damping, modes):
 
 def of_body(body, h):
     """Its alternating compliance at its contact."""
-    path = Path(np.zeros((1, 2)), 1.0, h)
-    return alternating(system_of(ground_of(None, path, np.zeros(0)), [body], path))[0]
+    ground = ground_of(None, Path(np.zeros((1, 2)), 1.0, h), np.zeros(0))
+    return alternating(system_of(ground, [body], body_loads([body]), h, 1.0))[0]
 
 
 def test_what_alternating_forces_meet_is_that_of_masses_springs_and_long_runs(poles):

@@ -50,6 +50,7 @@ class System(NamedTuple):
     own: NDArray  # (n,), displacement of the body there for one newton at the end of a step, m/N
     loads: NDArray  # (n,), scales of the forces, N
     ones: NDArray  # (m,)
+    constant: NDArray  # (m,), constant generalised forces of the oscillators; empty without any
     softening: NDArray  # (n,), compliance in series with each contact that keeps a step stable, m/N
     time_step: float  # s
     speed: float  # m/s
@@ -91,6 +92,7 @@ class Histories(NamedTuple):
     rolling_displacement: NDArray  # (n, t), of what rolls, at the contact, m
     core: NDArray  # (b, d, t), coordinates, positive upwards
     acceleration: NDArray  # (sensors, t), m/s²
+    displacement: NDArray  # (sensors, t), m; without rows where it is not asked for
 
 
 @compiled(**INNER)
@@ -165,6 +167,8 @@ def begin_step(system, motion, shapes):  # type: ignore[no-untyped-def]
         ahead[j] = a[0, j] * q[j] + a[1, j] * v[j] + a[2, j] * p[j]
     for j in range(len(q)):
         v[j] = a[4, j] * q[j] + a[5, j] * v[j] + a[6, j] * p[j]
+    for j in range(len(system.constant)):
+        ahead[j] += a[3, j] * system.constant[j]
     advance_channels(system.channels, motion, motion.force[0], motion.counts[0] + 1)
     bodies, states = motion.core.shape
     for b in range(bodies):
@@ -283,6 +287,8 @@ def end_step(system, motion, record, step, shapes, slopes):  # type: ignore[no-u
             motion.displacement[j] = motion.ahead[j]
         for j in range(motion.push.shape[0]):
             motion.push[j] = 0.0
+        for j in range(len(system.constant)):
+            motion.push[j] = system.constant[j]
         for k in range(motion.trial.shape[0]):
             force = motion.trial[k]
             motion.force[1, k], motion.force[0, k] = motion.force[0, k], force
@@ -310,6 +316,8 @@ def end_step(system, motion, record, step, shapes, slopes):  # type: ignore[no-u
             resisted = system.damping[j] * motion.velocity[j] + system.stiffness[j] * motion.displacement[j]
             total += system.sensors[s, j] * (motion.push[j] - resisted)
         record.acceleration[s, step] = total
+    for s in range(record.displacement.shape[0]):
+        record.displacement[s, step] = product(system.sensors[s], motion.displacement, 0)
 
 
 @compiled(**ONCE)

@@ -18,11 +18,12 @@ from asperity.kernels.stepping import POWERS, Motion, System
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.rolling import steps
 from asperity.rolling.ground import Ground, Path, ground_of
-from asperity.rolling.stepper import Stepper
+from asperity.rolling.stepper import OnPaths, Stepper
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
 
+NONE = np.zeros(0)
 RUNAWAY = 1e4
 """Times the load, or the largest force that the law was made for, that no contact force reaches."""
 
@@ -35,15 +36,18 @@ def assemble(
     positions: Array,
     sensors: Array,
     highest_frequency: float | None,
-) -> Stepper:
-    """Set bodies at `positions` ahead of a path, m, at rest on what they roll over; see `roll_bodies`."""
+) -> tuple[Stepper, Path]:
+    """Set bodies at `positions` ahead of a path, m, at rest on what they roll over; see `roll_bodies`.
+
+    And the paths of all contacts.
+    """
     path = whole.ahead(_offsets(bodies, laws, positions))
     ground = ground_of(over, path, sensors)
-    system = system_of(ground, bodies, path)
+    system = system_of(ground, bodies, body_loads(bodies), path.time_step, path.speed)
     prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
     rest, motion = start_at_rest(ground, bodies, system, prepared)
     own = alternating(system)
-    limits = _limits(ground, system, bodies, ground.alternating + own, rest, highest_frequency)
+    limits = limits_of(ground, system, bodies, ground.alternating + own, rest.stiffness, highest_frequency)
     steps.warn_if_coarse(path.time_step, limits)
     values = [steps.largest_values(*each) for each in zip(prepared, rest.stiffness.tolist(), strict=True)]
     stiffest, impacts, forces = np.array(values).T
@@ -53,7 +57,8 @@ def assemble(
     if softer.any():
         system = system._replace(softening=softer)
         rest, motion = start_at_rest(ground, bodies, system, prepared)
-    return Stepper(over, bodies, laws, path, prepared, system, motion, largest, ground.softest)
+    course = OnPaths(over, path, prepared)
+    return Stepper(course, bodies, laws, prepared, system, motion, largest, ground.softest), path
 
 
 def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
@@ -69,13 +74,28 @@ def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> A
     return offsets
 
 
-def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
-    """Constants for the kernels, with contacts as they are."""
-    b, h, channels = len(bodies), path.time_step, ground.channels
+def body_loads(bodies: Sequence[Body]) -> Array:
+    """Scales of the contact forces (n,), N: static loads, no one less than the mean of several."""
     loads = np.concatenate([body.static_loads for body in bodies])
-    n, mean = len(loads), float(np.clip(loads, 0.0, None).mean())
+    mean = float(np.clip(loads, 0.0, None).mean())
     if not mean > 0.0:
         raise InputError("loads of the bodies (N)", "none that presses", "forces that press them down")
+    return np.maximum(loads, mean) if len(loads) > 1 else loads
+
+
+def system_of(
+    ground: Ground,
+    bodies: Sequence[Body],
+    loads: Array,
+    time_step: float,
+    speed: float,
+    constant: Array = NONE,
+) -> System:
+    """Constants for the kernels, with contacts as they are.
+
+    Scales of the contact forces (n,), N, time step, s, speed, m/s, and constant forces on the structure (s,).
+    """
+    b, n, h, channels = len(bodies), len(loads), time_step, ground.channels
     of = np.repeat(np.arange(b), [len(body.places) for body in bodies])
     frequencies = steps.padded([2.0 * np.pi * body.natural_frequencies for body in bodies])
     natural = np.concatenate([ground.natural, frequencies.ravel()])
@@ -85,7 +105,7 @@ def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
     shapes = steps.padded([row for body in bodies for row in body.shapes])
     rows = steps.padded([row for body in bodies for row in body.contacts])
     step = steps.padded([steps.body_step(body, h) for body in bodies])  # (b, 2, d, 4, d)
-    constant = np.einsum("bxijk,bk->bxi", step[..., 2:, :], steps.padded([body.pressing for body in bodies]))
+    pressed = np.einsum("bxijk,bk->bxi", step[..., 2:, :], steps.padded([body.pressing for body in bodies]))
     before, now = np.einsum("nxijk,nk->jnxi", step[of][..., 2:, :], rows).reshape(2, n, -1)
     answers = coefficients[3, len(ground.natural) :].reshape(b, -1)[of]
     return System(
@@ -94,7 +114,7 @@ def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
         damping=2.0 * ratios * natural,
         sensors=ground.sensors,
         core_step=step[..., :2, :].reshape(b, now.shape[1], now.shape[1]),
-        core_pressed=-constant.reshape(b, -1),
+        core_pressed=-pressed.reshape(b, -1),
         core_damping=steps.padded([body.damping for body in bodies]),
         body=of,
         core_shapes=rows,
@@ -102,11 +122,12 @@ def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
         core_now=now,
         shapes=shapes,
         own=np.sum(rows * now[:, : rows.shape[1]], axis=1) + np.sum(shapes**2 * answers, axis=1),
-        loads=np.maximum(loads, mean) if n > 1 else loads,
+        loads=loads,
         ones=np.ones(len(natural)),
+        constant=np.pad(constant, (0, len(natural) - len(constant))) if len(constant) else constant,
         softening=np.zeros(n),
         time_step=float(h),
-        speed=float(path.speed),
+        speed=float(speed),
         coupled=bool(len(channels.source) > n or (n > 1 and ground.natural.size > 0) or n > b),
         channels=channels,
     )
@@ -126,21 +147,24 @@ def alternating(system: System) -> Array:
     return found
 
 
-def _limits(
+def limits_of(
     ground: Ground,
     system: System,
     bodies: Sequence[Body],
     least: Array,
-    rest: Rest,
+    stiffness: Array,
     highest_frequency: float | None,
 ) -> Iterator[steps.Limit]:
-    """What the time step must resolve, with the least alternating compliances at the contacts, m/N."""
+    """What the time step must resolve, with the least alternating compliances at the contacts, m/N.
+
+    And the stiffnesses of the contacts at rest, N/m.
+    """
     if ground.bay:
-        on_bay = np.sqrt(float(rest.stiffness.max()) / ground.bay) / (2.0 * np.pi)
+        on_bay = np.sqrt(float(stiffness.max()) / ground.bay) / (2.0 * np.pi)
         yield "the contact resonance on a bay of rail", on_bay, 5.0
     else:
         direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
-        resonances = steps.contact_resonance(rest.stiffness, direct, least, system.time_step)
+        resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)
         yield "the contact resonance", float(resonances.max()), 10.0
     yield ground.limit
     natural = np.concatenate([body.natural_frequencies for body in bodies])
@@ -194,7 +218,26 @@ def at_rest(
     matrix = block_diag(*(body.stiffness for body in bodies), np.eye(n))
     pressing = np.concatenate([*(body.pressing for body in bodies), np.zeros(n)])
     loads = np.concatenate([body.static_loads for body in bodies])
-    scale, most = np.maximum(loads, loads.clip(0.0).mean()), FIRST_MOVE
+    scale = np.maximum(loads, loads.clip(0.0).mean())
+    x, *contacts = equilibrium(matrix, pressing, shapes, displaced, scale, laws, relative)
+    return Rest(x[:coordinates], *contacts)
+
+
+def equilibrium(
+    matrix: Array,
+    pressing: Array,
+    shapes: Array,
+    displaced: Array,
+    scale: Array,
+    laws: Sequence[Evaluation],
+    relative: float = TOLERANCE,
+) -> tuple[Array, Array, Array, Array]:
+    """Coordinates x (d,) with K x + p = Aᵀ F, and forces, approaches and stiffnesses of the contacts (n,).
+
+    The approaches are −(u + A x). K (d, d), p (d,) and A (n, d) are matrix, pressing and shapes, u (n,) what
+    is displaced; the forces are exact to `relative` of their scale (n,), N.
+    """
+    most = FIRST_MOVE
 
     def state(x: Array) -> tuple[Array, Array, Array, Array]:
         """Approaches, forces, stiffnesses, and the gradient of the energy."""
@@ -206,12 +249,11 @@ def at_rest(
     approach, force, stiffness, gradient = state(x)
     for _ in range(ITERATIONS):
         firm = np.maximum(stiffness, scale / LARGEST_MOVE)
-        move = -np.linalg.solve(matrix + (shapes.T * firm) @ shapes, gradient)
+        move = -_solved(matrix + (shapes.T * firm) @ shapes, gradient)
         closer = -shapes @ move
         rounding = 1e-15 * (np.abs(displaced) + np.abs(shapes) @ np.abs(x))
         if np.all(np.abs(firm * closer) <= relative * scale + firm * rounding):
-            x = x + move
-            return Rest(x[:coordinates], force + firm * closer, approach + closer, stiffness)
+            return x + move, force + firm * closer, approach + closer, stiffness
         move *= min(1.0, most / float(np.abs(closer).max()))
         most, slope = min(2.0 * most, LARGEST_MOVE), float(gradient @ move)
         for _ in range(60):
@@ -221,10 +263,19 @@ def at_rest(
             move, slope = 0.5 * move, 0.5 * slope
         x = x + move
     raise ComputationError(
-        f"the bodies do not come to rest on their contacts ({n}) at the start of the path: under loads of "
-        f"{_some(loads)} N the last forces are {_some(force)} N, at approaches of {_some(approach)} m",
+        f"the bodies do not come to rest on their contacts ({len(laws)}) at the start of the path: under "
+        f"loads of {_some(scale)} N the last forces are {_some(force)} N, at approaches of "
+        f"{_some(approach)} m",
         "smaller loads, or contact.approaches that reach higher forces",
     )
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """The least solution where some motion of all is held by nothing, and no force drives it."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
 
 
 def _some(values: Array) -> str:

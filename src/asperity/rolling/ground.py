@@ -110,12 +110,17 @@ def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
     frequencies = natural / (2.0 * np.pi)
     followed = frequencies[frequencies <= HIGHEST]  # others are meant to be static
     limit = "the highest mode of the structure", float(followed.max(initial=0.0)), 4.0
+    channels = no_channels(n)
+    under, seen = shapes(path.starts), shapes(sensors)[0]
+    return Ground(natural, ratios, *under, seen, channels, softest, least, least, limit, np.zeros((n, n)))
+
+
+def no_channels(n: int) -> Channels:
+    """Channels of a rail that is not there, for n contacts."""
     none, first = np.zeros(0, dtype=np.int64), np.zeros(n + 1, dtype=np.int64)
     decay, residue, now, scattered = map(np.zeros, ((0, 0), (0, 1, 0), (0, 1), (0, 1, 1)))
     kernels = decay, residue, now, scattered, np.zeros(0, dtype=bool)
-    channels = Channels(none, none, none, first, np.zeros(n), 0.0, *kernels)
-    under, seen = shapes(path.starts), shapes(sensors)[0]
-    return Ground(natural, ratios, *under, seen, channels, softest, least, least, limit, np.zeros((n, n)))
+    return Channels(none, none, none, first, np.zeros(n), 0.0, *kernels)
 
 
 def _refuse_to_leave(over: Modal, path: Path) -> None:

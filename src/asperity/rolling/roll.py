@@ -148,25 +148,25 @@ def roll_bodies(
     """
     whole = Path.laid(start, speed, time_step, duration, settling)
     ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
-    stepper = assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
+    stepper, path = assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
     energies = stepper.energies()
     try:
         stepper.run(progress, checkpoint)
     finally:  # why a motion may have run away
         warn_if_bent(over, stepper.record.over_displacement)
-    return _rolled(stepper, energies)
+    return _rolled(stepper, path, energies)
 
 
-def _rolled(stepper: Stepper, energies: tuple[float, float, float]) -> RolledBodies:
+def _rolled(stepper: Stepper, path: Path, energies: tuple[float, float, float]) -> RolledBodies:
     """What is kept of a run that started with these energies."""
-    path, record, system, counts = stepper.path, stepper.record, stepper.system, stepper.motion.counts
+    record, system, counts = stepper.record, stepper.system, stepper.motion.counts
     kept, softened = slice(path.settled, None), system.softening[:, None] * record.contact_force
     seen = record.relative_displacement - softened
     apart = np.array(list(map(flying, stepper.prepared, record.contact_force, seen)))
     warn_of_steps([law.name for law in stepper.laws], stepper.prepared, counts, seen)
-    _refuse_missed_loads(stepper, apart)
+    _refuse_missed_loads(stepper, path, apart)
     apart = apart[:, kept]
-    records = {name: value[..., kept] for name, value in record._asdict().items()}
+    records = {name: value[..., kept] for name, value in record._asdict().items() if name != "displacement"}
     cores = zip(stepper.bodies, records.pop("core"), strict=True)
     return RolledBodies(
         **records,
@@ -178,16 +178,16 @@ def _rolled(stepper: Stepper, energies: tuple[float, float, float]) -> RolledBod
         degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
         in_contact=~apart,
         contact_loss=tuple(contact_losses(each, path.time_step) for each in apart),
-        energy=_ledger(stepper, energies),
+        energy=ledger_of(stepper, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),
         outcome=Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
     )
 
 
-def _refuse_missed_loads(stepper: Stepper, apart: NDArray[np.bool_]) -> None:
+def _refuse_missed_loads(stepper: Stepper, path: Path, apart: NDArray[np.bool_]) -> None:
     """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
-    path, record, of = stepper.path, stepper.record, stepper.system.body
+    record, of = stepper.record, stepper.system.body
     touched = []  # how far texture and contact displace bodies while they touch, m
     for approach, off in zip(record.relative_displacement, apart, strict=True):
         touched.append(0.0 if off.all() else float(np.ptp(approach[~off])))
@@ -201,7 +201,7 @@ def _refuse_missed_loads(stepper: Stepper, apart: NDArray[np.bool_]) -> None:
             refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
 
 
-def _ledger(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
+def ledger_of(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
     """Balance of a run that started with these energies of structure, of bodies and of their loads, J."""
     structure, bodies, loads = (now - then for now, then in zip(stepper.energies(), before, strict=True))
     ledger = stepper.motion.ledger.tolist()
@@ -318,6 +318,23 @@ def warn_of_steps(
     Laws by their names; counts are of steps done, not converged, and evaluations; the approach (n, steps), m,
     is that which the laws saw. Contacts under laws of one name count together.
     """
+    beyond = [
+        int(evaluate_all(law, seen, 0)[2]) if isinstance(law, Prepared) else 0
+        for law, seen in zip(prepared, approach, strict=True)
+    ]
+    for law in prepared:
+        if not isinstance(law, Prepared):
+            law.warn_of_flaws()
+    warn_of_counts(names, counts, beyond, approach.shape[1])
+
+
+def warn_of_counts(
+    names: Sequence[str], counts: NDArray[np.int64], beyond: Sequence[int], recorded: int
+) -> None:
+    """Warn of steps that missed the tolerance, and of steps at which a law was beyond its data.
+
+    Of laws by their names: steps done and not converged, and steps beyond, of so many recorded.
+    """
     if counts[1]:
         share = float(counts[1]) / max(int(counts[0]), 1)
         missed = (
@@ -326,14 +343,11 @@ def warn_of_steps(
             "smaller numerics.time_step"
         )
         warnings.warn(UnconvergedWarning(missed, Grade.of_share(share)), stacklevel=5)
-    beyond = dict.fromkeys(names, 0)
-    for name, law, seen in zip(names, prepared, approach, strict=True):
-        if isinstance(law, Prepared):
-            beyond[name] += int(evaluate_all(law, seen, 0)[2])
-        else:
-            law.warn_of_flaws()
-    for name, count in beyond.items():
-        steps = names.count(name) * approach.shape[1]
+    of_law = dict.fromkeys(names, 0)
+    for name, count in zip(names, beyond, strict=True):
+        of_law[name] += int(count)
+    for name, count in of_law.items():
+        steps = names.count(name) * recorded
         if count:
             message = (
                 f"{name}: the contact was closer than its largest computed state in {count} of {steps} time "

@@ -3,11 +3,13 @@
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
@@ -39,37 +41,92 @@ def stacked(prepared: Sequence[Any], names: Iterable[str], rows: Any = ...) -> d
     return {name: padded(parts) for name, parts in fields.items()}
 
 
+class Course(Protocol):
+    """Where n contacts are in the course of time, and what their laws say there."""
+
+    time_step: float
+    contacts: int
+    total: int
+
+    def place(self, contact: int, step: int) -> float:
+        """Position of a contact at a step, m."""
+
+    def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
+        """Write mode shapes under the contacts and their slopes (steps, n, s), from a step on."""
+
+    def laid(self, first: int, stop: int) -> Any:
+        """Laws from a step on to another, as `asperity.kernels.stepping.solve_prepared` takes them."""
+
+
 @dataclass(eq=False)
-class Stepper:
-    """Bodies at rest on what they roll over, under laws of their n contacts, to be advanced step by step."""
+class OnPaths:
+    """Contacts that run over a structure at one speed, under laws that are laid out on all of their paths."""
 
     over: Modal | RailBetween | None
+    path: Path
+    prepared: Sequence[Prepared | SteppedLaw]
+
+    def __post_init__(self) -> None:
+        self.time_step, self.total = self.path.time_step, self.path.total
+        self.contacts = len(self.path.positions)
+
+    def place(self, contact: int, step: int) -> float:
+        """Position of a contact at a step, m."""
+        return float(self.path.positions[contact, step])
+
+    def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
+        """Write mode shapes under the contacts and their slopes (steps, n, s), from a step on."""
+        over, spacing = self.over, self.path.speed * self.path.time_step
+        if over is not None and not isinstance(over, RailBetween):
+            for k, at in enumerate(self.path.positions[:, first]):
+                shapes[:, k], slopes[:, k] = over.shapes_along(float(at), spacing, len(shapes))
+
+    def laid(self, first: int, stop: int) -> Any:
+        """Laws from a step on to another; what no step changes is stacked once."""
+        along = stacked(self.prepared, ALONG, slice(first, stop))
+        return Prepared(**self._fixed, **along), self._sizes
+
+    @cached_property
+    def _fixed(self) -> dict[str, Any]:
+        return stacked(self.prepared, set(Prepared._fields).difference(ALONG))
+
+    @cached_property
+    def _sizes(self) -> NDArray[np.int64]:
+        return sizes_of(self.prepared)
+
+
+def sizes_of(prepared: Sequence[Any]) -> NDArray[np.int64]:
+    """Numbers of states and of knots of `Prepared` laws (2, n)."""
+    return np.array([[len(getattr(law, name)) for law in prepared] for name in ("states", "knots")])
+
+
+@dataclass(eq=False)
+class Stepper:
+    """Bodies at rest on what they touch, under laws of their n contacts, to be advanced step by step."""
+
+    course: Course
     bodies: Sequence[Body]
     laws: Sequence[Law]
-    path: Path
-    prepared: Sequence[Prepared | SteppedLaw]  # the laws, on their paths
+    prepared: Sequence[Prepared | SteppedLaw]  # the laws on their paths; none that are laid out on the way
     system: stepping.System
     motion: stepping.Motion
     largest: float  # contact force that makes no sense any more, N
     softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
+    displacements: bool = False  # whether those of the sensors are recorded
 
     def __post_init__(self) -> None:
-        n, steps = self.path.positions.shape
-        (b, states), modes = self.system.core_pressed.shape, self.system.sensors.shape[1]
+        n, steps = self.course.contacts, self.course.total + 1
+        (b, states), (sensors, modes) = self.system.core_pressed.shape, self.system.sensors.shape
         force, approach, over, rolling = np.zeros((4, n, steps))
-        core, acceleration = np.zeros((b, states // 2, steps)), np.zeros((len(self.system.sensors), steps))
-        self.record = stepping.Histories(force, approach, over, rolling, core, acceleration)
+        core, acceleration = np.zeros((b, states // 2, steps)), np.zeros((sensors, steps))
+        moved = np.zeros((sensors if self.displacements else 0, steps))
+        self.record = stepping.Histories(force, approach, over, rolling, core, acceleration, moved)
         self.stepped = {k: law for k, law in enumerate(self.prepared) if not isinstance(law, Prepared)}
         self.length = int(np.clip(SHAPES_AT_ONCE // max(n * modes, 1), LEAST, LONGEST))
         self.offset = self.end = -1
         # one place for all chunks: fresh memory takes longer than what is computed
         self.shapes, self.slopes = np.zeros((2, self.length + 1, n, modes))
         self.laid: Any = self.prepared
-        if not self.stepped:  # one kernel serves any number and mix
-            self.fixed = stacked(self.laid, set(Prepared._fields).difference(ALONG))
-            self.sizes = np.array(
-                [[len(getattr(law, name)) for law in self.laid] for name in ("states", "knots")]
-            )
         self.motion.counts[0] = -1
         self._advance(0, np.inf)
         self.motion.approach[1] = self.motion.approach[0]
@@ -83,22 +140,23 @@ class Stepper:
             y, rate = core[: len(body.mass)], core[d : d + len(body.mass)]
             stored += 0.5 * float(rate @ body.mass @ rate + y @ body.stiffness @ y)
             pressed += float(body.pressing @ y)
+        pressed -= float(system.constant @ motion.displacement) if len(system.constant) else 0.0
         return float(modes[:structure].sum()), stored, pressed
 
     def run(self, progress: Progress | None, checkpoint: Checkpoint | None) -> None:
         """Go on to the end of the path, from where a checkpoint was left, if it was."""
-        motion, saved = self.motion, time.monotonic()
+        motion, saved, total = self.motion, time.monotonic(), self.course.total
         if checkpoint is not None:
             self._restore(checkpoint)
         state = self._state()
         try:
-            while motion.counts[0] < self.path.total:
+            while motion.counts[0] < total:
                 done = int(motion.counts[0])
-                if not self._advance(done + STEPPED_BLOCK if self.stepped else self.path.total, self.largest):
+                if not self._advance(done + STEPPED_BLOCK if self.stepped else total, self.largest):
                     raise self._ran_away()
                 state = self._state()
                 if progress is not None:
-                    progress(int(motion.counts[0]), self.path.total, "rolling")
+                    progress(int(motion.counts[0]), total, "rolling")
                 if checkpoint is not None and time.monotonic() - saved > SAVE_EVERY:
                     checkpoint.save(state | self._histories(state))
                     saved = time.monotonic()
@@ -125,19 +183,15 @@ class Stepper:
 
     def _hold(self, step: int) -> None:
         """Make ready the chunk of a step, whose bounds do not depend on where a run was taken up."""
-        path, over = self.path, self.over
         offset = max(step - 1, 0) // self.length * self.length
         if offset == self.offset:
             return
-        self.offset, self.end = offset, min(offset + self.length, path.total)
+        self.offset, self.end = offset, min(offset + self.length, self.course.total)
         count = self.end + 1 - offset
-        if self.shapes.shape[2] and over is not None and not isinstance(over, RailBetween):
-            for k, place in enumerate(path.positions[:, offset]):
-                shapes, slopes = over.shapes_along(float(place), path.speed * path.time_step, count)
-                self.shapes[:count, k], self.slopes[:count, k] = shapes, slopes
-        if not self.stepped:
-            along = stacked(self.prepared, ALONG, slice(offset, self.end + 1))
-            self.laid = Prepared(**self.fixed, **along), self.sizes
+        if self.shapes.shape[2]:
+            self.course.shapes_into(offset, self.shapes[:count], self.slopes[:count])
+        if not self.stepped:  # one kernel serves any number and mix
+            self.laid = self.course.laid(offset, self.end + 1)
 
     def _solve(self, laws: Any, k: int, row: int, free: Free, load: float, guess: float) -> Found:
         """As `asperity.kernels.stepping.solve_prepared`, by any law.
@@ -154,11 +208,11 @@ class Stepper:
         return solve(_evaluate, law, step, free, load, guess, damping, False, STEPPED_TOLERANCE)
 
     def _ran_away(self) -> ComputationError:
-        motion, path = self.motion, self.path
+        motion, course = self.motion, self.course
         step, worst = int(motion.counts[0]), int(np.argmax(np.abs(motion.force[0])))
         return ComputationError(
-            f"the motion runs away: at step {step}, time {step * path.time_step:.6g} s, position "
-            f"{path.positions[worst, step]:.6g} m, the contact force is {motion.force[0, worst]:.3g} N under "
+            f"the motion runs away: at step {step}, time {step * course.time_step:.6g} s, position "
+            f"{course.place(worst, step):.6g} m, the contact force is {motion.force[0, worst]:.3g} N under "
             f"a load of {self.system.loads.max():.4g} N",
             "what a warning asks for, as a smaller numerics.time_step; without one, other masses, damping or "
             "texture there, or a track without poles",

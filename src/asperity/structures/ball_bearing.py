@@ -203,6 +203,14 @@ class BallBearing:
         """Contact angle without load, rad: cos α = 1 − P_d/2A, zero of one without clearance."""
         return math.acos(min(1.0, 1.0 - 0.5 * self.radial_clearance / self.groove_distance))
 
+    def apart(self, contact_angle: float) -> float:
+        """Gap of both contacts of a ball together, rings centred, along their normal at an angle, rad; m.
+
+        A − (A − P_d/2) cos α: half the diametral clearance of balls that touch at 0, and none axially.
+        """
+        distance = self.groove_distance
+        return distance - (distance - 0.5 * self.radial_clearance) * math.cos(contact_angle)
+
     @property
     def raceway_radii(self) -> tuple[float, float]:
         """Radii of inner and outer raceway where a ball touches at the free angle, (d_m ∓ D cos α)/2, m."""

@@ -1,0 +1,327 @@
+"""A ball bearing turns: each ball between both rings, on raceways that it rolls over."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from asperity.arguments import Array, finite_array, positive, require
+from asperity.errors import Outcome
+from asperity.laws.spec import Law
+from asperity.progress import Progress
+from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
+from asperity.rolling.roll import Ledger
+from asperity.store import Checkpoint
+from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.body import Body
+from asperity.structures.ring import Direction, Ring
+
+INNER, OUTER = 0, 1
+"""Places of the rigid rings among the structures; those that bend follow."""
+INSTANTS = 12
+"""Places of the cage, while a ball passes, over which the static displacement is averaged."""
+HELD = 1e5
+"""Hz, of an outer ring that is held while the inner one is looked at."""
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class BearingRings:
+    """The rings of a bearing and what holds them: rigid, and bending beside it.
+
+    Parameters
+    ----------
+    inner, outer : Ring
+        Rigid, see `Ring.rigid`, with the contact angle of the run.
+    inner_bending, outer_bending : Ring, optional
+        See `Ring.bending`; they turn with their ring.
+    """
+
+    inner: Ring
+    outer: Ring
+    inner_bending: Ring | None = None
+    outer_bending: Ring | None = None
+
+    @property
+    def structures(self) -> list[Ring]:
+        """All of them: both rigid ones first."""
+        bending = (self.inner_bending, self.outer_bending)
+        return [self.inner, self.outer, *(each for each in bending if each is not None)]
+
+
+Sensor = tuple[str, float, Direction]
+"""The ring that bears it, its angle, rad, and its direction."""
+
+
+@dataclass(frozen=True, eq=False)
+class RolledBearing:
+    """A bearing has turned; n steps of the record, Z balls. Forces in N, angles in rad, motion in m."""
+
+    time: Array  # (n,), s, from zero, after the run-in
+    cage: Array  # (n,), angle of the first ball from the radial load
+    inner_angle: Array  # (n,), by which the inner ring has turned
+    outer_angle: Array  # (n,)
+    inner_force: Array  # (Z, n), compression positive
+    outer_force: Array  # (Z, n)
+    inner_approach: Array  # (Z, n), as the laws see it, but for the heights of the balls
+    outer_approach: Array  # (Z, n)
+    ball_motion: Array  # (Z, n), outwards along the contacts' normal
+    inner_motion: Array  # (3, n), along the radial load, across it, along the axis
+    outer_motion: Array  # (3, n)
+    acceleration: Array  # (sensors, n), m/s²
+    energy: Ledger
+    evaluations: int
+    unconverged_steps: int
+    outcome: Outcome
+
+
+def roll_bearing(
+    bearing: BallBearing,
+    rings: BearingRings,
+    inner_law: Law,
+    outer_law: Law,
+    *,
+    speed: float,
+    radial: float = 0.0,
+    axial: float = 0.0,
+    duration: float,
+    time_step: float,
+    settling: float = 0.0,
+    ball_heights: Sequence[ArrayLike] = (),
+    slip: Callable[[Array], Array] | None = None,
+    centrifugal: bool = True,
+    sensors: Sequence[Sensor] = (),
+    highest_frequency: float | None = None,
+    progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
+) -> RolledBearing:
+    """Turn a bearing under a constant load, and keep what follows the run-in.
+
+    Every ball is a mass between two contacts, one with each ring, along the normal at the contact angle of
+    the rings. Forces act between the rings: on the inner one as given, on the outer one against it; springs
+    of shaft and housing are free of force where the bearing carries its load, on average over the places of
+    the cage. Nothing slides, so that balls and cage follow the kinematics, but for a slip of the cage.
+
+    Parameters
+    ----------
+    bearing : BallBearing
+        Its geometry and speeds.
+    rings : BearingRings
+        At least one of them must be held, radially, and axially where contacts carry an axial load.
+    inner_law, outer_law : Law
+        Of the contact with each raceway, known for positions from 0 to the circumference 2πR,
+        ``bearing.raceway_radii``; damping is theirs.
+    speed : float
+        Of the ring that turns, turns per second.
+    radial, axial : float
+        Load, N; the preload of the bearing is added to the axial one.
+    duration, time_step, settling : float
+        s.
+    ball_heights : sequence of array_like, optional
+        Of each ball its heights along the circle that rolls, closed, at even angles, m, positive out of the
+        material; averaged over the patch already.
+    slip : callable, optional
+        Share by which the cage is slower at times (n,), s, than in pure rolling.
+    centrifugal : bool
+        Whether balls press outwards as they run around.
+    sensors : sequence of (ring, angle, direction)
+        As ``("outer", 0.0, "radial")``, whose acceleration is recorded; of a ring that turns rigid motion.
+    highest_frequency : float, optional
+        Hz, against which the time step is checked.
+    progress, checkpoint : optional
+        As in `asperity.rolling.roll.roll_bodies`.
+
+    Returns
+    -------
+    RolledBearing
+    """
+    total = round(settling / time_step) + round(duration / time_step)
+    turning = _Turning(bearing, rings.inner.contact_angle, speed, time_step, settling, total, slip)
+    force = turning.centrifugal_force if centrifugal else 0.0
+    mechanism = _mechanism(bearing, rings, (inner_law, outer_law), turning, force, ball_heights)
+    loads = radial, axial + bearing.preload
+    mechanism = _loaded(mechanism, rings, loads, turning)
+    rows = [mechanism.row(ring, row) for ring in (INNER, OUTER) for row in _axes(rings.structures[ring])]
+    rows += [_row_of(mechanism, rings, bearing, sensor) for sensor in sensors]
+    run = roll_mechanism(
+        mechanism,
+        turning.usual_load(*loads),
+        time_step=time_step,
+        duration=duration,
+        settling=settling,
+        sensors=np.array(rows),
+        highest_frequency=highest_frequency,
+        progress=progress,
+        checkpoint=checkpoint,
+    )
+    steps = run.contact_force.shape[1]
+    kept = turning.total + 1 - steps, turning.total + 1
+    return RolledBearing(
+        np.asarray(time_step * np.arange(steps)),
+        turning.cage(*kept),
+        turning.turned(INNER)(*kept),
+        turning.turned(OUTER)(*kept),
+        run.contact_force[0::2],
+        run.contact_force[1::2],
+        run.approach[0::2],
+        run.approach[1::2],
+        np.concatenate(run.bodies),
+        run.displacement[:3],
+        run.displacement[3:6],
+        run.acceleration[6:],
+        run.energy,
+        run.evaluations,
+        run.unconverged_steps,
+        run.outcome,
+    )
+
+
+@dataclass(eq=False)
+class _Turning:
+    """Angles of everything at every step; those before and after the run go on."""
+
+    bearing: BallBearing
+    contact_angle: float
+    speed: float
+    time_step: float
+    settling: float
+    total: int
+    slip: Callable[[Array], Array] | None
+
+    def __post_init__(self) -> None:
+        positive("speed (1/s)", self.speed)
+        pure = self.bearing.kinematics(self.speed, contact_angle=self.contact_angle)
+        self.rings = pure.inner, pure.outer
+        time = self._time(-1, self.total + 2)
+        slips = np.zeros(time.size) if self.slip is None else self.slip(time)
+        slips = finite_array("slip of the cage", slips, "below 1", count=time.size, below=1.0)
+        rate = TURN * pure.cage * (1.0 - slips)
+        done = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1])) * self.time_step])
+        self._cage = done - done[round(self.settling / self.time_step) + 1]
+        self._spin = TURN * pure.spin
+        mass, middle = self.bearing.ball_mass, 0.5 * self.bearing.pitch_diameter
+        self.centrifugal_force = mass * middle * (TURN * pure.cage) ** 2 * math.cos(self.contact_angle)
+
+    def _time(self, first: int, stop: int) -> Array:
+        return np.asarray(self.time_step * np.arange(first, stop) - self.settling)
+
+    def cage(self, first: int, stop: int) -> Array:
+        """Angle of the first ball."""
+        return self._cage[first + 1 : stop + 1]
+
+    def turned(self, ring: int) -> Along:
+        """Angle by which a ring has turned."""
+        return lambda first, stop: TURN * self.rings[ring] * self._time(first, stop)
+
+    def azimuth(self, ball: int, ring: int | None = None) -> Along:
+        """Angle of a ball, in the frame of a ring that turns if there is one."""
+        ahead = TURN * ball / self.bearing.balls
+        if ring is None:
+            return lambda first, stop: self.cage(first, stop) + ahead
+        turned = self.turned(ring)
+        return lambda first, stop: self.cage(first, stop) + ahead - turned(first, stop)
+
+    def on_raceway(self, ball: int, ring: int) -> Along:
+        """Position of a ball along a raceway, m, from 0 to its circumference."""
+        radius, azimuth = self.bearing.raceway_radii[ring], self.azimuth(ball, ring)
+        return lambda first, stop: radius * (azimuth(first, stop) % TURN)
+
+    def spot(self, ring: int) -> Along:
+        """Angle of the spot of a ball that touches a ring; the spots are opposite."""
+        return lambda first, stop: self._spin * self._time(first, stop) + (0.0 if ring else math.pi)
+
+    def usual_load(self, radial: float, axial: float) -> float:
+        """Contact force by which tolerances are measured, N: that of the ball that carries most, about."""
+        sine, overlap = math.sin(self.contact_angle), max(-self.bearing.apart(self.contact_angle), 0.0)
+        shared = (5.0 * radial + (axial / sine if sine else 0.0)) / self.bearing.balls
+        return shared + float(self.bearing.series_stiffness * overlap**1.5)
+
+
+def _mechanism(
+    bearing: BallBearing,
+    rings: BearingRings,
+    laws: tuple[Law, Law],
+    turning: _Turning,
+    centrifugal: float,
+    ball_heights: Sequence[ArrayLike],
+) -> Mechanism:
+    """Balls outwards along the normal, first on the inner ring, then on the outer one."""
+    allowed = f"{bearing.balls}, one line for each ball, or none"
+    require(len(ball_heights) in (0, bearing.balls), "heights of the balls", len(ball_heights), allowed)
+    none, both = np.zeros((1, 1)), np.array([[1.0], [-1.0]])
+    pressing = np.array([-centrifugal])
+    ball = Body(np.array([[bearing.ball_mass]]), none, none, both, pressing, np.zeros(2))
+    bending, place = {}, OUTER
+    for ring, each in ((INNER, rings.inner_bending), (OUTER, rings.outer_bending)):
+        if each is not None:
+            bending[ring] = place = place + 1
+    edges = []
+    for j in range(bearing.balls):
+        wave = _closed(ball_heights[j]) if ball_heights else None
+        for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
+            sides = [Side(ring, turning.azimuth(j), sign)]
+            if ring in bending:
+                sides.append(Side(bending[ring], turning.azimuth(j, ring), sign))
+            apart = 0.0 if ring else bearing.apart(turning.contact_angle)
+            heights = _heights(wave, turning.spot(ring), -apart)
+            edges.append(Edge(laws[ring], turning.on_raceway(j, ring), tuple(sides), heights))
+    return Mechanism(rings.structures, [ball] * bearing.balls, edges)
+
+
+def _closed(heights: ArrayLike) -> Callable[[Array], Array]:
+    """Heights of a closed line at angles, rad, by a periodic cubic spline."""
+    from scipy.interpolate import CubicSpline
+
+    line = finite_array("heights of a ball (m)", heights, "finite numbers, four or more", shape=(None,))
+    require(line.size >= 4, "heights of a ball", f"{line.size} numbers", "four or more")
+    angles = TURN * np.arange(line.size + 1) / line.size
+    spline = CubicSpline(angles, np.append(line, line[0]), bc_type="periodic")
+    return lambda angle: np.asarray(spline(angle))
+
+
+def _heights(wave: Callable[[Array], Array] | None, spots: Along, raised: float) -> Along:
+    """Heights of a ball at the spots that touch, or none, all raised, m."""
+    if wave is None:
+        return lambda first, stop: np.full(stop - first, raised)
+    return lambda first, stop: wave(spots(first, stop)) + raised
+
+
+def _loaded(
+    mechanism: Mechanism, rings: BearingRings, loads: tuple[float, float], turning: _Turning
+) -> Mechanism:
+    """Press the rings together, with springs that are free of force where they then are."""
+    pressed = [np.zeros(len(each.frequencies)) for each in rings.structures]
+    pressed[INNER], pressed[OUTER] = rings.inner.pressed(*loads), -rings.outer.pressed(*loads)
+    require(turning.usual_load(*loads) > 0.0, "load", "none", "a load, or a preload")
+    held = np.maximum(rings.inner.frequencies, rings.outer.frequencies)
+    what, remedy = "rings", "Give the shaft or the housing a stiffness."
+    require(np.all(held > 0.0), what, "both free", "one that is held", remedy)
+    loose = [replace(rings.inner, frequencies=np.zeros(len(held)))]
+    loose += [replace(rings.outer, frequencies=np.full(len(held), HELD)), *rings.structures[2:]]
+    trial = replace(mechanism, structures=loose, pressed=pressed)
+    passing = turning.bearing.balls * abs(turning.bearing.kinematics(turning.speed).cage) * turning.time_step
+    places = np.linspace(0.0, min(1.0 / passing, turning.total), INSTANTS, endpoint=False).astype(int)
+    load = turning.usual_load(*loads)
+    rest = np.mean([rest_of(trial, int(step), load)[: len(held)] for step in places], axis=0)
+    pressed[INNER] = pressed[INNER] + (TURN * rings.inner.frequencies) ** 2 * rest
+    return replace(mechanism, pressed=pressed)
+
+
+def _axes(ring: Ring) -> list[Array]:
+    """Motion of a rigid ring along the radial load, across it and along the axis, for each mode."""
+    return [ring.towards(0.0), ring.towards(0.5 * math.pi), ring.towards(0.0, "axial")]
+
+
+def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: BallBearing, sensor: Sensor) -> Array:
+    name, angle, direction = sensor
+    require(name in ("inner", "outer"), "ring of a sensor", name, '"inner" or "outer"')
+    rigid, bending = (INNER, rings.inner_bending) if name == "inner" else (OUTER, rings.outer_bending)
+    row = mechanism.row(rigid, rings.structures[rigid].towards(angle, direction))
+    if bending is not None and bearing.turning != name:
+        place = len(rings.structures) - 1 if name == "outer" else OUTER + 1
+        row = row + mechanism.row(place, bending.towards(angle, direction))
+    return row

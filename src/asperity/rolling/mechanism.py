@@ -1,0 +1,370 @@
+"""Contacts between any two of bodies and structures, each with a path of its own along each side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from asperity.arguments import Array, positive, require
+from asperity.errors import InputError, Outcome
+from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.kernels.stepping import Motion, System
+from asperity.laws.spec import Law
+from asperity.progress import Progress
+from asperity.rolling import steps
+from asperity.rolling.assembly import (
+    RUNAWAY,
+    alternating,
+    at_zero,
+    equilibrium,
+    evaluated,
+    limits_of,
+    system_of,
+)
+from asperity.rolling.ground import Ground, no_channels
+from asperity.rolling.roll import Ledger, ledger_of, warn_of_counts
+from asperity.rolling.stepper import Stepper, sizes_of, stacked
+from asperity.store import Checkpoint
+from asperity.structures.body import Body
+from asperity.structures.modal import HIGHEST, Modal
+
+Along = Callable[[int, int], Array]
+"""Values of steps: from one on to before another; from −1 to one beyond the last where slopes are taken."""
+LOOKED_AT = 64
+"""Steps at which compliances are looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A structure on one side of a contact, which opens with its displacement times the sign."""
+
+    structure: int
+    places: Along  # on the structure, m, or rad of a ring
+    sign: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """A contact of a body with structures, or of structures with each other."""
+
+    law: Law
+    positions: Along  # where the law is laid out, m
+    sides: tuple[Side, ...] = ()
+    heights: Along | None = None  # what is there beside the law's texture, m, positive out of the material
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Bodies and structures, and the contacts between them.
+
+    The contacts of the bodies come first, numbered through the bodies as in `roll_bodies`; edges beyond them
+    have structures on both sides. A body between two structures has two contacts; bodies that touch each
+    other are one `Body` with both of their coordinates, whose contact is opened by the one and the other.
+
+    Parameters
+    ----------
+    structures : sequence of Modal
+        By their modes, as `asperity.structures.modal` or `asperity.structures.ring`; rotating frames too.
+    bodies : sequence of Body
+        Their `places` along the path are not looked at.
+    edges : sequence of Edge
+        One for each contact.
+    pressed : sequence of ndarray, optional
+        Constant forces on the modes of each structure.
+    """
+
+    structures: Sequence[Modal]
+    bodies: Sequence[Body]
+    edges: Sequence[Edge]
+    pressed: Sequence[Array] = field(default_factory=tuple)
+
+    def __post_init__(self) -> None:
+        touching = sum(len(body.places) for body in self.bodies)
+        short = f"{len(self.edges)} for {touching} contacts of the bodies"
+        allowed = "one for each contact of a body, or more"
+        require(len(self.edges) >= max(touching, 1), "edges", short, allowed)
+        last = len(self.structures) - 1
+        for edge in self.edges:
+            known = all(0 <= side.structure <= last for side in edge.sides)
+            require(known, "structure of a contact", "one that is not there", f"0 to {last}")
+
+    @property
+    def first_modes(self) -> NDArray[np.int64]:
+        """Place of each structure among all modes, and their number at the end."""
+        counts = [len(each.natural_frequencies) for each in self.structures]
+        return np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+
+    def joined(self, name: str) -> Array:
+        """What each mode of all structures has, by the name of the attribute (s,)."""
+        return np.concatenate([np.zeros(0), *(getattr(each, name) for each in self.structures)])
+
+    @property
+    def constant(self) -> Array:
+        """Constant forces on all modes (s,)."""
+        if not self.pressed:
+            return np.zeros(self.first_modes[-1])
+        return np.concatenate([np.asarray(each, dtype=float) for each in self.pressed])
+
+    def row(self, structure: int, values: Array) -> Array:
+        """Row over all modes (s,) of values for the modes of one structure."""
+        first = self.first_modes
+        row = np.zeros(first[-1])
+        row[first[structure] : first[structure + 1]] = values
+        return row
+
+    def still(self) -> Sequence[Body]:
+        """Its bodies, and one that does not move for the edges beyond them."""
+        beyond = len(self.edges) - sum(len(body.places) for body in self.bodies)
+        if not beyond:
+            return self.bodies
+        none = np.zeros((1, 1))
+        rest = Body(np.ones((1, 1)), none, none, np.zeros((beyond, 1)), np.zeros(1), np.zeros(beyond))
+        return [*self.bodies, rest]
+
+
+@dataclass(eq=False)
+class _OnEdges:
+    """The course of a mechanism: everything is laid out piece by piece."""
+
+    mechanism: Mechanism
+    time_step: float
+    total: int
+
+    def __post_init__(self) -> None:
+        self.contacts = len(self.mechanism.edges)
+
+    def place(self, contact: int, step: int) -> float:
+        """Position of a contact at a step, m."""
+        return float(self.mechanism.edges[contact].positions(step, step + 1)[0])
+
+    def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
+        """Write mode shapes under the contacts and their rates (steps, n, s), from a step on."""
+        starts, stop = self.mechanism.first_modes, first + len(shapes)
+        shapes[:], slopes[:] = 0.0, 0.0
+        for k, edge in enumerate(self.mechanism.edges):
+            for side in edge.sides:
+                places = side.places(first - 1, stop + 1)
+                modes = slice(starts[side.structure], starts[side.structure + 1])
+                found, rising = self.mechanism.structures[side.structure].shapes(places[1:-1])
+                rate = (places[2:] - places[:-2]) / (2.0 * self.time_step)
+                shapes[:, k, modes] += side.sign * found
+                slopes[:, k, modes] += side.sign * rising * rate[:, None]
+
+    def prepared(self, first: int, stop: int) -> list[Prepared]:
+        """Laws from a step on to another."""
+        return [_laid(edge, first, stop) for edge in self.mechanism.edges]
+
+    def laid(self, first: int, stop: int) -> Any:
+        """The same, for the compiled kernel."""
+        prepared = self.prepared(first, stop)
+        return Prepared(**stacked(prepared, Prepared._fields)), sizes_of(prepared)
+
+
+def _laid(edge: Edge, first: int, stop: int) -> Prepared:
+    """The law of an edge; its textures are raised by the heights of the edge."""
+    prepared = edge.law.prepare(edge.positions(first, stop))
+    if not isinstance(prepared, Prepared):
+        allowed = "laws that are looked up, as table, areal or hertz"
+        raise InputError(f"law {edge.law.name}", "one that is solved in every step", allowed)
+    if edge.heights is None:
+        return prepared
+    return prepared._replace(planes=prepared.planes - edge.heights(first, stop))
+
+
+@dataclass(frozen=True, eq=False)
+class RolledMechanism:
+    """What was recorded of n contacts at t steps, after the run-in."""
+
+    contact_force: Array  # (n, t), N, compression positive
+    approach: Array  # (n, t), m, as the laws see it but for the heights of the edges
+    bodies: tuple[Array, ...]  # coordinates of each (d, t), m or rad, positive as its contacts open
+    displacement: Array  # (sensors, t), m
+    acceleration: Array  # (sensors, t), m/s²
+    energy: Ledger  # where the work of the loads went, in run-in and run
+    evaluations: int  # of the laws
+    unconverged_steps: int
+    outcome: Outcome
+
+
+def roll_mechanism(
+    mechanism: Mechanism,
+    load: float,
+    *,
+    time_step: float,
+    duration: float,
+    settling: float = 0.0,
+    sensors: Array | None = None,
+    highest_frequency: float | None = None,
+    progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
+) -> RolledMechanism:
+    """Carry a mechanism on in time, from rest under its constant forces.
+
+    As `asperity.rolling.roll.roll_bodies`, and by the same steps: structures and bodies are advanced exactly
+    for contact forces that are linear over a step, and the forces at its end solve all laws at once.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Its edges give their places at step 0, where the run-in begins, and on.
+    load : float
+        A usual contact force, N: each is found to 1e-10 of itself plus this.
+    time_step, duration, settling : float
+        s; the record starts after the run-in, `settling`.
+    sensors : ndarray (k, s), optional
+        Rows over all modes, as `Mechanism.row` makes them, whose motion is recorded.
+    highest_frequency : float, optional
+        Hz, against which the time step is checked.
+    progress, checkpoint : optional
+        As in `roll_bodies`.
+
+    Returns
+    -------
+    RolledMechanism
+
+    Raises
+    ------
+    InputError
+        If a law is one that is solved in every step.
+    ComputationError
+        If nothing is at rest at the start, or the motion runs away.
+    """
+    h = positive("time step (s)", time_step)
+    settled, recorded = round(settling / h), round(positive("duration (s)", duration) / h)
+    require(recorded >= 1, "duration (s)", duration, f"at least one time step of {h:.6g} s")
+    course = _OnEdges(mechanism, h, settled + recorded)
+    seen = np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, dtype=float)
+    stepper = _at_rest(course, seen, positive("load (N)", load), highest_frequency)
+    energies = stepper.energies()
+    stepper.run(progress, checkpoint)
+    _warn(stepper, course)
+    return _kept(stepper, settled, len(mechanism.bodies), ledger_of(stepper, energies))
+
+
+def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
+    """Coordinates of all modes (s,) of a mechanism at rest, as it stands at a step; `load` as above, N."""
+    at = replace(mechanism, edges=[_standing(edge, step) for edge in mechanism.edges])
+    course = _OnEdges(at, 1.0, 0)
+    ground, bodies = _ground(course, np.zeros((0, at.first_modes[-1]))), at.still()
+    system = system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, at.constant)
+    motion = _start(at, bodies, ground, system, course.prepared(0, 1))[1]
+    return motion.displacement[: at.first_modes[-1]]
+
+
+def _standing(edge: Edge, step: int) -> Edge:
+    """An edge that stays where it is at a step."""
+
+    def stay(along: Along) -> Along:
+        return lambda first, stop: np.repeat(along(step, step + 1), stop - first)
+
+    sides = tuple(replace(side, places=stay(side.places)) for side in edge.sides)
+    heights = None if edge.heights is None else stay(edge.heights)
+    return replace(edge, positions=stay(edge.positions), sides=sides, heights=heights)
+
+
+def _kept(stepper: Stepper, settled: int, bodies: int, energy: Ledger) -> RolledMechanism:
+    kept, counts, record = slice(settled, None), stepper.motion.counts, stepper.record
+    cores = zip(stepper.bodies[:bodies], record.core, strict=False)
+    return RolledMechanism(
+        record.contact_force[:, kept],
+        record.relative_displacement[:, kept],
+        tuple(core[: len(body.mass), kept] for body, core in cores),
+        record.displacement[:, kept],
+        record.acceleration[:, kept],
+        energy,
+        int(counts[2]),
+        int(counts[1]),
+        Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
+    )
+
+
+def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: float | None) -> Stepper:
+    """Set everything at rest under the constant forces, with contacts soft enough for the time step."""
+    mechanism, h, bodies = course.mechanism, course.time_step, course.mechanism.still()
+    ground, prepared = _ground(course, sensors), course.prepared(0, 1)
+    loads = np.full(course.contacts, load)
+    system = system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
+    stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
+    own = alternating(system)
+    limits = limits_of(ground, system, bodies, ground.alternating + own, stiffness, highest_frequency)
+    steps.warn_if_coarse(h, limits)
+    values = [steps.largest_values(*each) for each in zip(prepared, stiffness.tolist(), strict=True)]
+    stiffest, impacts, forces = np.array(values).T
+    damping = np.array([edge.law.damping for edge in mechanism.edges])
+    least, thrown = ground.alternating + own, ground.thrown + own
+    softer = steps.softening(least, thrown, stiffest, impacts, damping, stiffness, h)
+    if softer.any():
+        system = system._replace(softening=softer)
+        stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
+    laws, largest = [edge.law for edge in mechanism.edges], RUNAWAY * max(load, *forces)
+    return Stepper(course, bodies, laws, (), system, motion, largest, np.inf, displacements=True)
+
+
+def _ground(course: _OnEdges, sensors: Array) -> Ground:
+    """All structures as one: what they are to the contacts at the start, and at worst on the way."""
+    mechanism, n = course.mechanism, course.contacts
+    natural = 2.0 * np.pi * mechanism.joined("natural_frequencies")
+    ratios = mechanism.joined("damping_ratios")
+    each = steps.alternating_of_modes(steps.resolved_step(natural, ratios, course.time_step))
+    shapes, slopes = np.zeros((2, 1, n, natural.size))
+    least = 0.0
+    looked_at = np.unique(np.linspace(0, course.total, LOOKED_AT).astype(int))
+    for step in looked_at[::-1].tolist():  # the start last: it is kept
+        course.shapes_into(step, shapes, slopes)
+        least = min(least, float(np.linalg.eigvalsh((shapes[0] * each) @ shapes[0].T).min()))
+    frequencies = natural / (2.0 * np.pi)
+    followed = frequencies[frequencies <= HIGHEST]
+    limit = "the highest mode of a structure", float(followed.max(initial=0.0)), 4.0
+    under, channels = (shapes[0], slopes[0]), no_channels(n)
+    return Ground(natural, ratios, *under, sensors, channels, np.inf, least, least, limit, np.zeros((n, n)))
+
+
+def _start(
+    mechanism: Mechanism, bodies: Sequence[Body], ground: Ground, system: System, prepared: Sequence[Prepared]
+) -> tuple[Array, Motion]:
+    """Stiffnesses of the contacts at rest (n,), N/m, and the state that goes on from there."""
+    (n, f), b = system.shapes.shape, len(bodies)
+    flexible = np.zeros((n, b, f))
+    flexible[np.arange(n), system.body] = system.shapes
+    shapes = np.hstack([ground.shapes, flexible.reshape(n, -1)])
+    rows = block_diag(*(body.contacts for body in bodies))
+    answers = shapes.any(axis=0) | (system.stiffness > 0.0)  # others there is nothing to say of
+    held = np.diag(np.where(answers, system.stiffness, 1.0))
+    matrix = block_diag(held, *(body.stiffness for body in bodies), np.eye(n))
+    constant = np.pad(mechanism.constant, (0, shapes.shape[1] - len(mechanism.constant)))
+    pressing = np.concatenate([-constant, *(body.pressing for body in bodies), np.zeros(n)])
+    every = np.hstack([shapes, rows, np.diag(np.sqrt(system.softening))])
+    laws = [partial(evaluated, law) for law in prepared]
+    x, force, approach, stiffness = equilibrium(matrix, pressing, every, np.zeros(n), system.loads, laws)
+    motion, count = at_zero(system), shapes.shape[1]
+    motion.displacement[:] = x[:count]
+    motion.push[:] = constant + force @ shapes
+    first = count
+    for own, body in zip(motion.core, bodies, strict=True):
+        own[: len(body.mass)] = x[first : first + len(body.mass)]
+        first += len(body.mass)
+    motion.force[:] = motion.trial[:] = motion.elastic[:] = force
+    motion.approach[:] = approach
+    return stiffness, motion
+
+
+CHECKED = 2**14
+"""Steps at once of which is asked whether the laws went beyond what they were made for."""
+
+
+def _warn(stepper: Stepper, course: _OnEdges) -> None:
+    """Warn of steps that missed the tolerance, and of laws that were continued beyond their data."""
+    counts, seen = stepper.motion.counts, stepper.record.relative_displacement
+    seen = seen - stepper.system.softening[:, None] * stepper.record.contact_force
+    beyond = np.zeros(course.contacts, dtype=np.int64)
+    for first in range(0, course.total + 1, CHECKED):
+        stop = min(first + CHECKED, course.total + 1)
+        for k, law in enumerate(course.prepared(first, stop)):
+            beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first:stop]), 0)[2]
+    warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])

@@ -1,0 +1,184 @@
+"""Rings as harmonics around their circumference: rigid on springs, bending, seen at a moving angle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from asperity.arguments import Array, not_negative, one_of, positive, real, require, whole
+from asperity.structures.modal import Modal
+
+Direction = Literal["radial", "axial"]
+
+
+@dataclass(frozen=True, eq=False)
+class Ring(Modal):
+    """Modes of a ring: at an angle ψ it moves by a cos(nψ − β) q radially outwards, b cos(nψ − β) q axially.
+
+    Each mode obeys q″ + 2ζω q′ + ω² q = Σ φ F of the forces on it, as those of `asperity.structures.modal`.
+
+    Parameters
+    ----------
+    frequencies, damping : ndarray (m,)
+        Undamped, Hz, 0 where nothing holds it; damping ratios.
+    lobes, phases : ndarray (m,)
+        n, and β, rad.
+    radial, axial : ndarray (m,)
+        a and b, mass-normalised, kg^(−1/2).
+    contact_angle : float
+        α, rad: contacts act along n(ψ), radially with cos α and axially with sin α.
+    """
+
+    frequencies: Array
+    damping: Array
+    lobes: Array
+    phases: Array
+    radial: Array
+    axial: Array
+    contact_angle: float = 0.0
+
+    @classmethod
+    def rigid(
+        cls,
+        mass: float,
+        contact_angle: float = 0.0,
+        *,
+        radial_stiffness: float = 0.0,
+        axial_stiffness: float = 0.0,
+        damping_ratio: float = 0.0,
+    ) -> Ring:
+        """A rigid ring that moves along the radial load, across it, and axially if contacts do.
+
+        Parameters
+        ----------
+        mass : float
+            With all that it carries, kg.
+        contact_angle : float
+            Rad.
+        radial_stiffness, axial_stiffness : float
+            Of the shaft or housing that holds it, N/m; 0 where nothing does.
+        damping_ratio : float
+            Of the ring on these springs.
+
+        Returns
+        -------
+        Ring
+            With two modes, or three; lobes 1, 1 and 0.
+        """
+        size = positive("mass of a ring (kg)", mass) ** -0.5
+        radial = not_negative("radial stiffness of a ring (N/m)", radial_stiffness)
+        axial = not_negative("axial stiffness of a ring (N/m)", axial_stiffness)
+        stiffness = np.array([radial, radial, axial])
+        ratio = real("damping_ratio", damping_ratio, "0 and more, below 1", at_least=0.0, below=1.0)
+        count = 3 if contact_angle else 2
+        return cls(
+            (np.sqrt(stiffness / mass) / (2.0 * math.pi))[:count],
+            np.full(count, ratio),
+            np.array([1.0, 1.0, 0.0])[:count],
+            np.array([0.0, 0.5 * math.pi, 0.0])[:count],
+            np.array([size, size, 0.0])[:count],
+            np.array([0.0, 0.0, size])[:count],
+            contact_angle,
+        )
+
+    @classmethod
+    def bending(
+        cls,
+        mass: float,
+        radius: float,
+        bending_stiffness: float,
+        contact_angle: float = 0.0,
+        *,
+        most_lobes: int,
+        damping_ratio: float,
+    ) -> Ring:
+        """Lobes cos nψ and sin nψ of a free thin ring that bends in its plane without stretching.
+
+        ω_n² = n² (n² − 1)²/(n² + 1) EI/(ρA R⁴), and the mass of each mode is half of the ring's times
+        1 + 1/n²: A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed. (1927), § 293.
+        Valid while the ring is thin and a lobe much longer than it is thick.
+
+        Parameters
+        ----------
+        mass, radius : float
+            Of the ring alone, kg, and its mean radius, m.
+        bending_stiffness : float
+            EI against bending in its plane, N m².
+        contact_angle : float
+            Rad.
+        most_lobes : int
+            Largest n, from 2 on.
+        damping_ratio : float
+            Of each mode.
+
+        Returns
+        -------
+        Ring
+            Two modes for each number of lobes, in the frame of the ring.
+        """
+        positive("mass of a ring (kg)", mass)
+        stiffness = positive("bending stiffness of a ring (N m^2)", bending_stiffness)
+        most = whole("most lobes of a ring", most_lobes, "a whole number, 2 or more", at_least=2)
+        n = np.repeat(np.arange(2.0, most + 1.0), 2)
+        per_length = mass / (2.0 * math.pi * positive("radius of a ring (m)", radius))
+        squares = n**2 * (n**2 - 1.0) ** 2 / (n**2 + 1.0) * stiffness / (per_length * radius**4)
+        ratio = real("damping_ratio", damping_ratio, "0 and more, below 1", at_least=0.0, below=1.0)
+        return cls(
+            np.sqrt(squares) / (2.0 * math.pi),
+            np.full(n.size, ratio),
+            n,
+            np.tile([0.0, 0.5 * math.pi], n.size // 2),
+            (0.5 * mass * (1.0 + n**-2)) ** -0.5,
+            np.zeros(n.size),
+            contact_angle,
+        )
+
+    @property
+    def natural_frequencies(self) -> Array:
+        """Undamped natural frequencies (m,), Hz."""
+        return self.frequencies
+
+    @property
+    def damping_ratios(self) -> Array:
+        """Damping ratios (m,)."""
+        return self.damping
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """All angles, rad: a ring is closed."""
+        return -math.inf, math.inf
+
+    def shapes(self, x: ArrayLike) -> tuple[Array, Array]:
+        """Mode shapes along the contacts' normal, outwards, and their slopes.
+
+        Parameters
+        ----------
+        x : array_like (n,)
+            Angles, rad.
+
+        Returns
+        -------
+        shapes, slopes : ndarray (n, m)
+            kg^(−1/2), and per radian.
+        """
+        angle = np.multiply.outer(np.asarray(x, dtype=float), self.lobes) - self.phases
+        size = math.cos(self.contact_angle) * self.radial + math.sin(self.contact_angle) * self.axial
+        return size * np.cos(angle), -self.lobes * size * np.sin(angle)
+
+    def towards(self, angle: float, direction: Direction = "radial") -> Array:
+        """Motion of a place for each mode (m,), kg^(−1/2): outwards at an angle, rad, or axially."""
+        one_of("direction", direction, ("radial", "axial"))
+        size = self.radial if direction == "radial" else self.axial
+        return np.asarray(size * np.cos(self.lobes * angle - self.phases))
+
+    def pressed(self, radial: float, axial: float = 0.0) -> Array:
+        """Constant force on each mode (m,) of forces along ψ = 0 and along the axis, N."""
+        held = axial == 0.0 or bool(np.any(self.axial))
+        require(held, "axial load (N)", f"{axial:g}", "0 on a ring whose contacts carry none")
+        along = self.lobes == 1.0, self.lobes == 0.0
+        forces = np.where(along[0], radial, 0.0) * self.towards(0.0)
+        return np.asarray(forces + np.where(along[1], axial, 0.0) * self.axial)

@@ -1,0 +1,227 @@
+"""A bearing that turns: its static solution, tones by the table of waviness, energy, interruption."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from rolling_parts import Shelf
+
+from asperity.errors import InputError
+from asperity.laws import HertzLaw, Linear
+from asperity.reduction.texture import StateTexture
+from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.ring import Ring
+
+RUN = {"speed": 30.0, "duration": 0.01, "time_step": 3.2e-6, "settling": 0.01}
+B6205 = BallBearing.named("6205")
+HOUSING = Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.02)
+RINGS = BearingRings(Ring.rigid(0.5), HOUSING)
+
+
+def hertz(bearing, damping=20.0, textures=(None, None)):
+    """Laws of both contacts."""
+    both = bearing.inner_contact, bearing.outer_contact
+    return [HertzLaw(each.stiffness_constant, h, damping) for each, h in zip(both, textures, strict=True)]
+
+
+def waves(radius, order, amplitude):
+    """Heights of a raceway with so many waves per turn, positive away from contact, beyond both its ends."""
+    count = 200 * max(order, 1)
+    spacing = 2 * np.pi * radius / count
+    along = np.arange(-20, count + 21)
+    return StateTexture.unfiltered(
+        -amplitude * np.cos(2 * np.pi * order * along / count), spacing, -20 * spacing
+    )
+
+
+def test_it_starts_as_the_static_solution_and_carries_the_load():
+    """Independent of it: Newton's method on centres of grooves (`BallBearing.loaded`)."""
+    start = {"speed": 0.1, "duration": 2e-5, "time_step": 1e-6}
+    begun = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, centrifugal=False, **start)
+    still = B6205.loaded(100.0, cage_angles=begun.cage[:1])
+    assert_allclose(begun.inner_force[:, 0], still.inner_load[0], rtol=1e-6, atol=1e-6)
+    apart = begun.inner_motion[:, 0] - begun.outer_motion[:, 0]
+    assert_allclose(apart, still.displacement[0], rtol=1e-6, atol=1e-12)
+    run = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, centrifugal=False, **RUN)
+    still = B6205.loaded(100.0)
+    around = run.cage + 2 * np.pi * np.arange(9)[:, None] / 9
+    assert (run.inner_force * np.cos(around)).sum(axis=0).mean() == pytest.approx(100.0, rel=1e-3)
+    assert abs((run.inner_force * np.sin(around)).sum(axis=0).mean()) < 0.1
+    assert run.inner_motion[0].mean() == pytest.approx(still.displacement[:, 0].mean(), rel=0.01)
+    assert run.energy.residual < 1e-7
+    assert run.unconverged_steps == 0
+
+
+def test_centrifugal_force_presses_the_outer_raceway_alone():
+    run = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, **RUN | {"speed": 150.0})
+    loose = run.inner_force.max(axis=1) == 0.0
+    assert loose.any()
+    mean = run.outer_force[loose].mean()
+    assert mean == pytest.approx(B6205.centrifugal_force(150.0), rel=0.02)
+
+
+def test_very_many_balls_are_as_stiff_as_the_integral():
+    """Q_max = F/(Z J_r), J_r = 1/2π ∫ cos^2.5 over the loaded half; displacement in closed form."""
+    many = BallBearing(99, 1e-3, 50e-3)
+    x = (np.arange(20000) + 0.5) * np.pi / 20000 - np.pi / 2
+    load, integral = 50.0, float(np.mean(np.cos(x) ** 2.5)) / 2
+    closed = (load / (99 * integral * many.series_stiffness)) ** (2 / 3)
+    run = roll_bearing(
+        many,
+        RINGS,
+        *hertz(many, 0.0),
+        radial=load,
+        centrifugal=False,
+        speed=1.0,
+        duration=2e-6,
+        time_step=3e-7,
+    )
+    assert run.inner_motion[0, 0] == pytest.approx(closed, rel=2e-4)
+    assert run.inner_force.max() == pytest.approx(load / (99 * integral), rel=1e-3)
+
+
+COSINE = 5.0 / 6.0
+WAVY = BallBearing(5, 8e-3, 8e-3 * COSINE / 0.2, contact_angle=math.acos(COSINE))
+"""f_c = 0.4 f_r and f_b = 2 f_r: all tones are multiples of f_r/5."""
+
+
+LINES = range(1, 200)
+
+
+def turned(part, order, outer_bending=None):
+    """Amplitudes at multiples of f_r/5 per height: motion of the inner ring (3, f), lobes of the outer."""
+    a, height, stiffness = math.acos(COSINE), 1e-7, 1e5
+    textures = [
+        waves(radius, order, height) if name == part else None
+        for name, radius in zip(("inner", "outer"), WAVY.raceway_radii, strict=True)
+    ]
+    laws = [Linear(10.0, stiffness, texture=each, damping=2.0) for each in textures]
+    outer = Ring.rigid(1.0, a, radial_stiffness=9e8, axial_stiffness=9e8, damping_ratio=0.3)
+    ball = height * np.cos(order * 2 * np.pi * np.arange(240) / 240)
+    run = roll_bearing(
+        WAVY, BearingRings(Ring.rigid(0.01, a), outer, outer_bending=outer_bending), *laws,
+        axial=5 * 10.0 * math.sin(a), speed=5.0, duration=1.0, settling=0.1, time_step=5e-5,
+        ball_heights=[ball, *[0 * ball] * 4] if part == "ball" else (), centrifugal=False,
+        sensors=[("outer", 0.0, "radial"), ("outer", math.pi, "radial")],
+    )  # fmt: skip
+    seen = np.vstack([run.inner_motion, run.acceleration.sum(axis=0)])[:, :-1]
+    tones = np.abs(np.fft.rfft(seen)) * 2 / seen.shape[1] / height
+    return tones[:3, :200], tones[3, :200]
+
+
+def tones_of(part, order, lobes):
+    """Those of the table, in multiples of f_r/5."""
+    return {round(each) for each in WAVY.kinematics(5.0).waviness(part, order, lobes)}
+
+
+WAVES = [("outer", 5), ("outer", 6), ("outer", 8), ("inner", 10), ("inner", 4), ("inner", 7), ("ball", 2),
+         ("ball", 3)]  # fmt: skip
+
+
+@pytest.mark.parametrize(("part", "order"), WAVES)
+def test_waviness_makes_the_tones_of_the_table_alone(part, order):
+    """Linear contacts: nothing where the table says so, a/sin α axially where all balls meet one phase."""
+    tones, _ = turned(part, order)
+    least = 1e-3 if part == "ball" else 1e-5  # inertia of a ball that is pushed by one side and the other
+    x, y, z = ({m for m in LINES if row[m] > least} for row in tones)
+    assert z == tones_of(part, order, 0)
+    assert x == y == tones_of(part, order, 1)
+    assert bool(z | x) == ((part, order) not in {("outer", 8), ("inner", 7), ("ball", 3)})
+    if (part, order) in {("outer", 5), ("inner", 10)}:
+        assert tones[2, z.pop()] == pytest.approx(1 / math.sin(math.acos(COSINE)), rel=0.01)
+
+
+@pytest.mark.parametrize("order", [7, 6])
+def test_a_ring_that_bends_in_two_lobes_answers_to_two_waves_beside_the_balls(order):
+    lobes = Ring.bending(0.02, 12e-3, 0.5, math.acos(COSINE), most_lobes=2, damping_ratio=0.3)
+    _, bent = turned("outer", order, lobes)
+    assert {m for m in LINES if bent[m] > 1e-4 * 10.0} == tones_of("outer", order, 2)
+    assert bool(tones_of("outer", order, 2)) == (order == 7)
+
+
+def test_perfect_surfaces_sound_at_the_passing_of_balls_alone():
+    """Varying compliance: multiples of Z f_c, of a bearing whose cage turns 0.4 times as fast."""
+    radial = BallBearing(5, 8e-3, 40e-3, clearance=0.0)
+    run = roll_bearing(
+        radial,
+        RINGS,
+        *hertz(radial, 100.0),
+        radial=20.0,
+        speed=50.0,
+        duration=0.05,
+        settling=0.15,
+        time_step=4e-6,
+    )
+    motion = run.inner_motion[0, : round(0.05 / 4e-6)]
+    tones = np.abs(np.fft.rfft(motion - motion.mean()))[:200]  # multiples of f_c
+    others = np.delete(tones, np.arange(0, 200, 5))
+    assert tones[5] > 0.3 * tones.max()
+    assert others.max() < 1e-3 * tones.max()
+
+
+def test_a_run_that_is_stopped_goes_on_to_the_same_bits():
+    textures = [waves(radius, 31, 1e-7) for radius in B6205.raceway_radii]
+    ball = [1e-8 * np.cos(2 * np.pi * (3 + j) * np.arange(60) / 60) for j in range(9)]
+    call = (B6205, RINGS, *hertz(B6205, 20.0, textures))
+    keys = {"radial": 100.0, "ball_heights": ball, "slip": lambda t: 0.01 + 0.01 * np.sin(300 * t)} | RUN
+    keys["settling"] = 0.0
+    whole, shelf = roll_bearing(*call, **keys), Shelf()
+
+    def stop(done, total, message):
+        if done:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        roll_bearing(*call, **keys, progress=stop, checkpoint=shelf)
+    assert 0 < shelf.arrays["motion.counts"][0] < len(whole.time)
+    again = roll_bearing(*call, **keys, checkpoint=shelf)
+    for name in ("inner_force", "outer_force", "inner_motion", "ball_motion"):
+        assert_array_equal(getattr(again, name), getattr(whole, name))
+    assert whole.energy.residual < 1e-5
+
+
+def test_a_slip_of_the_cage_shifts_the_passing_of_balls():
+    run = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, slip=lambda t: np.full(t.size, 0.02), **RUN)
+    assert np.ptp(run.cage) / run.time[-1] == pytest.approx(
+        2 * np.pi * 0.98 * B6205.kinematics(30.0, contact_angle=0.0).cage
+    )
+
+
+def test_a_sensor_on_a_ring_feels_what_moves_it():
+    run = roll_bearing(
+        B6205,
+        RINGS,
+        *hertz(B6205),
+        radial=100.0,
+        sensors=[("outer", 0.5, "radial"), ("inner", 0.0, "radial")],
+        **RUN,
+    )
+    moved = np.array([math.cos(0.5), math.sin(0.5), 0.0]) @ run.outer_motion
+    found = np.gradient(np.gradient(moved, run.time), run.time)[20:-20]
+    assert_allclose(run.acceleration[0, 20:-20], found, atol=0.05 * np.abs(found).max())
+    found = np.gradient(np.gradient(run.inner_motion[0], run.time), run.time)[20:-20]
+    assert_allclose(run.acceleration[1, 20:-20], found, atol=0.05 * np.abs(found).max())
+
+
+FREE = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3))
+REFUSED = [
+    ({"rings": FREE}, "rings.*both free.*Give the shaft or the housing a stiffness"),
+    ({"axial": 50.0}, "axial load.*0 on a ring whose contacts carry none"),
+    ({"radial": 0.0, "centrifugal": False}, "load"),
+    ({"ball_heights": [np.zeros(8)]}, "heights of the balls.*1.*9, one line for each ball"),
+    ({"ball_heights": [np.zeros(3)] * 9}, "heights of a ball.*3 numbers.*four or more"),
+    ({"slip": lambda t: np.full(t.size, 1.0)}, "slip of the cage.*below 1"),
+    ({"sensors": [("cage", 0.0, "radial")]}, 'ring of a sensor.*"inner" or "outer"'),
+    ({"sensors": [("outer", 0.0, "sideways")]}, "direction.*radial"),
+    ({"duration": 1e-9}, "duration"),
+    ({"speed": 0.0}, "speed"),
+]
+
+
+@pytest.mark.parametrize(("keys", "message"), REFUSED)
+def test_what_cannot_turn_is_refused(keys, message):
+    keys = {"rings": RINGS, "radial": 100.0} | RUN | keys
+    with pytest.raises(InputError, match=f"(?s){message}"):
+        roll_bearing(B6205, keys.pop("rings"), *hertz(B6205), **keys)

@@ -1,0 +1,129 @@
+"""Contacts between any two of bodies and structures: against bodies on a plane, and closed forms."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from rolling_parts import rough, same
+
+from asperity.errors import ExtrapolationWarning, InputError
+from asperity.laws import HertzLaw, Linear
+from asperity.rolling.mechanism import Edge, Mechanism, Side, roll_mechanism
+from asperity.rolling.roll import roll_bodies
+from asperity.structures.body import Body, chain
+from asperity.structures.modal import ModalStructure
+
+SPEED, STEP, TIME = 1.0, 1e-5, 0.02
+MASS, ABOVE, SPRING, LOAD = 0.02, 0.5, 4e6, 8.0
+BELOW = HertzLaw(2e10, rough(2e-7, 1e-4, -0.01), damping=5.0)
+
+
+def running(step):
+    """Positions of a contact that runs from zero on."""
+    return lambda first, stop: SPEED * step * np.arange(first, stop)
+
+
+along = running(STEP)
+
+
+def plate(mass, frequency=0.0, damping=0.0):
+    """A mass that moves as a whole, held by a spring or by nothing."""
+    shape = np.full((2, 1), mass**-0.5)
+    return ModalStructure([-1.0, 1.0], [frequency], damping, shape)
+
+
+def between(step):
+    """A ball between a plane and a heavy plate that presses on it with a spring."""
+    none, rows = np.zeros((1, 1)), np.array([[1.0], [-1.0]])
+    ball = Body(np.array([[MASS]]), none, none, rows, np.array([MASS * 9.80665]), np.zeros(2))
+    upper = Linear(0.0, SPRING)
+    at = running(step)
+    edges = [Edge(BELOW, at), Edge(upper, at, (Side(0, at),))]
+    force = np.array([LOAD + ABOVE * 9.80665]) * -(ABOVE**-0.5)
+    return Mechanism([plate(ABOVE)], [ball], edges, [force])
+
+
+def test_a_ball_between_two_planes_is_a_chain_on_one():
+    """The plate moves up by q; the upper contact opens with q − b, the lower one with b."""
+    two, errors = chain([MASS, ABOVE], [SPRING], [0.0], load=LOAD), []
+    for step in (STEP, 0.5 * STEP):
+        run = roll_mechanism(between(step), 10.0, time_step=step, duration=TIME)
+        keys = {"speed": SPEED, "start": 0.0, "duration": TIME, "time_step": step, "positions": [0.0]}
+        other = roll_bodies(None, [two], [BELOW], **keys)
+        same(run.contact_force[:, 0], [other.contact_force[0, 0], LOAD + ABOVE * 9.80665], 1e-9)
+        missed = np.abs(run.contact_force[0] - other.contact_force[0]).max()
+        errors.append(missed / np.ptp(other.contact_force[0]))
+        assert run.energy.residual < 1e-6
+    assert errors[1] < 1e-3  # of the spring above, which the chain carries on exactly
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_two_structures_swing_against_each_other_with_their_reduced_mass():
+    """No body between them: ω² = k (1/m + 1/M), from the forces that press them."""
+    light, heavy, k, press = 0.2, 0.8, 1e6, 3.0
+    sides = Side(0, along, 1.0), Side(1, along, -1.0)
+    contact = Edge(Linear(0.0, k), along, sides)
+    forces = [np.array([-press]) / light**0.5, np.array([press]) / heavy**0.5]
+    both = Mechanism([plate(light), plate(heavy)], [], [contact], forces)
+    run = roll_mechanism(both, press, time_step=STEP, duration=TIME)
+    assert_allclose(run.contact_force, press, rtol=1e-9)
+    waved = Edge(
+        Linear(0.0, k), along, sides, heights=lambda first, stop: 1e-6 * (np.arange(first, stop) > 9)
+    )
+    run = roll_mechanism(
+        Mechanism(both.structures, [], [waved], forces), press, time_step=STEP, duration=TIME
+    )
+    omega, time = np.sqrt(k * (1 / light + 1 / heavy)), STEP * np.arange(run.contact_force.shape[1])
+    swing = run.contact_force[0, 10:] - press
+    assert_allclose(swing, k * 1e-6 * np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
+
+
+def test_two_bodies_that_touch_are_one_of_both():
+    """Two free masses pressed together; a wave under the contact raises its force at once."""
+    none = np.zeros((2, 2))
+    pair = Body(np.diag([0.2, 0.8]), none, none, np.array([[1.0, -1.0]]), np.array([3.0, -3.0]), np.zeros(1))
+    edge = Edge(Linear(0.0, 1e6), along, heights=lambda first, stop: 1e-6 * (np.arange(first, stop) > 9))
+    run = roll_mechanism(Mechanism([], [pair], [edge]), 3.0, time_step=STEP, duration=TIME)
+    omega, time = np.sqrt(1e6 * (1 / 0.2 + 1 / 0.8)), STEP * np.arange(run.contact_force.shape[1])
+    assert_allclose(run.contact_force[0, 10:] - 3.0, np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
+    centre = 0.2 * run.bodies[0][0] + 0.8 * run.bodies[0][1]
+    assert_allclose(centre, centre[0], atol=1e-15)
+
+
+def test_a_law_beyond_its_data_is_warned_of():
+    class Short:
+        name, damping = "short", 0.0
+
+        def prepare(self, positions):
+            return BELOW.prepare(positions)._replace(upper=1e-9)
+
+    ball = Body.rigid(MASS, LOAD)
+    with pytest.warns(ExtrapolationWarning, match=r"short: .* in \d+ of 101 time steps"):
+        roll_mechanism(Mechanism([], [ball], [Edge(Short(), along)]), LOAD, time_step=STEP, duration=1e-3)
+
+
+class Stepped:
+    name, damping = "solved", 0.0
+
+    def prepare(self, positions):
+        return object()
+
+
+BALL = Body.rigid(MASS, LOAD)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Mechanism([], [BALL], []), "edges.*0 for 1 contacts.*one for each contact of a body"),
+        (lambda: Mechanism([], [BALL], [Edge(BELOW, along, (Side(0, along),))]), "structure of a contact"),
+        (
+            lambda: roll_mechanism(
+                Mechanism([], [BALL], [Edge(Stepped(), along)]), 1.0, time_step=STEP, duration=TIME
+            ),
+            "law solved.*solved in every step.*looked up",
+        ),
+    ],
+)
+def test_what_is_no_mechanism_is_refused(make, message):
+    with pytest.raises(InputError, match=f"(?s){message}"):
+        make()
