@@ -152,6 +152,21 @@ def test_the_chapter_says_where_how_loud_and_whether_it_slips(runs, off):
     assert float(row["wheel, both forces"]) > 100.0
 
 
+def test_tread_and_head_answer_each_at_its_own_place(runs):
+    """A flat tread on a head that leans: R sin(1:40) to the field side, on the tread less the shift."""
+    way = {"rail_inclination": "1:40", "wheel_shift": "5 mm"}
+    case = WheelOnRail(**CASE | {"wheel": RINGING, "sideways": way})
+    side, head = runs(case)["sideways"], 0.3 * math.sin(math.atan(1 / 40))
+    assert side.attrs["rail_contact_place"] == pytest.approx(head, rel=1e-6)
+    assert side.attrs["contact_place"] == pytest.approx(head - 0.005, rel=1e-5)
+    at, modes = side["frequency"].values, case.wheel.turning_modes(4000.0, 56.0)
+    rail = LateralTrack(case.track_model()).at_contact(at, 0.3, 0.3, head)
+    wheel = wheel_receptances(modes, 600.0, at, side.attrs["contact_place"])
+    for name, expected in (("rail", rail), ("wheel", wheel)):
+        found = side[f"{name}_cross_receptance"].values
+        np.testing.assert_allclose(found, np.abs(expected[1, 0]), rtol=1e-5)
+
+
 ONE = {"radius": 0.46, "mass": 600.0, "load": 65e3, "transverse_radius": "inf", "section": "straight-web"}
 STEP = 1.5e-3 / 56.0
 BOGIE = {"type": "bogie", "masses": [3000.0], "springs": [1.2e6], "dampers": [2e4], "distance": 30.0}

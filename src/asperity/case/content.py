@@ -70,7 +70,9 @@ def digest(value: InMemory) -> str:
         held = [[name, digest(np.asarray(each))] for name, each in value.numbers().items()]
         return hashlib.sha256(json.dumps(held).encode()).hexdigest()
     numbers = np.ascontiguousarray(value if isinstance(value, np.ndarray) else value.heights)
-    spacing = None if isinstance(value, np.ndarray) else value.spacing
+    spacing: Any = None if isinstance(value, np.ndarray) else value.spacing
+    if isinstance(value, Profile) and value.start is not None:
+        spacing = spacing, value.start
     found = hashlib.sha256(f"{numbers.dtype.str} {numbers.shape} {spacing}".encode())
     found.update(numbers.data)
     return found.hexdigest()

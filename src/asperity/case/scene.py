@@ -25,6 +25,7 @@ from asperity.reference.materials import contact_modulus
 from asperity.units import written
 
 if TYPE_CHECKING:
+    from asperity.case.across import Meeting
     from asperity.case.sideways import SidewaysKeys
     from asperity.radiation.pass_by import Passage
 
@@ -264,10 +265,22 @@ class Case(Section):
         ahead = sorted(self.rolling.offsets, reverse=True)
         return tuple(ahead[0] - place for place in ahead)
 
+    @cached_property
+    def meeting(self) -> Meeting | None:
+        """Where the sections of wheel and rail touch as they lie; None where the case does not say how."""
+        if "sideways" not in self.inner or self.sideways.rail_inclination is None:
+            return None
+        from asperity.case.across import meeting_of
+
+        return meeting_of(self)
+
     @property
-    def contact_place(self) -> float:
-        """Place of the contact across a tread and a rail head, m from their middle, to the field side."""
-        return self.sideways.contact_place if "sideways" in self.inner else 0.0
+    def contact_places(self) -> tuple[float, float]:
+        """Places of the contact on a tread and a rail head, m from their middle, to the field side."""
+        given = self.sideways.contact_place if "sideways" in self.inner else 0.0
+        if given is not None:
+            return given, given
+        return (0.0, 0.0) if self.meeting is None else self.meeting.places
 
     @property
     def axles(self) -> int:
@@ -506,7 +519,12 @@ class Case(Section):
 
     def _problem_of_place(self) -> Iterator[InputError]:
         """A contact on the rail head."""
-        place, half = self.contact_place, 0.5 * self.track.rail_head_width
+        half = 0.5 * self.track.rail_head_width
+        try:
+            _, place = self.contact_places
+        except InputError as error:
+            yield error
+            return
         if abs(place) > half:
             received = written(place, "m", "mm")
             allowed = f"at most {written(half, 'm', 'mm')} off the middle"

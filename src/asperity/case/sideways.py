@@ -5,25 +5,43 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from asperity.case.form import Section
-from asperity.parameters import Number, Quantity, key, keys_of, optional
+from asperity.parameters import Choice, Number, Quantity, key, keys_of, optional
 from asperity.structures.lateral_rail import LateralRail
 
 if TYPE_CHECKING:
     from asperity.structures.lateral_rail import LateralTrack
     from asperity.structures.track import Track
 
-_PADS = "pads lie between"
+_PADS, _HEADS = "pads lie between", "rail heads lie between"
+INCLINATIONS = {"0": 0.0, "1:40": 1.0 / 40.0, "1:20": 1.0 / 20.0}
+"""Of a rail towards the middle of the track, from upright: tangents."""
 
 
 class SidewaysKeys(Section, parameters=keys_of(LateralRail, otherwise="of a UIC 60 rail")):
     """Motion sideways, which follows from the vertical force, by frequency."""
 
-    contact_place: float = key(
+    contact_place: float | None = optional(
         Quantity("m"),
-        "0 mm",
+        "10 mm",
         "place of the contact across tread and rail head, from their middle, positive to the field side; "
         "off it wheel and rail move sideways, as on a bent web",
-        "-50 mm to 50 mm: rail heads lie between",
+        "where their sections touch, by rail_inclination; else the middle",
+        f"-50 mm to 50 mm: {_HEADS}",
+    )
+    rail_inclination: str | None = optional(
+        Choice(tuple(INCLINATIONS), numbers=(0,)),
+        "1:40",
+        "inclination of the rail towards the middle of the track, by which the sections of wheel and rail "
+        "lie on each other, positive to the field side from running circle and middle of the head, as their "
+        "files say",
+        "measured sections are levelled, and their contact is in the middle",
+    )
+    wheel_shift: float = key(
+        Quantity("m"),
+        "0 mm",
+        "how far the running circle is to the field side of the middle of the head",
+        f"-50 mm to 50 mm: {_HEADS}",
+        goes_with="rail_inclination",
     )
     friction: float = key(
         Number(above=0, at_most=1), 0.3, "coefficient of friction, up to which the contact sticks"

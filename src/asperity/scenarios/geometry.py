@@ -12,13 +12,13 @@ import numpy as np
 import scipy
 
 from asperity.arguments import Array, require
+from asperity.case.across import read_section
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning
-from asperity.scenarios.records import read_section
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
 
@@ -141,7 +141,7 @@ def geometry_of(case: Case) -> Geometry:
     section = parabola(contact, hertz.radius_y)
     if body.groove_radius is not None:
         section = groove_gap(across_window(contact), body.across, body.groove_radius)
-    elif body.profile is not None or over.profile is not None:
+    elif body.profile is not None or over.profile is not None or case.meeting is not None:
         section, hertz = _measured_gap(case, hertz, load)
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
     shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
@@ -226,10 +226,16 @@ def _measured_gap(case: Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
     y, body, over = across_window(case.contact), case.rolling, case.rolled_over
     keys = f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"
-    tread, wide = _section(body.profile, body.across, keys[0])
-    head, broad = _section(over.profile, over.radius_across, keys[1])
     both = " and ".join(keys)
-    gap = _lowest_in_the_middle(lambda at: tread(at) + head(at), min(wide, broad), y, both)
+    if case.meeting is not None:
+        gap = case.meeting.gap(y)
+    else:
+        tread, wide = _section(body.profile, body.across, keys[0])
+        head, broad = _section(over.profile, over.radius_across, keys[1])
+        gap = _lowest_in_the_middle(lambda at: tread(at) + head(at), min(wide, broad), y)
+    allowed = "sections that touch in one place, convex against each other"
+    require(gap.min() >= -1e-9, both, "bodies that touch outside the window's middle", allowed)
+    gap = np.maximum(gap, 0.0)
     half = 0.5 * y[-1]
     for _ in range(10):
         inside = np.abs(y) <= max(half, 3 * case.contact.spacing)
@@ -241,7 +247,7 @@ def _measured_gap(case: Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     return gap, hertz
 
 
-def _lowest_in_the_middle(depths: Callable[[Array], Array], reach: float, y: Array, keys: str) -> Array:
+def _lowest_in_the_middle(depths: Callable[[Array], Array], reach: float, y: Array) -> Array:
     """Gap across, m, moved so that the bodies first touch in the middle of the window."""
     middle = 0.0
     if np.isfinite(reach) and reach > y[-1]:
@@ -255,7 +261,4 @@ def _lowest_in_the_middle(depths: Callable[[Array], Array], reach: float, y: Arr
             options={"xatol": 1e-7},
         ).x
     gap = depths(y + middle)
-    gap = gap - gap[len(y) // 2]
-    allowed = "sections that touch in one place, convex against each other"
-    require(gap.min() >= -1e-9, keys, "bodies that touch outside the window's middle", allowed)
-    return np.maximum(gap, 0.0)
+    return np.asarray(gap - gap[len(y) // 2])

@@ -11,6 +11,7 @@ from typing import cast
 import numpy as np
 
 from asperity.arguments import Array, require
+from asperity.case.across import complete
 from asperity.case.body import Rolling
 from asperity.case.content import name_of
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
@@ -221,7 +222,7 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
         raise InputError("surface.line", "a map of heights", "a line of heights", remedy)
     if surface.processing:
         (measured,), _ = processed(surface, "surface", degree=1)
-    _complete(measured, "surface.line")
+    complete(measured, "surface.line")
     spacing, rows = grid.spacing, grid.rows
     line = level(resample(level(measured), spacing)).heights
     origin = f"measured, {name_of(surface.line)}"  # type: ignore[arg-type]
@@ -359,36 +360,3 @@ def mirrored_before(heights: Array, rows: int) -> Array:
 def mirrored_words(heights: Array, rows: int) -> str:
     """Say that a run-in is mirrored, where it is."""
     return ", its mirror image for the run-in" if len(heights) < rows else ""
-
-
-def read_section(measured: Path | Profile, key: str) -> Profile:
-    """Read a measured section of a body across the path.
-
-    Parameters
-    ----------
-    measured : Path or Profile
-        Its file, or itself.
-    key : str
-        The key that names it, for messages.
-
-    Returns
-    -------
-    Profile
-        Heights, complete.
-
-    Raises
-    ------
-    InputError
-        If the file does not hold one complete line.
-    """
-    with spelled(in_case(key.partition(".")[0], {})):
-        section = read_surface(measured) if isinstance(measured, Path) else measured
-    if not isinstance(section, Profile):
-        raise InputError(key, "a map of heights", "one line across the path")
-    _complete(section, key)
-    return section
-
-
-def _complete(line: Profile, key: str) -> None:
-    remedy = "Interpolate them in the file."
-    require(line.missing_share == 0.0, key, "points without a height", "a complete line", remedy)

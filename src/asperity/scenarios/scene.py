@@ -65,7 +65,8 @@ class Scene:
     like: str = ""  # kind of case whose errors of laws are its own, as far as a map knows
     wheel: Wheel | None = None  # what touches a rail, by itself: its mass and its modes
     modes: WheelModes | None = None  # its modes in the frame of the contact, where their shapes are known
-    place: float = 0.0  # of the contact across tread and rail head, m from their middle
+    place: float = 0.0  # of the contact across the tread, m from its middle, to the field side
+    rail_place: float = 0.0  # and across the rail head
     scattered: bool = False  # a track is carried on by its whole past, not by poles
     most_poles: int | None = None  # that are fitted to a track
 
@@ -138,8 +139,8 @@ def scene_of(case: Case) -> Scene:
     """Build what rolls and what it rolls over, of a case."""
     body, over, highest = case.rolling, case.rolled_over, case.numerics.highest_frequency
     model = over.model(highest)
-    on_track = isinstance(model, Track)
-    one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING, case.contact_place)
+    on_track, (place, rail_place) = isinstance(model, Track), case.contact_places
+    one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING, place)
     degrees = body.degrees if len(body.degrees) > 1 or case.ROLLING == "body" else {case.ROLLING: 1.0}
     return Scene(
         model,
@@ -151,9 +152,10 @@ def scene_of(case: Case) -> Scene:
         degrees=degrees,
         displacements=case.DISPLACEMENTS,
         like="wheel-on-rail" if on_track else "ball-on-beam",
-        wheel=body.tread(highest, case.speed, case.contact_place) if on_track else None,
+        wheel=body.tread(highest, case.speed, place) if on_track else None,
         modes=body.turning_modes(highest, case.speed) if on_track else None,
-        place=case.contact_place,
+        place=place,
+        rail_place=rail_place,
         scattered=case.numerics.kernel == "scatter",
         most_poles=case.numerics.poles,
     )

@@ -226,7 +226,7 @@ def radiating_wheel(case: Any) -> RadiatingWheel | None:
     if modes is None:
         return None
     diameters, axial, radial = np.vstack(
-        [[1.0, 0.0, math.sqrt(0.5)], modes.table(case.contact_place)[:, 3:]]
+        [[1.0, 0.0, math.sqrt(0.5)], modes.table(case.contact_places[0])[:, 3:]]
     ).T
     return RadiatingWheel(case.rolling.radius, case.noise.wheel_width, diameters.astype(int), axial, radial)
 
@@ -309,7 +309,7 @@ def mode_by_mode(case: Any, power: Array, band: Array) -> Values:
 
     The rigid motion comes first; of the two waves in which turning splits a mode the powers are added.
     """
-    modes = case.rolling.standing_modes(case.numerics.highest_frequency).table(case.contact_place)
+    modes = case.rolling.standing_modes(case.numerics.highest_frequency).table(case.contact_places[0])
     frequency, damping, _, diameters, *_ = np.vstack([[0.0, 0.0, 1.0, 1.0, 0.0, 0.0], modes]).T
     number = np.arange(len(diameters))
     mode = np.append(0, np.repeat(number[1:], np.where(diameters[1:] > 0.0, 2, 1)))

@@ -393,8 +393,9 @@ LATERAL_FORCE_SPREAD = _side("lateral_force_rms(law)", "N", f"rms of the {_FORCE
 SIDEWAYS_CONTACT = _side("contact", "1", CONTACTS)
 _EACH = "rms of the lateral force of each contact, in stick"
 LATERAL_CONTACT_SPREAD = _side("lateral_contact_force_rms(law, contact)", "N", _EACH)
-_PLACE = "of the contact across tread and rail head, from their middle, positive towards the field side"
-CONTACT_PLACE = _side_fact("contact_place", "m", _PLACE)
+_PLACE = "of the contact across the {}, from its middle, positive towards the field side"
+CONTACT_PLACE = _side_fact("contact_place", "m", _PLACE.format("tread"))
+RAIL_CONTACT_PLACE = _side_fact("rail_contact_place", "m", _PLACE.format("rail head"))
 STICK_STIFFNESS = _side_fact("stick_stiffness", "N/m", "lateral stiffness of the contact in stick, Mindlin")
 SLIP_FORCE = _side_fact("slip_force", "N", "coefficient of friction times the static load")
 

@@ -37,7 +37,7 @@ SOURCES = (
 def moves_sideways(computed: Computed) -> bool:
     """Whether anything does: where the contact is off the middle, or the web of a drawn wheel may be bent."""
     case = computed.case
-    return "sideways" in case.inner and (case.contact_place != 0.0 or case.rolling.is_drawn)
+    return "sideways" in case.inner and (any(case.contact_places) or case.rolling.is_drawn)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class Sideways:
 
     def rail(self, frequency: Array, x: float) -> Complex:
         """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m."""
-        found = self.track.at_contact(frequency, x, x, self.computed.scene.place)
+        found = self.track.at_contact(frequency, x, x, self.computed.scene.rail_place)
         found[0, 0] += self.track.track.receptance(frequency, x, x)
         return found
 
@@ -148,7 +148,8 @@ class Sideways:
     def rail_power(self) -> Array:
         """Sound power of the rail sideways (laws, f), W/Hz."""
         case, rail = self.computed.case, self.track.rail
-        forms = squared_lateral_mobility(self.track, self.lines, self.places, self.computed.scene.place)
+        place = self.computed.scene.rail_place
+        forms = squared_lateral_mobility(self.track, self.lines, self.places, place)
         together = self.means(self.shares.real) + 1j * self.means(self.shares.imag)
         one = self.means(np.ones((1, len(self.fine[0]))))
         of_force = forms[:, 0, 0].real * one + forms[:, 1, 1].real * self.squares
@@ -234,6 +235,7 @@ def sideways_group(computed: Computed) -> Values:
         schema.SIDEWAYS_CONTACT: 1 + np.arange(contacts),
         schema.LATERAL_CONTACT_SPREAD: of_each,
         schema.CONTACT_PLACE: computed.scene.place,
+        schema.RAIL_CONTACT_PLACE: computed.scene.rail_place,
         schema.STICK_STIFFNESS: found.stiffness[1],
         schema.SLIP_FORCE: limit,
     }

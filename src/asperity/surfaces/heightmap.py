@@ -284,6 +284,8 @@ class Profile(Heights):
         Distance of neighbouring points in m.
     source : str
         Where the heights came from.
+    start : float, optional
+        Coordinate of the first point in m, where the source has one.
 
     Raises
     ------
@@ -300,6 +302,7 @@ class Profile(Heights):
     """
 
     spacing: float
+    start: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _checked_heights(self.heights, 1, self.source))
@@ -335,7 +338,7 @@ class Profile(Heights):
             If the piece is not inside the line or holds fewer than two points.
         """
         piece = _window("piece of the line", start, size, self.spacing, len(self.heights))
-        return replace(self, heights=self.heights[piece])
+        return replace(self, heights=self.heights[piece], start=None)
 
 
 def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> Array:

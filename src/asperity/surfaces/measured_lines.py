@@ -106,7 +106,7 @@ def trim(profile: Profile) -> tuple[Profile, tuple[int, int]]:
     valid = np.flatnonzero(np.isfinite(profile.heights))
     first, beyond = int(valid[0]), len(profile.heights) - int(valid[-1]) - 1
     heights = profile.heights[first : len(profile.heights) - beyond]
-    return (replace(profile, heights=heights) if first or beyond else profile), (first, beyond)
+    return (replace(profile, heights=heights, start=None) if first or beyond else profile), (first, beyond)
 
 
 def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:

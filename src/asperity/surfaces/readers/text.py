@@ -215,7 +215,10 @@ def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str)
 
     if columns == 2:
         line, step = arrays.line(table[:, 0], heights, source)
-        return [Profile(line, spacing[0] if spacing else step * lateral("x"), source)]
+        if spacing:
+            return [Profile(line, spacing[0], source)]
+        unit = lateral("x")
+        return [Profile(line, step * unit, source, float(table[:, 0].min()) * unit)]
     if columns == 3:
         heights, steps = arrays.rasterised(table[:, 0], table[:, 1], heights, source)
         spacing = spacing or (steps[0] * lateral("x"), steps[1] * lateral("y"))
