@@ -14,9 +14,16 @@ from asperity.arguments import Array
 from asperity.case.body import INERTIA, MASS
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
-from asperity.case.measured import read_decay_rates, read_mobility
+from asperity.case.measured import fitted_sleeper, read_decay_rates, read_mobility
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
-from asperity.case.tables import RECEPTANCES, TableFile, read_bays, read_dynamic_stiffness, read_table
+from asperity.case.tables import (
+    RECEPTANCES,
+    TableFile,
+    read_bays,
+    read_dynamic_stiffness,
+    read_seat_receptance,
+    read_table,
+)
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
     Choice,
@@ -41,6 +48,7 @@ from asperity.units import written
 
 if TYPE_CHECKING:
     from asperity.structures.beam import Support
+    from asperity.structures.measured_sleeper import MeasuredSleeper
     from asperity.structures.modal import Modal, ModalStructure
 
 MODES_BEYOND = 4.0
@@ -53,6 +61,7 @@ _SCATTER = "standard deviation over the mean of the normal distribution from whi
 PRELOAD_STEPS = 20
 """Steps in which the preload of pads is found, whose stiffness depends on it."""
 FREQUENCY = Quantity("Hz", above=0)
+BEDDED = "on-ballast"
 _WIDTHS = "10 mm to 1 m: rails lie between"
 
 
@@ -220,6 +229,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         ("rail_head_radius", "rail_profile"),
         ("pad_table", "pad_damping"),
         ("pad_table", "pad_loss_factor"),
+        ("sleeper_table", "sleeper_bending_stiffness"),
         ("bay_table", "bays"),
         *(("bay_table", f"{each}") for each in LISTED),
     )
@@ -250,6 +260,18 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "what a support carries of the wheel's static load",
         "1 N to 10 MN: rails press on pads with as much",
         goes_with="pad_table",
+    )
+    sleeper_table: Path | Array | None = optional(
+        TableFile(columns=(3,), read=read_seat_receptance),
+        "sleeper.csv",
+        "measured receptance of a sleeper at a rail seat with both pressed alike: frequency (Hz), real and "
+        "imaginary part (m/N), or magnitude (m/N) and phase (deg); modes on half of sleeper_mass are fitted",
+    )
+    sleeper_measured: str = key(
+        Choice(("free", BEDDED)),
+        "free",
+        "how it lay when it was measured: free, or on what this track has under its sleepers",
+        goes_with="sleeper_table",
     )
     bays: int | None = optional(
         Number(at_least=2, at_most=MOST_BAYS, whole=True),
@@ -308,6 +330,12 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     @property
     def overrides(self) -> dict[str, Any]:
         """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
+        sleeper = {} if self.sleeper_table is None else {"measured_sleeper": self._sleeper[0]}
+        return self._told | sleeper
+
+    @property
+    def _told(self) -> dict[str, Any]:
+        """The same without a measured sleeper."""
         told = {name: getattr(self, name) for name in keys_of(Track, "")}
         if self.pad_table is not None:
             told["pad_table"] = self._pad
@@ -326,6 +354,16 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         return read_dynamic_stiffness(self.pad_table)
 
     @cached_property
+    def _sleeper(self) -> tuple[MeasuredSleeper, list[Warning]]:
+        """The measured sleeper, and what was warned of."""
+        assert self.sleeper_table is not None
+        track = Track.named(self.name, **self._told)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", PhysicsWarning)
+            sleeper = fitted_sleeper(self.sleeper_table, track, self.sleeper_measured == BEDDED)
+        return sleeper, [each.message for each in caught if isinstance(each.message, Warning)]
+
+    @cached_property
     def _listed(self) -> Array:
         assert self.bay_table is not None
         return read_bays(self.bay_table)
@@ -340,15 +378,20 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         return Bays.drawn(self.bays, **scatters, seed=self.scatter_seed)
 
     @property
-    def described_pads(self) -> Iterator[str]:
-        """Say which measured pads these are, and at which preload; nothing of others."""
+    def described_tables(self) -> Iterator[tuple[str, str]]:
+        """Say which measured sleepers and pads these are, and at which preload; nothing of others."""
+        if self.sleeper_table is not None:
+            told, sleeper = f"{name_of(self.sleeper_table)}, {self.sleeper_measured}", self._sleeper[0]
+            rms, most, at = sleeper.fit_errors
+            met = f"met by {len(sleeper.modal_masses) - 1} modes within {rms:.2g} dB rms"
+            yield "measured sleepers", f"{told}: {met}, {most:.2g} dB at most, at {at:.4g} Hz"
         if self.pad_table is None:
             return
         preloads, said = preloads_of(self._pad_rows), name_of(self.pad_table)
         if self.pad_preload is not None:
             at, least, most = (1e-3 * each for each in (self.pad_preload, preloads[0], preloads[-1]))
             said += f" at {at:.3g} kN, measured from {least:.3g} to {most:.3g} kN"
-        yield f"{said}: {1e-6 * self._pad.nominal:.4g} MN/m at 300 Hz"
+        yield "measured pads", f"{said}: {1e-6 * self._pad.nominal:.4g} MN/m at 300 Hz"
 
     def preloaded(self, load: float) -> Self:
         """With the preload of the pads, where it matters and is not given, under a wheel with this load, N.
@@ -366,6 +409,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
 
     def model(self, highest_frequency: float = math.inf) -> Track:
         """Build the track: the named set with the keys of the case in it."""
+        for doubt in self._sleeper[1] if self.sleeper_table is not None else ():
+            warnings.warn(doubt, stacklevel=2)
         return replace(Track.named(self.name, **self.overrides), bays=self._drawn_or_listed())
 
     def default_of(self, name: str) -> float | str | None:
@@ -392,11 +437,15 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         if self.pad_preload is not None and single:
             received = f"{written(self.pad_preload, 'N', 'kN')} for a table that is at no preload, or at one"
             yield InputError("pad_preload", received, "a preload for a table at several", "Remove it.")
-        told = self.overrides
+        told = self._told
         try:
             self._drawn_or_listed()
         except InputError as error:
             yield error.about(f"{error.what.split()[0]}_scatter")
+        try:
+            _ = self.overrides
+        except InputError as error:
+            yield error.about("sleeper_table", f"{error.received} ({error.what})")
         for part in LAYERS:
             viscous, loss = f"{part}_damping", f"{part}_loss_factor"
             if viscous in told and loss in told:

@@ -23,6 +23,7 @@ from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
 from asperity.spectra import energy_sum
 from asperity.structures.bays import MOST_BAYS
+from asperity.structures.measured_sleeper import check_receptance
 from asperity.structures.outline import checked_outline
 from asperity.structures.stiffness_table import preloads_of, stiffness_at_preload
 from asperity.surfaces.readers.guards import hostile
@@ -68,6 +69,7 @@ STIFFNESS_AND_LOSS = (_FREQUENCY, Column("magnitude", "N/m"), Column("loss facto
 PRELOAD = (Column("preload", "N"),)
 """A further column of both."""
 RECEPTANCE = (_FREQUENCY, Column("real part", "m/N"), Column("imaginary part", "m/N"))
+MAGNITUDE_AND_PHASE = (_FREQUENCY, Column("magnitude", "m/N"), Column("phase", "rad"))
 RECEPTANCES = (
     _FREQUENCY,
     Column("position of the response", "m"),
@@ -178,15 +180,27 @@ def read_ratios(table: TableSource) -> tuple[Array, Array]:
 
 
 def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
-    """Read the receptance of a wheel, (n,), m/N, e^{+iωt}, with its rising frequencies, Hz.
+    """Read a receptance at its own place, (n,), m/N, e^{+iωt}, with its rising frequencies, Hz.
 
-    A table of three columns: frequency, real and imaginary part.
+    A table of three columns: frequency, real and imaginary part; or, as the heading of a file says, magnitude
+    and phase.
     """
-    frequency, real, imaginary = read_table(table, RECEPTANCE).T
+    by_phase = isinstance(table, Path) and _tells(table, "phase")
+    frequency, first, second = read_table(table, MAGNITUDE_AND_PHASE if by_phase else RECEPTANCE).T
     if frequency.size < FEWEST_LINES:
         raise InputError(name_of(table), f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
     refuse_disorder(table, frequency)
-    return frequency, real + 1j * imaginary
+    return frequency, first * np.exp(1j * second) if by_phase else first + 1j * second
+
+
+def read_seat_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
+    """Read the receptance of a sleeper at its rail seat, as `read_receptance`, that makes no energy."""
+    frequency, receptance = read_receptance(table)
+    try:
+        check_receptance(frequency, receptance)
+    except InputError as error:
+        raise error.about(name_of(table), f"{error.received} ({error.what})") from None
+    return frequency, receptance
 
 
 def read_dynamic_stiffness(table: TableSource) -> Array:
@@ -195,7 +209,7 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
     Frequency, Hz, real and imaginary part, N/m, e^{+iωt}, and preload, N. Files may have magnitude and loss
     factor, the imaginary over the real part, instead, which their heading says; arrays hold the parts.
     """
-    by_loss = isinstance(table, Path) and _tells_loss_factors(table)
+    by_loss = isinstance(table, Path) and _tells(table, "loss")
     rows = read_table(table, STIFFNESS_AND_LOSS if by_loss else STIFFNESS, PRELOAD)
     if by_loss:
         real = rows[:, 1] / np.hypot(1.0, rows[:, 2])
@@ -225,13 +239,13 @@ def read_bays(table: TableSource) -> Array:
     return rows
 
 
-def _tells_loss_factors(path: Path) -> bool:
-    """Whether the heading of a text file names a loss factor."""
+def _tells(path: Path, word: str) -> bool:
+    """Whether the heading of a text file has a word, in small letters."""
     if path.suffix.lower() in NETCDF:
         return False
-    content = read_text(path, path.name, "a table of dynamic stiffness", largest=LARGEST_TABLE, latin=True)
+    content = read_text(path, path.name, "a table over frequency", largest=LARGEST_TABLE, latin=True)
     lines = (line.lower() for line in islice(lines_in(content), MOST_HEADING))
-    return any("loss" in line and unit_in_brackets(line) for line in lines)
+    return any(word in line and unit_in_brackets(line) for line in lines)
 
 
 def refuse_disorder(table: TableSource, frequency: Array) -> None:

@@ -64,7 +64,7 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
     return [
         ("track", frequencies),
         *_rows_of_bays(case, track),
-        *(("measured pads", words) for words in case.track.described_pads),
+        *case.track.described_tables,
         *described_losses(losses, prepared.shape.load),
         ("rail motion recorded at", points),
         ("sound power", f"of {known}"),

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from asperity.arguments import Array, Complex, finite_array, positive
 from asperity.errors import InputError
 from asperity.parameters import Quantity, keys_of, parameter
+from asperity.structures.measured_sleeper import MeasuredSleeper
 from asperity.structures.periodic_rail import refuse_decay
 from asperity.structures.support import BendingSleeper, RigidMass, Spring
 from asperity.structures.track import VANISHING_DAMPING, Track
@@ -293,7 +294,7 @@ class LateralTrack:
         }
         below: Complex | None = None
         for name, element in reversed(vertical.elements.items()):
-            if isinstance(element, RigidMass | BendingSleeper):
+            if isinstance(element, RigidMass | BendingSleeper | MeasuredSleeper):
                 below = RigidMass(element.mass).on(omega, below)
             else:
                 below = _scaled(vertical.springs[name], shares.get(name, 1.0)).on(omega, below)

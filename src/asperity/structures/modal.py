@@ -75,7 +75,7 @@ def modal_receptance(structure: Modal, frequency: ArrayLike, x: float, x0: float
 
 def modal_answers(frequency: ArrayLike, natural: Array, ratios: Array) -> Complex:
     """Displacement of modes of unit mass per modal force (..., m), s²; frequencies (...) in Hz, e^{+iωt}."""
-    omega, own = 2.0 * np.pi * np.asarray(frequency, dtype=float)[..., None], 2.0 * np.pi * natural
+    omega, own = 2.0 * np.pi * np.asarray(frequency)[..., None], 2.0 * np.pi * natural
     return np.asarray(1.0 / (own**2 - omega**2 + 2j * ratios * own * omega), dtype=complex)
 
 

@@ -47,12 +47,12 @@ class StiffnessTable:
         if at.ndim != 1 or at.size < FEWEST:
             raise InputError("frequencies of a stiffness (Hz)", f"{at.size} frequencies", allowed)
         finite_array("dynamic stiffness (N/m)", [self.real, self.imaginary], shape=(2, at.size))
-        if wrong := _band(at, np.asarray(self.real) <= 0.0):
+        if wrong := band_of(at, np.asarray(self.real) <= 0.0):
             remedy = "Is the unit right, and the phase that of force over displacement?"
             raise InputError(
                 "dynamic stiffness", f"a real part of zero or less {wrong}", "above zero", remedy
             )
-        if wrong := _band(at, np.asarray(self.imaginary) < 0.0):
+        if wrong := band_of(at, np.asarray(self.imaginary) < 0.0):
             received = f"an imaginary part below zero {wrong}, by which the pad would make energy"
             remedy = "With a time factor e^{-iωt} change its sign; else leave these lines out."
             raise InputError("dynamic stiffness", received, "zero or more", remedy)
@@ -106,7 +106,7 @@ def _table(rows: Array) -> StiffnessTable:
     return StiffnessTable(*(tuple(column.tolist()) for column in sorted_rows[:, :3].T))
 
 
-def _band(frequencies: Array, wrong: NDArray[np.bool_]) -> str:
+def band_of(frequencies: Array, wrong: NDArray[np.bool_]) -> str:
     """The first band in which something is wrong; nothing where it is nowhere."""
     found = np.flatnonzero(wrong)
     if not found.size:

@@ -247,16 +247,20 @@ class Chain:
         assert below is not None
         return below
 
+    def below(self, omega: ArrayLike) -> list[Complex | None]:
+        """Dynamic stiffness under each element, N/m; None on rigid ground."""
+        stiffnesses: list[Complex | None] = [None]
+        for element in reversed(self.elements[1:]):
+            stiffnesses.append(element.on(omega, stiffnesses[-1]))
+        return stiffnesses[::-1]
+
     def squares(self, omega: ArrayLike) -> list[tuple[Array, Array]]:
         """Mean squares of how each element moves, and of how much it is squeezed, per square of the rail's.
 
         Two (f,) for each; over the length of a sleeper that bends, for itself and all that lies under it.
         """
-        stiffnesses: list[Complex | None] = [None]
-        for element in reversed(self.elements[1:]):
-            stiffnesses.append(element.on(omega, stiffnesses[-1]))
         moved, over, found = np.ones(np.shape(omega), complex), np.ones(np.shape(omega)), []
-        for element, below in zip(self.elements, reversed(stiffnesses), strict=True):
+        for element, below in zip(self.elements, self.below(omega), strict=True):
             passed, over = moved * element.passed(omega, below), over * element.spread(omega, below)
             found.append((over * np.abs(moved) ** 2, over * np.abs(moved - passed) ** 2))
             moved = passed

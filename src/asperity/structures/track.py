@@ -75,6 +75,8 @@ class Track(track_parameters.TrackParameters):
     pad_table : StiffnessTable, optional
         Measured stiffness of the pad over frequency, to which `pad_stiffness` gives the scale: its real part
         at 300 Hz, by default that of the table in `Track.named`.
+    measured_sleeper : MeasuredSleeper, optional
+        A sleeper by its modes, of the half mass `sleeper_mass`, instead of one that is rigid or bends.
     name : str
         What the set is called.
     sources : tuple of str
@@ -136,6 +138,8 @@ class Track(track_parameters.TrackParameters):
                 parameters.pop(other, None)
         if overrides.get("pad_table") is not None:
             overrides = {"pad_stiffness": overrides["pad_table"].nominal} | overrides
+        if overrides.get("measured_sleeper") is not None:
+            overrides = {"sleeper_mass": overrides["measured_sleeper"].mass} | overrides
         sources = {key: source for key, (_, source) in parameters.items()}
         sources |= dict.fromkeys(overrides, "given here")
         values: dict[str, Any] = {"name": name} | {key: value for key, (value, _) in parameters.items()}
@@ -181,7 +185,7 @@ class Track(track_parameters.TrackParameters):
     def elements(self) -> dict[str, Element]:
         """What lies between rail and ground, by name, from the rail down."""
         springs = self.springs
-        sleeper: Element = RigidMass(self.sleeper_mass)
+        sleeper: Element = self.measured_sleeper or RigidMass(self.sleeper_mass)
         if self.sleeper_bending_stiffness is not None:
             beam = self.sleeper_length, self.sleeper_bending_stiffness, self.seat_distance
             sleeper = BendingSleeper(self.sleeper_mass, *beam)
@@ -292,6 +296,7 @@ class Track(track_parameters.TrackParameters):
     def is_damped(self) -> bool:
         """Whether anything in the track dissipates."""
         damped = any(spring.damping for spring in self.springs.values())
+        damped = damped or bool(self.measured_sleeper and any(self.measured_sleeper.damping_ratios))
         return bool(damped or self.relaxations or self.lossy or self.damper)
 
     def waves(self, omega: ArrayLike) -> periodic_rail.PeriodicWaves | CellWaves:

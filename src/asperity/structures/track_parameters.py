@@ -9,6 +9,7 @@ from asperity.arguments import not_negative, positive, real, shown
 from asperity.errors import InputError
 from asperity.parameters import Flag, Key, Number, Quantity, keys_of, parameter
 from asperity.structures.bays import Bays
+from asperity.structures.measured_sleeper import MeasuredSleeper
 from asperity.structures.stiffness_table import StiffnessTable
 from asperity.structures.support import Relaxation
 
@@ -183,6 +184,7 @@ class TrackParameters:
         Number(above=0, at_most=0.9), 0.35, "loss factor of such a damper at its frequency", **_DAMPER
     )
     pad_table: StiffnessTable | None = None
+    measured_sleeper: MeasuredSleeper | None = None
     name: str = ""
     sources: tuple[str, ...] = ()
     relaxations: Relaxations | None = None
@@ -204,6 +206,13 @@ class TrackParameters:
         if self.pad_table is not None and (self.pad_damping, self.pad_loss_factor) != (None, None):
             remedy = "The table has the losses of the pad: remove pad_damping and pad_loss_factor."
             raise InputError("damping of the pad", "one beside pad_table", "one of them", remedy)
+        if self.measured_sleeper is not None:
+            if self.sleeper_bending_stiffness is not None:
+                remedy = "The table has the bending of the sleeper: remove sleeper_bending_stiffness."
+                raise InputError("sleeper", "a bending stiffness and a table", "one of them", remedy)
+            if self.sleeper_mass != self.measured_sleeper.mass:
+                allowed = f"that of the measured sleeper, {self.measured_sleeper.mass:g}"
+                raise InputError("sleeper mass (kg)", f"{self.sleeper_mass:g}", allowed)
         if self.continuous and self.bays is not None:
             remedy = "Give no scatter, or supports that are not spread along the rail."
             raise InputError("bays that differ", "some on supports that are continuous", "equal bays", remedy)

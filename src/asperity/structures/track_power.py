@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from asperity.arguments import Array, Complex, finite_array, real
 from asperity.structures.cell_waves import CellWaves, cell_waves
+from asperity.structures.measured_sleeper import MeasuredSleeper
 from asperity.structures.support import Spring
 from asperity.structures.track import Track
 
@@ -30,7 +31,8 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
     Returns
     -------
     dict of ndarray (f,)
-        W/N², by the names of the track's parts: ``"rail"``, those of its springs, ``"rail_damper"``.
+        W/N², by the names of the track's parts: ``"rail"``, those of its springs, ``"sleeper"`` if it was
+        measured, ``"rail_damper"``.
 
     Raises
     ------
@@ -48,9 +50,12 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
     chain, omega = track.support, field.omega
     moved = field.supports()
     found = {"rail": omega * field.strained()}
-    for (name, element), (_, squeezed) in zip(track.elements.items(), chain.squares(omega), strict=True):
+    parts = zip(track.elements.items(), chain.squares(omega), chain.below(omega), strict=True)
+    for (name, element), (square, squeezed), below in parts:
         if isinstance(element, Spring):
             found[name] = omega * element.stiffness(omega).imag * squeezed * moved
+        if isinstance(element, MeasuredSleeper):
+            found[name] = omega * element.lost(omega, below) * square * moved
     if (damper := track.damper) is not None:
         found["rail_damper"] = omega * damper.spring(omega).imag * damper.squeezed(omega) * field.dampers()
     return found
