@@ -1,4 +1,4 @@
-"""Measured pads in a case: tables in all their forms, the preload that the wheel decides, messages."""
+"""Measured pads and sleepers in a case: tables in all their forms, the preload of the wheel, messages."""
 
 from pathlib import Path
 
@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from case_texts import case_text, write_files
 
-from asperity import WheelOnRail
+from asperity import Track, WheelOnRail
 from asperity.case.cases import parse_case
 from asperity.case.tables import read_dynamic_stiffness
-from asperity.errors import CaseError, InputError
+from asperity.errors import CaseError, InputError, UnconvergedWarning
 from asperity.scenes.noise import sleeper_top
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pad_stiffness.csv"
@@ -56,9 +56,9 @@ def test_the_wheel_decides_the_preload(tmp_path):
         assert track.pad_stiffness == pytest.approx(150e6 * (1.0 + min(max(place, 0.0), 1.0)), rel=1e-3)
     assert 20e3 < light.track.pad_preload < heavy.track.pad_preload < 60e3
     assert "pad_preload" not in light.to_toml()
-    (said,) = heavy.track.described_pads
-    assert said == "pad.csv at 38.2 kN, measured from 20 to 60 kN: 218.3 MN/m at 300 Hz"
-    assert not list(WheelOnRail(surface={"spectrum": "iso3095"}).track.described_pads)
+    (said,) = heavy.track.described_tables
+    assert said == ("measured pads", "pad.csv at 38.2 kN, measured from 20 to 60 kN: 218.3 MN/m at 300 Hz")
+    assert not list(WheelOnRail(surface={"spectrum": "iso3095"}).track.described_tables)
     assert case_of(table, pad_preload="60 kN").track.model().pad_stiffness == pytest.approx(300e6, rel=1e-3)
 
 
@@ -124,6 +124,8 @@ def test_bad_tables_are_refused_with_their_place(text, message, tmp_path):
         ('sleeper_length = "2.4 m"', "only together with sleeper_bending_stiffness"),
         ('rail_damper_mass = "15 kg"', "no rail_damper_frequency"),
         ("rail_damper_loss_factor = 0.95", "at most 0.9"),
+        ('sleeper_table = "pad.csv"', "the heading 'real part (MN/m)'"),
+        ('sleeper_measured = "on-ballast"', "only together with sleeper_table"),
         ("continuous = 1", "true or false"),
         ('sleeper_bending_stiffness = "6 MN m^2"\nseat_distance = "2.6 m"', "received seat_distance = 2.6 m"),
         (
@@ -138,3 +140,44 @@ def test_keys_that_do_not_fit_are_named(keys, message, tmp_path):
     with pytest.raises(CaseError) as told:
         parse_case(case_text("wheel-on-rail", f"[track]\n{keys}"), source)
     assert message in str(told.value)
+
+
+# --- sleepers
+
+SEAT = 2.0 * np.pi * np.geomspace(15.0, 3000.0, 40)
+
+
+def sleepers(tmp_path, receptance, **track):
+    """A case with a table of receptances (40,), m/N, in a file, in µm/kN and degrees."""
+    rows = np.column_stack([SEAT / (2.0 * np.pi), 1e9 * np.abs(receptance), np.degrees(np.angle(receptance))])
+    lines = "\n".join(", ".join(map(repr, row)) for row in rows.tolist())
+    text = f"frequency (Hz), magnitude (um/kN), phase (deg)\n{lines}\n"
+    (tmp_path / "seat.csv").write_text(text, encoding="utf-8")
+    keys = {"name": "uic60", "sleeper_table": tmp_path / "seat.csv", "sleeper_mass": 140.0, **track}
+    return WheelOnRail(surface={"spectrum": "iso3095"}, track=keys)
+
+
+def test_sleepers_are_read_free_and_on_the_ballast_of_their_track(tmp_path):
+    ballast = {"ballast_stiffness": 90e6, "ballast_loss_factor": 0.8}
+    at = np.array([60.0, 400.0, 1500.0])
+    expected = Track.named("uic60", sleeper_mass=140.0, **ballast).receptance(at, 0.0, 0.0)
+    for how, bed in (("free", 0.0), ("on-ballast", 90e6 * (1.0 + 0.8j))):
+        receptance = 1.0 / (bed - 140.0 * SEAT**2)
+        case = sleepers(tmp_path, receptance, sleeper_measured=how, **ballast)
+        np.testing.assert_allclose(case.track.model().receptance(at, 0.0, 0.0), expected, rtol=1e-9)
+        ((named, said),) = case.track.described_tables
+        assert named == "measured sleepers"
+        assert said.startswith(f"seat.csv, {how}: 0 modes on 140 kg")
+        array = np.column_stack([SEAT / (2.0 * np.pi), receptance.real, receptance.imag])
+        again = case.with_(track={"sleeper_table": array}).track.model()
+        np.testing.assert_allclose(again.receptance(at, 0.0, 0.0), expected, rtol=1e-9)
+
+
+def test_sleepers_that_do_not_fit_are_told(tmp_path):
+    free, bed = -1.0 / (140.0 * SEAT**2), 90e6 * (1.0 + 0.8j)
+    with pytest.warns(UnconvergedWarning, match=r"on 115 kg.* of the sleeper in seat\.csv to 1\.6 dB"):
+        sleepers(tmp_path, free, sleeper_mass=115.0).track.model()
+    with pytest.raises(CaseError, match=r"at 15 Hz, where the table has 9e\+07 N/m with loss factor 0\.8"):
+        sleepers(tmp_path, 1.0 / (bed - 140.0 * SEAT**2), sleeper_measured="on-ballast")
+    with pytest.raises(CaseError, match=r"from 15 to 3000 Hz, by which the sleeper would make energy"):
+        sleepers(tmp_path, -1j * free)

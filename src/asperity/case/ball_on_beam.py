@@ -2,9 +2,9 @@
 
 from typing import ClassVar
 
+from asperity.case.beam import BeamKeys
 from asperity.case.body import Rolling
 from asperity.case.form import section
-from asperity.case.rolled_over import BeamKeys
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NumericsKeys
 from asperity.case.surface import OF_RAILS, Surface

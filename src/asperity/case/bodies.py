@@ -3,9 +3,10 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
+from asperity.case.beam import BeamKeys
 from asperity.case.body import Rolling
 from asperity.case.form import section
-from asperity.case.rolled_over import BeamKeys, RolledOver, StructureKeys, TrackKeys
+from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.sideways import SidewaysKeys

@@ -7,14 +7,7 @@ from numpy.typing import NDArray
 
 from asperity.arguments import Array
 from asperity.case.content import name_of
-from asperity.case.tables import (
-    Column,
-    TableSource,
-    fitted_to,
-    read_seat_receptance,
-    read_table,
-    refuse_disorder,
-)
+from asperity.case.tables import Column, TableSource, read_seat_receptance, read_table, refuse_disorder
 from asperity.errors import InputError
 from asperity.spectra import a_weighting
 from asperity.structures.measured_sleeper import MeasuredSleeper, measured_sleeper
@@ -98,16 +91,11 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
 
 
 def fitted_sleeper(table: TableSource, track: Track, bedded: bool) -> MeasuredSleeper:
-    """Modes of a sleeper on its half mass in a track by a table of its receptance at the rail seat.
-
-    Free, or on what the track has below its sleepers.
-    """
+    """Modes of a sleeper, of its mass in a track, by its receptance when free, or on what it has below it."""
     frequency, receptance = read_seat_receptance(table)
-    below = track.support.below(2.0 * np.pi * frequency)[1]
-    if below is None or not bedded:
-        below = np.zeros(len(frequency), complex)
-    with fitted_to(table):
-        return measured_sleeper(frequency, receptance, track.sleeper_mass, below)
+    below = track.support.below(2.0 * np.pi * frequency)[1] if bedded else None
+    bed = np.zeros(len(frequency), complex) if below is None else below
+    return measured_sleeper(frequency, receptance, track.sleeper_mass, bed)
 
 
 def read_passage(table: TableSource) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""What is rolled over: beams on supports, tracks, and structures known by their modes or receptances."""
+"""What is rolled over: tracks, and structures known by their modes or receptances."""
 
 from __future__ import annotations
 
@@ -47,12 +47,9 @@ from asperity.surfaces.heightmap import Profile
 from asperity.units import written
 
 if TYPE_CHECKING:
-    from asperity.structures.beam import Support
     from asperity.structures.measured_sleeper import MeasuredSleeper
     from asperity.structures.modal import Modal, ModalStructure
 
-MODES_BEYOND = 4.0
-"""Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
 LISTED = ("sleeper_spacing", "pad_stiffness", "ballast_stiffness")
@@ -108,120 +105,6 @@ class RolledOver(Section):
         yield from ()
 
 
-class BeamKeys(RolledOver):
-    """A finite Euler–Bernoulli beam, held at its ends, or on further supports along it."""
-
-    length: float = key(LENGTH, "1 m", "length, along the path", "1 mm to 1 km: beams lie between")
-    width: float = key(LENGTH, "50 mm", "width of the cross-section", "1 um to 10 m: beams lie between")
-    height: float = key(LENGTH, "10 mm", "height of the cross-section", "1 um to 10 m: beams lie between")
-    material: Material = key(MaterialOrName(), "steel", "material")
-    support: str = key(Choice(("simply-supported", "free", "clamped")), "simply-supported", "both ends")
-    loss_factor: float = key(Number(at_least=0, at_most=0.5), 0.005, "loss factor of every bending mode")
-    suspension_frequency: float = key(
-        FREQUENCY,
-        "5 Hz",
-        "natural frequency of the rigid beam on its soft suspension",
-        "1 mHz to 1 kHz: a suspension is softer than the beam",
-        goes_with="support=free",
-    )
-    supports: tuple[float, ...] | None = optional(
-        ListOf(POSITION, least=1),
-        ["0.4 m", "0.8 m"],
-        "positions of supports beside those of the ends",
-        "one span",
-        "0 m to 1 km: beams lie between",
-    )
-    support_stiffness: float = key(
-        Quantity("N/m", above=0, infinite=True),
-        "inf",
-        "stiffness of each of these supports",
-        '1 mN/m to 1e15 N/m: stiffer ones are rigid: write "inf"',
-        goes_with="supports",
-    )
-    support_loss_factor: float = key(
-        Number(at_least=0, at_most=1), 0.0, "loss factor of these supports", goes_with="supports"
-    )
-    modes_up_to: float | None = optional(
-        FREQUENCY,
-        "20 kHz",
-        "natural frequency up to which bending modes are kept",
-        "four times the highest frequency of the spectra",
-        "0.1 Hz to 100 MHz: rolling is slower than ultrasound",
-    )
-    sensors: tuple[float, ...] | None = optional(
-        ListOf(POSITION, least=1),
-        ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
-        "positions of the accelerometers from the beam's start",
-        "at 20, 35, 50, 65 and 80 % of the length",
-        "0 m to 1 km: beams are shorter",
-    )
-
-    @property
-    def sides(self) -> dict[str, float]:
-        """Sides of its section that a contact has to be smaller than, m, by their keys."""
-        return {"width": self.width, "height": self.height}
-
-    @property
-    def extent(self) -> tuple[float, float]:
-        """Where it begins and ends, m."""
-        return 0.0, self.length
-
-    @property
-    def sensor_positions(self) -> tuple[float, ...]:
-        """Positions of the accelerometers, m, with the default filled in."""
-        return self.sensors or tuple(share * self.length for share in SENSOR_SHARES)
-
-    def highest_mode(self, highest_frequency: float) -> float:
-        """Frequency up to which modes are kept, Hz, for spectra up to a highest one, Hz."""
-        return self.modes_up_to or MODES_BEYOND * highest_frequency
-
-    def model(self, highest_frequency: float) -> Modal:
-        """Build the beam: of one span, or on further supports."""
-        from asperity.structures.beam import Beam, SupportedBeam
-
-        section = (self.length, self.width, self.height, self.material)
-        highest = self.highest_mode(highest_frequency)
-        if self.supports is not None:
-            return SupportedBeam.rectangular(
-                *section, self.held, loss_factor=self.loss_factor, highest_frequency=highest
-            )
-        return Beam.rectangular(
-            *section,
-            support=self.support,
-            loss_factor=self.loss_factor,
-            highest_frequency=highest,
-            suspension_frequency=self.suspension_frequency,
-        )
-
-    @property
-    def held(self) -> list[Support]:
-        """All supports, those of the ends among them."""
-        from asperity.structures.beam import Support
-
-        ends = {"simply-supported": 0.0, "clamped": math.inf}.get(self.support)
-        at_ends = [] if ends is None else [Support(x, rotational_stiffness=ends) for x in (0.0, self.length)]
-        stiffness, loss = self.support_stiffness, self.support_loss_factor
-        return [*at_ends, *(Support(x, stiffness, loss_factor=loss) for x in self.supports or ())]
-
-    def problems(self) -> Iterator[InputError]:
-        """Sensors, and supports on the beam, in places of their own."""
-        for position in self.sensors or ():
-            if position > self.length:
-                allowed = f"positions on the beam, 0 to {self.length:g} m"
-                yield InputError("sensors", f"{position:g} m", allowed)
-        if self.supports is None:
-            return
-        ends = () if self.support == "free" else (0.0, self.length)
-        places = [*ends, *self.supports]
-        if len(set(places)) < len(places) or max(places, default=0.0) > self.length:
-            received = ", ".join(f"{x:g} m" for x in self.supports)
-            allowed = f"different positions on the beam of {self.length:g} m, none where an end is held"
-            yield InputError("supports", received, allowed)
-        elif len(places) < 2:
-            remedy = "A beam on one support rocks: add another."
-            yield InputError("supports", f"{len(places)} of a free beam", "two supports or more", remedy)
-
-
 class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named set")):
     """A track: a named, cited set, each single key of which overrides it; and its rail head."""
 
@@ -265,7 +148,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         TableFile(columns=(3,), read=read_seat_receptance),
         "sleeper.csv",
         "measured receptance of a sleeper at a rail seat with both pressed alike: frequency (Hz), real and "
-        "imaginary part (m/N), or magnitude (m/N) and phase (deg); modes on half of sleeper_mass are fitted",
+        "imaginary part (m/N), or magnitude (m/N) and phase (deg); modes on sleeper_mass are fitted",
     )
     sleeper_measured: str = key(
         Choice(("free", BEDDED)),
@@ -330,7 +213,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     @property
     def overrides(self) -> dict[str, Any]:
         """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
-        sleeper = {} if self.sleeper_table is None else {"measured_sleeper": self._sleeper[0]}
+        sleeper = {} if self.sleeper_table is None else {"measured_sleeper": self._sleeper}
         return self._told | sleeper
 
     @property
@@ -354,14 +237,10 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         return read_dynamic_stiffness(self.pad_table)
 
     @cached_property
-    def _sleeper(self) -> tuple[MeasuredSleeper, list[Warning]]:
-        """The measured sleeper, and what was warned of."""
+    def _sleeper(self) -> MeasuredSleeper:
         assert self.sleeper_table is not None
         track = Track.named(self.name, **self._told)
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", PhysicsWarning)
-            sleeper = fitted_sleeper(self.sleeper_table, track, self.sleeper_measured == BEDDED)
-        return sleeper, [each.message for each in caught if isinstance(each.message, Warning)]
+        return fitted_sleeper(self.sleeper_table, track, self.sleeper_measured == BEDDED)
 
     @cached_property
     def _listed(self) -> Array:
@@ -381,10 +260,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     def described_tables(self) -> Iterator[tuple[str, str]]:
         """Say which measured sleepers and pads these are, and at which preload; nothing of others."""
         if self.sleeper_table is not None:
-            told, sleeper = f"{name_of(self.sleeper_table)}, {self.sleeper_measured}", self._sleeper[0]
-            rms, most, at = sleeper.fit_errors
-            met = f"met by {len(sleeper.modal_masses) - 1} modes within {rms:.2g} dB rms"
-            yield "measured sleepers", f"{told}: {met}, {most:.2g} dB at most, at {at:.4g} Hz"
+            met = f"{self._sleeper.fitted} meet it to {self._sleeper.fit_error:.2g} dB rms"
+            yield "measured sleepers", f"{name_of(self.sleeper_table)}, {self.sleeper_measured}: {met}"
         if self.pad_table is None:
             return
         preloads, said = preloads_of(self._pad_rows), name_of(self.pad_table)
@@ -409,8 +286,11 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
 
     def model(self, highest_frequency: float = math.inf) -> Track:
         """Build the track: the named set with the keys of the case in it."""
-        for doubt in self._sleeper[1] if self.sleeper_table is not None else ():
-            warnings.warn(doubt, stacklevel=2)
+        if self.sleeper_table is not None:
+            from asperity.structures.modal_fit import judge_fit
+
+            what = f"receptance of the sleeper in {name_of(self.sleeper_table)}"
+            judge_fit(what, self._sleeper.fit_error, self._sleeper.fitted)
         return replace(Track.named(self.name, **self.overrides), bays=self._drawn_or_listed())
 
     def default_of(self, name: str) -> float | str | None:
@@ -442,10 +322,6 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
             self._drawn_or_listed()
         except InputError as error:
             yield error.about(f"{error.what.split()[0]}_scatter")
-        try:
-            _ = self.overrides
-        except InputError as error:
-            yield error.about("sleeper_table", f"{error.received} ({error.what})")
         for part in LAYERS:
             viscous, loss = f"{part}_damping", f"{part}_loss_factor"
             if viscous in told and loss in told:
@@ -458,7 +334,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         try:
             track = self.model()
         except InputError as error:
-            yield error.about("track")
+            yield error.about("track", f"{error.received} ({error.what})")
             return
         if not track.is_damped:
             remedy = "Give the rail a loss factor, or damping to pads or ballast."

@@ -7,7 +7,8 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.arguments import Array
-from asperity.case.rolled_over import BeamKeys, TrackKeys
+from asperity.case.beam import BeamKeys
+from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case
 from asperity.errors import ComputationError, warn_of_findings
 from asperity.laws import Role, in_role

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, Complex, finite_array
 from asperity.errors import InputError
 from asperity.structures.stiffness_table import band_of
 from asperity.structures.support import Element
@@ -28,8 +28,8 @@ class MeasuredSleeper(Element):
     natural_frequencies: tuple[float, ...]  # Hz
     damping_ratios: tuple[float, ...]
     modal_masses: tuple[float, ...]  # m_k, of the half, kg, where the seat is displaced by one
-    # of its level against a table: root mean square and largest, dB, and the frequency of that, Hz
-    fit_errors: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    fit_error: float = 0.0  # root mean square of the level difference to a table, dB
+    fitted: str = ""  # by what, in words
 
     def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
         """Inverse of the sum of its modes."""
@@ -67,6 +67,10 @@ class MeasuredSleeper(Element):
 
 def check_receptance(frequency: Array, receptance: Complex) -> None:
     """Refuse a receptance (n,) at its own place, m/N, that makes energy, and say in which band, Hz."""
+    from asperity.structures.modal_fit import check_range
+
+    check_range(frequency, receptance)
+    finite_array("size of a receptance (m/N)", np.abs(receptance), above=0.0)
     if wrong := band_of(frequency, receptance.imag > CREATED * np.abs(receptance)):
         received = f"an imaginary part above zero {wrong}, by which the sleeper would make energy"
         allowed = f"zero or less, but for noise of {CREATED:.0%} of the receptance"
@@ -91,17 +95,12 @@ def measured_sleeper(frequency: Array, receptance: Complex, mass: float, below: 
     Returns
     -------
     MeasuredSleeper
-        With its `fit_errors`.
+        With its `fit_error`, of which a `Track` that is built from a case is judged.
 
     Raises
     ------
     InputError
-        If the receptance makes energy, or modes on this mass and bed meet it to 6 dB only.
-
-    Warns
-    -----
-    UnconvergedWarning
-        If they meet it to more than 1 dB.
+        If the receptance makes energy, or is out of all range.
 
     Notes
     -----
@@ -117,21 +116,16 @@ def measured_sleeper(frequency: Array, receptance: Complex, mass: float, below: 
     answering = -1j * np.sqrt(below / mass - omega**2) / (2.0 * np.pi)
     rigid = np.asarray(1.0 / (below - mass * omega**2))
     own, ratios, masses = modal_fit.fit_modes(frequency, receptance, rigid, answering)
-    found = MeasuredSleeper(
-        mass, *((first, *each.tolist()) for first, each in ((0.0, own), (0.0, ratios), (mass, masses)))
-    )
+    rigidly = ((0.0, own), (0.0, ratios), (mass, masses))
+    natural, damping, modal = (tuple(np.append(*each).tolist()) for each in rigidly)
+    found = MeasuredSleeper(mass, natural, damping, modal)
     fitted = found._modes(omega, below).sum(axis=-1)
-    error, off = (
-        modal_fit.level_error(fitted, receptance),
-        np.abs(20.0 * np.log10(np.abs(fitted / receptance))),
-    )
-    modes = f"{len(own)} modes on a mass of {mass:.4g} kg"
+    off = 20.0 * np.log10(np.abs(fitted / receptance))
+    worst = int(np.argmax(np.abs(off)))
+    words = f"{len(own)} modes on {mass:.4g} kg"
     if below.any():
         here, there = below[0], 1.0 / receptance[0] + mass * omega[0] ** 2
-        modes += (
-            f" and a bed of {here.real:.3g} N/m with the loss factor {here.imag / here.real:.2g} at "
-            f"{frequency[0]:.3g} Hz, where the table has {there.real:.3g} N/m and {there.imag / there.real:.2g},"
-        )
-    modal_fit.judge_fit("receptance of the sleeper", error, modes)
-    worst = int(np.argmax(off))
-    return replace(found, fit_errors=(error, float(off[worst]), float(frequency[worst])))
+        of_each = (f"{k.real:.3g} N/m with loss factor {k.imag / k.real:.2g}" for k in (here, there))
+        words += " and {} at {:.3g} Hz, where the table has {}".format(next(of_each), frequency[0], *of_each)
+    words += f" ({abs(off[worst]):.2g} dB off at most, at {frequency[worst]:.4g} Hz)"
+    return replace(found, fit_error=modal_fit.level_error(fitted, receptance), fitted=words)

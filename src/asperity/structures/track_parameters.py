@@ -206,13 +206,9 @@ class TrackParameters:
         if self.pad_table is not None and (self.pad_damping, self.pad_loss_factor) != (None, None):
             remedy = "The table has the losses of the pad: remove pad_damping and pad_loss_factor."
             raise InputError("damping of the pad", "one beside pad_table", "one of them", remedy)
-        if self.measured_sleeper is not None:
-            if self.sleeper_bending_stiffness is not None:
-                remedy = "The table has the bending of the sleeper: remove sleeper_bending_stiffness."
-                raise InputError("sleeper", "a bending stiffness and a table", "one of them", remedy)
-            if self.sleeper_mass != self.measured_sleeper.mass:
-                allowed = f"that of the measured sleeper, {self.measured_sleeper.mass:g}"
-                raise InputError("sleeper mass (kg)", f"{self.sleeper_mass:g}", allowed)
+        if self.measured_sleeper is not None and self.sleeper_bending_stiffness is not None:
+            remedy = "The measured one bends as it does: remove sleeper_bending_stiffness."
+            raise InputError("sleeper", "one that was measured and one that bends", "one of them", remedy)
         if self.continuous and self.bays is not None:
             remedy = "Give no scatter, or supports that are not spread along the rail."
             raise InputError("bays that differ", "some on supports that are continuous", "equal bays", remedy)

@@ -1,0 +1,134 @@
+"""Beams that are rolled over: of one span, or on further supports."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from asperity.case.rolled_over import FREQUENCY, SENSOR_SHARES, RolledOver
+from asperity.case.surface import LENGTH, POSITION
+from asperity.errors import InputError
+from asperity.parameters import Choice, ListOf, MaterialOrName, Number, Quantity, key, optional
+from asperity.reference.materials import Material
+
+if TYPE_CHECKING:
+    from asperity.structures.beam import Support
+    from asperity.structures.modal import Modal
+
+MODES_BEYOND = 4.0
+"""Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
+
+
+class BeamKeys(RolledOver):
+    """A finite Euler–Bernoulli beam, held at its ends, or on further supports along it."""
+
+    length: float = key(LENGTH, "1 m", "length, along the path", "1 mm to 1 km: beams lie between")
+    width: float = key(LENGTH, "50 mm", "width of the cross-section", "1 um to 10 m: beams lie between")
+    height: float = key(LENGTH, "10 mm", "height of the cross-section", "1 um to 10 m: beams lie between")
+    material: Material = key(MaterialOrName(), "steel", "material")
+    support: str = key(Choice(("simply-supported", "free", "clamped")), "simply-supported", "both ends")
+    loss_factor: float = key(Number(at_least=0, at_most=0.5), 0.005, "loss factor of every bending mode")
+    suspension_frequency: float = key(
+        FREQUENCY,
+        "5 Hz",
+        "natural frequency of the rigid beam on its soft suspension",
+        "1 mHz to 1 kHz: a suspension is softer than the beam",
+        goes_with="support=free",
+    )
+    supports: tuple[float, ...] | None = optional(
+        ListOf(POSITION, least=1),
+        ["0.4 m", "0.8 m"],
+        "positions of supports beside those of the ends",
+        "one span",
+        "0 m to 1 km: beams lie between",
+    )
+    support_stiffness: float = key(
+        Quantity("N/m", above=0, infinite=True),
+        "inf",
+        "stiffness of each of these supports",
+        '1 mN/m to 1e15 N/m: stiffer ones are rigid: write "inf"',
+        goes_with="supports",
+    )
+    support_loss_factor: float = key(
+        Number(at_least=0, at_most=1), 0.0, "loss factor of these supports", goes_with="supports"
+    )
+    modes_up_to: float | None = optional(
+        FREQUENCY,
+        "20 kHz",
+        "natural frequency up to which bending modes are kept",
+        "four times the highest frequency of the spectra",
+        "0.1 Hz to 100 MHz: rolling is slower than ultrasound",
+    )
+    sensors: tuple[float, ...] | None = optional(
+        ListOf(POSITION, least=1),
+        ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
+        "positions of the accelerometers from the beam's start",
+        "at 20, 35, 50, 65 and 80 % of the length",
+        "0 m to 1 km: beams are shorter",
+    )
+
+    @property
+    def sides(self) -> dict[str, float]:
+        """Sides of its section that a contact has to be smaller than, m, by their keys."""
+        return {"width": self.width, "height": self.height}
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Where it begins and ends, m."""
+        return 0.0, self.length
+
+    @property
+    def sensor_positions(self) -> tuple[float, ...]:
+        """Positions of the accelerometers, m, with the default filled in."""
+        return self.sensors or tuple(share * self.length for share in SENSOR_SHARES)
+
+    def highest_mode(self, highest_frequency: float) -> float:
+        """Frequency up to which modes are kept, Hz, for spectra up to a highest one, Hz."""
+        return self.modes_up_to or MODES_BEYOND * highest_frequency
+
+    def model(self, highest_frequency: float) -> Modal:
+        """Build the beam: of one span, or on further supports."""
+        from asperity.structures.beam import Beam, SupportedBeam
+
+        section = (self.length, self.width, self.height, self.material)
+        highest = self.highest_mode(highest_frequency)
+        if self.supports is not None:
+            return SupportedBeam.rectangular(
+                *section, self.held, loss_factor=self.loss_factor, highest_frequency=highest
+            )
+        return Beam.rectangular(
+            *section,
+            support=self.support,
+            loss_factor=self.loss_factor,
+            highest_frequency=highest,
+            suspension_frequency=self.suspension_frequency,
+        )
+
+    @property
+    def held(self) -> list[Support]:
+        """All supports, those of the ends among them."""
+        from asperity.structures.beam import Support
+
+        ends = {"simply-supported": 0.0, "clamped": math.inf}.get(self.support)
+        at_ends = [] if ends is None else [Support(x, rotational_stiffness=ends) for x in (0.0, self.length)]
+        stiffness, loss = self.support_stiffness, self.support_loss_factor
+        return [*at_ends, *(Support(x, stiffness, loss_factor=loss) for x in self.supports or ())]
+
+    def problems(self) -> Iterator[InputError]:
+        """Sensors, and supports on the beam, in places of their own."""
+        for position in self.sensors or ():
+            if position > self.length:
+                allowed = f"positions on the beam, 0 to {self.length:g} m"
+                yield InputError("sensors", f"{position:g} m", allowed)
+        if self.supports is None:
+            return
+        ends = () if self.support == "free" else (0.0, self.length)
+        places = [*ends, *self.supports]
+        if len(set(places)) < len(places) or max(places, default=0.0) > self.length:
+            received = ", ".join(f"{x:g} m" for x in self.supports)
+            allowed = f"different positions on the beam of {self.length:g} m, none where an end is held"
+            yield InputError("supports", received, allowed)
+        elif len(places) < 2:
+            remedy = "A beam on one support rocks: add another."
+            yield InputError("supports", f"{len(places)} of a free beam", "two supports or more", remedy)

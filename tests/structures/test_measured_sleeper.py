@@ -1,0 +1,117 @@
+"""Sleepers by their receptance at the rail seat: against free beams of the test, free and on a bed."""
+
+import numpy as np
+import pytest
+
+from asperity import Track
+from asperity.errors import InputError
+from asperity.structures.causal_track import causal_track
+from asperity.structures.measured_sleeper import measured_sleeper
+from asperity.structures.support import RigidMass
+from asperity.structures.track_power import dissipated_power
+
+MASS, LENGTH, BENDING, SEATS = 150.0, 2.6, 6e6, 1.5
+FREQUENCY = np.geomspace(20.0, 6000.0, 250)
+LOOKED = np.array([30.0, 121.0, 280.0, 650.0, 1063.0, 1600.0, 2900.0, 4500.0])
+NOTHING = np.zeros(len(FREQUENCY), complex)
+
+
+def beam(bed, bending=BENDING):
+    """Seat receptance of a free beam on a bed, N/m under its half, both seats pressed alike, at `FREQUENCY`.
+
+    B w'''' = k⁴ B w: cos kx and cosh kx from the middle to the seat; from there two sums that leave the end
+    free, of y, from the end. At the seat w, w', w'' go on, and B w''' falls by the force.
+    """
+    k = ((MASS * (2.0 * np.pi * FREQUENCY) ** 2 - bed) / (0.5 * LENGTH) / bending + 0j) ** 0.25
+    x, y = k * 0.5 * SEATS, k * 0.5 * (LENGTH - SEATS)
+    even, odd = [np.cosh, np.sinh] * 2, [np.sinh, np.cosh] * 2
+    rows = []
+    for n in range(4):
+        turn, back = 0.5 * n * np.pi, (-1.0) ** n
+        end = [np.cos(y + turn) + even[n](y), np.sin(y + turn) + odd[n](y)]
+        rows.append([np.cos(x + turn), even[n](x), *(-back * each for each in end)])
+    matrix = np.moveaxis(np.array(rows), 2, 0)
+    force = np.multiply.outer(-1.0 / (bending * k**3), [[0.0], [0.0], [0.0], [1.0]])
+    amplitude = np.linalg.solve(matrix, force)[:, :, 0]
+    return amplitude[:, 0] * np.cos(x) + amplitude[:, 1] * np.cosh(x)
+
+
+def bed_of(track):
+    return track.support.below(2.0 * np.pi * FREQUENCY)[1]
+
+
+@pytest.mark.parametrize("name", ["nordborg", "nordborg-loss-factor"])
+@pytest.mark.parametrize("bedded", [False, True])
+def test_a_table_of_a_beam_is_the_track_on_such_beams(name, bedded):
+    """The ballast may lose as much as it does: modes are sought where the free sleeper answers alike."""
+    bed = bed_of(Track.named(name)) if bedded else NOTHING
+    sleeper = measured_sleeper(FREQUENCY, beam(bed), MASS, bed)
+    assert sleeper.fit_error < 0.005
+    found = Track.named(name, measured_sleeper=sleeper, ballast_mass=300.0, subgrade_stiffness=9e7)
+    bends = {"sleeper_bending_stiffness": BENDING, "sleeper_length": LENGTH, "seat_distance": SEATS}
+    exact = Track.named(name, **bends, ballast_mass=300.0, subgrade_stiffness=9e7)
+    for x in (0.0, 0.3):
+        expected = exact.receptance(LOOKED, x, x)
+        np.testing.assert_allclose(found.receptance(LOOKED, x, x), expected, rtol=1e-4)
+    assert found.support.static == pytest.approx(exact.support.static, rel=1e-4)
+    squares = (each.support.sleeper_square(2.0 * np.pi * LOOKED) for each in (found, exact))
+    np.testing.assert_allclose(*squares, rtol=1e-3)
+
+
+def test_natural_frequencies_are_those_of_a_free_beam():
+    """Symmetric roots of cos kl cosh kl = 1: 4.7300, 10.9956, 17.2788."""
+    sleeper = measured_sleeper(FREQUENCY, beam(0.0), MASS, NOTHING)
+    roots = np.array([4.730040744862704, 10.995607838001671, 17.278759657399481])
+    free = (roots / LENGTH) ** 2 * np.sqrt(BENDING * LENGTH / (2.0 * MASS)) / (2.0 * np.pi)
+    np.testing.assert_allclose(sleeper.natural_frequencies[:4], [0.0, *free], rtol=1e-5)
+
+
+@pytest.mark.parametrize("bed", [0.0, 120e6 * (1.0 + 1.0j)])
+def test_a_table_of_a_mass_is_a_mass(bed):
+    omega, held = 2.0 * np.pi * FREQUENCY, bed + NOTHING
+    sleeper = measured_sleeper(FREQUENCY, 1.0 / (held - MASS * omega**2), MASS, held)
+    below = 150e6 * (1.0 + 0.4j) + NOTHING
+    np.testing.assert_allclose(sleeper.on(omega, below), RigidMass(MASS).on(omega, below), rtol=1e-12)
+    assert sleeper.resting(150e6) == pytest.approx(150e6, rel=1e-12)
+    found, exact = (Track.named("uic60", **each) for each in ({"measured_sleeper": sleeper}, {}))
+    at = LOOKED, 0.0, 0.0
+    np.testing.assert_allclose(found.receptance(*at), exact.receptance(*at), rtol=1e-9)
+
+
+def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power():
+    """Its receptance is analytic in the lower half-plane: the mean on a circle is the value in the middle."""
+    sleeper = measured_sleeper(FREQUENCY, beam(0.0, BENDING * (1.0 + 0.03j)), MASS, NOTHING)
+    ring = 4000.0 - 300.0j + 200.0 * np.exp(2j * np.pi * np.arange(64) / 64) * np.array([[1.0], [0.0]])
+    around, middle = np.mean(1.0 / sleeper.on(ring, 150e6 + 5e4j * ring), axis=1)
+    assert around == pytest.approx(middle, rel=1e-12, abs=0.0)
+    omega = np.geomspace(1.0, 1e6, 400)
+    assert (sleeper.on(omega, np.full(400, 150e6 + 0j)).imag >= 0.0).all()
+    track = Track.named("nordborg", rail_loss_factor=0.0, measured_sleeper=sleeper)
+    assert causal_track(track) is track
+    parts = dissipated_power(track, LOOKED, 0.1)
+    assert list(parts) == ["rail", "pad", "sleeper", "ballast"]
+    fed = -2.0 * np.pi * LOOKED * track.receptance(LOOKED, 0.1, 0.1).imag
+    np.testing.assert_allclose(sum(parts.values()), fed, rtol=1e-9)
+    assert parts["sleeper"].max() > 0.01 * fed.max()
+
+
+def test_two_per_cent_of_noise_change_the_track_by_less():
+    rng, bed = np.random.default_rng(3), bed_of(Track.named("uic60"))
+    noise = 1.0 + 0.02 * (rng.standard_normal(len(bed)) + 1j * rng.standard_normal(len(bed)))
+    found = Track.named("uic60", measured_sleeper=measured_sleeper(FREQUENCY, beam(bed) * noise, MASS, bed))
+    expected = Track.named("uic60", sleeper_bending_stiffness=BENDING).receptance(LOOKED, 0.0, 0.0)
+    np.testing.assert_allclose(found.receptance(LOOKED, 0.0, 0.0), expected, rtol=0.02)
+
+
+def test_receptances_that_cannot_be_are_refused():
+    low = FREQUENCY < 300.0
+    for receptance, message in (
+        (np.where(low, 1.0, 1.0 + 0.2j), "imaginary part above zero from 3.* to 6000 Hz, by which"),
+        (np.where(low, 1.0, 0.0), "size of a receptance"),
+        (np.full(len(low), 1e30), r"1e-20 to 1e\+20 m/N"),
+    ):
+        with pytest.raises(InputError, match=message):
+            measured_sleeper(FREQUENCY, receptance + 0j, MASS, NOTHING)
+    sleeper = measured_sleeper(FREQUENCY, beam(0.0), MASS, NOTHING)
+    with pytest.raises(InputError, match="remove sleeper_bending_stiffness"):
+        Track.named("uic60", measured_sleeper=sleeper, sleeper_bending_stiffness=BENDING)
