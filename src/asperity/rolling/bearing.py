@@ -18,7 +18,7 @@ from asperity.rolling.roll import Ledger
 from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
-from asperity.structures.ring import Direction, Ring
+from asperity.structures.ring import Around, Direction, Ring
 
 INNER, OUTER = 0, 1
 """Places of the rigid rings among the structures; those that bend follow."""
@@ -37,17 +37,17 @@ class BearingRings:
     ----------
     inner, outer : Ring
         Rigid, see `Ring.rigid`, with the contact angle of the run.
-    inner_bending, outer_bending : Ring, optional
-        See `Ring.bending`; they turn with their ring.
+    inner_bending, outer_bending : Ring or Around, optional
+        See `Ring.bending`, or any modes, as of the housing; they turn with their ring.
     """
 
     inner: Ring
     outer: Ring
-    inner_bending: Ring | None = None
-    outer_bending: Ring | None = None
+    inner_bending: Ring | Around | None = None
+    outer_bending: Ring | Around | None = None
 
     @property
-    def structures(self) -> list[Ring]:
+    def structures(self) -> list[Ring | Around]:
         """All of them: both rigid ones first."""
         bending = (self.inner_bending, self.outer_bending)
         return [self.inner, self.outer, *(each for each in bending if each is not None)]
@@ -145,7 +145,11 @@ def roll_bearing(
     mechanism = _mechanism(bearing, rings, (inner_law, outer_law), turning, force, ball_heights)
     loads = radial, axial + bearing.preload
     mechanism = _loaded(mechanism, rings, loads, turning)
-    rows = [mechanism.row(ring, row) for ring in (INNER, OUTER) for row in _axes(rings.structures[ring])]
+    rows = [
+        mechanism.row(place, row)
+        for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
+        for row in _axes(ring)
+    ]
     rows += [_row_of(mechanism, rings, bearing, sensor) for sensor in sensors]
     run = roll_mechanism(
         mechanism,
@@ -294,14 +298,17 @@ def _loaded(
     mechanism: Mechanism, rings: BearingRings, loads: tuple[float, float], turning: _Turning
 ) -> Mechanism:
     """Press the rings together, with springs that are free of force where they then are."""
-    pressed = [np.zeros(len(each.frequencies)) for each in rings.structures]
+    pressed = [np.zeros(len(each.natural_frequencies)) for each in rings.structures]
     pressed[INNER], pressed[OUTER] = rings.inner.pressed(*loads), -rings.outer.pressed(*loads)
     require(turning.usual_load(*loads) > 0.0, "load", "none", "a load, or a preload")
     held = np.maximum(rings.inner.frequencies, rings.outer.frequencies)
     what, remedy = "rings", "Give the shaft or the housing a stiffness."
     require(np.all(held > 0.0), what, "both free", "one that is held", remedy)
-    loose = [replace(rings.inner, frequencies=np.zeros(len(held)))]
-    loose += [replace(rings.outer, frequencies=np.full(len(held), HELD)), *rings.structures[2:]]
+    loose = [
+        replace(rings.inner, frequencies=np.zeros(len(held))),
+        replace(rings.outer, frequencies=np.full(len(held), HELD)),
+        *rings.structures[2:],
+    ]
     trial = replace(mechanism, structures=loose, pressed=pressed)
     passing = turning.bearing.balls * abs(turning.bearing.kinematics(turning.speed).cage) * turning.time_step
     places = np.linspace(0.0, min(1.0 / passing, turning.total), INSTANTS, endpoint=False).astype(int)

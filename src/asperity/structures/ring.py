@@ -182,3 +182,70 @@ class Ring(Modal):
         along = self.lobes == 1.0, self.lobes == 0.0
         forces = np.where(along[0], radial, 0.0) * self.towards(0.0)
         return np.asarray(forces + np.where(along[1], axial, 0.0) * self.axial)
+
+
+CLOSED = 1e-6
+"""Share of the largest shape by which the ends of modes around a circle may differ."""
+
+
+@dataclass(frozen=True, eq=False)
+class Around(Modal):
+    """Modes around a circle, as of a housing, known at angles from 0 to 2π: computed or measured.
+
+    Parameters
+    ----------
+    modes : ModalStructure
+        Radial displacement at positions that are angles, rad, the same at 0 and 2π.
+    contact_angle : float
+        α, rad, of the contacts, which see cos α of it.
+
+    Raises
+    ------
+    InputError
+        If the angles do not go around, or a mode differs at its ends.
+    """
+
+    modes: Modal
+    contact_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        first, last = self.modes.extent
+        whole_turn = math.isclose(first, 0.0, abs_tol=1e-9) and math.isclose(
+            last, 2.0 * math.pi, rel_tol=1e-6
+        )
+        require(whole_turn, "angles of modes (rad)", f"{first:.6g} to {last:.6g}", "0 to 2π, a whole turn")
+        ends, _ = self.modes.shapes([first, last])
+        largest = float(np.abs(self.modes.shapes(np.linspace(first, last, 64))[0]).max())
+        missed = float(np.abs(ends[1] - ends[0]).max())
+        allowed, remedy = "the same shapes at 0 and 2π", "Repeat the first row at the end."
+        require(
+            missed <= CLOSED * largest, "modes around a circle", f"ends {missed:.2g} apart", allowed, remedy
+        )
+
+    @property
+    def natural_frequencies(self) -> Array:
+        """Undamped natural frequencies (m,), Hz."""
+        return self.modes.natural_frequencies
+
+    @property
+    def damping_ratios(self) -> Array:
+        """Damping ratios (m,)."""
+        return self.modes.damping_ratios
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """All angles, rad."""
+        return -math.inf, math.inf
+
+    def shapes(self, x: ArrayLike) -> tuple[Array, Array]:
+        """As of `Ring`, at angles (n,), rad."""
+        found, slopes = self.modes.shapes(np.asarray(x, dtype=float) % (2.0 * math.pi))
+        size = math.cos(self.contact_angle)
+        return size * found, size * slopes
+
+    def towards(self, angle: float, direction: Direction = "radial") -> Array:
+        """As of `Ring`: outwards at an angle, rad; none axially."""
+        shapes = self.modes.shapes([angle % (2.0 * math.pi)])[0][0]
+        return np.asarray(
+            shapes if one_of("direction", direction, ("radial", "axial")) == "radial" else 0.0 * shapes
+        )
