@@ -5,7 +5,7 @@ import pytest
 
 from asperity import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
-from asperity.errors import InputError, TruncatedContactWarning
+from asperity.errors import TruncatedContactWarning
 from asperity.laws import Areal, Direct, Printed, Shifted, Table
 from asperity.laws.layout import force
 from asperity.reduction.filter import filtered_texture
@@ -15,6 +15,7 @@ from asperity.reduction.texture import areal_texture
 from asperity.rolling.assembly import STEPPED_TOLERANCE, at_rest
 from asperity.structures.body import Body
 from asperity.surfaces.strip import Rows
+from refusals import refusals
 
 DX, N, RADIUS, MODULUS, LOAD = 5e-6, 31, 10e-3, 115e9, 2.0
 HERTZ = Hertz(MODULUS, RADIUS, RADIUS)
@@ -79,17 +80,11 @@ def test_contacts_cut_off_are_told():
         law.warn_of_flaws()
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: direct().prepare([10 * DX]), r"path \(m\): received"),
-        (lambda: direct(np.zeros((60, N + 1))), "a body as wide as the path"),
-        (lambda: direct(damping=-1.0), "contact damping"),
-    ],
+test_sizes_and_paths_must_fit = refusals(
+    (lambda: direct().prepare([10 * DX]), r"path \(m\): received"),
+    (lambda: direct(np.zeros((60, N + 1))), "a body as wide as the path"),
+    (lambda: direct(damping=-1.0), "contact damping"),
 )
-def test_sizes_and_paths_must_fit(call, message):
-    with pytest.raises(InputError, match=message):
-        call()
 
 
 HEIGHT, ROWS = 5e-9, 1201

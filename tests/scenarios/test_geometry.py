@@ -6,6 +6,7 @@ import pytest
 from asperity import Bodies, Hertz, Profile
 from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
 from asperity.scenarios.geometry import geometry_of
+from refusals import refusals
 from small_cases import changed
 
 COARSE = pytest.mark.filterwarnings("ignore::asperity.errors.CoarseSamplingWarning")
@@ -45,10 +46,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("call", "message"), REFUSED)
-def test_contacts_that_cannot_be_are_refused(call, message):
-    with pytest.raises(InputError, match=message):
-        call()
+test_contacts_that_cannot_be_are_refused = refusals(*REFUSED)
 
 
 def test_a_beam_as_wide_as_its_contact_is_held_and_a_coarse_grid_is_told():
