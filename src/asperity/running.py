@@ -5,20 +5,22 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Mapping
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import shown
 from asperity.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    from asperity.case.scene import Case
+    from xarray import DataTree
+
+    from asperity.case.any_case import AnyCase, ReadyCase
     from asperity.progress import Progress
-    from asperity.scenarios.preparing import PreparedCase
     from asperity.scenes.notebook import Result
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Case | PreparedCase,
+    case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase | ReadyCase,
     progress: Progress | None = None,
     *,
     converge: bool = False,
@@ -62,15 +64,16 @@ def run(
     >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
     1
     """
-    from asperity.case.cases import as_case
+    from asperity.case.any_case import ReadyCase
+    from asperity.case.cases import as_case, of_bodies
     from asperity.errors import PhysicsWarning
     from asperity.progress import shown_progress
-    from asperity.scenarios.preparing import PreparedCase
     from asperity.scenes.notebook import Result
-    from asperity.scenes.result import computed_result
     from asperity.threads import one_thread_in_linear_algebra
 
-    loaded = case if isinstance(case, PreparedCase) else as_case(case)
+    loaded = case if isinstance(case, ReadyCase) else as_case(case)
+    if converge:
+        of_bodies(loaded.case if isinstance(loaded, ReadyCase) else loaded, "convergence")
     if progress is not None and not callable(progress):
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
     try:
@@ -80,12 +83,15 @@ def run(
             shown_progress(progress) as told,
         ):
             warnings.simplefilter("always", PhysicsWarning)
-            prepared = loaded if isinstance(loaded, PreparedCase) else prepare_case(loaded)
+            prepared = loaded if isinstance(loaded, ReadyCase) else prepare_case(loaded)
             caught += prepared.caught
-            result = computed_result(prepared, told, caught, brief=brief)
+            module = import_module(prepared.case.COMPUTED_BY)
+            result: DataTree = module.computed_result(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence import with_convergence
+                from asperity.scenarios.preparing import PreparedCase
 
+                assert isinstance(prepared, PreparedCase)  # of bodies
                 result = with_convergence(prepared, result, told)
     except ComputationError:
         _warn_again(caught)  # they may say why
@@ -131,8 +137,7 @@ def open_result(path: str | os.PathLike[str]) -> Result:
     return Result.of(read_result(path))
 
 
-def prepare_case(case: Case, source: str = "case") -> PreparedCase:
+def prepare_case(case: AnyCase, source: str = "case") -> ReadyCase:
     """Lay a case of any kind ready to be run or announced; messages call it `source`."""
-    from asperity.scenarios.preparing import prepare
-
-    return prepare(case, source)
+    prepared: ReadyCase = import_module(case.COMPUTED_BY).prepare(case, source)
+    return prepared

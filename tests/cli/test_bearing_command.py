@@ -143,7 +143,10 @@ def test_signals_come_in_files_of_several_kinds(kind):
         ("6205", "load: received none; allowed: a radial or axial load, or a preload."),
         ("6205 --radial 5", "radial: received '5'; allowed: a force at least 0, with its unit"),
         ("6205 --radial 5_kg", "radial"),
-        ("few.toml", "bearing: received no ball_diameter and no pitch_diameter; allowed: these, or a name."),
+        (
+            "few.toml",
+            "name: received none, and no ball_diameter and no pitch_diameter; allowed: these, or a name.",
+        ),
         ("both.toml", "received both clearance and contact_angle"),
         ("wrong.toml", "ball_diametre: received an unknown key"),
         ("crowd.toml", "balls: received 30 of 7.94 mm on a pitch diameter of 39.04 mm"),

@@ -21,24 +21,16 @@ from asperity.text_files import lines_of_cells, number_in, read_text
 DIMENSIONS = keys_of(BallBearing, otherwise="that of the named bearing")
 NEEDED = ("balls", "ball_diameter", "pitch_diameter")
 LARGEST_TEXT = 64 * 2**20  # bytes
-_LOADS = "0 N to 100 MN: bearings carry less"
+LOAD, LOADS = Quantity("N", at_least=0), "0 N to 100 MN: bearings carry less"
+SPEEDS = "0 Hz to 10 kHz: bearings turn slower"
 
 
-class BearingKeys(Section, parameters=DIMENSIONS):
-    """A ball bearing, named or by its dimensions, and what it carries."""
+class BearingGeometry(Section, parameters=DIMENSIONS):
+    """A ball bearing, named or by its dimensions."""
 
     ALTERNATIVES = (("clearance", "contact_angle"),)
 
     name: str | None = optional(Choice(tuple(BEARINGS)), "6205", "named bearing", "the dimensions are given")
-    radial: float = key(Quantity("N", at_least=0), "0 N", "radial load on the inner ring", _LOADS)
-    axial: float = key(Quantity("N", at_least=0), "0 N", "axial load on the inner ring", _LOADS)
-    speed: float | None = optional(
-        Quantity("Hz", at_least=0),
-        "1800 1/min",
-        "speed of the ring that turns",
-        "it stands still",
-        "0 Hz to 10 kHz: bearings turn slower",
-    )
 
     @property
     def bearing(self) -> BallBearing:
@@ -51,12 +43,22 @@ class BearingKeys(Section, parameters=DIMENSIONS):
         missing = [name for name in NEEDED if getattr(self, name) is None]
         if self.name is None and missing:
             remedy = f"Named bearings: {', '.join(BEARINGS)}."
-            yield InputError("bearing", f"no {' and no '.join(missing)}", "these, or a name", remedy)
+            yield InputError("name", f"none, and no {' and no '.join(missing)}", "these, or a name", remedy)
             return
         try:
             _ = self.bearing
         except InputError as error:
             yield error
+
+
+class BearingKeys(BearingGeometry):
+    """A ball bearing and what it carries."""
+
+    radial: float = key(LOAD, "0 N", "radial load on the inner ring", LOADS)
+    axial: float = key(LOAD, "0 N", "axial load on the inner ring", LOADS)
+    speed: float | None = optional(
+        Quantity("Hz", at_least=0), "1800 1/min", "speed of the ring that turns", "it stands still", SPEEDS
+    )
 
 
 def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:

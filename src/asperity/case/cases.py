@@ -10,6 +10,7 @@ from typing import Any
 
 from asperity.arguments import file_path, nearest, shown
 from asperity.case import PRESETS
+from asperity.case.any_case import AnyCase
 from asperity.case.describing import commented, in_toml
 from asperity.case.scene import Case
 from asperity.case.toml import plain_data, read_definition, read_toml, refuse_vast
@@ -25,12 +26,12 @@ _HEAD = """\
 """
 
 
-def load_case(path: str | os.PathLike[str]) -> Case:
+def load_case(path: str | os.PathLike[str]) -> AnyCase:
     """Read a case from a TOML file; all errors in its keys are reported at once."""
     return case_of(*keys_and_origin(path))
 
 
-def as_case(case: object) -> Case:
+def as_case(case: object) -> AnyCase:
     """Take a case in any of its forms.
 
     Parameters
@@ -41,7 +42,7 @@ def as_case(case: object) -> Case:
 
     Returns
     -------
-    Case
+    AnyCase
         Of the class of its kind, in SI.
 
     Raises
@@ -51,12 +52,12 @@ def as_case(case: object) -> Case:
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    return case if isinstance(case, Case) else case_of(*keys_and_origin(case))
+    return case if isinstance(case, AnyCase) else case_of(*keys_and_origin(case))
 
 
 def keys_and_origin(case: object) -> tuple[dict[str, Any], Origin]:
     """Keys and values of a case in any of its forms, as `as_case` takes it, and where they come from."""
-    if isinstance(case, Case):
+    if isinstance(case, AnyCase):
         return {"kind": case.kind, **in_toml(case, lambda _, value: value)}, FROM_PYTHON
     if isinstance(case, Mapping):
         return plain_data(case), FROM_PYTHON
@@ -85,7 +86,7 @@ def read_with_case(
     raise CaseError(str(path), [str(error)])
 
 
-def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
+def parse_case(text: str, source: str | os.PathLike[str] = "case") -> AnyCase:
     """Read a case from its text.
 
     Parameters
@@ -97,7 +98,7 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
 
     Returns
     -------
-    Case
+    AnyCase
         Of the class of its kind, in SI.
 
     Raises
@@ -110,7 +111,7 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
     return case_of(read_toml(text, "case", source), Origin.file(source))
 
 
-def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> Case:
+def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> AnyCase:
     """Make a case of keys and values, sections as dicts; in SI.
 
     Raises
@@ -128,13 +129,22 @@ def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> Case:
     return model.read(data, origin)
 
 
-def case_class(kind: object) -> type[Case]:
+def case_class(kind: object) -> type[AnyCase]:
     """Class of the cases of a kind, one of `PRESETS`; an `InputError` says if there is none."""
     if not isinstance(kind, str) or kind not in PRESETS:
         raise not_a_kind(kind, tuple(PRESETS))
     module, _, name = PRESETS[kind].rpartition(".")
-    model: type[Case] = getattr(importlib.import_module(module), name)
+    model: type[AnyCase] = getattr(importlib.import_module(module), name)
     return model
+
+
+def of_bodies(case: AnyCase, what: str) -> Case:
+    """A case of bodies that roll; an `InputError` says that another kind does not have what is asked."""
+    if not isinstance(case, Case):
+        held = (kind for kind in PRESETS if issubclass(case_class(kind), Case))
+        allowed = f"a kind that has it: {', '.join(held)}"
+        raise InputError(what, f"a {case.kind} case, of which there is none", allowed)
+    return case
 
 
 def not_a_kind(kind: object, names: Sequence[str]) -> InputError:
@@ -158,7 +168,7 @@ def template(kind: str, laws: Sequence[str] = ()) -> str:
     return _HEAD.format(title=model.TITLE) + commented(model, {**model.WRITTEN_OUT, **own}, shown_keys)
 
 
-def demo_case() -> Case:
+def demo_case() -> AnyCase:
     """Return the case of ``asperity demo``: synthesised roughness, a few seconds of work."""
     text = resources.files(__package__).joinpath("demo.toml").read_text(encoding="utf-8")
     return parse_case(text, "demo.toml")

@@ -6,21 +6,19 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from asperity.case.any_case import AnyCase
 from asperity.case.body import Rolling
 from asperity.case.chosen_lengths import NominalPatch, chosen_lengths
-from asperity.case.content import described_value
-from asperity.case.describing import in_toml, parameters, refused
 from asperity.case.form import Inner, Section, section
 from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.surface import INDEX, POSITION, Surface
-from asperity.case.toml import toml_text
 from asperity.contact.hertz import Hertz, relative_radius
 from asperity.errors import InputError
 from asperity.laws import Need, family_of, law_keys, names, spec_of
-from asperity.parameters import Choice, Key, ListOf, Quantity, Text, key, optional
+from asperity.parameters import Choice, Key, ListOf, Quantity, key, optional
 from asperity.reference.materials import contact_modulus
 from asperity.units import written
 
@@ -52,27 +50,21 @@ OF_A_TRACK = ("surface.accept_levels", "numerics.kernel", "numerics.poles")
 LAW = Choice(names)
 
 
-class Case(Section):
+class Case(AnyCase):
     """Bodies roll over a rough surface; a preset names its sections and has defaults of its own.
 
     Every length, time, force and so on is in SI here. A case does not change; `with_` makes another one.
     Cases are equal if all their keys are.
     """
 
-    TITLE: ClassVar[str]
-    """One sentence: what rolls over what."""
+    COMPUTED_BY = "asperity.scenes.result"
     ROLLING: ClassVar[str]
     """Section of what rolls; of a contact of several, its name in messages."""
     OVER: ClassVar[str] = ""
     """Section of what is rolled over; empty where the key `over` names it."""
     DISPLACEMENTS: ClassVar[tuple[str, str]] = ("over_displacement", "rolling_displacement")
     """What displacements at a contact are called in a result: of what is rolled over, and of what rolls."""
-    WRITTEN_OUT: ClassVar[Mapping[str, str]] = {}
-    """Values, in TOML, of keys that have no default and shall stand in a commented case."""
-    SHOWN: ClassVar[Mapping[str, tuple[str, ...]]] = {}
-    """Keys of some sections that a commented case shows; the others are for scenes of other kinds."""
 
-    kind: str = key(Text(), "", "what rolls")
     speed: float = key(
         Quantity("m/s", above=0),
         "1 m/s",
@@ -126,64 +118,6 @@ class Case(Section):
         """Sections that matter: those of laws that are rolled among them."""
         families = {family_of(law) for law in self.laws}
         return (*self.inner, *(name for name in self.sections() if name in families))
-
-    def with_(self, **changes: Any) -> Self:
-        """Return the same case with other values for some keys.
-
-        Parameters
-        ----------
-        **changes
-            Keys with their new values, in SI or as text with a unit; None takes a key out. A key of a section
-            is written ``**{"contact.spacing": 4e-6}``, or in a mapping of keys of the section, of which the
-            others stay: ``contact={"spacing": "4 um"}``.
-
-        Returns
-        -------
-        Case
-            A new case of the same kind.
-
-        Raises
-        ------
-        CaseError
-            With all errors at once, if the keys are wrong or do not fit together.
-        """
-        data = self.given()
-        for name, value in changes.items():
-            title, _, key_in_section = name.rpartition(".")
-            _change(data, {title: {key_in_section: value}} if title else {name: value})
-        return type(self)(**data)
-
-    def to_toml(self) -> str:
-        """Write the case as a case file: its kind, and all keys that are not at their defaults.
-
-        Returns
-        -------
-        str
-            TOML that reads as the same case, to the last bit.
-
-        Raises
-        ------
-        InputError
-            If a surface or a table stands in memory, which no case file can hold.
-        """
-        return toml_text({"kind": self.kind, **in_toml(self, in_memory=refused)})
-
-    @property
-    def text(self) -> str:
-        """The case in TOML; what stands in memory is described, with its digest."""
-        keys = in_toml(self, in_memory=lambda _, value: described_value(value))
-        return toml_text({"kind": self.kind, **keys})
-
-    def parameters(self) -> list[dict[str, Any]]:
-        """List the keys that matter in this case, for people.
-
-        Returns
-        -------
-        list of dict
-            For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
-            ``note`` (what the key is).
-        """
-        return parameters(self, self.SHOWN)
 
     # --- what rolls over what
 
@@ -293,6 +227,11 @@ class Case(Section):
         return self.noise.passage(self.contacts_behind, self.speed)
 
     # --- time and place
+
+    @property
+    def numbers_written(self) -> float:
+        """How many numbers its result holds, at most."""
+        return 50.0 * len(self.laws) * self.rolled_time / self.time_step
 
     @property
     def room(self) -> tuple[float, float] | None:
@@ -530,18 +469,6 @@ class Case(Section):
             allowed = f"at most {written(half, 'm', 'mm')} off the middle"
             remedy = "The rail head, track.rail_head_width, is no wider."
             yield InputError("sideways.contact_place", received, allowed, remedy)
-
-
-def _change(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
-    """Put keys into the dicts of a case; None takes them out."""
-    for name, value in changes.items():
-        if value is None:
-            data.pop(name, None)
-        elif isinstance(value, Mapping) and isinstance(inner := data.get(name, {}), dict):
-            data[name] = inner = dict(inner)
-            _change(inner, value)
-        else:
-            data[name] = value
 
 
 _law_sections: dict[str, tuple[Mapping[str, Key], Inner]] = {}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from asperity.case.any_case import AnyCase, ReadyCase
 from asperity.case.scene import Case
 from asperity.case.surface import MeasuredLine
 from asperity.cli.running import described_scan, name_of_run, prepared_case
@@ -26,7 +27,7 @@ Rows = list[tuple[str, str]]
 """Names, and values with their units."""
 
 
-def show_plan(case: Case, source: str, *, converge: bool = False) -> dict[str, Any]:
+def show_plan(case: AnyCase, source: str, *, converge: bool = False) -> dict[str, Any]:
     """Print the values of a case, and what will be computed from it, with convergence if it is asked for.
 
     Returns what a program wants to know of it. An `InputError` says that the case cannot be computed.
@@ -47,7 +48,7 @@ def show_plan(case: Case, source: str, *, converge: bool = False) -> dict[str, A
     return {"case": source, "kind": case.kind, "parameters": items, **found}
 
 
-def _kept_plan(case: Case, source: str, *, converge: bool) -> dict[str, Any]:
+def _kept_plan(case: AnyCase, source: str, *, converge: bool) -> dict[str, Any]:
     """The plan of an earlier check, if case, files, program and processors are the same; else a new one."""
     store, name = Store(), name_of_run(case)
     key = content_key("plan", name, converge, processors(), os.environ.get(THREADS, ""))
@@ -59,11 +60,12 @@ def _kept_plan(case: Case, source: str, *, converge: bool) -> dict[str, Any]:
     return found
 
 
-def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]:
+def planned(prepared: ReadyCase, *, converge: bool = False) -> dict[str, Any]:
     """What will be computed from a case, with convergence if it is asked for: rows, seconds and warnings."""
-    from asperity.scenarios.preparing import expect
+    from asperity.scenarios.preparing import PreparedCase, expect
     from asperity.scenes.validity import foreseen
 
+    assert isinstance(prepared, PreparedCase)
     with progress_bar() as progress:
         work = expect(prepared, progress)
         rows = plan(prepared, work) + (_convergence(prepared, work) if converge else [])

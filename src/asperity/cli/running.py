@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 import asperity
 from asperity import files
 from asperity.arguments import no_file
+from asperity.case.any_case import AnyCase, ReadyCase
+from asperity.case.cases import of_bodies
 from asperity.case.content import content, file_digest
-from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import provenance, rolling, spectra
@@ -25,7 +26,7 @@ from asperity.terminal import detail, remark, say, say_files
 if TYPE_CHECKING:
     from xarray import DataTree
 
-    from asperity.scenarios.preparing import PreparedCase, ScanSize
+    from asperity.scenarios.preparing import ScanSize
 
 RESULT, PAGE = "run.nc", "report.html"
 CONVERGENCE, EFFECTS = "convergence", "effects"
@@ -37,7 +38,7 @@ _LINKED = re.compile(r'href="([\w.-]+\.(?:csv|svg))"')
 
 
 def run_case(
-    case: Case,
+    case: AnyCase,
     directory: Path,
     *,
     source: str = "case",
@@ -78,6 +79,8 @@ def run_case(
         from asperity.studies.effects import what_helps as plan
 
         plan(case)  # refuses a case over no track
+    if converge:
+        of_bodies(case, CONVERGENCE)
     if not again and os.path.lexists(directory / RESULT):
         tree = earlier_result(case, directory, report=report, more=more)
     computed = tree is None
@@ -106,7 +109,7 @@ def run_case(
     }
 
 
-def prepared_case(case: Case, source: str) -> PreparedCase:
+def prepared_case(case: AnyCase, source: str) -> ReadyCase:
     """Read and lay out all that a case needs, and say so if that takes long."""
     from asperity.running import prepare_case
 
@@ -117,7 +120,7 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
     return prepared
 
 
-def _run_alone(case: Case, directory: Path, source: str, *, report: bool, more: Sequence[str]) -> DataTree:
+def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, more: Sequence[str]) -> DataTree:
     """Compute a case, and more groups, and write its results, while no other run does into this folder."""
     from asperity.running import run
 
@@ -134,7 +137,9 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, more: 
     _write(tree, directory, report=report)
     if CONVERGENCE in more:
         from asperity.convergence import with_convergence
+        from asperity.scenarios.preparing import PreparedCase
 
+        assert isinstance(prepared, PreparedCase)  # of bodies
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)
         _write(tree, directory, report=report)
@@ -190,10 +195,12 @@ def described_scan(scan: ScanSize) -> str:
     )
 
 
-def announce_scan(prepared: PreparedCase) -> None:
+def announce_scan(prepared: ReadyCase) -> None:
     """Before a long scan of a path starts, say how long it is."""
-    from asperity.scenarios.preparing import scan_sizes
+    from asperity.scenarios.preparing import PreparedCase, scan_sizes
 
+    if not isinstance(prepared, PreparedCase):
+        return
     scan = scan_sizes(prepared.case, prepared.shape, prepared.textures).get("path")
     if scan is not None and scan.solutions >= ANNOUNCED:
         say(f"Scan of the path: {described_scan(scan)}.", err=True)
@@ -235,7 +242,7 @@ def band_summaries(tree: DataTree) -> dict[str, Any]:
 # --- the run of an earlier time
 
 
-def earlier_result(case: Case, directory: Path, *, report: bool, more: Sequence[str]) -> DataTree | None:
+def earlier_result(case: AnyCase, directory: Path, *, report: bool, more: Sequence[str]) -> DataTree | None:
     """The result of this case that a folder holds, with all that is asked for, more groups too; else None."""
     from asperity.results import read_result
 
@@ -258,7 +265,7 @@ def _is_whole(page: Path, result: Path) -> bool:
     return not any(no_file(page.parent / name) for name in linked)
 
 
-def name_of_run(case: Case) -> str:
+def name_of_run(case: AnyCase) -> str:
     """Name a run by all it depends on: case, contents of its files, program; empty where that is unknown."""
 
     def digest(path: Path) -> str:
@@ -285,14 +292,13 @@ def program() -> str:
 # --- folders
 
 
-def refuse_full(case: Case, directory: Path) -> None:
+def refuse_full(case: AnyCase, directory: Path) -> None:
     """Refuse a folder that cannot be written to, or whose disk is too full for the results of a case."""
     files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
-    numbers = 50.0 * len(case.laws) * case.rolled_time / case.time_step  # as netCDF, and again as text
-    files.require_space(directory, 8.0 * numbers)
+    files.require_space(directory, 8.0 * case.numbers_written)  # as netCDF, and again as text
 
 
-def refuse_other(case: Case, directory: Path) -> None:
+def refuse_other(case: AnyCase, directory: Path) -> None:
     """Refuse a folder that holds what is not this case's own run."""
     from asperity.results import case_text
 

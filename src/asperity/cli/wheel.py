@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.cases import load_case
+from asperity.case.cases import load_case, of_bodies
 from asperity.case.tables import read_outline
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.errors import InputError
@@ -57,7 +57,7 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
 def _case_of(section: str) -> Any:
     """A wheel on a rail with a section, or a case that has one."""
     if section.endswith(".toml"):
-        return load_case(Path(section))
+        return of_bodies(load_case(Path(section)), "wheel")
     smooth = {"smooth": True}
     if section in SECTIONS:
         return WheelOnRail(surface=smooth, wheel={"section": section})

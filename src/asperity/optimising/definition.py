@@ -16,7 +16,7 @@ from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
 from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
 from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
-from asperity.running import prepare_case
+from asperity.scenarios.preparing import prepare
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenes.plan import A_WEIGHTED, MEASURE_NAMES
 from asperity.spectra import HALF_BAND, third_octave_bands
@@ -96,7 +96,7 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
 
 def _measured(case: scene.Case) -> tuple[Array, Array]:
     """Levels of the path, mean over its lines, at the wavelengths that it holds, the longest first."""
-    textures, spacing = prepare_case(case).textures, case.contact.spacing
+    textures, spacing = prepare(case).textures, case.contact.spacing
     line = Profile(textures.line - textures.line.mean(), spacing)
     if textures.path is None:
         wavelength, levels = band_levels_of(line)
@@ -249,14 +249,16 @@ def load_assignment(path: str | os.PathLike[str]) -> Assignment:
     """Read a assignment from a TOML file: ``case``, a path or a section, and the keys of `Aim`."""
     remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
     keys, base, origin = cases.read_with_case(path, "optimisation", remedy)
-    return Assignment(cases.case_of(base, origin), Aim.read(keys, Origin.file(path)))
+    return Assignment(
+        cases.of_bodies(cases.case_of(base, origin), "optimisation"), Aim.read(keys, Origin.file(path))
+    )
 
 
 def assignment_of(
     case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case, keys: Mapping[str, Any]
 ) -> Assignment:
     """Make a assignment of a case in any of its forms and the keys of `Aim`."""
-    return Assignment(cases.as_case(case), Aim(**keys))
+    return Assignment(cases.of_bodies(cases.as_case(case), "optimisation"), Aim(**keys))
 
 
 def assignment_template() -> str:

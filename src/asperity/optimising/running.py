@@ -19,7 +19,8 @@ from asperity.optimising.allocation import Limits, rms_of
 from asperity.optimising.definition import Assignment, Bands, assignment_of, bands_of, with_texture
 from asperity.optimising.searching import Trial, search
 from asperity.progress import Progress, shown_progress
-from asperity.running import prepare_case, run
+from asperity.running import run
+from asperity.scenarios.preparing import prepare
 from asperity.scenes.plan import Measure, line_frequencies, measures_of
 from asperity.scenes.result import computed_result
 from asperity.spectra import band_energies
@@ -220,7 +221,7 @@ def _rolled(assignment: Assignment, measure: Measure, bands: Bands, progress: Pr
     def rolled() -> dict[str, Array]:
         with warnings.catch_warnings(), one_thread_in_linear_algebra():
             warnings.simplefilter("ignore", PhysicsWarning)  # those of the texture found are told
-            tree = computed_result(prepare_case(case), progress, [])
+            tree = computed_result(prepare(case), progress, [])
         return {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
 
     kept = made(Store(), case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)

@@ -83,17 +83,18 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
                 made.append(make())
             except InputError as error:
                 errors.append(error)
-        _refuse(errors, source)
+        refuse(errors, source)
         scene, shape, textures, *_ = made
         if (smaller := _within_the_map(case, textures)) is not None:
             return prepare(smaller, source)
-        _refuse(list(_problems(case, shape, textures)), source)
+        refuse(list(_problems(case, shape, textures)), source)
         warn_of_textures(case, shape, textures)
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
     return PreparedCase(case, scene, shape, textures, tuple(caught), seconds, processor)
 
 
-def _refuse(errors: Sequence[InputError], source: str) -> None:
+def refuse(errors: Sequence[InputError], source: str) -> None:
+    """Raise errors, all at once; none where there are none."""
     if errors:
         raise errors[0] if len(errors) == 1 else CaseError(source, [str(error) for error in errors])
 

@@ -2,7 +2,7 @@
 
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from functools import partial
 from typing import Any
@@ -13,12 +13,14 @@ import xarray
 from asperity import __version__, laws
 from asperity import spectra as bands
 from asperity.arguments import Array
+from asperity.case.any_case import AnyCase
 from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning, warn_of_findings
 from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.preparing import prepare as prepare
 from asperity.scenes import measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
@@ -90,19 +92,31 @@ def computed_result(
         **expected,
     }
     result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
+    verdict = validity.verdict(computed, in_bands, found, power, choice)
+    result.attrs = root_attributes(case, scene.title, sources, verdict, caught)
+    return result
+
+
+def root_attributes(
+    case: AnyCase,
+    title: str,
+    sources: Sequence[str],
+    verdict: str,
+    caught: list[warnings.WarningMessage],
+) -> dict[str, Any]:
+    """What the root of a result says: what was computed, by what, and what is doubtful of it."""
     told: Values = {
-        provenance.TITLE: scene.title,
+        provenance.TITLE: title,
         provenance.ASPERITY_VERSION: __version__,
         provenance.SCHEMA_VERSION: VERSION,
         provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
         provenance.CASE: case.text,
         provenance.SEED: case.seed,
         provenance.CITATIONS: sources,
-        provenance.VERDICT: validity.verdict(computed, in_bands, found, power, choice),
+        provenance.VERDICT: verdict,
         provenance.WARNINGS: _collected(caught),  # those of laying out are among them
     }
-    result.attrs = group(told).attrs
-    return result
+    return dict(group(told).attrs)
 
 
 def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:

@@ -15,6 +15,7 @@ from asperity.arguments import shown
 from asperity.case import PRESETS
 from asperity.case.cases import case_class
 from asperity.case.describing import CaseKey, allowed_in, entries, entry_of
+from asperity.case.scene import Case
 from asperity.case.toml import toml_value
 from asperity.errors import InputError
 from asperity.files import amount
@@ -78,8 +79,8 @@ def page_text() -> str:
 
 @cache
 def forms() -> tuple[CaseForm, ...]:
-    """Make the form of each kind of case."""
-    return tuple(_form(name) for name in PRESETS)
+    """Make the form of each kind of bodies that roll."""
+    return tuple(_form(name) for name in PRESETS if issubclass(case_class(name), Case))
 
 
 def _form(name: str) -> CaseForm:

@@ -11,9 +11,8 @@ from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import CaseError, InputError
 from asperity.reduction.stiffness import patches
 from asperity.reduction.texture import punch_weights
-from asperity.running import prepare_case
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.preparing import PreparedCase, prepare
 from asperity.scenarios.textures import strip_rows
 
 MOST_CELLS_SHOWN = 129
@@ -120,9 +119,9 @@ def _prepared(case: Case) -> PreparedCase:
     if case.surface.rms is not None:  # each sample is synthesised by itself, and one is pressed
         case = case.with_(contact={"samples": 1})
     try:
-        return prepare_case(case.with_(duration=max(length / case.speed, 2.0 * case.time_step), settling=0.0))
+        return prepare(case.with_(duration=max(length / case.speed, 2.0 * case.time_step), settling=0.0))
     except (InputError, CaseError):
-        return prepare_case(case)
+        return prepare(case)
 
 
 def _laid_out(prepared: PreparedCase) -> tuple[Array, Array, int]:

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 from asperity import errors
-from asperity.case.cases import case_of, demo_case, load_case
+from asperity.case.cases import case_of, demo_case, load_case, of_bodies
 from asperity.case.scene import Case
 from asperity.case.toml import read_toml
 from asperity.files import alone_in
@@ -61,7 +61,7 @@ _pressed: OrderedDict[str, PressedSample] = OrderedDict()
 def _case(kind: str, values: dict[str, object], surfaces: str) -> Case:
     root = Path(surfaces)
     data = case_data(kind, values, lambda identifier: stored_runs.surface_named(root, identifier))
-    return case_of(data, Origin("the case", root, units=True))
+    return of_bodies(case_of(data, Origin("the case", root, units=True)), "page")
 
 
 def read_form(kind: str, values: dict[str, object], surfaces: str) -> Told:
@@ -76,7 +76,7 @@ def read_case_file(text: str, surfaces: str) -> Told:
     """Read a case file into the form."""
     root = Path(surfaces)
     data = read_toml(text, "case", "the case")
-    case_of(data, Origin("the case", root, units=True))
+    of_bodies(case_of(data, Origin("the case", root, units=True)), "page")
     return {
         "kind": data["kind"],
         "values": form_values(data, lambda path: stored_runs.identifier_of(root, path)),
@@ -102,7 +102,7 @@ def prepare_to_press() -> Told:
     """Press a sample once, so that the first one finds everything imported and compiled."""
     from asperity.serving.contact_preview import PressedSample
 
-    PressedSample(demo_case()).at(None)
+    PressedSample(of_bodies(demo_case(), "page")).at(None)
     return {}
 
 

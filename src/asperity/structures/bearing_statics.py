@@ -110,6 +110,24 @@ class LoadedBearing:
         angle = np.where(self.inner_load > 0.0, 0.5 * (self.inner_angle + self.outer_angle), 0.0)
         return float((angle * self.inner_load).sum() / max(self.inner_load.sum(), 1e-300))
 
+    @cached_property
+    def leaving_speed(self) -> float | None:
+        """Turns per second from which on balls leave the inner ring, all of which are pressed at rest.
+
+        None where it stands still or is slower, or where some ball is not pressed at rest.
+        """
+        of, angles = self.bearing, self.azimuth[:, 0]
+
+        def all_touch(speed: float) -> bool:
+            return bool(_solved(of, self.radial, self.axial, speed, angles).touching.min() == of.balls)
+
+        low, high = 0.0, self.speed
+        if high == 0.0 or self.touching.min() == of.balls or not all_touch(low):
+            return None
+        for _ in range(SPEEDS):
+            low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
+        return high
+
     @property
     def compliance(self) -> tuple[Array, Array]:
         """Varying compliance: rms about the mean and peak to peak of the displacement (3,), m."""
@@ -129,7 +147,7 @@ def load_distribution(
         cage_angles = 2.0 * math.pi / bearing.balls * np.arange(STEPS) / STEPS
     angles = finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(cage_angles)), shape=(None,))
     found = _solved(bearing, radial, preloaded, speed, angles)
-    _doubt(found, angles)
+    _doubt(found)
     return found
 
 
@@ -266,7 +284,7 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     return LoadedBearing(bearing, radial, axial, speed, *found, imbalance, steps)
 
 
-def _doubt(found: LoadedBearing, angles: Array) -> None:
+def _doubt(found: LoadedBearing) -> None:
     """Refuse or warn of contacts that fill their grooves, of dents, of balls that leave the inner ring."""
     of = found.bearing
     sides = zip(("inner", "outer"), (of.inner_conformity, of.outer_conformity), of.raceway_radii, strict=True)
@@ -287,25 +305,10 @@ def _doubt(found: LoadedBearing, angles: Array) -> None:
             grade = Grade.OUT if hard else Grade.WARNING
             message = f"Balls press the {ring} ring with {peak / 1e9:.3g} GPa, above {limit:g} GPa, {means}."
             warnings.warn(OutOfRangeWarning(f"{message} Lower the load.", grade), stacklevel=4)
-    _doubt_speed(found, angles)
-
-
-def _doubt_speed(found: LoadedBearing, angles: Array) -> None:
-    """Warn where all balls are pressed at rest and one leaves the inner ring, and say from which speed on."""
-    of, balls = found.bearing, found.bearing.balls
-    if found.speed == 0.0 or found.touching.min() == balls:
-        return
-
-    def all_touch(speed: float) -> bool:
-        return bool(_solved(of, found.radial, found.axial, speed, angles).touching.min() == balls)
-
-    low, high = 0.0, found.speed
-    if not all_touch(low):
-        return
-    for _ in range(SPEEDS):
-        low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
-    message = (
-        f"At {60.0 * found.speed:.5g} 1/min centrifugal force lifts balls off the inner ring, all of which "
-        f"are pressed at rest; the first one leaves at {60.0 * high:.5g} 1/min. Raise axial load or preload."
-    )
-    warnings.warn(OutOfRangeWarning(message), stacklevel=5)
+    if found.leaving_speed is not None:
+        message = (
+            f"At {60.0 * found.speed:.5g} 1/min centrifugal force lifts balls off the inner ring, all of "
+            f"which are pressed at rest; the first one leaves at {60.0 * found.leaving_speed:.5g} 1/min. "
+            "Raise axial load or preload."
+        )
+        warnings.warn(OutOfRangeWarning(message), stacklevel=4)

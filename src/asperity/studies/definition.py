@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import require, shown
-from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
+from asperity.case.cases import case_class, case_of, keys_and_origin, of_bodies, read_with_case
 from asperity.case.chosen_lengths import shared_lengths
 from asperity.case.content import case_key, content, file_digest
 from asperity.case.describing import entry_of
@@ -169,10 +169,10 @@ class Study:
     def _case(self, values: Mapping[str, Any]) -> Case:
         """The case with values of the swept keys, and with what a variant changes of that."""
         data = _with_values(self.data, {key: value for key, value in values.items() if key != VARIANT})
-        case = case_of(data, self.origin)
+        case = of_bodies(case_of(data, self.origin), "study")
         for axis in self.axes:
             if isinstance(axis, VariantAxis) and (keys := axis.keys(values[VARIANT], case)):
-                changed = case_of(_with_values(data, keys), self.origin)
+                changed = of_bodies(case_of(_with_values(data, keys), self.origin), "study")
                 if changed == case:
                     raise CaseError(values[VARIANT], ["nothing changes: the case is so already"])
                 return changed

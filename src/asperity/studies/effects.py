@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.arguments import one_of, shown
-from asperity.case import cases, rolled_over, scene, toml
+from asperity.case import any_case, cases, rolled_over, toml
 from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.scenes import schema
@@ -32,7 +32,8 @@ def ready_list() -> str:
 
 
 def what_helps(
-    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case, sweep: Mapping[str, Any] | None = None
+    case: str | os.PathLike[str] | Mapping[str, Any] | any_case.AnyCase,
+    sweep: Mapping[str, Any] | None = None,
 ) -> Study:
     """Make the study that answers what makes a case over a track quieter.
 
@@ -61,7 +62,7 @@ def what_helps(
     >>> sorted(plan.sweep), plan.sweep["variant"]["a fifth slower"]
     (['seed', 'variant'], {'speed': 'times 0.8'})
     """
-    given = cases.as_case(case)
+    given = cases.of_bodies(cases.as_case(case), "what helps")
     if not isinstance(given.rolled_over, rolled_over.TrackKeys):
         raise InputError("what helps", f"a {given.kind} case", "a case over a track, which is heard")
     listed = toml.read_toml(ready_list(), "study", "what_helps.toml")["sweep"][VARIANT]
@@ -72,7 +73,7 @@ def what_helps(
     return study_of(given.with_(laws=given.laws[:1]), asked)
 
 
-def with_effects(case: scene.Case, result: DataTree, progress: Progress | None = None) -> DataTree:
+def with_effects(case: any_case.AnyCase, result: DataTree, progress: Progress | None = None) -> DataTree:
     """Compute what helps a case, and add it to the result of its run."""
     from asperity.studies.running import study
 
