@@ -571,6 +571,17 @@ def keys_of(model: Any, otherwise: str) -> dict[str, Key]:
     return {name: dataclasses.replace(key, otherwise=otherwise) for name, key in declared.items() if key}
 
 
+def checked_parameters(model: Any) -> None:
+    """Take all parameters that a frozen dataclass declares as their kinds do; None stays None."""
+    for name, key in keys_of(type(model), "").items():
+        if (value := getattr(model, name)) is not None:
+            try:
+                object.__setattr__(model, name, key.kind(value))
+            except (InputError, Problems) as error:
+                first = error.errors[0] if isinstance(error, Problems) else error
+                raise first.about(f"{name} of the {type(model).__name__}") from None
+
+
 def limits_in(within: str) -> Within | None:
     """Limits and reason of a text as ``"1 mm to 1 km: beams lie between"``."""
     if not within:

@@ -17,6 +17,7 @@ __all__ = [
     "CHOICES",
     "Continuation",
     "close",
+    "closed_around",
     "extend",
     "from_bands",
     "from_map",
@@ -95,6 +96,18 @@ def close(heights: ArrayLike, points: int) -> Array:
     values[:points] -= share
     values[-points:] += share[::-1]
     return values
+
+
+def closed_around(heights: Array, rows: int) -> Array:
+    """Close a random strip (n, ny) over `rows` rows: those beyond give way to the first ones.
+
+    They are weighted by cos θ and sin θ as in `LongStrip`, so that mean square and lateral correlation stay.
+    """
+    beyond = len(heights) - rows
+    angle = 0.5 * np.pi * ((np.arange(beyond) + 0.5) / max(beyond, 1))[:, None]
+    closed = heights[:rows].copy()
+    closed[:beyond] = np.sin(angle) * closed[:beyond] + np.cos(angle) * heights[rows:]
+    return closed
 
 
 def self_affine(

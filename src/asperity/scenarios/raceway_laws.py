@@ -1,0 +1,432 @@
+"""Contact laws on raceways that are closed around: grids for slender contacts, one scan of what is new."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import fft
+
+from asperity.arguments import Array, one_of, positive
+from asperity.contact import HalfSpace, Hertz, scan
+from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
+from asperity.kernels.along import OVERLAP
+from asperity.kernels.pointforce import Prepared
+from asperity.laws import Law
+from asperity.laws.areal import Areal
+from asperity.laws.hertz import HertzLaw
+from asperity.laws.spec import SteppedLaw
+from asperity.laws.table import Table
+from asperity.progress import Progress
+from asperity.reduction.stiffness import ForceCurve, patches, stiffness_ensemble
+from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
+from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
+from asperity.scenarios.reducing import chosen_states
+from asperity.store import Cache
+from asperity.surfaces.faults import Fault
+from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
+from asperity.surfaces.strip import Rows
+from asperity.threads import in_order
+
+LAWS = ("table", "areal", "hertz")
+"""Laws that can be built on a raceway."""
+CELLS = (8, 16)
+"""Cells along and across to a half axis of the contact under the load."""
+CELLS_OF_FAULT = 8
+"""Cells to the length and the width of a fault, at least."""
+CELLS_OF_WAVE = 3
+"""Cells to the shortest wavelength of a roughness, at least."""
+HALF_WINDOW = 3.2
+"""Half the window over the half axes under the load: 1.6 times those under the largest force of a state."""
+FOLLOWED = 20.0
+"""Half axes along, under the load, of a wave that contacts follow as a plane: its bow is not in the scan."""
+BLOCK = 64
+"""Positions over faults solved one after the other."""
+SAMPLES = 8
+"""Places of a rough raceway whose mean is the force curve of `areal`."""
+
+
+def raceway_on(
+    contact: Hertz,
+    load: float,
+    radius: float,
+    texture: AroundTexture | None = None,
+    faults: Sequence[Fault] = (),
+    *,
+    seed: int = 0,
+) -> Raceway:
+    """Make a raceway, or the surface of a ball, on the grid that its contacts ask for.
+
+    Parameters
+    ----------
+    contact : Hertz
+        Smooth contact of ball and raceway, x along the path.
+    load : float
+        Largest static load of a ball, N: laws are made for up to eight times as much.
+    radius : float
+        Of the path around, m: of the raceway, or of the ball.
+    texture : AroundTexture, optional
+        What is on it all around; smooth by default.
+    faults : sequence of Fault
+        What is damaged.
+    seed : int
+        Of phases and roughness.
+
+    Returns
+    -------
+    Raceway
+        As wide as the contacts.
+
+    Raises
+    ------
+    InputError
+        For faults off the raceway, textures that do not close, and surfaces of too many points.
+    """
+    texture = texture or AroundTexture()
+    around = 2.0 * math.pi * positive("radius of the raceway (m)", radius)
+    axes = contact.semi_axes(contact.approach(positive("load of a ball (N)", load)))
+    wave = [texture.shortest / CELLS_OF_WAVE] if texture.is_rough else []
+    spacing = [
+        min([axis / cells, *wave, *(fault.size[i] / CELLS_OF_FAULT for fault in faults)])
+        for i, (axis, cells) in enumerate(zip(axes, CELLS, strict=True))
+    ]
+    half = HALF_WINDOW * axes[1] + max((_wider(fault, contact, load) for fault in faults), default=0.0)
+    stride = max(1, math.floor(axes[0] / CELLS[0] / spacing[0] + 1e-9))
+    rows = stride * fft.next_fast_len(math.ceil(around / spacing[0] / stride), real=True)
+    shape, steps = (rows, 2 * math.ceil(half / spacing[1]) + 1), (around / rows, spacing[1])
+    return raceway(texture, faults, shape, steps, seed=seed, followed=FOLLOWED * axes[0])
+
+
+def _wider(fault: Fault, contact: Hertz, load: float) -> float:
+    """How much farther across than on a smooth raceway a ball in a hollow may touch, m.
+
+    It sinks by no more than the sagitta of the hollow's length or width; sides that lie deeper under the
+    largest force are not met.
+    """
+    radii = contact.radius_x, contact.radius_y
+    along, across = ((0.5 * size) ** 2 / (2.0 * r) for size, r in zip(fault.size, radii, strict=True))
+    drop = min(fault.deepest, along)
+    if across > drop + contact.approach(HIGHEST_FORCE * load):
+        return 0.0
+    return math.sqrt(2.0 * contact.radius_y * min(drop, across))
+
+
+@dataclass(frozen=True, eq=False)
+class Around:
+    """A law on a path that is closed: positions count modulo its circumference, m.
+
+    Parameters
+    ----------
+    law : Law
+        Known from zero to the circumference at least.
+    circumference : float
+        m.
+    """
+
+    law: Law
+    circumference: float
+
+    @property
+    def name(self) -> str:
+        """Name of the law."""
+        return self.law.name
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+        return self.law.damping
+
+    def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
+        """Lay the law out on positions (n,), m, on as many turns as they are."""
+        return self.law.prepare(np.mod(np.asarray(positions, dtype=float), self.circumference))
+
+
+@dataclass(frozen=True, eq=False)
+class OnRaceway:
+    """A ball on a raceway: what its contact feels, its forces all around, and laws made of them.
+
+    Parameters
+    ----------
+    contact : Hertz
+        Smooth contact, x along the path.
+    surface : Raceway
+        What it rolls over.
+    load : float
+        Largest static load of a ball, N; states cover eight times as much.
+    hardness : float, optional
+        Pressure at which asperities flow, Pa.
+    accuracy : float
+        Largest relative error of a scanned force.
+    cache : Cache, optional
+        Keeps what was scanned.
+    progress : Progress, optional
+        Told how far the scan is.
+    """
+
+    contact: Hertz
+    surface: Raceway
+    load: float
+    hardness: float | None = None
+    accuracy: float = FORCE_ACCURACY
+    cache: Cache | None = None
+    progress: Progress | None = None
+
+    @cached_property
+    def axes(self) -> tuple[float, float]:
+        """Half axes of the smooth contact under the load, m."""
+        return self.contact.semi_axes(self.contact.approach(self.load))
+
+    @cached_property
+    def stride(self) -> int:
+        """Rows between positions: the most up to an eighth of a half axis that divide a turn."""
+        most = max(1, math.floor(self.axes[0] / CELLS[0] / self.surface.spacing[0] * (1.0 + 1e-3)))
+        return next(each for each in range(most, 0, -1) if self.rows % each == 0)
+
+    @property
+    def rows(self) -> int:
+        """Rows of the raceway."""
+        return len(self.surface.heights)
+
+    @cached_property
+    def shape(self) -> Geometry:
+        """The gap of the smooth bodies on the window: as wide as the raceway, as long as faults let it be.
+
+        Over a fault the ball may touch where it sinks to, or behind a bump.
+        """
+        (dx, dy), contact, faults = self.surface.spacing, self.contact, self.surface.faults
+        sound = np.flatnonzero(~faults.any(axis=1))
+        longest = dx * np.diff(np.append(sound, sound[:1] + self.rows)).max(initial=1)
+        sinks = min(-float(faults.min()), longest**2 / (8.0 * contact.radius_x))
+        reach = math.sqrt(2.0 * contact.radius_x * max(sinks, float(faults.max())))
+        half, lines = math.ceil((HALF_WINDOW * self.axes[0] + reach) / dx), faults.shape[1]
+        x, y = (np.arange(2 * half + 1) - half) * dx, (np.arange(lines) - lines // 2) * dy
+        body = np.add.outer(x**2 / (2.0 * contact.radius_x), y**2 / (2.0 * contact.radius_y))
+        largest = HIGHEST_FORCE * self.load
+        return Geometry(body, (dx, dy), contact.modulus, contact, self.load, largest)
+
+    @cached_property
+    def space(self) -> HalfSpace:
+        """The half-space of the window."""
+        return self.shape.half_space(self.hardness)
+
+    @cached_property
+    def scanned(self) -> Array:
+        """Roughness and faults (rows + window − 1, lines), m: row i is the window's first about row i."""
+        return self._around(self.surface.heights + self.surface.faults, len(self.shape.body) // 2)
+
+    @staticmethod
+    def _around(values: NDArray[Any], beyond: int, axis: int = 0) -> NDArray[Any]:
+        """Values with as many from the other end beyond either end of a turn."""
+        return np.pad(values, [(beyond, beyond) if i == axis else (0, 0) for i in range(values.ndim)], "wrap")
+
+    @property
+    def positions(self) -> NDArray[np.intp]:
+        """Rows on which forces are solved."""
+        return np.arange(0, self.rows, self.stride)
+
+    def _met(self, heights: Array) -> NDArray[np.bool_]:
+        """At which positions the window holds anything of heights (rows, lines)."""
+        window = len(self.shape.body)
+        rows = np.cumsum(self._around(np.any(heights, axis=1), window // 2))
+        within = rows[window - 1 :] - np.append(0, rows[:-window])
+        return within[:: self.stride] > 0
+
+    @cached_property
+    def over_faults(self) -> Array:
+        """Height (rows,) that faults have for a contact under the load, m: exact for that load.
+
+        By so much less is the approach there than on the smooth raceway.
+        """
+        body, rtol = self.shape.body, rtol_for(self.accuracy)
+        window, around = len(body), self._around(self.surface.faults, len(body) // 2)
+        smooth = self.space.at_load(body, self.load, None, rtol).approach
+        met, felt = np.flatnonzero(self._met(self.surface.faults)), np.zeros(len(self.positions))
+
+        def solved(block: NDArray[np.intp]) -> list[float]:
+            found, start = list[float](), None
+            for row in self.positions[block]:
+                each = self.space.at_load(body - around[row : row + window], self.load, start, rtol)
+                found.append(smooth - each.approach)
+                start = each.pressure
+            return found
+
+        blocks = [met[i : i + BLOCK] for i in range(0, len(met), BLOCK)]
+        for block, found in zip(blocks, in_order(solved, blocks), strict=True):
+            felt[block] = found
+        return np.interp(np.arange(self.rows), self.positions, felt, period=self.rows)
+
+    def averaged(self, axes: ArrayLike) -> Array:
+        """Roughness (k, rows), m, averaged under patches of half axes (k, 2), m, with `over_faults`."""
+        heights, patch = self.surface.heights, np.atleast_2d(axes)
+        if not heights.any():
+            return np.tile(self.over_faults, (len(patch), 1))
+        reach = math.ceil(patch[:, 0].max() / self.surface.spacing[0]) + 1
+        rows, states = Rows(self._around(heights, reach)), np.arange(len(patch), dtype=float)
+        under = areal_texture(rows, self.surface.spacing, states, patch).heights
+        return self.over_faults - under[:, reach:-reach]
+
+    def waves(self, axes: ArrayLike) -> Array:
+        """Long waves (k, rows), m, averaged under patches of half axes (k, 2), m: sin(q a)/(q a) of each."""
+        long, order = self.surface.line, np.arange(self.rows // 2 + 1)
+        turns = np.multiply.outer(np.atleast_2d(axes)[:, 0] / self.surface.circumference, 2.0 * order)
+        return np.asarray(fft.irfft(np.sinc(turns) * fft.rfft(long), self.rows))
+
+    @cached_property
+    def felt(self) -> Array:
+        """Height (rows,), m, that a contact under the load feels, with the long waves."""
+        return self.averaged(self.axes)[0] + self.waves(self.axes)[0]
+
+    @cached_property
+    def planes(self) -> Array:
+        """Heights at the positions from which approaches of the scan count, m.
+
+        To a femtometre: what Fourier transforms leave depends on what else is on the raceway.
+        """
+        return np.round(self.averaged(self.axes)[0][self.positions], 15)
+
+    @cached_property
+    def touches(self) -> Array:
+        """Approach at first touch at the positions, from the planes, m."""
+        return scan.first_touch(Rows(self.scanned), self.shape.body, self.stride) + self.planes
+
+    @cached_property
+    def approaches(self) -> Array:
+        """States, from the planes, m: up to eight times the load wherever the raceway is unlike."""
+        felt, sound = self.over_faults[self.positions], ~self._met(self.surface.faults)
+        chosen = [np.argmin(self.touches), np.argmax(self.touches), np.argmin(felt), np.argmax(felt)]
+        even = np.linspace(0, np.count_nonzero(sound), SAMPLES, endpoint=False).astype(int)
+        chosen += list(np.flatnonzero(sound)[even if self.surface.heights.any() else even[:1]])
+        places = []
+        for at in np.unique(chosen):
+            rows = slice(at * self.stride, at * self.stride + len(self.shape.body))
+            places.append(self.scanned[rows] - self.planes[at])
+        return chosen_states(places, self.shape, self.space)
+
+    @cached_property
+    def around(self) -> ScannedForces[Array]:
+        """Forces (states, positions) once around; where nothing is in the window they are solved once."""
+        window, lines = self.shape.body.shape
+        new, counts = self._met(self.surface.heights + self.surface.faults), []
+        forces = np.empty((len(self.approaches), len(new)))
+
+        def solve(at: slice | NDArray[np.bool_], rows: Array, planes: Array) -> None:
+            job = scan.ScanJob(
+                self.space, Rows(rows), self.shape.body, self.approaches, self.stride,
+                rtol_for(self.accuracy), planes,
+            )  # fmt: skip
+            found = scan.scan_forces(job, cache=self.cache, progress=self.progress)
+            forces[:, at] = found.forces
+            counts.append(found.counts)
+
+        if not new.all():
+            solve(~new, np.zeros((window, lines)), np.zeros(1))
+        for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
+            under = slice(first * self.stride, (stop - 1) * self.stride + window)
+            solve(slice(first, stop), self.scanned[under], self.planes[first:stop])
+        scan.warn_of_flaws(scan.total(counts), "the raceway", "accuracy")
+        return ScannedForces(forces, scan.total(counts), False)
+
+    @cached_property
+    def table(self) -> ForceTable:
+        """The scan, to look forces up in."""
+        step, touches = self.stride * self.surface.spacing[0], self._around(self.touches, OVERLAP)
+        forces = self._around(self.around.forces, OVERLAP, axis=1)
+        return ForceTable(forces, self.approaches, -OVERLAP * step, step, touches)
+
+    def _texture(self, heights: Array, states: Array | None = None) -> StateTexture:
+        """Heights (k, rows) of states (k,), m, as laws take them: closed, positive away from contact."""
+        closed, dx = -self._around(np.atleast_2d(heights), OVERLAP, axis=1), self.surface.spacing[0]
+        return StateTexture(closed, np.zeros(1) if states is None else states, -OVERLAP * dx, dx)
+
+    @cached_property
+    def curve(self) -> ForceCurve:
+        """Force over approach: Hertz, or the mean over places of a rough raceway."""
+        heights, shape = self.surface.heights, self.shape.body.shape
+        if not heights.any():
+            return ForceCurve.hertz(self.contact.stiffness_constant)
+        weights, rtol = punch_weights(self.surface.spacing, self.axes), rtol_for(self.accuracy)
+        samples = patches([heights], (shape[0], shape[1]), SAMPLES, weights)
+        pressed = self.space, self.shape.body, self.approaches, 0.0
+        return stiffness_ensemble(samples, *pressed, rtol=rtol, tolerance="accuracy").curve
+
+    def law(self, name: str, damping: float) -> Law:
+        """A law of `LAWS` by its name, with a contact damping, N s/m."""
+        plane = self._texture(self.felt)
+        if name == "table":
+            return Table(self.table, damping, plane)
+        if name == "hertz":
+            line = self.surface.heights[:, self.surface.heights.shape[1] // 2] + self.surface.line
+            texture = self._texture(line + self.over_faults)
+            return HertzLaw(self.contact.stiffness_constant, texture, damping)
+        forces = self.curve.force(self.approaches)
+        axes = np.array([self.contact.semi_axes(self.contact.approach(each)) for each in forces])
+        loaded = forces > 0.0
+        heights = self.averaged(axes[loaded]) + self.waves(axes[loaded])
+        return Areal(self.curve, self._texture(heights, self.approaches[loaded]), damping, plane=plane)
+
+
+def raceway_laws(
+    names: Iterable[str],
+    contact: Hertz,
+    surface: Raceway,
+    load: float,
+    *,
+    damping: float = 0.0,
+    hardness: float | None = None,
+    accuracy: float = FORCE_ACCURACY,
+    cache: Cache | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Law]:
+    """Laws of a ball on a raceway, on positions along it of any number of turns, m.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Of `LAWS`.
+    contact : Hertz
+        Smooth contact of ball and raceway, x along the path.
+    surface : Raceway
+        From `raceway_on` for this contact and load.
+    load : float
+        Largest static load of a ball, N. States go up to eight times as much where the raceway is sound;
+        beyond the last state F^(2/3) of `table` goes on with its end slope, the curve of `areal` with its.
+    damping : float
+        Of the contact, N s/m.
+    hardness : float, optional
+        Pressure at which asperities flow, Pa, for `table`.
+    accuracy : float
+        Largest relative error of a scanned force.
+    cache, progress : optional
+        As in `asperity.contact.scan.solved_blocks`.
+
+    Returns
+    -------
+    dict of str to Law
+        By name. An approach δ of ring and ball sees a surface that is higher by h as δ + h.
+
+    Notes
+    -----
+    `table` holds the solved contact with roughness and faults; long waves move it up and down. `areal`
+    follows the average under the patch, `hertz` the middle line. Both take a fault as the height that it has
+    for the contact under the load (`OnRaceway.over_faults`): exact there, and off under other loads.
+    """
+    on = OnRaceway(
+        contact, surface, positive("load of a ball (N)", load), hardness, accuracy, cache, progress
+    )
+    chosen = [one_of("law of a raceway", name, LAWS) for name in names]
+    return {name: Around(on.law(name, damping), surface.circumference) for name in chosen}
+
+
+def ball_heights(contact: Hertz, surface: Raceway, load: float) -> Array:
+    """Heights (rows,), m, closed, that the contact of a ball under a load, N, feels around its `surface`.
+
+    Roughness and waves are averaged under the patch, and a fault has the height by which it changes the
+    approach under the load on a smooth raceway.
+    """
+    return OnRaceway(contact, surface, positive("load of a ball (N)", load)).felt

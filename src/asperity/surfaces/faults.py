@@ -1,0 +1,167 @@
+"""Faults of raceways and balls as heights, positive out of the material: pits, spalls, dents, particles."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from asperity.arguments import Array, require
+from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
+from asperity.surfaces.heightmap import HeightMap
+
+Shape = Literal["pit", "spall", "dent", "particle", "mark", "map"]
+SHAPES = ("pit", "spall", "dent", "particle", "mark", "map")
+LENGTH = Quantity("m", above=0)
+MAP = File(held=(HeightMap,), content="a height map")
+_SIZE = "1 um to 1 m: faults lie between"
+_DEPTH = "1 nm to 100 mm: faults lie between"
+_COUNT = "1 to 500: balls are fewer"
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault of a raceway or ball, or several alike around it.
+
+    Parameters
+    ----------
+    shape : {"pit", "spall", "dent", "particle", "mark", "map"}
+        An elliptic or a rectangular hollow with a flat floor; a round-bottomed dent with a raised rim; an
+        elliptic bump; an elliptic worn hollow, as false brinelling leaves; heights of a file.
+    angle : float
+        Of its middle around the raceway or the ball, rad.
+    offset : float
+        Of its middle across the path, m.
+    length, width : float
+        Along and across the path, m; the width is the length if it is left out. Those of a map are its own.
+    depth : float
+        Of a hollow, or height of a particle, m.
+    edge : float
+        Over which a pit or spall falls to its floor, m, inside its outline.
+    rim : float
+        Volume of a dent's rim over that of the dent.
+    rim_width : float
+        Width of the rim over the half axes of the dent.
+    count : int
+        Faults alike, at even distances around, the first at the angle.
+    map : HeightMap or path, optional
+        Heights, laid with its x along the path; where it ends, the raceway goes on at height zero.
+
+    Raises
+    ------
+    InputError
+        If a size is missing or out of range.
+
+    Examples
+    --------
+    >>> from asperity.surfaces.faults import Fault
+    >>> pit = Fault("pit", length=0.18e-3, depth=0.28e-3)
+    >>> pit.heights([0.0, 0.08e-3, 0.1e-3], 0.0).round(5).tolist()  # along its middle
+    [-0.00028, -0.00028, 0.0]
+    """
+
+    shape: Shape = parameter(Choice(SHAPES), "pit", "kind of fault")  # noqa: RUF009
+    angle: float = parameter(Quantity("rad"), "0 deg", "angle of its middle around", default=0.0)
+    offset: float = parameter(Quantity("m"), "0 mm", "distance of its middle from the path", default=0.0)
+    length: float = parameter(LENGTH, "0.18 mm", "length along the path", _SIZE, default=None)
+    width: float = parameter(LENGTH, "0.18 mm", "width across, as its length", _SIZE, default=None)
+    depth: float = parameter(LENGTH, "0.28 mm", "depth, or height of a particle", _DEPTH, default=None)
+    edge: float = parameter(
+        Quantity("m", at_least=0), "10 um", "length over which a pit or spall falls", default=0.0
+    )
+    rim: float = parameter(Number(at_least=0), 1.0, "volume of a dent's rim over the dent's", default=1.0)
+    rim_width: float = parameter(Number(above=0), 1.0, "width of the rim over half a dent's", default=1.0)
+    count: int = parameter(Number(at_least=1, whole=True), 1, "faults alike around", _COUNT, default=1)
+    map: HeightMap | Path | None = parameter(  # noqa: RUF009
+        MAP, "spall.x3p", "heights of the fault", default=None
+    )
+
+    def __post_init__(self) -> None:
+        checked_parameters(self)
+        of_map = self.shape == "map"
+        for name, right in (("length", not of_map), ("depth", not of_map), ("map", of_map)):
+            received, allowed = ("nothing", "one") if right else ("one", "none")
+            given = getattr(self, name) is not None
+            require(given == right, f"{name} of a fault, a {self.shape}", received, allowed)
+        if self.width is None:
+            object.__setattr__(self, "width", self.length)
+
+    @cached_property
+    def _laid(self) -> HeightMap | None:
+        return None if self.map is None else map_of(self.map)
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Length and width of all that is not at height zero, m."""
+        if self._laid is not None:
+            return self._laid.size
+        wider = 1.0 + self.rim_width if self.shape == "dent" and self.rim else 1.0
+        return self.length * wider, self.width * wider
+
+    @property
+    def deepest(self) -> float:
+        """Depth of its deepest place, m; zero of a bump."""
+        return self.depth if self._laid is None else max(-float(self._laid.heights.min()), 0.0)
+
+    def heights(self, along: ArrayLike, across: ArrayLike) -> Array:
+        """Heights, m, at places along and across the path from its middle, m; arrays are broadcast."""
+        x, y = np.broadcast_arrays(np.asarray(along, dtype=float), np.asarray(across, dtype=float))
+        if self._laid is not None:
+            from scipy.ndimage import map_coordinates
+
+            places = zip((x, y), self._laid.spacing, self._laid.shape, strict=True)
+            index = [at / step + 0.5 * (points - 1) for at, step, points in places]
+            return np.asarray(map_coordinates(self._laid.heights, index, order=1, cval=0.0))
+        a, b, depth, wide = 0.5 * self.length, 0.5 * self.width, self.depth, self.rim_width
+        rho = np.hypot(x / a, y / b)
+        bowl = np.clip(1.0 - rho**2, 0.0, None)
+        if self.shape in ("pit", "spall"):
+            inside = (1.0 - rho) * min(a, b) if self.shape == "pit" else np.minimum(a - abs(x), b - abs(y))
+            return -depth * np.clip(inside / self.edge if self.edge else np.sign(inside), 0.0, 1.0)
+        if self.shape in ("mark", "particle"):
+            return -depth * bowl if self.shape == "mark" else depth * bowl**2
+        # volumes over π times the half axes: d/3 of d (1 − ρ²)², and h w (1 + w/2) of h sin²(π (ρ − 1)/w)
+        rim = self.rim * depth / (3.0 * wide * (1.0 + 0.5 * wide))
+        return rim * np.sin(np.pi * np.clip((rho - 1.0) / wide, 0.0, 1.0)) ** 2 - depth * bowl**2
+
+
+def map_of(source: HeightMap | Path) -> HeightMap:
+    """Take a height map, or read it, and fill its missing points."""
+    from asperity.surfaces.readers import read_surface
+
+    found = source if isinstance(source, HeightMap) else read_surface(source)
+    if not isinstance(found, HeightMap):
+        require(False, "map", "a line", "a height map", "Give a line around as a trace.")
+    return found.filled()  # type: ignore[return-value]
+
+
+def lay(faults: tuple[Fault, ...], shape: tuple[int, int], spacing: tuple[float, float]) -> Array:
+    """Heights (rows, lines), m, of faults on a surface that is closed along its rows, zero elsewhere.
+
+    Row 0 is at angle zero, the path along the middle of the lines. Where faults overlap, heights add up.
+    Refused are those that no contact on so many lines meets, and those longer than the circumference.
+    """
+    result, (rows, lines), (dx, dy) = np.zeros(shape), shape, spacing
+    across, around = (np.arange(lines) - lines // 2) * dy, rows * dx
+    for fault in faults:
+        (length, width), name = fault.size, f"of the fault, a {fault.shape}"
+        received, most = f"{fault.offset * 1e3:.4g} mm", 0.5 * (lines * dy + width)
+        allowed = f"less than {most * 1e3:.4g} mm: contacts under these loads reach no farther"
+        met = abs(fault.offset) < most
+        require(met, f"offset {name}", received, allowed, "Move it towards the middle of the raceway.")
+        received = f"{length * 1e3:.4g} mm, {fault.count} times"
+        allowed = f"what fits on a circumference of {around * 1e3:.4g} mm"
+        fits = fault.count * length <= around
+        require(fits, f"length {name}", received, allowed, "Shorten it, or lay fewer.")
+        reach = math.ceil(0.5 * length / dx) + 1
+        for k in range(fault.count):
+            middle = (fault.angle / (2.0 * math.pi) + k / fault.count) * rows
+            at = np.arange(round(middle) - reach, round(middle) + reach + 1)
+            laid = fault.heights(((at - middle) * dx)[:, None], across - fault.offset)
+            np.add.at(result, np.mod(at, rows), laid)
+    return result

@@ -1,0 +1,232 @@
+"""Surfaces that are closed around: raceways and balls with waviness, roughness, a trace, and faults."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import fft
+
+from asperity.arguments import Array, finite_array, require, two_lengths
+from asperity.parameters import File, ListOf, Number, Quantity, checked_parameters, parameter
+from asperity.surfaces.faults import LENGTH, MAP, Fault, lay, map_of
+from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.synthesis import closed_around, from_map, self_affine
+
+BLEND = 2.0
+"""Longest wavelengths over which the end of a roughness gives way to its beginning."""
+MOST_POINTS = 2**26
+"""Points of a raceway: 512 MiB."""
+_WAVES = "1 nm to 1 mm: raceways and balls are rounder"
+_RMS = "0.01 nm to 0.1 mm: finishes lie between"
+_HIGHEST = "1 to 100000: others are shorter than contacts"
+_ORDER = Number(at_least=1, whole=True)
+_AMPLITUDES = ListOf(Quantity("m", at_least=0))
+_TRACE = File(columns=(2,), content="a table of angle and deviation")
+
+
+@dataclass(frozen=True)
+class AroundTexture:
+    """What is on a raceway or ball all around: waviness, a measured trace, roughness; the sum of them.
+
+    Parameters
+    ----------
+    waves, amplitudes : tuple
+        Waves per turn, and the amplitude of each, m.
+    waviness : float, optional
+        Amplitude at `first_order` of a spectrum that falls as order^-fall up to `last_order`, m.
+    first_order, last_order, fall : int, int, float
+        Of that spectrum.
+    trace : (n, 2) array, optional
+        Measured roundness over one turn: angle, rad, and deviation, m. Its mean and its first order, which
+        say how the part lay on the instrument, are taken off.
+    roughness : float, optional
+        Rms height of self-affine roughness, m: that of the ensemble, see `asperity.surfaces.synthesis`.
+    hurst, longest, shortest, anisotropy : float
+        Of the roughness; wavelengths in m.
+    map : HeightMap or path, optional
+        A measured roughness instead, complete. It does not close around a raceway, and is not tiled: a
+        surface in its likeness does.
+
+    Raises
+    ------
+    InputError
+        If numbers do not fit each other, or the trace does not close.
+    """
+
+    waves: tuple[int, ...] = parameter(ListOf(_ORDER), [3, 9], "waves per turn", default=())
+    amplitudes: tuple[float, ...] = parameter(
+        _AMPLITUDES, ["1 um", "0.1 um"], "amplitude of each of the waves", default=()
+    )
+    waviness: float | None = parameter(LENGTH, "0.5 um", "amplitude at first_order", _WAVES, default=None)
+    first_order: int = parameter(_ORDER, 2, "fewest waves per turn of the waviness", default=2)
+    last_order: int = parameter(_ORDER, 100, "most waves per turn of it", _HIGHEST, default=100)
+    fall: float = parameter(Number(), 1.5, "p of its amplitudes, which fall as order^-p", default=1.5)
+    trace: Array | None = parameter(  # noqa: RUF009
+        _TRACE, "roundness.csv", "measured roundness", default=None
+    )
+    roughness: float | None = parameter(LENGTH, "20 nm", "rms of the roughness", _RMS, default=None)
+    hurst: float = parameter(Number(above=0, at_most=1), 0.8, "its Hurst exponent", default=0.8)
+    longest: float = parameter(LENGTH, "0.5 mm", "its roll-off wavelength", default=0.5e-3)
+    shortest: float = parameter(LENGTH, "50 um", "its shortest wavelength", default=50e-6)
+    anisotropy: float = parameter(
+        Number(above=0), 1.0, "its correlation length along over that across", default=1.0
+    )
+    map: HeightMap | Path | None = parameter(  # noqa: RUF009
+        MAP, "raceway.x3p", "measured roughness instead", default=None
+    )
+
+    def __post_init__(self) -> None:
+        checked_parameters(self)
+        received = f"{len(self.waves)} waves and {len(self.amplitudes)} amplitudes"
+        require(len(self.waves) == len(self.amplitudes), "waves", received, "one amplitude for each")
+        received = f"{self.first_order} to {self.last_order}"
+        require(1 <= self.first_order <= self.last_order, "orders of the waviness", received, "rising orders")
+        both = self.map is not None and self.roughness is not None
+        require(not both, "roughness", "a number and a map", "one of them", "Remove one.")
+        if self.trace is not None:
+            closed_trace(self.trace)
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether it holds heights that differ across the path."""
+        return self.roughness is not None or self.map is not None
+
+    def line(self, rows: int, seed: int) -> NDArray[np.complex128]:
+        """Complex amplitudes (rows // 2 + 1,), m, of waves per turn: a line is their real part, summed."""
+        found, last = np.zeros(rows // 2 + 1, dtype=complex), rows // 2 - 1
+        highest = max((*self.waves, self.last_order if self.waviness else 1))
+        remedy = "Leave out waves that are shorter than the contacts, or add them as roughness."
+        require(highest <= last, "waves per turn", highest, f"at most {last}, by two cells a wave", remedy)
+        phases = np.exp(2j * np.pi * np.random.default_rng([seed, 1]).random(last + 1))
+        if self.waviness:
+            orders = np.arange(self.first_order, self.last_order + 1)
+            found[orders] += self.waviness * (orders / self.first_order) ** -self.fall * phases[orders]
+        for order, amplitude in zip(self.waves, self.amplitudes, strict=True):
+            found[order] += amplitude * phases[order]
+        if self.trace is not None:
+            angle, deviation = closed_trace(self.trace)
+            from scipy.interpolate import CubicSpline
+
+            spline = CubicSpline(angle, deviation, bc_type="periodic")
+            measured = fft.rfft(spline(2.0 * np.pi * np.arange(rows) / rows)) * (2.0 / rows)
+            found[2 : last + 1] += measured[2 : last + 1]
+        return found
+
+    def rough(self, shape: tuple[int, int], spacing: tuple[float, float], seed: int) -> Array:
+        """Roughness (rows, lines), m, closed along the rows."""
+        measured = None if self.map is None else map_of(self.map).levelled()
+        reach = self.longest * max(self.anisotropy, 1.0) ** 0.5 if measured is None else measured.size[0]
+        longer = shape[0] + min(round(BLEND * reach / spacing[0]), shape[0]), shape[1]
+        if measured is None:
+            made = self_affine(
+                longer, spacing, rms=self.roughness or 0.0, hurst=self.hurst, longest=self.longest,
+                shortest=self.shortest, anisotropy=self.anisotropy, seed=seed,
+            )  # fmt: skip
+        else:
+            made = from_map(measured, longer, seed, spacing)
+        return closed_around(made.heights, shape[0])
+
+
+def closed_trace(trace: ArrayLike) -> tuple[Array, Array]:
+    """Angles (n + 1,), rad, over exactly one turn, and deviations, m, whose last is the first; or refuse.
+
+    The step from the end of the trace to its beginning must be none that its own steps are not: it may turn
+    by one step less than a whole turn, or end where it began.
+    """
+    table = finite_array("roundness trace", trace, "finite angles and deviations (n, 2)", shape=(None, 2))
+    angle, deviation = table.T
+    steps = np.diff(angle)
+    what, remedy = "roundness trace", "Trim it to one turn, from where it begins to just before that place."
+    require(len(angle) >= 8 and (steps > 0.0).all(), what, "too few or falling angles", "8 or more, rising")
+    turned, widest = angle[-1] - angle[0], 1.5 * float(steps.max())
+    received, allowed = f"{math.degrees(turned):.6g} deg", "one turn, 360 deg, or one step less"
+    once = 2.0 * math.pi - widest <= turned <= 2.0 * math.pi + 1e-3 * widest
+    require(once, what, received, allowed, remedy)
+    largest, open_by = float(np.abs(np.diff(deviation)).max()), abs(float(deviation[-1] - deviation[0]))
+    received = f"ends that differ by {open_by * 1e6:.3g} um"
+    allowed = f"ends that meet as its neighbours do, within {largest * 1e6:.3g} um"
+    remedy = "Take off what drifted, or measure once around."
+    require(open_by <= largest, what, received, allowed, remedy)
+    if turned > 2.0 * math.pi - 0.5 * float(steps.min()):  # it came back to its first place
+        angle, deviation = angle[:-1], deviation[:-1]
+    return np.append(angle, angle[0] + 2.0 * math.pi), np.append(deviation, deviation[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Raceway:
+    """Surface of a raceway or a ball, closed along its rows: behind the last comes the first.
+
+    Parameters
+    ----------
+    heights : (rows, lines) array
+        Roughness and short waves, m, positive out of the material; the middle line is the path.
+    spacing : (float, float)
+        Distances (dx, dy), m, of rows and lines.
+    line : (rows,) array, optional
+        Long waves, m, the same all across, that contacts follow as a plane.
+    faults : (rows, lines) array, optional
+        Heights of faults, m, zero elsewhere.
+
+    Raises
+    ------
+    InputError
+        If shapes do not fit or heights are not finite.
+    """
+
+    heights: Array
+    spacing: tuple[float, float]
+    line: Array = None  # type: ignore[assignment]  # zeros, as the next
+    faults: Array = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "spacing", two_lengths("spacing of the raceway", self.spacing))
+        shape = np.shape(self.heights)
+        for name, expected in (("heights", (None, None)), ("line", shape[:1]), ("faults", shape)):
+            given, what = getattr(self, name), f"{name} of the raceway"
+            values = np.zeros(shape[: len(expected)]) if given is None else given
+            object.__setattr__(self, name, finite_array(what, values, "finite heights", shape=expected))
+        allowed = "8 rows or more, and an odd number of lines, so that one is the middle"
+        require(shape[0] >= 8 and shape[1] % 2, "heights of the raceway", f"shape {shape}", allowed)
+
+    @property
+    def circumference(self) -> float:
+        """Length of the path, m."""
+        return len(self.heights) * self.spacing[0]
+
+    @cached_property
+    def amplitudes(self) -> Array:
+        """Amplitudes, m, of 1, 2, … waves per turn along the path, without faults."""
+        along = self.heights[:, self.heights.shape[1] // 2] + self.line
+        return np.abs(fft.rfft(along)[1:]) * (2.0 / len(along))
+
+
+def raceway(
+    texture: AroundTexture,
+    faults: Sequence[Fault],
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    *,
+    seed: int,
+    followed: float,
+) -> Raceway:
+    """Surface (rows, lines) of a raceway or a ball, spacing (dx, dy), m.
+
+    Waves of its line longer than `followed`, m, stay in the `line` of the `Raceway`, shorter ones are in its
+    heights.
+    """
+    rows, lines = shape
+    received, allowed = f"{rows} × {lines} points", f"at most {MOST_POINTS} points"
+    remedy = "Lengthen the shortest wavelength of the roughness, or enlarge the smallest fault."
+    require(rows * lines <= MOST_POINTS, "surface of the raceway", received, allowed, remedy)
+    waves = texture.line(rows, seed) * (0.5 * rows)
+    long = np.arange(len(waves)) * followed <= rows * spacing[0]
+    heights = texture.rough(shape, spacing, seed) if texture.is_rough else np.zeros(shape)
+    if (waves * ~long).any():
+        heights = heights + fft.irfft(waves * ~long, rows)[:, None]
+    return Raceway(heights, spacing, fft.irfft(waves * long, rows), lay(tuple(faults), shape, spacing))

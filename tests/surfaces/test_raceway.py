@@ -1,0 +1,157 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from asperity.errors import InputError
+from asperity.surfaces.faults import Fault, lay
+from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
+from asperity.surfaces.synthesis import closed_around
+
+MM, UM = 1e-3, 1e-6
+CELLS = (0.01 * MM, 0.02 * MM)
+GRID = np.meshgrid(np.arange(-400, 401) * 2.5 * UM, np.arange(-400, 401) * 2.5 * UM, indexing="ij")
+
+
+def made(texture, *faults, shape=(2000, 41), seed=1, followed=0.0):
+    return raceway(texture, faults, shape, CELLS, seed=seed, followed=followed)
+
+
+def trace(angle, height=lambda angle: UM * np.cos(3 * angle)):
+    return np.column_stack([angle, height(angle)])
+
+
+TURN = 2.0 * np.pi * np.arange(360) / 360
+
+
+def test_waves_have_their_amplitudes_and_no_others():
+    texture = AroundTexture(
+        waves=(3, 40), amplitudes=(UM, 0.1 * UM), waviness=0.5 * UM, first_order=5, last_order=20, fall=1.5
+    )
+    wanted = np.zeros(1000)
+    wanted[[2, 39]], wanted[4:20] = (UM, 0.1 * UM), 0.5 * UM * (np.arange(5, 21) / 5) ** -1.5
+    assert_allclose(made(texture).amplitudes, wanted, atol=1e-12 * UM)
+    assert_array_equal(made(texture, seed=2).line == made(texture).line, False)  # other phases
+
+
+def test_long_waves_are_followed_and_short_ones_are_heights():
+    texture = AroundTexture(waves=(10, 50), amplitudes=(UM, UM))
+    found = made(texture, followed=0.5 * MM)  # 20 mm around: 40 waves
+    assert_allclose(np.abs(np.fft.rfft(found.line))[[10, 50]] / 1000, [UM, 0.0], atol=1e-12 * UM)
+    assert_allclose(np.abs(np.fft.rfft(found.heights[:, 7]))[[10, 50]] / 1000, [0.0, UM], atol=1e-12 * UM)
+    assert not made(AroundTexture(waves=(10,), amplitudes=(UM,)), followed=0.5 * MM).heights.any()
+
+
+def test_roughness_has_its_rms_and_no_seam():
+    texture = AroundTexture(roughness=0.1 * UM, longest=0.4 * MM, shortest=0.06 * MM)
+    heights = np.array([made(texture, seed=seed).heights for seed in range(30)])
+    assert_allclose(np.sqrt(np.mean(heights**2)), 0.1 * UM, rtol=0.05)
+    steps = np.sqrt(np.mean((np.roll(heights, -1, axis=1) - heights) ** 2, axis=(0, 2)))
+    assert_allclose(steps[-1], steps.mean(), rtol=0.15)
+    assert steps.max() < 1.2 * steps.mean()
+
+
+def test_blend_keeps_the_mean_square_and_joins_what_followed():
+    noise = np.random.default_rng(0).normal(size=(60, 20000))
+    found = closed_around(noise, 40)
+    assert_allclose(np.mean(found**2, axis=1), 1.0, atol=0.05)
+    assert_allclose(np.mean(found[0] * noise[40], axis=0), 1.0, atol=0.05)
+    assert_array_equal(found[20:], noise[20:40])
+
+
+@pytest.mark.parametrize("again", [False, True], ids=["one step less", "to where it began"])
+def test_trace_keeps_its_waves_but_mean_and_centring(again):
+    angle = np.append(TURN, 2 * np.pi) if again else TURN
+    measured = trace(angle, lambda a: UM * (5.0 + 2.0 * np.cos(a) + np.cos(3 * a - 0.4)))
+    found = made(AroundTexture(trace=measured), followed=0.01 * MM)
+    place = 2.0 * np.pi * np.arange(2000) / 2000
+    assert_allclose(found.line, UM * np.cos(3 * place - 0.4), atol=1e-5 * UM)
+
+
+def test_likeness_of_a_measured_map_is_closed():
+    heights = np.random.default_rng(1).normal(size=(128, 128)) * 0.05 * UM
+    smooth = sum(np.roll(heights, (i, j), (0, 1)) for i in range(3) for j in range(3)) / 3.0
+    found = made(AroundTexture(map=HeightMap(smooth, CELLS)), shape=(500, 31)).heights
+    assert_allclose(found.std(), smooth.std(), rtol=0.15)
+    assert np.abs(found[0] - found[-1]).max() < 1.2 * np.abs(np.diff(found, axis=0)).max()
+
+
+@pytest.mark.parametrize(
+    ("shape", "volume"),
+    [("pit", -np.pi), ("spall", -4.0), ("mark", -np.pi / 2), ("particle", np.pi / 3), ("dent", 0.0)],
+)
+def test_volumes(shape, volume):
+    fault = Fault(shape, length=0.6 * MM, width=0.4 * MM, depth=UM)
+    found = fault.heights(*GRID).sum() * (2.5 * UM) ** 2
+    assert_allclose(found, volume * 0.3 * MM * 0.2 * MM * UM, rtol=0.01, atol=1e-3 * 0.06 * MM**2 * UM)
+
+
+def test_rim_takes_its_share_and_the_edge_slopes():
+    half, none = (Fault("dent", length=0.4 * MM, depth=UM, rim=share).heights(*GRID) for share in (0.5, 0.0))
+    assert_allclose(half.sum(), 0.5 * none.sum(), rtol=2e-3)
+    assert half.max() > 0.0
+    assert none.max() == 0.0
+    assert half.min() == none.min() == -UM
+    for shape in ("pit", "spall"):
+        fault = Fault(shape, length=0.4 * MM, depth=UM, edge=0.1 * MM)
+        assert_allclose(fault.heights([0.0, 0.15 * MM, 0.2 * MM], 0.0), [-UM, -0.5 * UM, 0.0], atol=1e-12)
+
+
+def test_faults_lie_where_they_are_told_across_the_seam_and_all_around():
+    one = Fault("mark", length=0.2 * MM, width=0.4 * MM, depth=UM, offset=0.1 * MM)
+    found = lay((one,), (2000, 41), CELLS)
+    assert found[0, 25] == found.min() == -UM
+    assert found[-5, 25] == pytest.approx(found[5, 25], rel=1e-12)
+    assert_array_equal(np.flatnonzero(found.any(axis=1)), [*range(10), *range(1991, 2000)])
+    four = lay((Fault("mark", length=0.2 * MM, depth=UM, angle=0.5 * np.pi, count=4),), (2000, 41), CELLS)
+    assert_allclose(np.roll(four, 500, axis=0), four, atol=1e-12 * UM)
+    assert four[500, 20] == -UM
+    assert four[250].any() is np.False_
+
+
+def test_map_of_a_fault_lies_about_its_middle():
+    x, y = (np.arange(9) - 4.0)[:, None], np.arange(7) - 3.0
+    fault = Fault("map", map=HeightMap(UM * (x - 2 * y), (0.02 * MM, 0.01 * MM)))
+    assert fault.size == pytest.approx((0.18 * MM, 0.07 * MM))
+    assert fault.deepest == pytest.approx(10 * UM)
+    assert_allclose(
+        fault.heights([0.0, 0.01 * MM, 1 * MM], 0.005 * MM), UM * np.array([-1, -0.5, 0]), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (
+            lambda: made(AroundTexture(), Fault("pit", length=MM, depth=UM, offset=2 * MM)),
+            "less than 0.91 mm",
+        ),
+        (
+            lambda: made(AroundTexture(), Fault("pit", length=3 * MM, depth=UM, count=9)),
+            "a circumference of 20",
+        ),
+        (lambda: Fault("pit", length=MM), "depth of a fault, a pit: received nothing"),
+        (lambda: Fault("map"), "map of a fault, a map: received nothing"),
+        (lambda: Fault("hole", length=MM, depth=UM), 'shape of the Fault: received .hole.; allowed: "pit"'),
+        (lambda: Fault("pit", length=-MM, depth=UM), "length of the Fault"),
+        (lambda: AroundTexture(waves=(3, 4), amplitudes=(UM,)), "2 waves and 1 amplitudes"),
+        (lambda: AroundTexture(waves=(0,), amplitudes=(UM,)), r"waves of the AroundTexture"),
+        (lambda: AroundTexture(first_order=9, last_order=3), "9 to 3"),
+        (lambda: AroundTexture(roughness=UM, map=HeightMap(np.eye(9), CELLS)), "a number and a map"),
+        (
+            lambda: AroundTexture(trace=trace(TURN, lambda a: UM * a)),
+            "ends that differ by 6.27 um; .* drifted",
+        ),
+        (lambda: AroundTexture(trace=trace(TURN[:300])), "received 299 deg"),
+        (lambda: AroundTexture(trace=trace(2 * TURN)), "received 718 deg"),
+        (lambda: AroundTexture(trace=trace(TURN[::-1])), "falling angles"),
+        (lambda: AroundTexture(trace=trace(TURN, lambda a: a * np.nan)), "finite angles"),
+        (lambda: made(AroundTexture(waves=(1000,), amplitudes=(UM,))), "at most 999"),
+        (lambda: made(AroundTexture(), shape=(2**20, 101)), "at most 67108864 points"),
+        (lambda: Raceway(np.zeros((20, 4)), CELLS), "odd number of lines"),
+        (lambda: Raceway(np.zeros((20, 5)), CELLS, np.zeros(19)), "line of the raceway"),
+    ],
+)
+def test_refused(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
