@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from asperity.arguments import Array, one_of, positive
-from asperity.contact import HalfSpace, Hertz, scan
+from asperity.contact import scan
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.hertz import Hertz
 from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
 from asperity.kernels.along import OVERLAP
 from asperity.kernels.pointforce import Prepared
