@@ -120,7 +120,7 @@ def _wider(fault: Fault, contact: Hertz, load: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Around:
+class Closed:
     """A law on a path that is closed: positions count modulo its circumference, m.
 
     Parameters
@@ -422,7 +422,7 @@ def raceway_laws(
         contact, surface, positive("load of a ball (N)", load), hardness, accuracy, cache, progress
     )
     chosen = [one_of("law of a raceway", name, LAWS) for name in names]
-    return {name: Around(on.law(name, damping), surface.circumference) for name in chosen}
+    return {name: Closed(on.law(name, damping), surface.circumference) for name in chosen}
 
 
 def ball_heights(contact: Hertz, surface: Raceway, load: float) -> Array:
