@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.linalg import toeplitz
+from superposed import euler_free, free_rail, superposed, supports_by_hand
 
 from asperity import Track
 from asperity.reference.tracks import TRACKS
@@ -39,64 +39,15 @@ def make(request):
     return request.param
 
 
-def euler_free(rail, omega, foundation=0.0):
-    """Receptance as printed in textbooks; a continuous foundation takes from the inertia."""
-    bending = rail.bending_stiffness * (1.0 + 1j * rail.rail_loss_factor)
-    k = ((rail.mass_per_length * omega**2 - foundation) / bending) ** 0.25
-    return lambda x: -(1j * np.exp(-1j * k * np.abs(x)) + np.exp(-k * np.abs(x))) / (4.0 * bending * k**3)
-
-
-def timoshenko_free(rail, omega, foundation=0.0):
-    """Receptance from the conditions at the force: no rotation, shear force one half."""
-    loss = 1.0 + 1j * rail.rail_loss_factor
-    bending, shear = loss * rail.bending_stiffness, loss * rail.shear_stiffness
-    mass, inertia = rail.mass_per_length * omega**2 - foundation, rail.rotary_inertia * omega**2
-    # S(w'' - theta') + mass w = 0, B theta'' + S(w' - theta) + inertia theta = 0, with exp(p x)
-    uncoupled = np.polymul([shear, 0.0, mass], [bending, 0.0, inertia - shear])
-    roots = np.roots(np.polyadd(uncoupled, [shear**2, 0.0, 0.0]))
-    p = roots[roots.real < 0.0]
-    rotation = (shear * p**2 + mass) / (shear * p)  # theta/w
-    amplitude = np.linalg.solve([rotation, shear * (p - rotation)], [0.0, -0.5])
-    return lambda x: np.exp(np.multiply.outer(np.abs(x), p)) @ amplitude
-
-
-def free_rail(rail, omega, foundation=0.0):
-    free = euler_free if rail.shear_stiffness is None else timoshenko_free
-    return free(rail, omega, foundation)
-
-
-def supports_by_hand(rail, omega):
-    """K from the two equations of motion of sleeper and pad."""
-    pad = rail.pad_stiffness * (1.0 + 1j * (rail.pad_loss_factor or 0.0))
-    pad += 1j * omega * (rail.pad_damping or 0.0)
-    ballast = rail.ballast_stiffness * (1.0 + 1j * (rail.ballast_loss_factor or 0.0))
-    ballast += 1j * omega * (rail.ballast_damping or 0.0)
-    sleeper = pad / (pad + ballast - rail.sleeper_mass * omega**2)  # motion per motion of the rail
-    return pad * (1.0 - sleeper)
-
-
-def superposition(rail, frequency, pairs, supports=961):
-    """Receptances by superposing the reactions of many supports under the free rail."""
-    omega = 2.0 * math.pi * frequency
-    free = free_rail(rail, omega)
-    stiffness = supports_by_hand(rail, omega)
-    at = rail.sleeper_spacing * (np.arange(supports) - supports // 2)
-    matrix = np.eye(supports) + stiffness * toeplitz(free(at - at[0]), free(at - at[0]))
-    forces = np.stack([free(at - x0) for _, x0 in pairs], axis=1)
-    deflections = np.linalg.solve(matrix, forces)
-    return np.array(
-        [free(x - x0) - stiffness * free(x - at) @ deflections[:, n] for n, (x, x0) in enumerate(pairs)]
-    )
-
-
 PAIRS = [(0.3, 0.3), (0.0, 0.0), (0.1, 0.1), (0.1, 0.45), (3.77, 0.1), (-1.3, 0.2), (0.6, 0.0), (-7.2, -7.2)]
 
 
 @pytest.mark.parametrize("make", [track, hysteretic, timoshenko])
 @pytest.mark.parametrize("frequency", [20.0, 90.0, 276.0, 517.0, 1063.0, 1224.5, 2500.0, 5000.0])
 def test_receptance_is_that_of_961_superposed_supports(make, frequency):
-    rail = make()
-    expected = superposition(rail, frequency, PAIRS)
+    rail, omega = make(), 2.0 * math.pi * frequency
+    at = SPACING * (np.arange(961) - 480)
+    expected = superposed(free_rail(rail, omega), supports_by_hand(rail, omega), at, PAIRS)
     found = np.array([rail.receptance(np.array([frequency]), x, x0)[0] for x, x0 in PAIRS])
     np.testing.assert_allclose(found, expected, rtol=1e-8)
 
