@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from case_texts import case_text, write_files
+from case_texts import case_text
 
 from asperity import Track, WheelOnRail
 from asperity.case.cases import parse_case
@@ -134,8 +134,7 @@ def test_bad_tables_are_refused_with_their_place(text, message, tmp_path):
         ),
     ],
 )  # fmt: skip
-def test_keys_that_do_not_fit_are_named(keys, message, tmp_path):
-    source = write_files(tmp_path)
+def test_keys_that_do_not_fit_are_named(keys, message, tmp_path, source):
     pad(tmp_path, PARTS)
     with pytest.raises(CaseError) as told:
         parse_case(case_text("wheel-on-rail", f"[track]\n{keys}"), source)

@@ -5,7 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from case_texts import case_text, write_files
+from case_texts import case_text
 
 from asperity import Bodies
 from asperity.case.cases import demo_case, load_case, parse_case, template
@@ -45,11 +45,6 @@ def value(case, dotted):
     for name in dotted.split("."):
         case = getattr(case, name)
     return case
-
-
-@pytest.fixture
-def source(tmp_path):
-    return write_files(tmp_path)
 
 
 @pytest.mark.parametrize(("kind", "dotted"), [(kind, key) for kind in DEFAULTS for key in DEFAULTS[kind]])

@@ -4,7 +4,7 @@ import math
 import re
 
 import pytest
-from case_texts import case_text, write_files
+from case_texts import case_text
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -211,11 +211,6 @@ def errors_of(text, source="case.toml"):
         parse_case(text, source)
     assert caught.value.exit_code == 2
     return caught.value.errors
-
-
-@pytest.fixture
-def source(tmp_path):
-    return write_files(tmp_path)
 
 
 @pytest.mark.parametrize("refused", REFUSED.strip().splitlines())
