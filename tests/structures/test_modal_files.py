@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.structures import beam, modal, modal_files
+from refusals import refusals
 
 BEAM = beam.Beam(1.0, 100.0, 4.0, highest_frequency=400.0, loss_factor=0.02)
 X = np.linspace(0.0, 1.0, 41)
@@ -90,55 +91,49 @@ MODE = b"frequency (Hz), 1\ndamping ratio, 0.1\n"
 SHAPE = MODE + b"position (m), shape\n"
 
 
-@pytest.mark.parametrize(
-    ("name", "content", "message"),
-    [
-        ("none.csv", None, "no such file"),
-        ("empty.csv", b"", "an empty file"),
-        ("words.csv", b"once upon a time", r"'once, upon, a, time' in line 1; allowed: a table of modes"),
-        ("short.csv", b"frequency (Hz), 1\n0, 1\n1, 2\n", "no line of damping ratio"),
-        ("long.csv", MODE, "no line of numbers"),
-        ("row.csv", SHAPE + b"0, 1\n1\n", "'1' in line 5"),
-        ("nan.csv", SHAPE + b"0, nan\n", "'0, nan' in line 4"),
-        ("wide.csv", SHAPE + b"0, 1, 2\n1, 2, 3", "lines of 3 numbers; allowed: 2: a position, a shape of"),
-        (
-            "narrow.csv",
-            MODE + b"position (m) residual flexibility (m/N)\n0\n1\n",
-            "lines of 1 numbers; allowed: 3: a position, .* and the residual flexibility",
-        ),
-        ("unit.csv", b"frequency (kg), 1\n", "unit: received 'kg'"),
-        ("si.csv", b"frequency, 1\n", r"no unit of the frequency; .* Write 'frequency \(Hz\)' with the unit"),
-        ("mm.csv", MODE + b"0, 0\n500, 1\n", r"no unit of the position; .*Write 'position \(m\)' with"),
-        ("f.csv", MODE + b"position (m), 1, residual flexibility\n0, 0, 0\n", "no unit of the residual flex"),
-        ("sixteen.csv", b"\xff\xfe\x00", "no UTF-16"),
-        ("garbage.nc", b"\x89HDF\r\n\x1a\n" + bytes(300), "while it was opened.*intact netCDF-4"),
-    ],
-)
-def test_files_that_hold_no_modes(tmp_path, name, content, message):
+def read(name, content, tmp_path):
     if content is not None:
         (tmp_path / name).write_bytes(content)
-    with pytest.raises(InputError, match=message):
-        modal_files.read_modal_structure(tmp_path / name)
+    modal_files.read_modal_structure(tmp_path / name)
 
 
-@pytest.mark.parametrize(
-    ("changed", "message"),
-    [
-        ({"without": ["damping_ratios"]}, r"no variable damping_ratios; allowed: the variables positions,"),
-        ({"positions": (("position",), X, "Hz")}, r"unit: received 'Hz'; allowed: a unit that converts to m"),
-        (
-            {"positions": (("position",), X, "")},
-            r"positions without a unit; .* Set its attribute units = 'm'",
-        ),
-        (
-            {"positions": (("position",), np.full(X.size, b"a"), "m")},
-            r"positions of 1 dimensions and type .*allowed: numbers",
-        ),
-    ],
+test_files_that_hold_no_modes = refusals(
+    ("none.csv", None, "no such file"),
+    ("empty.csv", b"", "an empty file"),
+    ("words.csv", b"once upon a time", r"'once, upon, a, time' in line 1; allowed: a table of modes"),
+    ("short.csv", b"frequency (Hz), 1\n0, 1\n1, 2\n", "no line of damping ratio"),
+    ("long.csv", MODE, "no line of numbers"),
+    ("row.csv", SHAPE + b"0, 1\n1\n", "'1' in line 5"),
+    ("nan.csv", SHAPE + b"0, nan\n", "'0, nan' in line 4"),
+    ("wide.csv", SHAPE + b"0, 1, 2\n1, 2, 3", "lines of 3 numbers; allowed: 2: a position, a shape of"),
+    (
+        "narrow.csv",
+        MODE + b"position (m) residual flexibility (m/N)\n0\n1\n",
+        "lines of 1 numbers; allowed: 3: a position, .* and the residual flexibility",
+    ),
+    ("unit.csv", b"frequency (kg), 1\n", "unit: received 'kg'"),
+    ("si.csv", b"frequency, 1\n", r"no unit of the frequency; .* Write 'frequency \(Hz\)' with the unit"),
+    ("mm.csv", MODE + b"0, 0\n500, 1\n", r"no unit of the position; .*Write 'position \(m\)' with"),
+    ("f.csv", MODE + b"position (m), 1, residual flexibility\n0, 0, 0\n", "no unit of the residual flex"),
+    ("sixteen.csv", b"\xff\xfe\x00", "no UTF-16"),
+    ("garbage.nc", b"\x89HDF\r\n\x1a\n" + bytes(300), "while it was opened.*intact netCDF-4"),
+    of=read,
 )
-def test_netcdf_that_lacks_a_variable_or_has_another_unit(tmp_path, changed, message):
-    with pytest.raises(InputError, match=message):
-        modal_files.read_modal_structure(netcdf(tmp_path / "beam.nc", **changed))
+
+
+test_netcdf_that_lacks_a_variable_or_has_another_unit = refusals(
+    ({"without": ["damping_ratios"]}, r"no variable damping_ratios; allowed: the variables positions,"),
+    ({"positions": (("position",), X, "Hz")}, r"unit: received 'Hz'; allowed: a unit that converts to m"),
+    (
+        {"positions": (("position",), X, "")},
+        r"positions without a unit; .* Set its attribute units = 'm'",
+    ),
+    (
+        {"positions": (("position",), np.full(X.size, b"a"), "m")},
+        r"positions of 1 dimensions and type .*allowed: numbers",
+    ),
+    of=lambda changed, tmp_path: modal_files.read_modal_structure(netcdf(tmp_path / "beam.nc", **changed)),
+)
 
 
 def test_files_that_claim_too_much(tmp_path, monkeypatch):
@@ -233,24 +228,21 @@ def test_modes_of_a_universal_file(universal, make, sets, options):
     the_same(modal_files.read_modal_structure(file, **CHOSEN, **options), 2e-4)
 
 
-@pytest.mark.parametrize(
-    ("sets", "options", "message"),
-    [
-        ([nodes(), UNITS, mode()], {"along": None}, r"along of .*received None; allowed: one of x"),
-        ([nodes(), UNITS, mode()], {"nodes": None}, "42 nodes at 41 places along y.*Choose those under"),
-        ([nodes(), UNITS, mode()], {"nodes": [1, 99]}, "node 99, which has no place or no shape"),
-        ([nodes(), mode()], {}, "no unit of length.*Give length_unit"),
-        ([UNITS, mode()], {}, r"datasets 164, 55; allowed: modes in datasets 55 and nodes"),
-        ([nodes(), UNITS, mode(modal_m=0.0)], {}, "a modal mass of 0 of the mode at"),
-        ([nodes(), UNITS, mode(spec_data_type=12)], {}, "a mode as data of type 12"),
-        ([nodes(), UNITS, mode(modal_damp_vis=0.0)], {}, r"ratio of 0 of the mode at 7.85.* Give damping"),
-        ([nodes(disp_cs=np.arange(42)), UNITS, mode()], {}, "42 systems of coordinates"),
-        ([nodes(), UNITS, complex_mode(0, spread=3.0)], {}, r"% of the mode at 7.85\d* Hz out of phase.*rec"),
-    ],
+test_universal_files_that_do_not_say_enough = refusals(
+    ([nodes(), UNITS, mode()], {"along": None}, r"along of .*received None; allowed: one of x"),
+    ([nodes(), UNITS, mode()], {"nodes": None}, "42 nodes at 41 places along y.*Choose those under"),
+    ([nodes(), UNITS, mode()], {"nodes": [1, 99]}, "node 99, which has no place or no shape"),
+    ([nodes(), mode()], {}, "no unit of length.*Give length_unit"),
+    ([UNITS, mode()], {}, r"datasets 164, 55; allowed: modes in datasets 55 and nodes"),
+    ([nodes(), UNITS, mode(modal_m=0.0)], {}, "a modal mass of 0 of the mode at"),
+    ([nodes(), UNITS, mode(spec_data_type=12)], {}, "a mode as data of type 12"),
+    ([nodes(), UNITS, mode(modal_damp_vis=0.0)], {}, r"ratio of 0 of the mode at 7.85.* Give damping"),
+    ([nodes(disp_cs=np.arange(42)), UNITS, mode()], {}, "42 systems of coordinates"),
+    ([nodes(), UNITS, complex_mode(0, spread=3.0)], {}, r"% of the mode at 7.85\d* Hz out of phase.*rec"),
+    of=lambda sets, options, universal: modal_files.read_modal_structure(
+        universal(*sets), **(CHOSEN | options)
+    ),
 )
-def test_universal_files_that_do_not_say_enough(universal, sets, options, message):
-    with pytest.raises(InputError, match=message):
-        modal_files.read_modal_structure(universal(*sets), **(CHOSEN | options))
 
 
 def test_damaged_universal_files(universal):

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from asperity import Track
-from asperity.errors import InputError
 from asperity.scenes import schema
 from asperity.scenes.track import power_shares
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track_power import dissipated_power
+from refusals import refusals
 
 FREQUENCY = np.array([25.0, 90.0, 210.0, 480.0, 1063.0, 2100.0, 4800.0])
 DAMPERS = {"rail_damper_mass": 15.0, "rail_damper_frequency": 800.0, "rail_damper_loss_factor": 0.35}
@@ -58,9 +58,8 @@ def test_what_dissipates_nothing_gets_nothing():
     assert (parts["rail"] > 0.0).all()
 
 
-@pytest.mark.parametrize(
-    ("frequency", "x", "what"), [([100.0, 0.0], 0.0, "frequency"), ([1.0], np.nan, "force")]
+test_bad_questions_are_refused = refusals(
+    ([100.0, 0.0], 0.0, "frequency"),
+    ([1.0], np.nan, "force"),
+    of=lambda frequency, x: dissipated_power(TRACKS["uic60"], frequency, x),
 )
-def test_bad_questions_are_refused(frequency, x, what):
-    with pytest.raises(InputError, match=what):
-        dissipated_power(TRACKS["uic60"], frequency, x)
