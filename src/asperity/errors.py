@@ -151,6 +151,7 @@ class Finding:
     laws: tuple[str, ...] = ()  # of the case that it concerns
     warned: bool = False  # whether it has been warned of where it was found
     effect: float | None = None  # on levels, dB, where that is what is judged
+    category: type[PhysicsWarning] | None = None  # of its warning; that of what is out of its range
 
     def concerns(self, law: str) -> bool:
         """Whether it makes a law doubtful."""
@@ -177,7 +178,8 @@ def warn_of_findings(findings: Iterable[Finding]) -> None:
     """Warn of what is outside its range and was not warned of where it was found."""
     for finding in findings:
         if finding.grade is not None and not finding.warned:
-            warnings.warn(OutOfRangeWarning(finding.message, finding.grade), stacklevel=2)
+            category = finding.category or OutOfRangeWarning
+            warnings.warn(category(finding.message, finding.grade), stacklevel=2)
 
 
 class HalfSpaceWarning(PhysicsWarning):

@@ -6,7 +6,6 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.radiation.ground import PorousGround
 from asperity.radiation.pass_by import (
     AxleSource,
     Passage,
@@ -18,6 +17,7 @@ from asperity.radiation.pass_by import (
     squared_pressure,
     time_weighted,
 )
+from asperity.radiation.sound_path import PorousGround
 from asperity.reference.grounds import GROUNDS
 
 WATT = np.array([1e-3])

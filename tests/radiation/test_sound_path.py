@@ -5,9 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import jv
 
-from asperity.radiation.ground import PorousGround
 from asperity.radiation.pass_by import AxleSource, Passage, Receiver, divergence, exposure, squared_pressure
-from asperity.radiation.sound_path import SoundPath
+from asperity.radiation.sound_path import PorousGround, SoundPath
 from asperity.radiation.track import wavenumber
 from asperity.reference import cnossos
 from asperity.reference.grounds import GROUNDS

@@ -7,7 +7,7 @@ from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.scenarios.scene import mean_square_transfer
 from asperity.scenes import schema
-from asperity.scenes.figures.wheel import LOUDEST, wheel_table
+from asperity.scenes.figures.noise import LOUDEST, wheel_table
 from asperity.scenes.noise import mode_by_mode, radiating_wheel
 from asperity.spectra import a_weighted_total
 from asperity.structures.modal import modal_answers

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from asperity.errors import LossFactorWarning
+from asperity.errors import LossFactorWarning, warn_of_findings
 from asperity.scenarios.scene import force_transfer, linear_force_psd, mean_square_transfer
 from asperity.scenes import track as of_tracks
-from asperity.scenes.track import linear_reference, loss_factor_error, warn_of_loss_factors
+from asperity.scenes.track import findings_of_losses, linear_reference, loss_factor_error
 from asperity.spectra import nominal_frequency, psd
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.track import Track
@@ -138,7 +138,7 @@ def test_loss_factors_err_as_the_kernel_does(error):
 
 def test_a_large_error_is_warned_of_with_a_remedy_and_a_small_one_is_not(error):
     with pytest.warns(LossFactorWarning) as caught:
-        warn_of_loss_factors(error)
+        warn_of_findings(findings_of_losses(error))
     text = str(caught[0].message)
     assert "constant loss factors, at most: −1.0 dB (630 Hz), in range up to 0.75 dB" in text
     assert re.search("read the one-third octaves of 250 Hz, .*630 Hz with their error", text)
@@ -147,7 +147,7 @@ def test_a_large_error_is_warned_of_with_a_remedy_and_a_small_one_is_not(error):
     assert "Give ballast_damping, which is exact: 75.7 kN s/m dissipate as much at 631 Hz" in text
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        warn_of_loss_factors(lost(Track.named("nordborg-loss-factor")))
+        warn_of_findings(findings_of_losses(lost(Track.named("nordborg-loss-factor"))))
 
 
 @pytest.mark.parametrize(
@@ -160,4 +160,4 @@ def test_a_large_error_is_warned_of_with_a_remedy_and_a_small_one_is_not(error):
 def test_the_part_with_the_largest_loss_factor_is_named(name, keys, part, monkeypatch):
     monkeypatch.setattr(of_tracks, "DOUBTFUL", 0.01)
     with pytest.warns(LossFactorWarning, match=part):
-        warn_of_loss_factors(lost(Track.named(name, **keys)))
+        warn_of_findings(findings_of_losses(lost(Track.named(name, **keys))))

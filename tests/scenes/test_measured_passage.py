@@ -11,7 +11,7 @@ from asperity.radiation import pass_by
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import PASS_BY_BANDS, passage_table
 from asperity.scenes.figures.noise import PASS_BY, pass_by_answers
-from asperity.scenes.measured_passage import findings_of_passage
+from asperity.scenes.measured import findings_of_passage
 from asperity.scenes.noise import pass_by_group
 from asperity.schema import group
 from asperity.spectra import a_weighting

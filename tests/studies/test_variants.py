@@ -13,9 +13,9 @@ from asperity.case.cases import parse_case
 from asperity.errors import CaseError, InputError
 from asperity.scenes import schema
 from asperity.scenes.figures.effects import Effects, effects_chart, effects_table
+from asperity.studies.axes import AS_IT_IS
 from asperity.studies.definition import load_study, study_of
 from asperity.studies.effects import _order, effects, what_helps, with_effects
-from asperity.studies.variants import AS_IT_IS
 from refusals import refusals
 from small_cases import changed
 

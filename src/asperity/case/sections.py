@@ -373,8 +373,7 @@ class NoiseKeys(form.Section):
 
     def sound_path(self, band: Array) -> SoundPath | None:
         """What stands between rails and receiver, in one-third octaves, Hz, where anything does."""
-        from asperity.radiation.ground import PorousGround
-        from asperity.radiation.sound_path import SoundPath
+        from asperity.radiation.sound_path import PorousGround, SoundPath
 
         resistivity = self.flow_resistivity or grounds.GROUNDS.get(self.ground or grounds.HARD)
         if resistivity is None and self.directivity == cnossos.EVEN and self.rail_distance is None:

@@ -22,11 +22,11 @@ from asperity.reporting.tables import ReportTable
 from asperity.results import attributes_of, save
 from asperity.scenes.figures.effects import Effects, effects_caption, effects_chart, effects_table
 from asperity.studies import table as tables
+from asperity.studies.axes import VARIANT
 from asperity.studies.definition import Study, separated, study_of
 from asperity.studies.effects import effects, what_helps
 from asperity.studies.ensemble import FEWEST, SCATTER, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES, names_kept
-from asperity.studies.variants import VARIANT
 from asperity.terminal import line_width, remark, say, say_table
 from asperity.text_files import write_csv
 

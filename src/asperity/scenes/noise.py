@@ -18,7 +18,7 @@ from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
 from asperity.reference import cnossos, grounds, tsi_noise
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, limits, measured, schema
-from asperity.scenes.measured_passage import measured_passage
+from asperity.scenes.measured import measured_passage
 from asperity.schema import Entry, Values, spectra
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
 from asperity.structures.track import Track, decay_rate

@@ -16,8 +16,8 @@ from asperity.scenarios.laws import working_point
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.refining import Setting, Way
 from asperity.scenes import noise, schema
-from asperity.scenes.measured import findings_of_measured, warn_of_contradictions
-from asperity.scenes.track import LOWEST, described_losses, loss_factor_error, warn_of_loss_factors
+from asperity.scenes.measured import findings_of_measured
+from asperity.scenes.track import LOWEST, described_losses, findings_of_losses, loss_factor_error
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting, third_octave_bands
 from asperity.structures.moving_kernel import STARTS
@@ -46,9 +46,8 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
     _, stiffness = working_point(case.contact, prepared.shape, None)
     scene, highest = prepared.scene, case.numerics.highest_frequency
     losses = loss_factor_error(track, scene.first, stiffness, highest)
-    warn_of_loss_factors(losses)
     bands = third_octave_bands(LOWEST, highest)[0]
-    warn_of_contradictions(findings_of_measured(case.track, track.nominal, bands))
+    doubts = findings_of_losses(losses) + findings_of_measured(case.track, track.nominal, bands)
     known = "rail, sleepers and wheel"
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers, for {reason}"
@@ -56,7 +55,8 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
         known += (
             f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"
         )
-        warn_of_findings(noise.findings_of_labels(case))
+        doubts += noise.findings_of_labels(case)
+    warn_of_findings(doubts)
     frequencies = f"critical speed {track.critical_speed:.4g} m/s"
     if not track.continuous:
         passing = f"sleeper passing {case.speed / track.sleeper_spacing:.4g} Hz"

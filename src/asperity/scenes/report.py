@@ -25,7 +25,6 @@ from asperity.scenes.figures import (
     scene,
     sideways,
     track,
-    wheel,
 )
 
 PAGE, SUMMARY = "report.html", "summary.html"
@@ -36,7 +35,7 @@ CHAPTERS = (
         "noise",
         "Rolling noise",
         (noise.RADIATED, *noise.NOISE),
-        (noise.radiated_table, wheel.wheel_table, noise.sound_power_table),
+        (noise.radiated_table, noise.wheel_table, noise.sound_power_table),
         noise.noise_answers,
     ),
     Chapter(

@@ -24,7 +24,7 @@ from asperity.scenarios.preparing import prepare as prepare
 from asperity.scenes import measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
-from asperity.scenes.measured_passage import findings_of_passage
+from asperity.scenes.measured import findings_of_passage
 from asperity.scenes.population import answers
 from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
 from asperity.structures.rail_poles import RailBetween, RailPoles
@@ -70,16 +70,13 @@ def computed_result(
         if schema.SOUND_POWER_LEVEL_A in over_frequency:
             power = in_bands[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
             found += noise.findings_of_labels(case)
-        of_measured = measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
-        found += of_measured
+        found += measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
         found += findings_of_passage(own)
         own |= (beside := sideways.sideways_group(computed))
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))
         sources += sideways.SOURCES if beside else ()
         noise.warn_of_silence(case)
-        track.warn_of_loss_factors(losses)
-        measured.warn_of_contradictions(of_measured)
     warn_of_findings(found)
     textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)
     numerics = [{"name": name, "value": value} for name, value in _numerics(computed, choice, losses)]

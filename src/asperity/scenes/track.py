@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -304,13 +303,6 @@ def error_of_losses(computed: compute.Computed) -> LossFactorError:
     )
 
 
-def warn_of_loss_factors(error: LossFactorError) -> None:
-    """Say where loss factors change the contact force of a band by more than is tolerable, 0.75 dB."""
-    for finding in findings_of_losses(error):
-        if finding.grade is not None:
-            warnings.warn(finding.message, LossFactorWarning, stacklevel=2)
-
-
 def findings_of_losses(error: LossFactorError) -> list[Finding]:
     """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
     if error.track.is_causal:
@@ -345,7 +337,7 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
             Grade.WARNING if off else None,
             f"{meaning}.",
             remedy,
-            warned=True,
+            category=LossFactorWarning,
         )
     ]
 

@@ -1,18 +1,25 @@
-"""What a study varies: a key and its values, along an axis of its table."""
+"""What a study varies: a key and its values, or named changes of several keys, along an axis of its table."""
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.case.content import described_value, holds_memory
-from asperity.case.describing import CaseKey, value_in_toml
+from asperity.arguments import require, shown
+from asperity.case.content import content, described_value, holds_memory
+from asperity.case.describing import CaseKey, entry_of, value_in_toml
+from asperity.case.form import Section
+from asperity.case.scene import Case
+from asperity.errors import CaseError, InputError
+from asperity.parameters import Origin, Text, key, keys_of
 from asperity.reference.materials import Material
 from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
-from asperity.units import factor, unit_in
+from asperity.structures.track import Track
+from asperity.units import factor, quantity, unit_in
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,3 +82,158 @@ def as_in_toml(value: Any, found: Any, entry: CaseKey) -> Any:
     """A value as it would stand in a file: as it was given, but for numbers in SI."""
     bare = isinstance(value, int | float | np.generic | Material) and not isinstance(value, bool)
     return value_in_toml(found, entry.key) if bare else value
+
+
+# --- named changes of several keys
+
+
+VARIANT, AS_IT_IS = "variant", "as it is"
+"""Dimension of the named changes, and the name of the first of them, which changes nothing."""
+WAYS = {"times": (None, 0.0), "plus": (1.0, 1.0), "minus": (1.0, -1.0)}
+"""Words before a number: factor of what the case has (None: the number), and sign of what is added to it."""
+MOST_ERRORS = 20
+"""Wrong keys of which each is looked at."""
+
+
+class Unfit(Exception):
+    """Why a change does not apply to a case."""
+
+
+def _refuse_measured(case: Case, entry: CaseKey) -> None:
+    """What was measured on a track holds for that track alone, whose sound power it decides."""
+    if entry.section != "track" or entry.name not in keys_of(Track, ""):
+        return
+    for name in ("decay_rates", "mobility"):
+        if getattr(case.track, name, None) is not None:
+            raise Unfit(f"track.{name} was measured on the track as it is: leave it out to ask for another")
+
+
+@dataclass(frozen=True)
+class Change:
+    """What becomes of a key."""
+
+    entry: CaseKey  # the key
+    written: Any  # as it stands in TOML, or in words: "times 0.5"
+    value: Any = None  # that it gets
+    former: Any = None  # that it must have had
+    factor: float | None = None  # of what the case has, in place of a value, and in SI what is added to that
+    added: float = 0.0
+
+    @classmethod
+    def read(cls, entry: CaseKey, written: Any, origin: Origin) -> "Change":
+        """Read a change; an `InputError` says what is wrong with it."""
+        words = written.strip() if isinstance(written, str) else ""
+        way, _, number = words.partition(" ")
+        value, instead, former = words.partition(" instead of ")
+        if entry.unit is not None and way in WAYS:
+            try:
+                by = quantity(number, "" if way == "times" or entry.unit == "1" else entry.unit)
+            except InputError as error:
+                raise error.about(entry.dotted) from None
+            require(0.0 < by < math.inf, entry.dotted, shown(written), f"{way} a number greater than 0")
+            factor, sign = WAYS[way]
+            return cls(entry, written, factor=factor or by, added=sign * by)
+        if instead:
+            entry.read(value, origin)
+            return cls(entry, written, value, content(entry.read(former, origin)))
+        return cls(entry, written, as_in_toml(written, entry.read(written, origin), entry))
+
+    def applied(self, case: Case) -> Any:
+        """The value that the key gets in a case, as it stands in TOML; `Unfit` says why there is none."""
+        _refuse_measured(case, self.entry)
+        if self.factor is None and self.former is None:
+            return self.value
+        now = _value_of(case, self.entry)
+        if self.factor is None:
+            if content(now) != self.former:
+                raise Unfit(f"{self.entry.dotted} is {now}, not {self.former}")
+            return self.value
+        found = self.factor * now + self.added
+        whole = isinstance(now, int) and found == int(found)
+        return value_in_toml(int(found) if whole else found, self.entry.key)
+
+
+def _value_of(case: Case, entry: CaseKey) -> Any:
+    """Value of a key in a case, that of a named set where it gives none."""
+    section: Section = getattr(case, entry.section) if entry.section else case
+    companion = entry.key.goes_with
+    if (entry.section and entry.section not in case.section_names) or not section.is_active(entry.name):
+        raise Unfit(f"the case has no {entry.dotted}{f', which goes with {companion}' if companion else ''}")
+    now = getattr(section, entry.name)
+    now = section.default_of(entry.name) if now is None else now
+    if now is None:
+        raise Unfit(f"the case has no {entry.dotted}")
+    return now
+
+
+@dataclass(frozen=True, eq=False)
+class VariantAxis(SweptAxis):
+    """Named changes of a case; the first changes nothing."""
+
+    changes: Mapping[str, tuple[Change, ...]]  # by name
+
+    @classmethod
+    def of(cls, changes: Mapping[str, tuple[Change, ...]]) -> "VariantAxis":
+        """Name the axis and its places."""
+        entry = CaseKey(VARIANT, key(Text(), None, "what is changed of the case"))
+        return cls(entry, tuple(changes), tuple(changes), changes)
+
+    @property
+    def told(self) -> dict[str, dict[str, Any]]:
+        """The changes by name, as they stand in TOML."""
+        return {
+            name: {change.entry.dotted: change.written for change in changes}
+            for name, changes in self.changes.items()
+        }
+
+    def keys(self, name: str, case: Case) -> dict[str, Any]:
+        """Keys that a variant changes in a case, with their values; an error says why it changes none.
+
+        What a case does not have is not changed: half of no damping is none.
+        """
+        found, reasons = {}, []
+        for change in self.changes[name]:
+            try:
+                found[change.entry.dotted] = change.applied(case)
+            except Unfit as reason:
+                reasons.append(str(reason))
+        if reasons and not found:
+            raise CaseError(name, reasons)
+        return found
+
+
+def variant_axis(model: type[Section], given: object, origin: Origin) -> tuple[VariantAxis, list[InputError]]:
+    """Read named changes of a kind of case, and list what is wrong with them."""
+    found: dict[str, tuple[Change, ...]] = {AS_IT_IS: ()}
+    errors: list[InputError] = []
+    named = given if isinstance(given, Mapping) else {}
+    if not named:
+        remedy = f'Write [sweep.{VARIANT}."soft pads"], and below it track.pad_stiffness = "times 0.5".'
+        errors.append(InputError(VARIANT, shown(given), "names, each with keys and their values", remedy))
+    for name, keys in named.items():
+        what, changes = f'{VARIANT}."{name}"', dict[str, Change]()
+        if not (isinstance(name, str) and name.strip() and name.isprintable() and name != AS_IT_IS):
+            errors.append(InputError(what, "this name", f'a name of one line other than "{AS_IT_IS}"'))
+        if not (isinstance(keys, Mapping) and keys):
+            errors.append(InputError(what, shown(keys), "one key or more of the case, with their values"))
+            continue
+        for dotted, value in flat(keys):
+            if len(errors) >= MOST_ERRORS:
+                break
+            try:
+                require(dotted != "kind", dotted, "a key that is changed", "one kind of case in a study")
+                require(dotted not in changes, dotted, "the key more than once", "each key once")
+                changes[dotted] = Change.read(entry_of(model, dotted), value, origin)
+            except InputError as error:
+                errors.append(error.about(f"{what}.{error.what}"))
+        found[name] = tuple(changes.values())
+    return VariantAxis.of(found), errors
+
+
+def flat(keys: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]]:
+    """Keys with their sections, written as ``"a.b" =``, ``a.b =`` or below a section a."""
+    for name, value in keys.items():
+        if isinstance(value, Mapping) and not section and name != VARIANT:
+            yield from flat(value, f"{name}.")
+        else:
+            yield f"{section}{name}", value

@@ -21,8 +21,7 @@ from asperity.case.scene import Case
 from asperity.case.toml import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin
-from asperity.studies.axes import SweptAxis, as_in_toml, written_out
-from asperity.studies.variants import VARIANT, VariantAxis, flat, variant_axis
+from asperity.studies.axes import VARIANT, SweptAxis, VariantAxis, as_in_toml, flat, variant_axis, written_out
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
 _RANGE = re.compile(

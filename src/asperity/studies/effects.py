@@ -17,9 +17,9 @@ from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.scenes import schema
 from asperity.schema import Entry, spectra
+from asperity.studies.axes import AS_IT_IS, VARIANT
 from asperity.studies.definition import Study, study_of
 from asperity.studies.ensemble import SEED, student
-from asperity.studies.variants import AS_IT_IS, VARIANT
 
 SEEDS = 3
 """Textures by which the ready list says how sure its effects are: that of the case, and the next."""
