@@ -3,7 +3,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity import BallBearing, HalfSpace
-from asperity.errors import InputError
+from asperity.errors import InputError, OutOfRangeWarning
 from asperity.laws.layout import force
 from asperity.scenarios.raceway_laws import FOLLOWED, OnRaceway, ball_heights, raceway_laws, raceway_on
 from asperity.surfaces.faults import Fault
@@ -75,7 +75,7 @@ def test_force_closes_around_a_rough_raceway():
     assert np.std(averaged - exact) < 0.05 * np.std(exact)
 
 
-@pytest.mark.parametrize("waves", [3, 9, 14])
+@pytest.mark.parametrize("waves", [3, 12])
 def test_waves_are_felt_by_sin_q_over_q(waves):
     radius, texture = 0.7 * MM, AroundTexture(waves=(waves,), amplitudes=(5 * NM,))
     surface = raceway_on(CONTACT, LOAD, radius, texture, seed=3)
@@ -94,7 +94,8 @@ def test_waves_are_felt_by_sin_q_over_q(waves):
 
 def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
     on = OnRaceway(CONTACT, raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(PIT,)), LOAD)
-    law, middle = laws_on(on.surface), np.pi * MM
+    with pytest.warns(OutOfRangeWarning, match=r"under 68 N; else they have 17 N .* has 16\.\d N, and 272 N"):
+        law, middle = laws_on(on.surface), np.pi * MM
     assert 0 < on.around.counts.solved < 110 * len(on.approaches)  # of 720
     for away in (0.0, 0.07 * MM, 0.12 * MM):
         for approach in (APPROACH, CONTACT.approach(4 * LOAD)):
@@ -136,6 +137,23 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
     )
     print(force(law, middle, sinks + APPROACH), exact)
     assert_allclose(force(law, middle, sinks + APPROACH), exact, rtol=0.1)
+
+
+def test_texture_of_a_ball_is_averaged_for_its_contact():
+    textures = (
+        AroundTexture(roughness=rms, longest=0.3 * MM, shortest=0.08 * MM) for rms in (20 * NM, 10 * NM)
+    )
+    raceway, ball = (
+        raceway_on(CONTACT, LOAD, 0.2 * MM, texture, seed=seed) for seed, texture in enumerate(textures)
+    )
+    heights, places = ball_heights(CONTACT, ball, LOAD), raceway.spacing[0] * np.arange(len(raceway.heights))
+    together = laws_on(Raceway(raceway.heights + ball.heights, raceway.spacing), ("table",))["table"]
+    exact = force(together, places, APPROACH)
+    law = laws_on(raceway, ("table", "areal"))
+    for name in law:
+        off = force(law[name], places, APPROACH + heights) - exact
+        assert np.std(off) < 0.05 * np.std(exact)
+    assert np.std(force(law["areal"], places, APPROACH) - exact) > 0.2 * np.std(exact)
 
 
 def test_unknown_law_is_refused():

@@ -28,9 +28,10 @@ def test_waves_have_their_amplitudes_and_no_others():
     texture = AroundTexture(
         waves=(3, 40), amplitudes=(UM, 0.1 * UM), waviness=0.5 * UM, first_order=5, last_order=20, fall=1.5
     )
-    wanted = np.zeros(1000)
-    wanted[[2, 39]], wanted[4:20] = (UM, 0.1 * UM), 0.5 * UM * (np.arange(5, 21) / 5) ** -1.5
+    wanted = np.zeros(1001)
+    wanted[[3, 40]], wanted[5:21] = (UM, 0.1 * UM), 0.5 * UM * (np.arange(5, 21) / 5) ** -1.5
     assert_allclose(made(texture).amplitudes, wanted, atol=1e-12 * UM)
+    assert Raceway(np.full((20, 5), UM), CELLS).amplitudes[0] == pytest.approx(UM, rel=1e-12, abs=0.0)
     assert_array_equal(made(texture, seed=2).line == made(texture).line, False)  # other phases
 
 
@@ -112,8 +113,8 @@ def test_faults_lie_where_they_are_told_across_the_seam_and_all_around():
 def test_map_of_a_fault_lies_about_its_middle():
     x, y = (np.arange(9) - 4.0)[:, None], np.arange(7) - 3.0
     fault = Fault("map", map=HeightMap(UM * (x - 2 * y), (0.02 * MM, 0.01 * MM)))
-    assert fault.size == pytest.approx((0.18 * MM, 0.07 * MM))
-    assert fault.deepest == pytest.approx(10 * UM)
+    assert fault.size == pytest.approx((0.18 * MM, 0.07 * MM), rel=1e-9, abs=0.0)
+    assert fault.depth == pytest.approx(10 * UM, rel=1e-9, abs=0.0)
     assert_allclose(
         fault.heights([0.0, 0.01 * MM, 1 * MM], 0.005 * MM), UM * np.array([-1, -0.5, 0]), atol=1e-12
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +18,7 @@ from asperity.contact import scan
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz
 from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
+from asperity.errors import Grade, OutOfRangeWarning
 from asperity.kernels.along import OVERLAP
 from asperity.kernels.pointforce import Prepared
 from asperity.laws import Law
@@ -34,7 +36,6 @@ from asperity.store import Cache
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
 from asperity.surfaces.strip import Rows
-from asperity.threads import in_order
 
 LAWS = ("table", "areal", "hertz")
 """Laws that can be built on a raceway."""
@@ -48,8 +49,10 @@ HALF_WINDOW = 3.2
 """Half the window over the half axes under the load: 1.6 times those under the largest force of a state."""
 FOLLOWED = 20.0
 """Half axes along, under the load, of a wave that contacts follow as a plane: its bow is not in the scan."""
-BLOCK = 64
-"""Positions over faults solved one after the other."""
+OTHER_LOADS = (0.25, 4.0)
+"""Loads at which it is told how far laws are off over a fault, over that which they are made for."""
+FAULT_OFF = 0.1
+"""Share of the force from which that is more than a note."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is the force curve of `areal`."""
 
@@ -98,7 +101,8 @@ def raceway_on(
         min([axis / cells, *wave, *(fault.size[i] / CELLS_OF_FAULT for fault in faults)])
         for i, (axis, cells) in enumerate(zip(axes, CELLS, strict=True))
     ]
-    half = HALF_WINDOW * axes[1] + max((_wider(fault, contact, load) for fault in faults), default=0.0)
+    hollows = [_wider(fault, contact, load) for fault in faults if fault.shape != "particle"]
+    half = HALF_WINDOW * axes[1] + max(hollows, default=0.0)
     stride = max(1, math.floor(axes[0] / CELLS[0] / spacing[0] + 1e-9))
     rows = stride * fft.next_fast_len(math.ceil(around / spacing[0] / stride), real=True)
     shape, steps = (rows, 2 * math.ceil(half / spacing[1]) + 1), (around / rows, spacing[1])
@@ -113,7 +117,7 @@ def _wider(fault: Fault, contact: Hertz, load: float) -> float:
     """
     radii = contact.radius_x, contact.radius_y
     along, across = ((0.5 * size) ** 2 / (2.0 * r) for size, r in zip(fault.size, radii, strict=True))
-    drop = min(fault.deepest, along)
+    drop = min(fault.depth, along)
     if across > drop + contact.approach(HIGHEST_FORCE * load):
         return 0.0
     return math.sqrt(2.0 * contact.radius_y * min(drop, across))
@@ -227,6 +231,12 @@ class OnRaceway:
         """Values with as many from the other end beyond either end of a turn."""
         return np.pad(values, [(beyond, beyond) if i == axis else (0, 0) for i in range(values.ndim)], "wrap")
 
+    def _over(self, at: int) -> Array:
+        """Gap (nx, ny), m, of the smooth ball over the faults at a position."""
+        body = self.shape.body
+        rows = np.arange(len(body)) - len(body) // 2 + self.stride * at
+        return np.asarray(body - self.surface.faults[rows % self.rows])
+
     @property
     def positions(self) -> NDArray[np.intp]:
         """Rows on which forces are solved."""
@@ -245,44 +255,31 @@ class OnRaceway:
 
         By so much less is the approach there than on the smooth raceway.
         """
-        body, rtol = self.shape.body, rtol_for(self.accuracy)
-        window, around = len(body), self._around(self.surface.faults, len(body) // 2)
-        smooth = self.space.at_load(body, self.load, None, rtol).approach
-        met, felt = np.flatnonzero(self._met(self.surface.faults)), np.zeros(len(self.positions))
-
-        def solved(block: NDArray[np.intp]) -> list[float]:
-            found, start = list[float](), None
-            for row in self.positions[block]:
-                each = self.space.at_load(body - around[row : row + window], self.load, start, rtol)
-                found.append(smooth - each.approach)
-                start = each.pressure
-            return found
-
-        blocks = [met[i : i + BLOCK] for i in range(0, len(met), BLOCK)]
-        for block, found in zip(blocks, in_order(solved, blocks), strict=True):
-            felt[block] = found
+        rtol, start = rtol_for(self.accuracy), None
+        smooth = self.space.at_load(self.shape.body, self.load, None, rtol).approach
+        met, felt = self._met(self.surface.faults), np.zeros(len(self.positions))
+        for at in np.flatnonzero(met).tolist():
+            found = self.space.at_load(self._over(at), self.load, start, rtol)
+            felt[at], start = smooth - found.approach, found.pressure
         return np.interp(np.arange(self.rows), self.positions, felt, period=self.rows)
 
-    def averaged(self, axes: ArrayLike) -> Array:
-        """Roughness (k, rows), m, averaged under patches of half axes (k, 2), m, with `over_faults`."""
-        heights, patch = self.surface.heights, np.atleast_2d(axes)
-        if not heights.any():
-            return np.tile(self.over_faults, (len(patch), 1))
+    def averaged(self, heights: Array, axes: ArrayLike) -> Array:
+        """Heights (rows, lines), m, averaged under patches of half axes (k, 2), m, with `over_faults`."""
+        patch = np.minimum(np.atleast_2d(axes), 0.5 * heights.shape[1] * self.surface.spacing[1])
         reach = math.ceil(patch[:, 0].max() / self.surface.spacing[0]) + 1
         rows, states = Rows(self._around(heights, reach)), np.arange(len(patch), dtype=float)
         under = areal_texture(rows, self.surface.spacing, states, patch).heights
         return self.over_faults - under[:, reach:-reach]
 
-    def waves(self, axes: ArrayLike) -> Array:
-        """Long waves (k, rows), m, averaged under patches of half axes (k, 2), m: sin(q a)/(q a) of each."""
-        long, order = self.surface.line, np.arange(self.rows // 2 + 1)
-        turns = np.multiply.outer(np.atleast_2d(axes)[:, 0] / self.surface.circumference, 2.0 * order)
-        return np.asarray(fft.irfft(np.sinc(turns) * fft.rfft(long), self.rows))
+    @cached_property
+    def wavy(self) -> Array:
+        """Roughness with the long waves (rows, lines), m."""
+        return self.surface.heights + self.surface.line[:, None]
 
     @cached_property
     def felt(self) -> Array:
         """Height (rows,), m, that a contact under the load feels, with the long waves."""
-        return self.averaged(self.axes)[0] + self.waves(self.axes)[0]
+        return self.averaged(self.wavy, self.axes)[0]
 
     @cached_property
     def planes(self) -> Array:
@@ -290,7 +287,7 @@ class OnRaceway:
 
         To a femtometre: what Fourier transforms leave depends on what else is on the raceway.
         """
-        return np.round(self.averaged(self.axes)[0][self.positions], 15)
+        return np.round(self.averaged(self.surface.heights, self.axes)[0][self.positions], 15)
 
     @cached_property
     def touches(self) -> Array:
@@ -301,13 +298,12 @@ class OnRaceway:
     def approaches(self) -> Array:
         """States, from the planes, m: up to eight times the load wherever the raceway is unlike."""
         felt, sound = self.over_faults[self.positions], ~self._met(self.surface.faults)
-        chosen = [np.argmin(self.touches), np.argmax(self.touches), np.argmin(felt), np.argmax(felt)]
+        extreme = [each(values) for each in (np.argmin, np.argmax) for values in (self.touches, felt)]
         even = np.linspace(0, np.count_nonzero(sound), SAMPLES, endpoint=False).astype(int)
-        chosen += list(np.flatnonzero(sound)[even if self.surface.heights.any() else even[:1]])
-        places = []
-        for at in np.unique(chosen):
-            rows = slice(at * self.stride, at * self.stride + len(self.shape.body))
-            places.append(self.scanned[rows] - self.planes[at])
+        sound = np.flatnonzero(sound)[even if self.surface.heights.any() else even[:1]]
+        window = len(self.shape.body)
+        chosen = [(self.positions[at], self.planes[at]) for at in np.union1d(extreme, sound)]
+        places = [self.scanned[row : row + window] - plane for row, plane in chosen]
         return chosen_states(places, self.shape, self.space)
 
     @cached_property
@@ -357,19 +353,33 @@ class OnRaceway:
         pressed = self.space, self.shape.body, self.approaches, 0.0
         return stiffness_ensemble(samples, *pressed, rtol=rtol, tolerance="accuracy").curve
 
+    def warn_of_faults(self) -> None:
+        """Say how far laws that give a fault one height are off over it, under other loads than theirs."""
+        felt, told, worst = self.over_faults[self.positions], list[str](), 0.0
+        at = int(np.argmax(np.abs(felt)))
+        for share in OTHER_LOADS:
+            approach, followed = self.contact.approach(share * self.load) - felt[at], share * self.load
+            solved = self.space.solve(self._over(at), approach, rtol=rtol_for(self.accuracy))
+            worst = max(worst, abs(followed / solved.force - 1.0) if solved.force else 1.0)
+            told.append(f"{followed:.3g} N where the solved contact has {solved.force:.3g} N")
+        message = f"At a fault areal and hertz hold for a contact under {self.load:.3g} N; else they have "
+        message += f"{', and '.join(told)}. "
+        message += "The law table has no such limit."
+        grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
+        warnings.warn(OutOfRangeWarning(message, grade), stacklevel=3)
+
     def law(self, name: str, damping: float) -> Law:
         """A law of `LAWS` by its name, with a contact damping, N s/m."""
         plane = self._texture(self.felt)
         if name == "table":
             return Table(self.table, damping, plane)
         if name == "hertz":
-            line = self.surface.heights[:, self.surface.heights.shape[1] // 2] + self.surface.line
-            texture = self._texture(line + self.over_faults)
+            texture = self._texture(self.wavy[:, self.wavy.shape[1] // 2] + self.over_faults)
             return HertzLaw(self.contact.stiffness_constant, texture, damping)
         forces = self.curve.force(self.approaches)
         axes = np.array([self.contact.semi_axes(self.contact.approach(each)) for each in forces])
         loaded = forces > 0.0
-        heights = self.averaged(axes[loaded]) + self.waves(axes[loaded])
+        heights = self.averaged(self.wavy, axes[loaded])
         return Areal(self.curve, self._texture(heights, self.approaches[loaded]), damping, plane=plane)
 
 
@@ -422,6 +432,8 @@ def raceway_laws(
         contact, surface, positive("load of a ball (N)", load), hardness, accuracy, cache, progress
     )
     chosen = [one_of("law of a raceway", name, LAWS) for name in names]
+    if surface.faults.any() and set(chosen) - {"table"}:
+        on.warn_of_faults()
     return {name: Closed(on.law(name, damping), surface.circumference) for name in chosen}
 
 

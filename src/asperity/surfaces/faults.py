@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,7 +39,7 @@ class Fault:
     length, width : float
         Along and across the path, m; the width is the length if it is left out. Those of a map are its own.
     depth : float
-        Of a hollow, or height of a particle, m.
+        Of a hollow, or height of a particle, m; that of a map is its own.
     edge : float
         Over which a pit or spall falls to its floor, m, inside its outline.
     rim : float
@@ -83,40 +82,34 @@ class Fault:
 
     def __post_init__(self) -> None:
         checked_parameters(self)
-        of_map = self.shape == "map"
-        for name, right in (("length", not of_map), ("depth", not of_map), ("map", of_map)):
+        for name in ("length", "depth", "map"):
+            right = (name == "map") == (self.shape == "map")
             received, allowed = ("nothing", "one") if right else ("one", "none")
             given = getattr(self, name) is not None
             require(given == right, f"{name} of a fault, a {self.shape}", received, allowed)
-        if self.width is None:
-            object.__setattr__(self, "width", self.length)
-
-    @cached_property
-    def _laid(self) -> HeightMap | None:
-        return None if self.map is None else map_of(self.map)
+        own: dict[str, Any] = {"width": self.width or self.length}
+        if self.map is not None:
+            laid = map_of(self.map)
+            deepest = max(-float(laid.heights.min()), 0.0)
+            own = {"map": laid, "length": laid.size[0], "width": laid.size[1], "depth": deepest}
+        for name, value in own.items():
+            object.__setattr__(self, name, value)
 
     @property
     def size(self) -> tuple[float, float]:
         """Length and width of all that is not at height zero, m."""
-        if self._laid is not None:
-            return self._laid.size
         wider = 1.0 + self.rim_width if self.shape == "dent" and self.rim else 1.0
         return self.length * wider, self.width * wider
-
-    @property
-    def deepest(self) -> float:
-        """Depth of its deepest place, m; zero of a bump."""
-        return self.depth if self._laid is None else max(-float(self._laid.heights.min()), 0.0)
 
     def heights(self, along: ArrayLike, across: ArrayLike) -> Array:
         """Heights, m, at places along and across the path from its middle, m; arrays are broadcast."""
         x, y = np.broadcast_arrays(np.asarray(along, dtype=float), np.asarray(across, dtype=float))
-        if self._laid is not None:
+        if isinstance(self.map, HeightMap):
             from scipy.ndimage import map_coordinates
 
-            places = zip((x, y), self._laid.spacing, self._laid.shape, strict=True)
+            places = zip((x, y), self.map.spacing, self.map.shape, strict=True)
             index = [at / step + 0.5 * (points - 1) for at, step, points in places]
-            return np.asarray(map_coordinates(self._laid.heights, index, order=1, cval=0.0))
+            return np.asarray(map_coordinates(self.map.heights, index, order=1, cval=0.0))
         a, b, depth, wide = 0.5 * self.length, 0.5 * self.width, self.depth, self.rim_width
         rho = np.hypot(x / a, y / b)
         bowl = np.clip(1.0 - rho**2, 0.0, None)

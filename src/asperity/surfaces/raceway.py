@@ -139,23 +139,20 @@ def closed_trace(trace: ArrayLike) -> tuple[Array, Array]:
     The step from the end of the trace to its beginning must be none that its own steps are not: it may turn
     by one step less than a whole turn, or end where it began.
     """
-    table = finite_array("roundness trace", trace, "finite angles and deviations (n, 2)", shape=(None, 2))
-    angle, deviation = table.T
-    steps = np.diff(angle)
-    what, remedy = "roundness trace", "Trim it to one turn, from where it begins to just before that place."
-    require(len(angle) >= 8 and (steps > 0.0).all(), what, "too few or falling angles", "8 or more, rising")
-    turned, widest = angle[-1] - angle[0], 1.5 * float(steps.max())
+    what = "roundness trace"
+    angle, deviation = finite_array(what, trace, "finite angles, rad, and deviations, m", shape=(None, 2)).T
+    steps, jumps = np.diff(angle), np.abs(np.diff(deviation))
+    require(len(angle) >= 8 and (steps > 0.0).all(), what, "few or falling angles", "8 or more, rising")
+    turned, turn, widest = angle[-1] - angle[0], 2.0 * math.pi, float(steps.max())
     received, allowed = f"{math.degrees(turned):.6g} deg", "one turn, 360 deg, or one step less"
-    once = 2.0 * math.pi - widest <= turned <= 2.0 * math.pi + 1e-3 * widest
-    require(once, what, received, allowed, remedy)
-    largest, open_by = float(np.abs(np.diff(deviation)).max()), abs(float(deviation[-1] - deviation[0]))
+    once = turn - 1.5 * widest <= turned <= turn + 1e-3 * widest
+    require(once, what, received, allowed, "Trim it to one turn.")
+    open_by = abs(float(deviation[-1] - deviation[0]))
     received = f"ends that differ by {open_by * 1e6:.3g} um"
-    allowed = f"ends that meet as its neighbours do, within {largest * 1e6:.3g} um"
-    remedy = "Take off what drifted, or measure once around."
-    require(open_by <= largest, what, received, allowed, remedy)
-    if turned > 2.0 * math.pi - 0.5 * float(steps.min()):  # it came back to its first place
-        angle, deviation = angle[:-1], deviation[:-1]
-    return np.append(angle, angle[0] + 2.0 * math.pi), np.append(deviation, deviation[0])
+    allowed = f"ends that meet as its neighbours do, within {jumps.max() * 1e6:.3g} um"
+    require(open_by <= jumps.max(), what, received, allowed, "Take off what drifted, or measure anew.")
+    n = len(angle) - (turned > turn - 0.5 * steps.min())  # without where it came back to its first place
+    return np.append(angle[:n], angle[0] + turn), np.append(deviation[:n], deviation[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,9 +198,10 @@ class Raceway:
 
     @cached_property
     def amplitudes(self) -> Array:
-        """Amplitudes, m, of 1, 2, … waves per turn along the path, without faults."""
+        """Amplitudes, m, of 0, 1, 2, … waves per turn along the path, without faults."""
         along = self.heights[:, self.heights.shape[1] // 2] + self.line
-        return np.abs(fft.rfft(along)[1:]) * (2.0 / len(along))
+        found = np.abs(fft.rfft(along)) * (2.0 / len(along))
+        return np.append(0.5 * found[0], found[1:])
 
 
 def raceway(
