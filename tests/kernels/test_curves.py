@@ -14,7 +14,7 @@ def test_splines_are_natural_in_blocks_at_places_in_any_order(points):
     values, index = random.normal(size=(3, points)), random.uniform(0.0, points - 1.0, 500)
     index[:2] = 0.0, points - 1.0
     expected = CubicSpline(np.arange(points), values.T, bc_type="natural")
-    for places in (index, np.sort(index)):
+    for places in (index, np.sort(index), np.sort(index)[::-1]):
         np.testing.assert_allclose(splines_along(values, places), expected(places), atol=1e-12)
 
 

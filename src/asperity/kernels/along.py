@@ -39,9 +39,9 @@ def spline_coefficients(values, first, end, coefficients, factor):  # type: igno
 def splines_along(values, index):  # type: ignore[no-untyped-def]
     """Natural cubic splines of rows (s, m), m ≥ 2, at n places on their grid: values (n, s).
 
-    Places count in steps of the grid from 0 to m − 1; rising ones are fastest. The rows are worked off in
-    blocks that stay in the processor's cache; a block overlaps its neighbours by as many points as make the
-    cut at its ends felt by less than 1e-13.
+    Places count in steps of the grid from 0 to m − 1; rising or falling ones are fastest. The rows are worked
+    off in blocks that stay in the processor's cache; a block overlaps its neighbours by as many points as
+    make the cut at its ends felt by less than 1e-13.
     """
     s, m = values.shape
     result = np.empty((index.shape[0], s))
@@ -51,7 +51,10 @@ def splines_along(values, index):  # type: ignore[no-untyped-def]
     for k in range(index.shape[0]):
         i = min(int(index[k]), m - 2)
         if not first <= i < end:
-            first, end = i, min(i + BLOCK, m - 1)
+            if i >= first:
+                first, end = i, min(i + BLOCK, m - 1)
+            else:
+                first, end = max(0, i + 1 - BLOCK), i + 1
             origin = max(0, first - OVERLAP)
             spline_coefficients(values, origin, min(m, end + 1 + OVERLAP), coefficients, factor)
         t = index[k] - i

@@ -13,7 +13,7 @@ from scipy.linalg import block_diag
 
 from asperity.arguments import Array, positive, require
 from asperity.errors import InputError, Outcome
-from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
 from asperity.laws.spec import Law
 from asperity.progress import Progress
@@ -138,6 +138,8 @@ class _OnEdges:
 
     def __post_init__(self) -> None:
         self.contacts = len(self.mechanism.edges)
+        # approach of each contact that is within its data at all steps laid out; and where these begin
+        self.within, self.begun = np.full(self.contacts, np.inf), self.total
 
     def place(self, contact: int, step: int) -> float:
         """Position of a contact at a step, m."""
@@ -163,6 +165,11 @@ class _OnEdges:
     def laid(self, first: int, stop: int) -> Any:
         """The same, for the compiled kernel."""
         prepared = self.prepared(first, stop)
+        lowest = [law.planes.min() + (0.0 if law.form == TABLE else law.values.min()) for law in prepared]
+        self.within = np.minimum(
+            self.within, [law.upper + h for law, h in zip(prepared, lowest, strict=True)]
+        )
+        self.begun = min(self.begun, first)
         return Prepared(**stacked(prepared, Prepared._fields)), sizes_of(prepared)
 
 
@@ -363,8 +370,10 @@ def _warn(stepper: Stepper, course: _OnEdges) -> None:
     counts, seen = stepper.motion.counts, stepper.record.relative_displacement
     seen = seen - stepper.system.softening[:, None] * stepper.record.contact_force
     beyond = np.zeros(course.contacts, dtype=np.int64)
-    for first in range(0, course.total + 1, CHECKED):
-        stop = min(first + CHECKED, course.total + 1)
-        for k, law in enumerate(course.prepared(first, stop)):
+    doubted = (seen.max(axis=1) > course.within) | (course.begun > 0)  # a run taken up has not laid out all
+    for k in np.flatnonzero(doubted).tolist():
+        for first in range(0, course.total + 1, CHECKED):
+            stop = min(first + CHECKED, course.total + 1)
+            law = _laid(course.mechanism.edges[k], first, stop)
             beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first:stop]), 0)[2]
     warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])
