@@ -105,10 +105,7 @@ test_what_is_said_of_other_arguments = refusals(
     (lambda: scanned(device=0), "device: received 0; allowed: 'cpu' or 'gpu'"),
     (lambda: scanned(device=""), "device: received ''"),
     (lambda: scanned(surface=np.ma.masked_invalid(HOLED)), "1 of 160 points without a height"),
-    (
-        lambda: moving_kernel("x2000", 20.0, 1e-4),
-        "track: received 'x2000'; allowed: a Track, as Track.named",
-    ),
+    (lambda: moving_kernel("x2000", 20.0, 1e-4), "track: received 'x2000'; allowed: a Track, as Track.named"),
     (lambda: Track.named(None), "track name: received None"),
     (lambda: study(KEYS), "sweep: received nothing; allowed: keys of the case"),
     (lambda: asperity.run({}), 'kind: received nothing; allowed: "ball-on-beam"'),

@@ -73,12 +73,7 @@ def groove(*arguments):
         (run_in, (), {"tolerance": 0.0}, "tolerance of running-in: received 0.0"),
         (Hertz, (1e11, 1.0, math.inf), {}, "Hertz radius_y: received inf"),
         (Hertz, (1e11, 0.0, 1.0), {}, "Hertz radius_x: received 0.0; allowed: a .*positive"),
-        (
-            groove,
-            (RADIUS, RADIUS),
-            {},
-            r"radii of ball and groove \(m\): received 0.00635 and -0.00635",
-        ),
+        (groove, (RADIUS, RADIUS), {}, r"radii of ball and groove \(m\): received 0.00635 and -0.00635"),
         (groove, (RADIUS, 0.9 * RADIUS), {}, "A hollow must be rounder than what lies in it"),
         (groove, (RADIUS, -GROOVE), {}, r"radius of the groove \(m\): received -0.0066"),
         (groove, (0.0, GROOVE), {}, r"radius of the ball \(m\): received 0.0"),

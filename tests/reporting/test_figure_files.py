@@ -166,17 +166,9 @@ def test_figures_are_found_by_name_and_title(names, found):
 @pytest.mark.parametrize(
     ("parts", "name", "message"),
     [
-        (
-            PARTS,
-            "force_band",
-            r"'force_band'.* scene\. Nearest: \"force_bands\" \(Contact force levels",
-        ),
+        (PARTS, "force_band", r"'force_band'.* scene\. Nearest: \"force_bands\" \(Contact force levels"),
         (PARTS, "contact force", r"Nearest: \"force_bands\" .*, \"force_psd\""),  # both begin so
-        (
-            PARTS,
-            "xyz",
-            r"a figure of this result, by name or title: force_bands, force_psd, scene\.$",
-        ),
+        (PARTS, "xyz", r"a figure of this result, by name or title: force_bands, force_psd, scene\.$"),
         (PARTS, None, "received None"),
         ([], "force", "it has none"),
     ],

@@ -3,13 +3,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.surfaces.bands import band_levels_of
-from asperity.surfaces.defects import (
-    corrugation,
-    dipped_joint,
-    flat_geometry,
-    flat_length,
-    flat_trajectory,
-)
+from asperity.surfaces.defects import corrugation, dipped_joint, flat_geometry, flat_length, flat_trajectory
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.measured_lines import roll_over
 from refusals import refusals

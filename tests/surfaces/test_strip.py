@@ -141,10 +141,7 @@ test_what_is_wrong_is_said = refusals(
     (lambda: zeros((10, 1)), "at least 2 points each"),
     (lambda: zeros((10, 3)).rows(5, 11), "rows of the strip"),
     (lambda: long_self_affine((10, 3), (DX, DX), **TEXTURE | {"hurst": 2.0}, seed=1), "hurst"),
-    (
-        lambda: survey_strip(zeros((1000, 3)), 500, 0, 100),
-        "received 100 rows; allowed: at least 500 rows",
-    ),
+    (lambda: survey_strip(zeros((1000, 3)), 500, 0, 100), "received 100 rows; allowed: at least 500 rows"),
 )
 
 

@@ -169,10 +169,7 @@ def _write(
             names["effects"] = EFFECTS
             write_csv(new / EFFECTS, *tables.long_columns(effect, list(map(str, effect["effect"].dims))))
         told = _by_place(table, effect)
-        blocks = [
-            *_blocks(told),
-            *_figures(table, means, band, asked or tables.USUAL_IN_FIGURES),
-        ]
+        blocks = [*_blocks(told), *_figures(table, means, band, asked or tables.USUAL_IN_FIGURES)]
         if blocks:
             names["page"] = PAGE
             files.write_bytes(

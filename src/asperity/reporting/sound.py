@@ -24,10 +24,7 @@ from asperity.text_files import write_csv
 
 PASS_BY = "pass_by_pressure"
 """Name of what is heard."""
-SOUND_POWERS = {
-    "radiated_power_level": ("radiator", "band"),
-    "sound_power_level": ("source", "noise_band"),
-}
+SOUND_POWERS = {"radiated_power_level": ("radiator", "band"), "sound_power_level": ("source", "noise_band")}
 """Of the group ``spectra``, dB re 1 pW, the better one first, and their dimensions beside the law."""
 WHOLE = "total"
 """What stands among the sources for all of them together."""

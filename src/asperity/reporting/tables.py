@@ -90,11 +90,7 @@ def size_look(change: float, off: float, far: float) -> str:
 
 
 def listed_table(
-    tree: DataTree,
-    attribute: Attribute,
-    titles: tuple[str, str],
-    columns: Mapping[str, Any],
-    note: str,
+    tree: DataTree, attribute: Attribute, titles: tuple[str, str], columns: Mapping[str, Any], note: str
 ) -> ReportTable | None:
     """Lay out a list in an attribute of a result: of each column the key, or how its cell is made."""
     found = data.json_list(tree, attribute)

@@ -196,11 +196,7 @@ def force_transfer(
 
 
 def mean_square_transfer(
-    frequency: ArrayLike,
-    wheel: AtContact,
-    track: Any,
-    stiffness: float,
-    positions: int = 12,
+    frequency: ArrayLike, wheel: AtContact, track: Any, stiffness: float, positions: int = 12
 ) -> Array:
     """Mean square over a bay of the contact force per height of the texture, |F/z|², (f,), (N/m)².
 

@@ -203,10 +203,7 @@ def sideways_group(computed: Computed) -> Values:
 
     powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
     power = levels(2.0 * case.axles / contacts / PICOWATT * np.stack(powers, axis=1))
-    lateral, of_each = (
-        found.force_psd.sum(axis=1) / contacts,
-        np.sqrt(found.force_psd.sum(axis=-1) * step),
-    )
+    lateral, of_each = (found.force_psd.sum(axis=1) / contacts, np.sqrt(found.force_psd.sum(axis=-1) * step))
     with np.errstate(divide="ignore"):
         slips = np.vectorize(math.erfc)(limit / (math.sqrt(2.0) * of_each)).mean(axis=1)
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)

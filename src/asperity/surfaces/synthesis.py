@@ -140,12 +140,7 @@ def self_affine(
 
 
 def long_self_affine(
-    shape: tuple[int, int],
-    spacing: tuple[float, float],
-    *,
-    seed: int,
-    before: int = 0,
-    **parameters: float,
+    shape: tuple[int, int], spacing: tuple[float, float], *, seed: int, before: int = 0, **parameters: float
 ) -> LongStrip:
     """Self-affine strip of any length, generated where it is read.
 
