@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -136,6 +137,14 @@ class PhysicsWarning(UserWarning):
         self.grade = grade
         super().__init__(message)
 
+    @classmethod
+    def warn(cls, message: str, grade: Grade = Grade.WARNING) -> None:
+        """Warn, at the place outside this package from which it was called."""
+        frame, level = sys._getframe(1), 2
+        while frame.f_back and frame.f_globals.get("__name__", "").startswith("asperity."):
+            frame, level = frame.f_back, level + 1
+        warnings.warn(cls(message, grade), stacklevel=level)
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -178,8 +187,7 @@ def warn_of_findings(findings: Iterable[Finding]) -> None:
     """Warn of what is outside its range and was not warned of where it was found."""
     for finding in findings:
         if finding.grade is not None and not finding.warned:
-            category = finding.category or OutOfRangeWarning
-            warnings.warn(category(finding.message, finding.grade), stacklevel=2)
+            (finding.category or OutOfRangeWarning).warn(finding.message, finding.grade)
 
 
 class HalfSpaceWarning(PhysicsWarning):

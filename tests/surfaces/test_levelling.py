@@ -212,5 +212,6 @@ test_what_is_wrong_is_said = refusals(
 
 
 def test_a_filter_longer_than_the_surface_is_doubted():
-    with pytest.warns(ShortRecordWarning, match="exceeds the surface"):
+    with pytest.warns(ShortRecordWarning, match="exceeds the surface") as caught:
         band_limit(LINE, longest=200 * UM)
+    assert caught[0].filename == __file__  # who asked, not where it was found

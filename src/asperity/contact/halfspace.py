@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
@@ -553,4 +552,4 @@ def _array(values: ArrayLike) -> Array:
 
 
 def _warn_unconverged(what: str, outcome: Outcome) -> None:
-    warnings.warn(f"{what} did not converge: {outcome.value}", UnconvergedWarning, stacklevel=3)
+    UnconvergedWarning.warn(f"{what} did not converge: {outcome.value}")

@@ -1,7 +1,6 @@
 """Smooth bodies in contact: Hertz in closed form, and bodies that conform, as a ball in its groove."""
 
 import math
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -322,7 +321,7 @@ def check_half_space(
         _slender(across, radius, "across the path", cause)
         return
     if radius > CONFORMITY * groove_radius:
-        _warn(
+        HalfSpaceWarning.warn(
             f"The radius of the ball is {percent(1.0 - radius / groove_radius)} below that of the groove: "
             "the width of the contact follows from form errors of the groove as much as from its radius. "
             "Take the measured radius."
@@ -338,7 +337,7 @@ def check_half_space(
     remedy = "Lower the load, or take a groove of a greater radius."
     require(angle <= HOLLOW[1], "contact", f"{cause}, a contact that {fills}", allowed, remedy)
     if angle > HOLLOW[0]:
-        _warn(
+        HalfSpaceWarning.warn(
             f"Under {cause} the contact {fills}, more than {HOLLOW[0]:g}: the plane of the half-space makes "
             f"forces too large by about {percent(FORCE_LOST * angle**2)}. Lower the load."
         )
@@ -349,14 +348,10 @@ def _slender(a: float, radius: float, direction: str, cause: str) -> None:
     allowed = "at most R/3, where the body is an elastic half-space"
     require(a <= SLENDER[1] * radius, "contact", f"{cause}, {axis}", allowed, remedy)
     if a > SLENDER[0] * radius:
-        _warn(
+        HalfSpaceWarning.warn(
             f"Under {cause} the contact has {axis}, above 0.1 R: the elastic half-space overestimates the "
             "stiffness by some per cent. Lower the load."
         )
-
-
-def _warn(message: str) -> None:
-    warnings.warn(message, HalfSpaceWarning, stacklevel=3)
 
 
 # --- a contact that sticks

@@ -1,6 +1,5 @@
 """Running-in: a body rolled over a surface whose asperities flow, which lowers them for good."""
 
-import warnings
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -155,9 +154,8 @@ def warn_of_running_in(found: RunInHeights, job: RunningIn, tolerance: str, reme
     warn_of_flaws(found.counts, "running-in", tolerance, remedy, "yields too much")
     if job.passes is None and not found.settled:
         last, least = (1e9 * length for length in (found.largest[-1], job.tolerance))
-        message = (
+        UnconvergedWarning.warn(
             f"after {len(found.largest)} passes a place is still lowered by {last:.3g} nm in a pass, more "
             f"than {least:.3g} nm: the surface has not reached shakedown. The load is too high for the "
             "hardness: lower it, or give a number of passes."
         )
-        warnings.warn(message, UnconvergedWarning, stacklevel=3)

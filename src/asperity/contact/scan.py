@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections import deque
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import closing
@@ -89,21 +88,21 @@ def warn_of_flaws(
     solved, _, unconverged, truncated = counts
     if unconverged:
         share = unconverged / max(solved, 1)
-        message = (
+        UnconvergedWarning.warn(
             f"{unconverged} of {solved} contact solutions of {what} ({percent(share)}) missed their "
             f"tolerance; their forces are approximate. Try a larger {tolerance}, and check the surface for "
-            "outliers."
+            "outliers.",
+            Grade.of_share(share),
         )
-        warnings.warn(UnconvergedWarning(message, Grade.of_share(share)), stacklevel=4)
     if truncated:
         share = truncated / max(solved, 1)
         grade = Grade.of_share(share)
-        message = (
+        TruncatedContactWarning.warn(
             f"in {truncated} of {solved} contact solutions of {what} ({percent(share)}) more than "
             f"{100 * TRUNCATED:.0f} % of the force acts on the window's edge: the contact is cut off and "
-            f"{consequence}{_MEANING[grade]}. {remedy}"
+            f"{consequence}{_MEANING[grade]}. {remedy}",
+            grade,
         )
-        warnings.warn(TruncatedContactWarning(message, grade), stacklevel=4)
 
 
 _MEANING = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -206,10 +205,8 @@ def warn_if_bent(over: Modal | RailBetween | None, displaced: Array) -> None:
     deflection = float(np.abs(displaced).max())
     share = deflection / over.length
     if share > LARGEST_DEFLECTION:
-        warnings.warn(
+        LargeDeflectionWarning.warn(
             f"the beam is displaced by up to {deflection:.3g} m under the contact, "
             f"{100 * share:.2g} % of its length: beam theory needs small slopes, as up to "
-            f"{100 * LARGEST_DEFLECTION:.0f} %; check load, section, length and support of the beam",
-            LargeDeflectionWarning,
-            stacklevel=4,
+            f"{100 * LARGEST_DEFLECTION:.0f} %; check load, section, length and support of the beam"
         )

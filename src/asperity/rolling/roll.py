@@ -5,7 +5,6 @@ How a run went is told: contact lost, load carried, steps not converged, laws co
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -337,21 +336,21 @@ def warn_of_counts(
     """
     if counts[1]:
         share = float(counts[1]) / max(int(counts[0]), 1)
-        missed = (
+        UnconvergedWarning.warn(
             f"{', '.join(dict.fromkeys(names))}: {counts[1]} of {max(int(counts[0]), 1)} time steps "
             f"({percent(share)}) missed the tolerance on the contact force: their force is uncertain; take a "
-            "smaller numerics.time_step"
+            "smaller numerics.time_step",
+            Grade.of_share(share),
         )
-        warnings.warn(UnconvergedWarning(missed, Grade.of_share(share)), stacklevel=5)
     of_law = dict.fromkeys(names, 0)
     for name, count in zip(names, beyond, strict=True):
         of_law[name] += int(count)
     for name, count in of_law.items():
         steps = names.count(name) * recorded
         if count:
-            message = (
+            ExtrapolationWarning.warn(
                 f"{name}: the contact was closer than its largest computed state in {count} of {steps} time "
                 f"steps ({percent(count / steps)}): the force there is a continuation; let "
-                "contact.approaches reach higher"
+                "contact.approaches reach higher",
+                Grade.of_share(count / steps),
             )
-            warnings.warn(ExtrapolationWarning(message, Grade.of_share(count / steps)), stacklevel=5)

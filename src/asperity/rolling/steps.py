@@ -19,7 +19,6 @@ times the alternating one less that of the contact; a rigid contact then returns
 such masses; an endless rail carries impacts away.
 """
 
-import warnings
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -199,12 +198,10 @@ def softening(
     if share >= NEGLIGIBLE:
         stable = opposed if damping[worst] > 0.0 else np.sqrt(np.maximum(opposed, 0.0))
         shorter = max(stable[worst], np.sqrt(max(impact[worst], 0.0)))
-        warnings.warn(
+        CoarseSamplingWarning.warn(
             f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies "
             f"as light: it is kept stable by softening the contact by {100 * share:.2g} %, and motion near "
-            f"{0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s",
-            CoarseSamplingWarning,
-            stacklevel=4,
+            f"{0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s"
         )
     return softer
 
@@ -223,10 +220,8 @@ def warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:
     """Compare the time step with the periods that it must resolve."""
     for what, frequency, least in limits:
         if frequency * time_step * least > 1.0:
-            warnings.warn(
+            CoarseSamplingWarning.warn(
                 f"{what}, {frequency:.4g} Hz, has {1.0 / (frequency * time_step):.3g} time steps in a "
                 f"period, fewer than {least:.0f}: its response is distorted; "
-                f"take a time step of at most {1.0 / (least * frequency):.2g} s",
-                CoarseSamplingWarning,
-                stacklevel=4,
+                f"take a time step of at most {1.0 / (least * frequency):.2g} s"
             )

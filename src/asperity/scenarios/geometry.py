@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -187,12 +186,10 @@ def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: flo
     remedy = "Refine the spacing and the window with it, or press harder."
     require(spacing <= 2.0 * small, "contact.spacing", f"{spacing * 1e6:.3g} um", allowed, remedy)
     if spacing > small / 8:
-        warnings.warn(
+        CoarseSamplingWarning.warn(
             f"contact.spacing = {spacing * 1e6:.3g} µm is coarser than an eighth of the contact radius "
             f"({small * 1e6:.3g} µm under {load:.3g} N): forces carry an error of some per cent. "
-            "Refine the spacing.",
-            CoarseSamplingWarning,
-            stacklevel=2,
+            "Refine the spacing."
         )
 
 

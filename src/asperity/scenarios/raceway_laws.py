@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -366,7 +365,7 @@ class OnRaceway:
         message += f"{', and '.join(told)}. "
         message += "The law table has no such limit."
         grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
-        warnings.warn(OutOfRangeWarning(message, grade), stacklevel=3)
+        OutOfRangeWarning.warn(message, grade)
 
     def law(self, name: str, damping: float) -> Law:
         """A law of `LAWS` by its name, with a contact damping, N s/m."""

@@ -169,11 +169,9 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
             remedy = "Is the pixel in µm, not mm? Else cut the map, or coarsen contact.spacing."
             raise InputError("surface.file", received, f"at most {MOST_POINTS:.2g} points", remedy)
         if max(measured.spacing) > spacing * (1 + 1e-9):
-            warnings.warn(
+            ShortRecordWarning.warn(
                 f"the map's points are {max(measured.spacing) * 1e6:.3g} µm apart, more than contact.spacing "
-                f"= {spacing * 1e6:.3g} µm: shorter waves are missing. Coarsen contact.spacing.",
-                ShortRecordWarning,
-                stacklevel=2,
+                f"= {spacing * 1e6:.3g} µm: shorter waves are missing. Coarsen contact.spacing."
             )
         levelled = level(measured, surface.form)
         if surface.direction % QUARTER:  # no wave that the spacing holds suffers from turning
@@ -273,11 +271,9 @@ def lines_around(rolling: Rolling, name: str, grid: Grid, *, check: bool) -> Rec
         longest = max(len(p.heights) * p.spacing for p in measured)
         raise _not_round(name, f"{longest:.4g} m without gaps", grid.length)
     if len(profiles) < len(measured):
-        warnings.warn(
+        ShortRecordWarning.warn(
             f"{len(measured) - len(profiles)} of {len(measured)} lines of the {name} are shorter than its "
-            "circumference and left out: the others move together across. Measure them again.",
-            ShortRecordWarning,
-            stacklevel=2,
+            "circumference and left out: the others move together across. Measure them again."
         )
     register = measured_lines.bring_into_register(profiles)
     lines = register.lines

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -355,11 +354,9 @@ def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) 
     """
     if found.miss > LARGEST_MISS:
         order = found.taps.shape[1] - 1
-        warnings.warn(
+        ContactFilterWarning.warn(
             f"the filter of the law {law} with J = {order} misses the fitted one by {found.miss:.2g} dB "
-            "above −30 dB: the report shows both. Leave out contact.filter_taps, or roll over a longer path.",
-            ContactFilterWarning,
-            stacklevel=2,
+            "above −30 dB: the report shows both. Leave out contact.filter_taps, or roll over a longer path."
         )
     estimated = found.contact_filter
     share = float(np.interp(working_approach, estimated.approaches, estimated.long_wave_share))
@@ -367,11 +364,9 @@ def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) 
         return
     ratios = estimated.asymptotic_stiffness / estimated.tangent_stiffness
     ratio = float(np.interp(working_approach, estimated.approaches, ratios))
-    warnings.warn(
+    ContactFilterWarning.warn(
         f"only {100 * share:.0f} % of the texture's power lies in waves with k a < {LONG_WAVE:g}, where the "
         f"filter of the law {law} is set to one: k_0/k_t = {ratio:.2f} under the working load, so its "
         f"force keeps {-20 * math.log10(ratio):.1f} dB that the contact averages away across the path. "
-        'Set contact.normalise = "tangent", or take a law that has it by default.',
-        ContactFilterWarning,
-        stacklevel=2,
+        'Set contact.normalise = "tangent", or take a law that has it by default.'
     )

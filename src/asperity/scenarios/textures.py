@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -206,31 +205,25 @@ def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
     if settling < SETTLED * (1 - 1e-9):
         apart = "shorten the duration or start farther along the path"
         remedy = "set settling" if case.room is None else apart
-        warnings.warn(
+        ShortRecordWarning.warn(
             f"the record starts {settling * 1e3:.3g} ms after rest, less than {SETTLED * 1e3:.3g} ms: its "
-            f"levels hold the start. So that there is time for settling, {remedy}.",
-            ShortRecordWarning,
-            stacklevel=2,
+            f"levels hold the start. So that there is time for settling, {remedy}."
         )
     if not case.has_defect:
         return
     seen = [law for law in case.laws if spec_of(law).sees_heights]
     if case.laws[0] not in seen:
-        warnings.warn(
+        OutOfRangeWarning.warn(
             f"{case.laws[0]} follows the path of the {case.ROLLING}'s centre over a flat or a joint, not "
             "their shape: peaks of the force come out up to a quarter too high, and levels above 1.6 kHz up "
-            "to 6 dB. Take direct, or table, as the first law.",
-            OutOfRangeWarning,
-            stacklevel=2,
+            "to 6 dB. Take direct, or table, as the first law."
         )
     length, window, a = case.defect_length, case.contact.window, shape.semi_axes[0]
     if seen and length and length + 2 * a > window:
-        warnings.warn(
+        TruncatedContactWarning.warn(
             f"the flat is {length * 1e3:.3g} mm long and the contact {2e3 * a:.3g} mm, together more than "
             f"contact.window = {window * 1e3:.3g} mm: where the {case.ROLLING} stands on the flat's ends, "
-            f"{' and '.join(seen)} cut the contact off. Enlarge the window.",
-            TruncatedContactWarning,
-            stacklevel=2,
+            f"{' and '.join(seen)} cut the contact off. Enlarge the window."
         )
 
 

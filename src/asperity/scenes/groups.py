@@ -119,13 +119,11 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
     if more_than_chance(p_values):
         failed = sum(not f.homogeneous for f in found)
         worst = max(found, key=lambda f: f.variation / f.expected)
-        warnings.warn(
+        InhomogeneousWarning.warn(
             f"{failed} of {len(maps)} measured maps are not the same everywhere (p ≤ {SIGNIFICANCE:g}): the "
             f"mean squares of {TILES[0]} × {TILES[1]} tiles vary by up to {100 * worst.variation:.0f} %, "
             f"those of stationary textures by {100 * worst.expected:.0f} %. Samples of them do not stand for "
-            "the whole path: take more maps, crop them, or remove form and waviness.",
-            InhomogeneousWarning,
-            stacklevel=2,
+            "the whole path: take more maps, crop them, or remove form and waviness."
         )
     return {
         surface.HOMOGENEITY_P: surface.HOMOGENEITY_P.variable(p_values, significance=SIGNIFICANCE),

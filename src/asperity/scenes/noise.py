@@ -1,7 +1,6 @@
 """Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
 
 import math
-import warnings
 from typing import Any
 
 import numpy as np
@@ -245,12 +244,12 @@ def silent_wheel(case: Any) -> str:
 def warn_of_silence(case: Any) -> None:
     """Note that the sound power from vibration lacks the wheel's part, where it does."""
     if reason := silent_wheel(case):
-        message = (
+        MissingSourceWarning.warn(
             f"the sound power from vibration is that of rail and sleepers alone: {reason}. Above about 2 kHz "
             f"the wheel is the loudest. Give {case.ROLLING}.section, or {case.ROLLING}.modes with how they "
-            "move the wheel."
+            "move the wheel.",
+            Grade.NOTE,
         )
-        warnings.warn(MissingSourceWarning(message, Grade.NOTE), stacklevel=2)
 
 
 def radiation(computed: compute.Computed) -> Values:

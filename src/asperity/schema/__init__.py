@@ -7,7 +7,6 @@ One module per group holds what all kinds of case share; what depends on the sce
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -64,7 +63,7 @@ class Entry:
             if attrs["missing"] == UNKNOWN:
                 lost = f"{numbers.size - finite.sum()} of {numbers.size} values of {self.name}"
                 message = f"{lost} are not finite numbers, and {UNKNOWN}"
-                warnings.warn(PhysicsWarning(message, Grade.OUT), stacklevel=2)
+                PhysicsWarning.warn(message, Grade.OUT)
             numbers = np.where(finite, numbers, np.nan)
         return xarray.Variable(self.dims, numbers, attrs)
 

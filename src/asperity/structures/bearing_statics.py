@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -304,11 +303,10 @@ def _doubt(found: LoadedBearing) -> None:
             means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
             grade = Grade.OUT if hard else Grade.WARNING
             message = f"Balls press the {ring} ring with {peak / 1e9:.3g} GPa, above {limit:g} GPa, {means}."
-            warnings.warn(OutOfRangeWarning(f"{message} Lower the load.", grade), stacklevel=4)
+            OutOfRangeWarning.warn(f"{message} Lower the load.", grade)
     if found.leaving_speed is not None:
-        message = (
+        OutOfRangeWarning.warn(
             f"At {60.0 * found.speed:.5g} 1/min centrifugal force lifts balls off the inner ring, all of "
             f"which are pressed at rest; the first one leaves at {60.0 * found.leaving_speed:.5g} 1/min. "
             "Raise axial load or preload."
         )
-        warnings.warn(OutOfRangeWarning(message), stacklevel=4)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import factorial
@@ -365,13 +364,11 @@ def warn_of_coarse(at: Array, shapes: Array, natural: Array) -> None:
         coarse = int(np.argmax(chord))
         points = np.pi / np.arcsin(min(0.5 * chord[coarse], 1.0))
         count = int(np.sum(chord > limit))
-        warnings.warn(
+        CoarseSamplingWarning.warn(
             f"The mode at {natural[coarse]:.4g} Hz has {points:.2g} points in a wavelength, fewer than "
             f"{POINTS_PER_WAVELENGTH} ({count} of {natural.size} modes have so few): its shape between them "
             "is a guess. Give mode shapes at more positions, or leave such modes out and give their "
-            "residual flexibility.",
-            CoarseSamplingWarning,
-            stacklevel=4,
+            "residual flexibility."
         )
 
 

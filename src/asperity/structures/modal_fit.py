@@ -1,6 +1,5 @@
 """Vector fitting: common poles of many responses, and their residues."""
 
-import warnings
 from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
@@ -263,11 +262,9 @@ def judge_fit(what: str, error: float, modes: str) -> None:
         remedy = "Check the mass, the unit m/N, and that it is displacement along the force, not velocity."
         raise InputError(what, received, allowed, remedy)
     if error > DOUBTFUL_FIT:
-        warnings.warn(
+        errors.UnconvergedWarning.warn(
             f"{modes} meet the given {what} to {error:.1f} dB only, more than {DOUBTFUL_FIT:.0f} dB: "
-            "resonances are uncertain by as much. Give a finer or smoother receptance, or the modes.",
-            errors.UnconvergedWarning,
-            stacklevel=4,
+            "resonances are uncertain by as much. Give a finer or smoother receptance, or the modes."
         )
 
 
@@ -295,7 +292,7 @@ def warn_of_short_band(what: str, frequency: Array, highest: float) -> None:
         f"{REACH * highest:.4g} Hz, or lower numerics.highest_frequency to {end / REACH:.4g} Hz."
     )
     grade = errors.Grade.WARNING if end >= highest else errors.Grade.OUT
-    warnings.warn(errors.ShortRecordWarning(told, grade), stacklevel=3)
+    errors.ShortRecordWarning.warn(told, grade)
 
 
 def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
@@ -306,13 +303,13 @@ def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
     narrow = width < LEAST_LINES * apart
     if narrow.any():
         worst = int(np.argmin(width / apart))
-        told = (
+        errors.CoarseSamplingWarning.warn(
             f"{int(narrow.sum())} of {own.size} modes are narrower at half their power than half a line of "
             f"the receptance: that at {own[worst]:.4g} Hz is {width[worst]:.2g} Hz wide, of lines "
             f"{apart[worst]:.3g} Hz apart. With noise its loss factor is a guess. Give lines at most "
-            f"{width[worst]:.2g} Hz apart there; they need not be even, and a netCDF file holds many."
+            f"{width[worst]:.2g} Hz apart there; they need not be even, and a netCDF file holds many.",
+            errors.Grade.NOTE,
         )
-        warnings.warn(errors.CoarseSamplingWarning(told, errors.Grade.NOTE), stacklevel=4)
 
 
 def _searched(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -174,12 +173,10 @@ def moving_kernel(
     kernel = MovingKernel(track, speed, time_step, kept["weights"], distance)
     if duration is None and kernel.left_over > DIED_AWAY:
         frequency, keys = _lacks_damping(kernel)
-        warnings.warn(
+        CoarseSamplingWarning.warn(
             f"the moving kernel still has {100 * kernel.left_over:.2g} % of its largest value after "
             f"{LONGEST:g} s, more than {100 * DIED_AWAY:g} %: what comes later is cut off. It swings at "
-            f"{frequency:.4g} Hz: raise {keys}.",
-            CoarseSamplingWarning,
-            stacklevel=2,
+            f"{frequency:.4g} Hz: raise {keys}."
         )
     return kernel
 

@@ -1,7 +1,6 @@
 """The rail as a bank of poles: the moving kernel in a form that costs the same at any length."""
 
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -139,11 +138,9 @@ def poles_or_kernel(
     if best.accepted:
         return best
     missed = f"miss the moving kernel by {100 * max(best.fit_error, best.static_error):.2g} %"
-    warnings.warn(
+    UnconvergedWarning.warn(
         f"{counts[-1]} poles {missed if best.is_passive else 'give off energy'}: the track is scattered from "
-        "the kernel itself, which is slower. Take more poles.",
-        UnconvergedWarning,
-        stacklevel=2,
+        "the kernel itself, which is slower. Take more poles."
     )
     return kernel
 

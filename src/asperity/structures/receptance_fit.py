@@ -288,14 +288,12 @@ def _check_energy(frequency: Array, at_forces: Complex) -> None:
     created = np.maximum(created, sine.max(axis=1))
     if created.max() > CREATED:
         worst = int(np.argmax(created))
-        warnings.warn(
+        EnergyWarning.warn(
             f"The receptance creates energy at {percent(float(np.mean(created > CREATED)))} of its "
             f"frequencies, most at {frequency[worst]:.5g} Hz: its imaginary part there is up to "
             f"{percent(float(created[worst]))} of it positive, more than {percent(CREATED)} of noise. The "
             "modes fitted to it create none. Check phases, and that forces and responses are counted in one "
-            "direction at the same places.",
-            EnergyWarning,
-            stacklevel=4,
+            "direction at the same places."
         )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
@@ -53,11 +52,10 @@ def fill(surface: S, lines: bool | None = None) -> S:
     if share == 0.0:
         return surface
     if share > FILLED_SHARE_WARNED:
-        message = (
+        MissingPointsWarning.warn(
             f"{share:.1%} of the points were missing and are filled, more than {FILLED_SHARE_WARNED:.0%}: "
             "filled points are smooth and lower Sq and Sdq; measure again or crop"
         )
-        warnings.warn(message, MissingPointsWarning, stacklevel=3)
     heights = np.array(surface.heights)
     if by_lines:
         for line, holes in zip(*(np.moveaxis(each, along, -1) for each in (heights, missing)), strict=True):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import product
@@ -61,7 +60,7 @@ def band_limit(surface: S, longest: float | None = None, shortest: float | None 
     if longest is not None and longest > size:
         what = f"cut-off {longest:.4g} m exceeds the surface, {size:.4g} m"
         remedy = "the high pass removes little more than the mean; use a shorter cut-off or a longer surface"
-        warnings.warn(f"{what}: {remedy}", ShortRecordWarning, stacklevel=2)
+        ShortRecordWarning.warn(f"{what}: {remedy}")
     if shortest is not None:
         heights = _gaussian(heights, spacings, shortest)
     if longest is not None:

@@ -85,7 +85,7 @@ def process(
     if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
         coarse = f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610"
         remedy = "spikes and short waves are not resolved; measure more finely or leave the processing out"
-        warnings.warn(f"{coarse}: {remedy}", CoarseSamplingWarning, stacklevel=2)
+        CoarseSamplingWarning.warn(f"{coarse}: {remedy}")
     line, trimmed = trim(profile)
     missing = int(np.isnan(line.heights).sum())
     received = f"{missing} missing points inside {line.source or 'the line'}"
@@ -253,7 +253,7 @@ def bring_into_register(profiles: Sequence[Profile]) -> Register:
     if replaced:
         short = f"{len(replaced)} of {count} parallel lines are shorter than {FULL_LINE:.0%} of the longest"
         remedy = "their neighbours replace them; measure again or leave them out"
-        warnings.warn(f"{short}, {longest} points: {remedy}", ShortRecordWarning, stacklevel=2)
+        ShortRecordWarning.warn(f"{short}, {longest} points: {remedy}")
     result = np.repeat(aligned, count, axis=0)
     if len(aligned) > 1:
         between = scipy.interpolate.make_interp_spline(full, np.array(aligned), k=1)

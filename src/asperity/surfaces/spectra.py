@@ -1,7 +1,5 @@
 """Spectra and correlation of maps and lines, and whether they are the same everywhere."""
 
-import warnings
-
 import numpy as np
 import scipy
 from scipy import fft
@@ -201,9 +199,8 @@ def lengths_of(
             lengths.append(limit)
             open_ended = True
     if open_ended:
-        message = (
+        ShortRecordWarning.warn(
             f"the autocorrelation stays above {threshold:g} up to half the map, {max(lengths):.4g} m: "
             "Str is an upper bound; use a larger map or remove long wavelengths first"
         )
-        warnings.warn(message, ShortRecordWarning, stacklevel=2)
     return float(min(lengths)), float(max(lengths))

@@ -1,6 +1,5 @@
 """Reading measured surfaces: the format is found from the first bytes, then from the extension."""
 
-import warnings
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -207,5 +206,5 @@ def _finished(
             f"{surfaces[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
         )
         what += f" ({missing - before} of them were spikes)" * (missing > before)
-        warnings.warn(f"{what}; {left}; {remedy}", MissingPointsWarning, stacklevel=3)
+        MissingPointsWarning.warn(f"{what}; {left}; {remedy}")
     return filled
