@@ -31,7 +31,8 @@ COUNT = Number(at_least=1, at_most=MOST_CONTACTS, whole=True)
 MASS, FORCE = Quantity("kg", above=0), Quantity("N", above=0)
 STIFFNESS, DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
 INERTIA = Quantity("kg m^2", above=0)
-_BODIES = "bodies that roll lie between"
+_BODIES, _FLAT = "bodies that roll lie between", {"goes_with": "flat_depth or flat_length"}
+PROFILE = File(held=(Profile,))
 
 
 OF_SEVERAL = (
@@ -83,25 +84,17 @@ class FlatOnTread(MeasuredLine):
         "length of the flat: that of its chord, sqrt(8 radius flat_depth); a worn one may be longer",
         within="10 um to 1 m: flats lie between",
     )
-    flat_shape: str = key(
-        Choice(("fresh", "worn")),
-        "fresh",
-        "a chord with sharp ends, or rounded",
-        goes_with="flat_depth or flat_length",
-    )
+    flat_shape: str = key(Choice(("fresh", "worn")), "fresh", "a chord with sharp ends, or rounded", **_FLAT)
     flat_position: float | None = optional(
         POSITION,
         "1 m",
         "where the flat is on the tread, along the circumference from the point that touches at start",
         "half a turn on, or half of the record if that is shorter, so that no impact is cut",
         "0 m to 100 m: wheels are smaller",
-        goes_with="flat_depth or flat_length",
+        **_FLAT,
     )
     flat_contacts: tuple[int, ...] = key(
-        ListOf(COUNT),
-        (1,),
-        "contacts whose body has the flat, by number",
-        goes_with="flat_depth or flat_length",
+        ListOf(COUNT), (1,), "contacts whose body has the flat, by number", **_FLAT
     )
 
     @property
@@ -188,9 +181,7 @@ class Rolling(Ringing, FlatOnTread):
         '10 um to 100 km: beyond that it is flat: write "inf"',
     )
     profile: Path | Profile | None = optional(
-        File(held=(Profile,)),
-        "tread.csv",
-        "measured shape of what rolls across the path, instead of transverse_radius",
+        PROFILE, "tread.csv", "measured shape of what rolls across the path, instead of transverse_radius"
     )
     groove_radius: float | None = optional(
         LENGTH,

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from asperity.arguments import Array
-from asperity.case.body import INERTIA, MASS
+from asperity.case.body import INERTIA, MASS, PROFILE
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
 from asperity.case.measured import fitted_sleeper, read_decay_rates, read_mobility
@@ -122,9 +122,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         LENGTH, "0.3 m", "radius of the rail head across the rail", "1 mm to 1 km: rail heads lie between"
     )
     rail_profile: Path | Profile | None = optional(
-        File(held=(Profile,)),
-        "rail.csv",
-        "measured shape of the rail head across the rail, instead of rail_head_radius",
+        PROFILE, "rail.csv", "measured shape of the rail head across the rail, instead of rail_head_radius"
     )
     rail_foot_width: float = key(LENGTH, "150 mm", "width of the rail's foot, which radiates", _WIDTHS)
     rail_head_width: float = key(LENGTH, "72 mm", "width of the rail's head, which radiates", _WIDTHS)

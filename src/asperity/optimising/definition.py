@@ -127,6 +127,7 @@ case = "case.toml"
 """
 _TEXTURES = "10 nm to 10 m: textures lie between"
 _LEVELS = "-200 dB to 120 dB: 1e-10 um to 1 m in one band"
+_RMS = "1 pm to 1 mm: rms heights lie between"
 _PRICE = Number(at_least=0)
 
 
@@ -178,14 +179,10 @@ class Aim(form.Section):
         "0.5 um",
         "least rms height of these wavelengths together, as friction or oil asks for",
         "any",
-        "1 pm to 1 mm: rms heights lie between",
+        _RMS,
     )
     rms_at_most: float | None = optional(
-        LENGTH,
-        "2 um",
-        "largest rms height of these wavelengths together",
-        "any",
-        "1 pm to 1 mm: rms heights lie between",
+        LENGTH, "2 um", "largest rms height of these wavelengths together", "any", _RMS
     )
     price: tuple[float, ...] = key(
         ListOf(_PRICE),

@@ -95,11 +95,7 @@ def computed_result(
 
 
 def root_attributes(
-    case: AnyCase,
-    title: str,
-    sources: Sequence[str],
-    verdict: str,
-    caught: list[warnings.WarningMessage],
+    case: AnyCase, title: str, sources: Sequence[str], verdict: str, caught: list[warnings.WarningMessage]
 ) -> dict[str, Any]:
     """What the root of a result says: what was computed, by what, and what is doubtful of it."""
     told: Values = {

@@ -28,28 +28,35 @@ class Relaxations:
 LAYERS = ("pad", "under_sleeper_pad", "ballast", "subgrade")
 """Springs between the rail and rigid ground, from the rail down."""
 _STIFFNESS, _DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
-_LOSS, _LENGTH = Number(at_least=0, at_most=5), Quantity("m", above=0)
+_LOSS, _METRE = Number(at_least=0, at_most=5), Quantity("m", above=0)
+_MASS, _BENDING = Quantity("kg", above=0), Quantity("N m^2", above=0)
 _RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies between"
 _SLEEPERS, _GROUND = "sleepers lie between", "the ground lies between"
 
 
-def _layer(layer: str, words: str, stiffness: str, damping: str, loss: float, lie: str) -> list[Any]:
-    """Declare stiffness, viscous damping and loss factor of a layer that a track may have."""
-    own: dict[str, Any] = {"default": None, "goes_with": f"{layer}_stiffness"}
+def _lossy(layer: str, words: str, damping: str, loss: float, lie: str, goes_with: str = "") -> list[Any]:
+    """Declare viscous damping and loss factor of a layer."""
+    own: dict[str, Any] = {"default": None, "goes_with": goes_with}
     factor = f"loss factor of {words}, instead of {layer}_damping; approximated in time"
     return [
-        parameter(_STIFFNESS, stiffness, f"stiffness of {words}", f"1 kN/m to 1 TN/m: {lie}", default=None),
         parameter(_DAMPING, damping, f"viscous damping of {words}", f"1e-3 N s/m to 1e9 N s/m: {lie}", **own),
         parameter(_LOSS, loss, factor, **own),
     ]
 
 
-_UNDER_SLEEPER_PAD = _layer(
-    "under_sleeper_pad", "a pad under half a sleeper", "200 MN/m", "20 kN s/m", 0.2, _PADS
-)
-_SUBGRADE = _layer(
-    "subgrade", "the ground below the ballast of half a sleeper", "100 MN/m", "60 kN s/m", 0.3, _GROUND
-)
+def _layer(layer: str, words: str, stiffness: str, damping: str, loss: float, lie: str) -> list[Any]:
+    """Declare a layer that a track may have: stiffness, viscous damping and loss factor."""
+    within = f"1 kN/m to 1 TN/m: {lie}"
+    of_stiffness = parameter(_STIFFNESS, stiffness, f"stiffness of {words}", within, default=None)
+    return [of_stiffness, *_lossy(layer, words, damping, loss, lie, f"{layer}_stiffness")]
+
+
+_PAD = _lossy("pad", "a pad", "18 kN s/m", 0.15, _PADS)
+_BED = _lossy("ballast", "the ballast", "48 kN s/m", 0.4, _BALLAST)
+_UNDER_SLEEPER = "under_sleeper_pad", "a pad under half a sleeper", "200 MN/m", "20 kN s/m", 0.2, _PADS
+_UNDER_SLEEPER_PAD = _layer(*_UNDER_SLEEPER)
+_BELOW = "subgrade", "the ground below the ballast of half a sleeper", "100 MN/m", "60 kN s/m", 0.3, _GROUND
+_SUBGRADE = _layer(*_BELOW)
 _BENT: dict[str, Any] = {"goes_with": "sleeper_bending_stiffness"}
 _DAMPER: dict[str, Any] = {"default": None, "goes_with": "rail_damper_mass"}
 
@@ -59,10 +66,7 @@ class TrackParameters:
     """Parameters of an `asperity.structures.track.Track`, which says what they are."""
 
     bending_stiffness: float = parameter(
-        Quantity("N m^2", above=0),
-        "4.7 MN m^2",
-        "bending stiffness of the rail",
-        f"1 kN m^2 to 1 GN m^2: {_RAILS}",
+        _BENDING, "4.7 MN m^2", "bending stiffness of the rail", f"1 kN m^2 to 1 GN m^2: {_RAILS}"
     )
     mass_per_length: float = parameter(
         Quantity("kg/m", above=0), "60 kg/m", "mass of the rail per length", f"1 kg/m to 1000 kg/m: {_RAILS}"
@@ -71,7 +75,7 @@ class TrackParameters:
         _STIFFNESS, "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
     )
     sleeper_mass: float = parameter(
-        Quantity("kg", above=0),
+        _MASS,
         "150 kg",
         "mass of a sleeper under one rail: half a sleeper",
         "1 kg to 100 t: sleepers lie between",
@@ -83,31 +87,13 @@ class TrackParameters:
         f"1 kN/m to 1 TN/m: {_BALLAST}",
     )
     sleeper_spacing: float = parameter(
-        Quantity("m", above=0),
-        "0.6 m",
-        "distance of the sleepers",
-        "0.1 m to 10 m: sleepers are as far apart",
+        _METRE, "0.6 m", "distance of the sleepers", "0.1 m to 10 m: sleepers are as far apart"
     )
     rail_loss_factor: float = parameter(_LOSS, 0.01, "loss factor of the rail", default=0.0)
-    pad_damping: float | None = parameter(
-        _DAMPING, "18 kN s/m", "viscous damping of a pad", f"1e-3 N s/m to 1e9 N s/m: {_PADS}", default=None
-    )
-    pad_loss_factor: float | None = parameter(
-        _LOSS, 0.15, "loss factor of a pad, instead of pad_damping; approximated in time", default=None
-    )
-    ballast_damping: float | None = parameter(
-        _DAMPING,
-        "48 kN s/m",
-        "viscous damping of the ballast",
-        f"1e-3 N s/m to 1e9 N s/m: {_BALLAST}",
-        default=None,
-    )
-    ballast_loss_factor: float | None = parameter(
-        _LOSS,
-        0.4,
-        "loss factor of the ballast, instead of ballast_damping; approximated in time",
-        default=None,
-    )
+    pad_damping: float | None = _PAD[0]
+    pad_loss_factor: float | None = _PAD[1]
+    ballast_damping: float | None = _BED[0]
+    ballast_loss_factor: float | None = _BED[1]
     shear_stiffness: float | None = parameter(
         Quantity("N", above=0),
         "243 MN",
@@ -123,22 +109,17 @@ class TrackParameters:
         default=None,
     )
     sleeper_bending_stiffness: float | None = parameter(
-        Quantity("N m^2", above=0),
+        _BENDING,
         "6 MN m^2",
         "bending stiffness of a sleeper; without it, half sleepers are rigid",
         f"1 N m^2 to 1 GN m^2: {_SLEEPERS}",
         default=None,
     )
     sleeper_length: float = parameter(
-        _LENGTH,
-        "2.6 m",
-        "length of a sleeper that bends",
-        f"0.5 m to 10 m: {_SLEEPERS}",
-        default=2.6,
-        **_BENT,
+        _METRE, "2.6 m", "length of a sleeper that bends", f"0.5 m to 10 m: {_SLEEPERS}", default=2.6, **_BENT
     )
     seat_distance: float = parameter(
-        _LENGTH,
+        _METRE,
         "1.5 m",
         "distance of the two rails, middle to middle",
         f"0.2 m to 5 m: {_RAILS}",
@@ -149,7 +130,7 @@ class TrackParameters:
     under_sleeper_pad_damping: float | None = _UNDER_SLEEPER_PAD[1]
     under_sleeper_pad_loss_factor: float | None = _UNDER_SLEEPER_PAD[2]
     ballast_mass: float | None = parameter(
-        Quantity("kg", above=0),
+        _MASS,
         "300 kg",
         "mass of the ballast that moves with half a sleeper, between ballast and subgrade",
         f"1 kg to 100 t: {_BALLAST}",
@@ -167,7 +148,7 @@ class TrackParameters:
         default=False,
     )
     rail_damper_mass: float | None = parameter(
-        Quantity("kg", above=0),
+        _MASS,
         "15 kg",
         "mass of a tuned damper on the rail in the middle of every bay",
         "1 g to 1 t: rail dampers lie between",

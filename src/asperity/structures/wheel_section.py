@@ -11,7 +11,7 @@ from asperity.reference.wheels import SECTIONS
 BACK = 0.070
 """Distance of the running circle from the back of the flange, m."""
 _LENGTH, _WITHIN = Quantity("m", above=0), "1 mm to 1 m: wheels lie between"
-_OFFSET, _ASIDE = Quantity("m"), "-0.5 m to 0.5 m: wheels are narrower"
+_OFFSET, _SIDE = Quantity("m"), "-0.5 m to 0.5 m: wheels are narrower"
 _POINTS = 41
 """Points along each side of the web."""
 
@@ -55,15 +55,12 @@ class WheelSection:
     hub_radius: float = parameter(_LENGTH, "135 mm", "radius of the hub", _WITHIN)
     hub_width: float = parameter(_LENGTH, "175 mm", "width of the hub along the axle", _WITHIN)
     hub_offset: float = parameter(
-        _OFFSET, "45 mm", "by how much the hub's middle stands outside that of the rim", _ASIDE
+        _OFFSET, "45 mm", "by how much the hub's middle stands outside that of the rim", _SIDE
     )
     web_thickness: float = parameter(_LENGTH, "28 mm", "thickness of the web at the hub", _WITHIN)
     web_thickness_rim: float = parameter(_LENGTH, "22 mm", "thickness of the web at the rim", _WITHIN)
     web_bend: float = parameter(
-        _OFFSET,
-        "20 mm",
-        "by how much the web bends outwards in its middle, beside its way to the rim",
-        _ASIDE,
+        _OFFSET, "20 mm", "by how much the web bends outwards in its middle, beside its way to the rim", _SIDE
     )
     fillet_radius: float = parameter(
         Quantity("m", at_least=0), "25 mm", "radius of the fillets between web, hub and rim", _WITHIN
