@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import asperity
 from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail, laws
-from asperity.case.cases import case_of, parse_case
+from asperity.case.cases import parse_case
 from asperity.case.describing import entries
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Choice, Flag, MaterialOrName, Number, Quantity, key
@@ -298,7 +298,3 @@ class TestStudies:
         assert first.key != second.key
         with pytest.raises(CaseError, match="more than once"):
             study_of(ROUGH, {"surface.file": [MAP, HeightMap(MAP.heights, 8e-6)]})
-
-
-def test_a_mapping_from_python_takes_numbers_too():
-    assert case_of({"kind": "ball-on-beam", "speed": 2, "surface": {"rms": 1e-6}}).speed == 2.0

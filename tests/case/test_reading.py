@@ -54,19 +54,6 @@ def test_a_minimal_case_has_the_documented_defaults(kind, dotted):
     assert found == (pytest.approx(expected) if numbers else expected)
 
 
-def test_the_case_of_the_interface():
-    case = parse_case(
-        case_text(
-            "wheel-on-rail",
-            """speed = "56 m/s" | seed = 1 | [surface] spectrum = "iso3095" | level = "+0 dB"
-            [wheel] radius = "0.46 m" | mass = "600 kg" | load = "65 kN" | transverse_radius = "inf"
-            [track] name = "nordborg" | rail_head_radius = "0.3 m\"""",
-        )
-    )
-    assert (case.surface.spectrum, case.track.name) == ("iso3095", "nordborg")
-    assert case.track.model().bending_stiffness == pytest.approx(4.725e6)
-
-
 GIVEN = {
     "ball-on-beam": (
         """speed = "2 m/s" | laws = ["direct", "table"] | seed = 7 | duration = "0.2 s" | start = "0.1 m"

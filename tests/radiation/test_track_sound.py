@@ -123,15 +123,6 @@ def uneven(x, track):
     return (1.5 + 0.5 * np.sin(2.0 * np.pi * x / track.period)) ** 2
 
 
-@pytest.mark.parametrize(
-    "mobility", ["squared_mobility", "squared_sleeper_mobility", "squared_point_mobility"]
-)
-@pytest.mark.parametrize("track", [UIC60, DAMPED], ids=["uic60", "rail dampers"])
-def test_a_cell_of_equal_bays_sounds_as_one(track, mobility):
-    cell, of = replace(track, bays=Bays.equal(3)), getattr(sound, mobility)
-    assert_allclose(of(cell, FREQUENCIES), of(track, FREQUENCIES), rtol=1e-4)
-
-
 def test_bays_that_differ_sound_as_equal_ones_in_the_mean():
     """T. X. Wu and D. J. Thompson, Acustica 86 (2000) 313-321: no significant effect on the mean noise."""
     band = 10.0 ** np.arange(2.2, 3.65, 0.2)

@@ -15,15 +15,9 @@ from asperity.structures.outline import FINENESS, mean_thickness
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 from asperity.structures.wheel_modes import wheel_modes
+from small_cases import HEARD
 
-CASE = {
-    "laws": ["linear"],
-    "duration": "0.2 s",
-    "settling": "20 ms",
-    "surface": {"spectrum": "iso3095"},
-    "contact": {"spacing": "1 mm"},
-    "numerics": {"highest_frequency": "1.6 kHz", "kernel": "scatter"},
-}
+CASE = HEARD | {"settling": "20 ms", "numerics": {"highest_frequency": "1.6 kHz", "kernel": "scatter"}}
 
 
 def case_of(**wheel):
@@ -43,11 +37,6 @@ def test_the_table_of_a_drawn_wheel_gives_the_same_run(drawn, runs, tmp_path):
         np.testing.assert_allclose(
             again[group][name].values, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max()
         )
-
-
-def test_the_wheel_is_heard(drawn):
-    assert drawn["spectra"]["radiated_power_level"].attrs["wheel"] == "computed"
-    assert np.isfinite(drawn["spectra"]["radiated_power_level_a"].values).all()
 
 
 def test_the_wheel_is_told_mode_by_mode(drawn):
@@ -100,9 +89,8 @@ def test_turning_splits_the_resonances_of_the_run():
     at = np.argmin(np.abs(standing.natural_frequencies - 960.0))
     n, shift = standing.nodal_diameters[at], case.speed / 0.46 / (2.0 * np.pi)
     answer = np.abs(wheel.receptance(frequency))
-    peaks = frequency[1:-1][
-        (answer[1:-1] > answer[:-2]) & (answer[1:-1] > answer[2:]) & (answer[1:-1] > 10 * np.median(answer))
-    ]
+    high = answer[1:-1]
+    peaks = frequency[1:-1][(high > answer[:-2]) & (high > answer[2:]) & (high > 10 * np.median(answer))]
     expected = standing.natural_frequencies[at] + n * shift * np.array([-1.0, 1.0])
     assert n == 3
     assert peaks == pytest.approx(expected, abs=0.1)
@@ -143,13 +131,8 @@ def test_the_sound_has_converged(section):
 
 def test_dampers_make_a_wheel_quieter():
     """Wheel damping: D. J. Thompson, Railway Noise and Vibration (2009)."""
-    levels = [
-        sound(
-            WheelOnRail(
-                wheel={"section": "curved-web", "added_damping": ratio}, **SMOOTH
-            ).rolling.standing_modes(2.5e3)
-        )
-        for ratio in (0.0, 1e-3, 1e-2)
-    ]
-    assert levels[0] > levels[1] + 1.0
-    assert levels[1] > levels[2] + 4.0
+    wheels = ({"section": "curved-web", "added_damping": ratio} for ratio in (0.0, 1e-3, 1e-2))
+    rolling = [WheelOnRail(wheel=wheel, **SMOOTH).rolling for wheel in wheels]
+    bare, some, more = (sound(each.standing_modes(2.5e3)) for each in rolling)
+    assert bare > some + 1.0
+    assert some > more + 4.0

@@ -38,6 +38,7 @@ def test_in_the_middle_of_a_plane_wheel_nothing_moves_sideways():
     assert np.all(np.abs(lateral_force(middle)) == 0.0)
     assert np.all(vertical_change(middle) == 1.0)
     assert np.all(np.abs(lateral_force(answer(plane_wheel(), 0.01))) > 1e-3)
+    assert np.all(np.abs(lateral_force(answer(plane_wheel(axial=np.full((4, 13), 0.03)), 0.0))) > 1e-4)
 
 
 def test_a_symmetric_drawing_moves_sideways_by_its_mesh_alone():
@@ -46,11 +47,6 @@ def test_a_symmetric_drawing_moves_sideways_by_its_mesh_alone():
     modes = wheel_modes(np.concatenate([half, (half * [1, -1])[::-1]]), MATERIALS["steel"], 1000.0)
     middle, off = (np.abs(lateral_force(answer(modes, place))) for place in (0.0, 0.01))
     assert np.all(middle < 1e-3 * off)
-
-
-def test_a_bent_web_makes_a_lateral_force_in_the_middle():
-    bent = plane_wheel(axial=np.full((4, 13), 0.03))
-    assert np.all(np.abs(lateral_force(answer(bent, 0.0))) > 1e-4)
 
 
 def test_receptances_of_a_wheel_are_reciprocal():
@@ -84,14 +80,6 @@ def test_the_lateral_force_satisfies_compatibility():
     on_wheel = np.einsum("abf,bf->af", wheel, -forces)
     assert_allclose(on_wheel[1] - on_rail[1], forces[1] / k_t, rtol=1e-9)  # the wheel drags the rail
     assert_allclose(on_rail[0] - on_wheel[0], 1.0 - forces[0] / k_n, rtol=1e-9)
-
-
-def test_a_rigid_and_a_soft_contact_sideways():
-    """A contact that is rigid sideways joins both bodies; one that is soft passes no lateral force."""
-    free = answer(plane_wheel(), 0.01, tangential=1e30)
-    assert_allclose(lateral_force(free), -free[1, 0] / (free[1, 1]), rtol=1e-12)
-    smooth = answer(plane_wheel(), 0.01, tangential=1e-3)
-    assert np.all(np.abs(lateral_force(smooth)) < 1e-9)
 
 
 def test_a_place_off_the_tread_is_refused():

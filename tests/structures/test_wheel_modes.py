@@ -27,13 +27,17 @@ def one_mode(n=3, frequency=2000.0, ratio=1e-3):
     return WheelModes.from_table(row)
 
 
+def triangles(mesh):
+    """Their corners, and their areas."""
+    corner = mesh.nodes[mesh.triangles[:, :3]]
+    return corner, 0.5 * np.linalg.det(corner[:, 1:] - corner[:, :1])
+
+
 @pytest.mark.parametrize("name", SECTIONS)
 def test_named_sections_are_meshed_whole(name):
     outline = checked_outline(WheelSection.named(name).outline(RADIUS))
     mesh = mesh_of(outline)
-    corner = mesh.nodes[mesh.triangles[:, :3]]
-    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    area = 0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    corner, area = triangles(mesh)
     assert (area > 0.0).all()
     volume = 2.0 * np.pi * np.sum(area * corner[:, :, 0].mean(axis=1))
     assert volume == pytest.approx(volume_of(outline), rel=2e-3)  # fillets are straightened
@@ -77,11 +81,8 @@ def test_edges_that_triangles_do_not_meet_are_halved():
     length = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T)
     mesh = mesh_of(outline, step)
     assert len(mesh.edges) > np.ceil(length / step).sum()
-    corner = mesh.nodes[mesh.triangles[:, :3]]
-    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    area = 0.5 * np.sum(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
     (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
-    assert area == pytest.approx(0.5 * np.sum(r * z2 - r2 * z), rel=2e-3)
+    assert triangles(mesh)[1].sum() == pytest.approx(0.5 * np.sum(r * z2 - r2 * z), rel=2e-3)
 
 
 test_outlines_that_are_none_are_refused = refusals(
