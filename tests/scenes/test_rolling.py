@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import cumulative_trapezoid, solve_ivp
+from scipy.integrate import solve_ivp
 
 from asperity.errors import ComputationError, ExtrapolationWarning, InputError
 from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table
@@ -64,16 +64,6 @@ def moving_force(alpha, time_step):
     run = rolled(Linear(BALL.static_load, stiffness=1e-3), beam, time_step=time_step, **path)
     assert_allclose(run.contact_force, BALL.static_load, rtol=1e-6)
     return beam, alpha * critical, run
-
-
-@pytest.mark.parametrize(("alpha", "printed"), [(0.1, 1.0965), (0.5, 1.7054), (0.75, 1.7016)])
-def test_moving_force_reaches_fryba_s_amplification(alpha, printed):
-    beam, _, run = moving_force(alpha, 2e-5)
-    # the deflection of mid-span, twice integrated from the accelerometer there, from rest
-    velocity = cumulative_trapezoid(run.acceleration[0], run.time, initial=0.0)
-    deflection = cumulative_trapezoid(velocity, run.time, initial=0.0)
-    static = BALL.static_load * beam.length**3 / (48 * beam.bending_stiffness)
-    assert_allclose(deflection.max() / static, printed, rtol=1e-3)
 
 
 def test_deflection_under_a_moving_force_is_fryba_s_series():

@@ -1,10 +1,13 @@
-"""Solids of revolution by finite elements, against modes of rings, plates and thick cylinders."""
+"""Solids of revolution by finite elements, against modes of rings and thick cylinders.
+
+Plates stand in the ledger of conformance.
+"""
 
 import math
 
 import numpy as np
 import pytest
-from scipy.special import iv, ivp, jv, jvp, kv, kvp, yv, yvp
+from scipy.special import jv, jvp, yv, yvp
 
 from asperity.reference.materials import MATERIALS
 from asperity.structures.outline import checked_outline, mesh_of, volume_of
@@ -43,31 +46,6 @@ def test_a_thin_ring_breathes_and_bends_in_its_plane(n):
     middle = np.argmin(np.hypot(mesh.nodes[:, 0] - RING, mesh.nodes[:, 1] - 0.5 * SIDE))
     mass = RHO * SIDE**2 * 2.0 * math.pi * RING * (0.5 * (1.0 + 1.0 / n**2) if n else 1.0)
     assert shapes[at, middle, 0] ** -2.0 == pytest.approx(mass, rel=2e-3)
-
-
-def plate_determinant(n, inner, outer, k):
-    """Kirchhoff's plate, clamped inside and free outside: zero at its natural wavenumbers k, 1/m."""
-    rows = []
-    for f, fp, sign in ((jv, jvp, -1), (yv, yvp, -1), (iv, ivp, 1), (kv, kvp, 1)):
-        a, x = outer * k, inner * k
-        w, slope, second = f(n, a), k * fp(n, a), k**2 * fp(n, a, 2)
-        moment = second + NU * (slope / outer - (n / outer) ** 2 * w)
-        laplacian = sign * k**3 * fp(n, a)  # of each function ±k² w, and its slope
-        shear = laplacian + (1 - NU) * n**2 / outer**2 * (w / outer - slope)
-        rows.append([f(n, x), k * fp(n, x), moment, shear])
-    matrix = np.array(rows)
-    return np.linalg.det(matrix / np.abs(matrix).max(axis=1, keepdims=True))
-
-
-@pytest.mark.parametrize("n", [0, 1, 2, 4])
-def test_a_thin_disc_clamped_inside(n):
-    inner, outer, thick = 0.2, 0.5, 0.004
-    mesh = rectangle(inner, outer, thick, size=thick)
-    (lowest, *_), _ = natural_modes(mesh, n, STEEL, 400.0, held(mesh, mesh.nodes[:, 0] < inner + 1e-9))
-    per_area = E * thick**2 / (12.0 * (1.0 - NU**2) * RHO)
-    k = math.sqrt(2.0 * math.pi * lowest / math.sqrt(per_area))
-    within = [plate_determinant(n, inner, outer, k * (1.0 + part)) for part in (-7e-4, 7e-4)]
-    assert np.sign(within[0]) != np.sign(within[1])  # the exact frequency is within 0.15 %
 
 
 CYLINDER = (0.08, 0.16, 0.12)
