@@ -117,6 +117,23 @@ def test_said_whether_it_is_met_and_what_decides():
     assert answers.more == limit_sentence(xarray.DataTree.from_dict({"/pass_by": by}))
 
 
+def test_fast_trains_are_held_to_the_limit_at_the_additional_place_too():
+    """Regulation (EU) No 1304/2014, point 4.2.3: from 250 km/h on also 3.5 m high, against the same limit."""
+    ground = {"ground": "grass", "directivity": "cnossos"}
+    fast, there = (passed(300.0, receiver_height=height, **ground) for height in (1.2, 3.5))
+    change = -50.0 * np.log10(300.0 / 250.0)
+    expected = there["pass_by_equivalent_level"] + change
+    assert_allclose(fast["normalised_level_above"], expected, atol=1e-9)
+    assert abs(float((expected - fast["normalised_level"]).sel(radiator="total").item())) > 0.5
+    for without in (there, passed(249.0), passed(300.0, vehicle="coach")):
+        assert "normalised_level_above" not in without
+    level = float(fast["normalised_level_above"].sel(radiator="total").item())
+    sentence, table = told(300.0, power=100.0 + 97.0 - level, **ground)
+    assert "At 3.5 m height it has 97.0 dB(A), 2.0 dB over the 95 dB(A) allowed." in sentence
+    assert table.rows[1][0].text == "L_pAeq,Tp at 250 km/h, 3.5 m high"
+    assert [row[3].text for row in table.rows[1:3]] == ["no", "yes"]
+
+
 def test_conditions_that_are_not_met_are_named():
     over = np.full(22, -1.0)
     over[[3, 9]] = 0.7, 2.1  # 200 mm and 50 mm

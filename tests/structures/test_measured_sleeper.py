@@ -6,6 +6,7 @@ import pytest
 from asperity import Track
 from asperity.errors import InputError
 from asperity.structures.causal_track import causal_track
+from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.measured_sleeper import measured_sleeper
 from asperity.structures.support import RigidMass
 from asperity.structures.track_power import dissipated_power
@@ -41,29 +42,26 @@ def bed_of(track):
 
 
 @pytest.mark.parametrize("name", ["nordborg", "nordborg-loss-factor"])
-@pytest.mark.parametrize("bedded", [False, True])
-def test_a_table_of_a_beam_is_the_track_on_such_beams(name, bedded):
-    """The ballast may lose as much as it does: modes are sought where the free sleeper answers alike."""
-    bed = bed_of(Track.named(name)) if bedded else NOTHING
-    sleeper = measured_sleeper(FREQUENCY, beam(bed), MASS, bed)
-    assert sleeper.fit_error < 0.005
+@pytest.mark.parametrize(("bedded", "noise"), [(False, 0.0), (True, 0.0), (True, 0.02)])
+def test_a_table_of_a_beam_is_the_track_on_such_beams(name, bedded, noise):
+    """The ballast may lose as much as it does: modes are sought where the free sleeper answers alike.
+
+    Two per cent of noise on the table are less on the track.
+    """
+    draws, bed = np.random.default_rng(3), bed_of(Track.named(name)) if bedded else None
+    around = 1.0 + noise * (draws.standard_normal(250) + 1j * draws.standard_normal(250))
+    sleeper = measured_sleeper(FREQUENCY, around * beam(bed if bedded else 0.0), MASS, bed)
+    assert sleeper.fit_error < (0.2 if noise else 0.005)
     found = Track.named(name, measured_sleeper=sleeper, ballast_mass=300.0, subgrade_stiffness=9e7)
     bends = {"sleeper_bending_stiffness": BENDING, "sleeper_length": LENGTH, "seat_distance": SEATS}
     exact = Track.named(name, **bends, ballast_mass=300.0, subgrade_stiffness=9e7)
+    near = noise or 1e-4
     for x in (0.0, 0.3):
         expected = exact.receptance(LOOKED, x, x)
-        np.testing.assert_allclose(found.receptance(LOOKED, x, x), expected, rtol=1e-4)
-    assert found.support.static == pytest.approx(exact.support.static, rel=1e-4)
+        np.testing.assert_allclose(found.receptance(LOOKED, x, x), expected, rtol=near)
+    assert found.support.static == pytest.approx(exact.support.static, rel=near)
     squares = (each.support.sleeper_square(2.0 * np.pi * LOOKED) for each in (found, exact))
-    np.testing.assert_allclose(*squares, rtol=1e-3)
-
-
-def test_natural_frequencies_are_those_of_a_free_beam():
-    """Symmetric roots of cos kl cosh kl = 1: 4.7300, 10.9956, 17.2788."""
-    sleeper = measured_sleeper(FREQUENCY, beam(0.0), MASS, NOTHING)
-    roots = np.array([4.730040744862704, 10.995607838001671, 17.278759657399481])
-    free = (roots / LENGTH) ** 2 * np.sqrt(BENDING * LENGTH / (2.0 * MASS)) / (2.0 * np.pi)
-    np.testing.assert_allclose(sleeper.natural_frequencies[:4], [0.0, *free], rtol=1e-5)
+    np.testing.assert_allclose(*squares, rtol=10.0 * near)
 
 
 @pytest.mark.parametrize("bed", [0.0, 120e6 * (1.0 + 1.0j)])
@@ -76,11 +74,13 @@ def test_a_table_of_a_mass_is_a_mass(bed):
     found, exact = (Track.named("uic60", **each) for each in ({"measured_sleeper": sleeper}, {}))
     at = LOOKED, 0.0, 0.0
     np.testing.assert_allclose(found.receptance(*at), exact.receptance(*at), rtol=1e-9)
+    sideways = (LateralTrack(each).support(omega) for each in (found, exact))
+    np.testing.assert_allclose(*sideways, rtol=1e-12)
 
 
 def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power():
     """Its receptance is analytic in the lower half-plane: the mean on a circle is the value in the middle."""
-    sleeper = measured_sleeper(FREQUENCY, beam(0.0, BENDING * (1.0 + 0.03j)), MASS, NOTHING)
+    sleeper = measured_sleeper(FREQUENCY, beam(0.0, BENDING * (1.0 + 0.03j)), MASS)
     ring = 4000.0 - 300.0j + 200.0 * np.exp(2j * np.pi * np.arange(64) / 64) * np.array([[1.0], [0.0]])
     around, middle = np.mean(1.0 / sleeper.on(ring, 150e6 + 5e4j * ring), axis=1)
     assert around == pytest.approx(middle, rel=1e-12, abs=0.0)
@@ -95,14 +95,6 @@ def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power(
     assert parts["sleeper"].max() > 0.01 * fed.max()
 
 
-def test_two_per_cent_of_noise_change_the_track_by_less():
-    rng, bed = np.random.default_rng(3), bed_of(Track.named("uic60"))
-    noise = 1.0 + 0.02 * (rng.standard_normal(len(bed)) + 1j * rng.standard_normal(len(bed)))
-    found = Track.named("uic60", measured_sleeper=measured_sleeper(FREQUENCY, beam(bed) * noise, MASS, bed))
-    expected = Track.named("uic60", sleeper_bending_stiffness=BENDING).receptance(LOOKED, 0.0, 0.0)
-    np.testing.assert_allclose(found.receptance(LOOKED, 0.0, 0.0), expected, rtol=0.02)
-
-
 def test_receptances_that_cannot_be_are_refused():
     low = FREQUENCY < 300.0
     for receptance, message in (
@@ -111,7 +103,7 @@ def test_receptances_that_cannot_be_are_refused():
         (np.full(len(low), 1e30), r"1e-20 to 1e\+20 m/N"),
     ):
         with pytest.raises(InputError, match=message):
-            measured_sleeper(FREQUENCY, receptance + 0j, MASS, NOTHING)
-    sleeper = measured_sleeper(FREQUENCY, beam(0.0), MASS, NOTHING)
+            measured_sleeper(FREQUENCY, receptance + 0j, MASS)
+    sleeper = measured_sleeper(FREQUENCY, beam(0.0), MASS)
     with pytest.raises(InputError, match="remove sleeper_bending_stiffness"):
         Track.named("uic60", measured_sleeper=sleeper, sleeper_bending_stiffness=BENDING)

@@ -7,11 +7,9 @@ from numpy.typing import NDArray
 
 from asperity.arguments import Array
 from asperity.case.content import name_of
-from asperity.case.tables import Column, TableSource, read_seat_receptance, read_table, refuse_disorder
+from asperity.case.tables import Column, TableSource, read_table, refuse_disorder
 from asperity.errors import InputError
 from asperity.spectra import a_weighting
-from asperity.structures.measured_sleeper import MeasuredSleeper, measured_sleeper
-from asperity.structures.track import Track
 
 FEWEST = 3
 """Rows of a table over frequency."""
@@ -88,14 +86,6 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
         remedy = "Are unit (mobility, accelerance or receptance) and sign of the phase, e^{+iωt}, right?"
         raise InputError(name_of(table), received, allowed, remedy)
     return frequency, mobility
-
-
-def fitted_sleeper(table: TableSource, track: Track, bedded: bool) -> MeasuredSleeper:
-    """Modes of a sleeper, of its mass in a track, by its receptance when free, or on what it has below it."""
-    frequency, receptance = read_seat_receptance(table)
-    below = track.support.below(2.0 * np.pi * frequency)[1] if bedded else None
-    bed = np.zeros(len(frequency), complex) if below is None else below
-    return measured_sleeper(frequency, receptance, track.sleeper_mass, bed)
 
 
 def read_passage(table: TableSource) -> tuple[Array, Array]:

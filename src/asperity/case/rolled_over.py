@@ -14,7 +14,7 @@ from asperity.arguments import Array
 from asperity.case.body import INERTIA, MASS, PROFILE
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
-from asperity.case.measured import fitted_sleeper, read_decay_rates, read_mobility
+from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
 from asperity.case.tables import (
     RECEPTANCES,
@@ -40,6 +40,7 @@ from asperity.parameters import (
 from asperity.reference.materials import Material
 from asperity.reference.tracks import TRACKS
 from asperity.structures.bays import MOST_BAYS, Bays
+from asperity.structures.measured_sleeper import MeasuredSleeper, measured_sleeper
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import LAYERS
@@ -47,14 +48,12 @@ from asperity.surfaces.heightmap import Profile
 from asperity.units import written
 
 if TYPE_CHECKING:
-    from asperity.structures.measured_sleeper import MeasuredSleeper
     from asperity.structures.modal import Modal, ModalStructure
 
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
 LISTED = ("sleeper_spacing", "pad_stiffness", "ballast_stiffness")
 """What a table of bays holds."""
-_SCATTER = "standard deviation over the mean of the normal distribution from which"
 PRELOAD_STEPS = 20
 """Steps in which the preload of pads is found, whose stiffness depends on it."""
 FREQUENCY = Quantity("Hz", above=0)
@@ -103,6 +102,11 @@ class RolledOver(Section):
     def problems_of_run(self, speed: float, first: float, last: float) -> Iterator[InputError]:
         """What does not fit to a speed, m/s, and to places passed in the record, from and to, m."""
         yield from ()
+
+
+def _scatter(of: str, most: float) -> Any:
+    words = f"standard deviation over the mean of the normal distribution from which {of} are drawn"
+    return key(Number(at_least=0, at_most=most), 0.0, words, goes_with="bays")
 
 
 class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named set")):
@@ -160,15 +164,9 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "number of bays that differ, after which the track repeats",
         "all bays are alike",
     )
-    spacing_scatter: float = key(
-        Number(at_least=0, at_most=0.3), 0.0, f"{_SCATTER} distances of sleepers are drawn", goes_with="bays"
-    )
-    pad_scatter: float = key(
-        Number(at_least=0, at_most=1), 0.0, f"{_SCATTER} stiffnesses of pads are drawn", goes_with="bays"
-    )
-    ballast_scatter: float = key(
-        Number(at_least=0, at_most=1), 0.0, f"{_SCATTER} stiffnesses of ballast are drawn", goes_with="bays"
-    )
+    spacing_scatter: float = _scatter("distances of sleepers", 0.3)
+    pad_scatter: float = _scatter("stiffnesses of pads", 1)
+    ballast_scatter: float = _scatter("stiffnesses of ballast", 1)
     scatter_seed: int = key(INDEX, 1, "seed of these draws", goes_with="bays")
     bay_table: Path | Array | None = optional(
         TableFile(columns=(3,), read=read_bays),
@@ -237,8 +235,10 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     @cached_property
     def _sleeper(self) -> MeasuredSleeper:
         assert self.sleeper_table is not None
-        track = Track.named(self.name, **self._told)
-        return fitted_sleeper(self.sleeper_table, track, self.sleeper_measured == BEDDED)
+        frequency, receptance = read_seat_receptance(self.sleeper_table)
+        track, bedded = Track.named(self.name, **self._told), self.sleeper_measured == BEDDED
+        bed = track.support.below(2.0 * math.pi * frequency)[1] if bedded else None
+        return measured_sleeper(frequency, receptance, track.sleeper_mass, bed)
 
     @cached_property
     def _listed(self) -> Array:

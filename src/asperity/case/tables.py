@@ -133,7 +133,7 @@ def check_band_levels(levels: Array, name: str) -> None:
 
 @contextmanager
 def fitted_to(table: TableSource) -> Iterator[None]:
-    """Name the table where modes cannot be fitted to its receptance."""
+    """Name the table whose receptance cannot be, or cannot be met by modes."""
     try:
         yield
     except InputError as error:
@@ -196,10 +196,8 @@ def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
 def read_seat_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
     """Read the receptance of a sleeper at its rail seat, as `read_receptance`, that makes no energy."""
     frequency, receptance = read_receptance(table)
-    try:
+    with fitted_to(table):
         check_receptance(frequency, receptance)
-    except InputError as error:
-        raise error.about(name_of(table), f"{error.received} ({error.what})") from None
     return frequency, receptance
 
 

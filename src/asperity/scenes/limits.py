@@ -1,5 +1,6 @@
 """A pass-by beside the limits of TSI Noise, and the case beside the conditions of ISO 3095."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,10 @@ from asperity.surfaces.bands import likely_band
 Condition = dict[str, Any]
 
 
-def held_to_limits(case: Any, over_frequency: xarray.Dataset, equivalent: Array) -> Values:
+def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Receiver], Array]) -> Values:
     """Lay out L_pAeq,Tp (law, radiator), dB(A), normalised as TSI Noise asks, its limit and conditions.
+
+    Of a function that finds it at a receiver: at that of the case and, from 250 km/h on, the additional one.
 
     Nothing of a case that does not say what type of vehicle passes.
     """
@@ -28,7 +31,7 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, equivalent: Array)
     elsewhere = _of_receiver(receiver)
     laid_out: Values = {
         schema.VEHICLE: vehicle,
-        schema.NORMALISED_LEVEL: equivalent + limit.normalisation,
+        schema.NORMALISED_LEVEL: at(receiver) + limit.normalisation,
         schema.REFERENCE_SPEED: limit.speed,
         schema.REFERENCE_CONDITIONS: [
             elsewhere,
@@ -39,6 +42,8 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, equivalent: Array)
     }
     if limit.level is not None and elsewhere["met"]:
         laid_out[schema.TSI_LIMIT] = limit.level
+        if limit.above:
+            laid_out[schema.NORMALISED_LEVEL_ABOVE] = at(Receiver(*tsi_noise.ABOVE)) + limit.normalisation
     return laid_out
 
 

@@ -1,6 +1,7 @@
 """Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -383,17 +384,24 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
     All axles radiate alike: where several were rolled, as their mean.
     """
     keys, passage, band = case.noise, case.passage, over_frequency[spectra.BAND.name].values
-    receiver, path, sources = keys.receiver, keys.sound_path(band), _sources(case, over_frequency)
+    sources, weights = _sources(case, over_frequency), 10.0 ** (a_weighting(band) / 10.0)
     length = max(float(np.max(source.length)) for source in sources)
-    time, weights = passage.times(receiver, length), 10.0 ** (a_weighting(band) / 10.0)
-    squared, exposed = (
-        np.stack([*parts, np.sum(parts, axis=0)], axis=1)  # (laws, sources and their sum, …)
-        for parts in (
-            [weights @ pass_by.squared_pressure(each, passage, receiver, time, path) for each in sources],
-            [pass_by.exposure(each, passage, receiver, path) for each in sources],
+
+    @cache
+    def heard(at: pass_by.Receiver) -> tuple[Array, Array, Array, list[pass_by.PassByLevels]]:
+        """Times, squared pressure and exposure (laws, sources and their sum, …), and levels of each law."""
+        path, time = keys.sound_path(band, at), passage.times(at, length)
+        squared, exposed = (
+            np.stack([*parts, np.sum(parts, axis=0)], axis=1)
+            for parts in (
+                [weights @ pass_by.squared_pressure(each, passage, at, time, path) for each in sources],
+                [pass_by.exposure(each, passage, at, path) for each in sources],
+            )
         )
-    )
-    levels = [pass_by.pass_by_levels(time, of_law, passage.passed) for of_law in squared]
+        return time, squared, exposed, [pass_by.pass_by_levels(time, law, passage.passed) for law in squared]
+
+    receiver = keys.receiver
+    time, squared, exposed, levels = heard(receiver)
     step = float(time[1] - time[0])
     kept = slice(None, None, max(1, math.floor(KEPT_STEP / step)))
     laid_out: Values = {
@@ -417,7 +425,9 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
         laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = np.stack([each.transit_exposure for each in levels])
         laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
-        laid_out |= limits.held_to_limits(case, over_frequency, laid_out[schema.PASS_BY_EQUIVALENT_LEVEL])
+        laid_out |= limits.held_to_limits(
+            case, over_frequency, lambda at: np.stack([each.equivalent for each in heard(at)[-1]])
+        )
     main = laid_out[schema.PASS_BY_LEVEL][0, -1]
     return laid_out | measured_passage(case.noise, time[kept], main, passage.passed, band)
 

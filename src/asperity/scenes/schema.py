@@ -347,6 +347,10 @@ _ASKED = "where noise.vehicle says what passes"
 VEHICLE = _place("vehicle", "text", "type of vehicle, by which TSI Noise limits the level", _ASKED)
 _LEVEL = "L_pAeq,Tp normalised to the reference speed, of wagons to 0.225 axles/m (TSI Noise)"
 NORMALISED_LEVEL = _heard("normalised_level(law, radiator)", "dB(A) re 20 uPa", _LEVEL, condition=_ASKED)
+_FAST = f"{_ASKED}, from 250 km/h on, and a limit holds"
+NORMALISED_LEVEL_ABOVE = _heard(
+    "normalised_level_above(law, radiator)", "dB(A) re 20 uPa", f"{_LEVEL}, 3.5 m high", condition=_FAST
+)
 REFERENCE_SPEED = _place("reference_speed", "m/s", "to which it is normalised", _ASKED)
 _LIMIT = "largest normalised level of all sources, compared as a whole decibel"
 TSI_LIMIT = _place("tsi_limit", "dB(A) re 20 uPa", _LIMIT, f"{_ASKED}, and a limit holds")

@@ -78,7 +78,9 @@ def check_receptance(frequency: Array, receptance: Complex) -> None:
         raise InputError("receptance of the sleeper", received, allowed, remedy)
 
 
-def measured_sleeper(frequency: Array, receptance: Complex, mass: float, below: Complex) -> MeasuredSleeper:
+def measured_sleeper(
+    frequency: Array, receptance: Complex, mass: float, below: Complex | None = None
+) -> MeasuredSleeper:
     """Modes of half a sleeper that meet its receptance at the rail seat, both seats pressed alike.
 
     Parameters
@@ -89,8 +91,8 @@ def measured_sleeper(frequency: Array, receptance: Complex, mass: float, below: 
         m/N, e^{+iωt}: displacement of a seat per force there, with the same force at the other.
     mass : float
         Of the half, kg.
-    below : ndarray of complex (n,)
-        Dynamic stiffness of what it lay on, N/m; zero of a free one.
+    below : ndarray of complex (n,), optional
+        Dynamic stiffness of what it lay on, N/m; free by default.
 
     Returns
     -------
@@ -112,19 +114,19 @@ def measured_sleeper(frequency: Array, receptance: Complex, mass: float, below: 
     from asperity.structures import modal_fit
 
     check_receptance(frequency, receptance)
-    omega = 2.0 * np.pi * frequency
-    answering = -1j * np.sqrt(below / mass - omega**2) / (2.0 * np.pi)
-    rigid = np.asarray(1.0 / (below - mass * omega**2))
+    omega, bed = 2.0 * np.pi * frequency, np.zeros(len(frequency), complex) if below is None else below
+    answering = -1j * np.sqrt(bed / mass - omega**2) / (2.0 * np.pi)
+    rigid = np.asarray(1.0 / (bed - mass * omega**2))
     own, ratios, masses = modal_fit.fit_modes(frequency, receptance, rigid, answering)
     rigidly = ((0.0, own), (0.0, ratios), (mass, masses))
     natural, damping, modal = (tuple(np.append(*each).tolist()) for each in rigidly)
     found = MeasuredSleeper(mass, natural, damping, modal)
-    fitted = found._modes(omega, below).sum(axis=-1)
+    fitted = found._modes(omega, bed).sum(axis=-1)
     off = 20.0 * np.log10(np.abs(fitted / receptance))
     worst = int(np.argmax(np.abs(off)))
     words = f"{len(own)} modes on {mass:.4g} kg"
-    if below.any():
-        here, there = below[0], 1.0 / receptance[0] + mass * omega[0] ** 2
+    if bed.any():
+        here, there = bed[0], 1.0 / receptance[0] + mass * omega[0] ** 2
         of_each = (f"{k.real:.3g} N/m with loss factor {k.imag / k.real:.2g}" for k in (here, there))
         words += " and {} at {:.3g} Hz, where the table has {}".format(next(of_each), frequency[0], *of_each)
     words += f" ({abs(off[worst]):.2g} dB off at most, at {frequency[worst]:.4g} Hz)"

@@ -9,8 +9,10 @@ from asperity.reference.tsi_noise import PassByLimit
 from asperity.reporting import data
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema
+from asperity.schema import Entry
 
 _ABBREVIATED = ("emu", "dmu")
+_PLACES = {"": schema.NORMALISED_LEVEL, ", 3.5 m high": schema.NORMALISED_LEVEL_ABOVE}
 
 
 def _vehicle(tree: DataTree) -> str:
@@ -18,12 +20,12 @@ def _vehicle(tree: DataTree) -> str:
     return told.upper() if told in _ABBREVIATED else told.replace("-", " ")
 
 
-def _levels(tree: DataTree) -> dict[str, float]:
+def _levels(tree: DataTree, entry: Entry = schema.NORMALISED_LEVEL) -> dict[str, float]:
     """Normalised levels of the main law by what radiates, as far as they are known; the whole last."""
-    found = data.stored_variable(tree, schema.NORMALISED_LEVEL)
-    if found is None or not (laws := data.laws(tree, schema.NORMALISED_LEVEL)):
+    found = data.stored_variable(tree, entry)
+    if found is None or not (laws := data.laws(tree, entry)):
         return {}
-    of_law = data.of_law(tree, schema.NORMALISED_LEVEL, laws[0])
+    of_law = data.of_law(tree, entry, laws[0])
     levels = zip(map(str, found["radiator"].values), of_law.tolist(), strict=True)
     return {name: level for name, level in levels if np.isfinite(level)}
 
@@ -49,6 +51,8 @@ def limit_sentence(tree: DataTree) -> str:
     most = max(parts, key=lambda part: part[1])[0]
     failed = [str(each.get("condition")) for each in _conditions(tree) if not each.get("met")]
     told = f" Not as a test asks: {', '.join(failed)}." if failed else ""
+    if above := list(_levels(tree, schema.NORMALISED_LEVEL_ABOVE).values()):
+        told = f" At 3.5 m height it has {above[-1]:.1f} dB(A), {_result(tree, above[-1])[0]}.{told}"
     result, verb = _result(tree, whole[1])[0], "decide" if most.endswith("s") else "decides"
     return (
         f"TSI Noise, {_vehicle(tree)}: rolling noise {alone} has {whole[1]:.1f} dB(A) at "
@@ -66,17 +70,20 @@ def _verdict(met: object) -> Cell:
 
 def limits_table(tree: DataTree) -> ReportTable | None:
     """Level and limit of the vehicle, by source, and the conditions of ISO 3095."""
-    levels, conditions, speed = _levels(tree), _conditions(tree), data.number(tree, schema.REFERENCE_SPEED)
-    if not levels or speed is None:
+    conditions, speed = _conditions(tree), data.number(tree, schema.REFERENCE_SPEED)
+    rows: list[dict[str, Any]] = []
+    for place, entry in _PLACES.items():
+        if speed is not None and (levels := _levels(tree, entry)):
+            *parts, (_, whole) = levels.items()
+            told, met = _result(tree, whole)
+            here = f"{whole:.1f} dB(A): {', '.join(f'{name} {level:.1f}' for name, level in parts)}"
+            what = f"L_pAeq,Tp at {3.6 * speed:.0f} km/h{place}"
+            rows.append({"condition": what, "here": here, "asked": told, "met": met})
+    if not rows:
         return None
-    *parts, (_, whole) = levels.items()
-    told, met = _result(tree, whole)
-    by_part = ", ".join(f"{name} {level:.1f}" for name, level in parts)
-    first: dict[str, Any] = {"here": f"{whole:.1f} dB(A): {by_part}", "asked": told, "met": met}
-    rows = [first, *conditions]
-    what = [f"L_pAeq,Tp at {3.6 * speed:.0f} km/h", *(c.get("condition") for c in conditions)]
+    rows += conditions
     columns = {
-        "what": text_cells(what),
+        "what": text_cells(row.get("condition") for row in rows),
         "here": text_cells(row.get("here") for row in rows),
         "asked": text_cells(row.get("asked") for row in rows),
         "met": [_verdict(row.get("met")) for row in rows],
