@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from asperity import WheelOnRail
 from asperity.errors import CaseError
-from asperity.radiation import ground, pass_by, sound_path
+from asperity.radiation import pass_by, sound_path
 from asperity.scenes.figures.noise import PASS_BY, pass_by_table
 from asperity.scenes.noise import pass_by_group
 from asperity.schema import group
@@ -116,7 +116,9 @@ def test_ground_directivity_and_rails_are_those_of_the_case():
     assert (grass.attrs["ground"], same.attrs["ground"]) == ("grass", "ground of 80 kPa s/m^2")
     assert_allclose(grass["pass_by_level"], same["pass_by_level"])
     for depth, found in ((0.5, grass), (2.0, heard(ground="grass", ground_depth="2 m"))):
-        path = sound_path.SoundPath(np.array([1000.0]), pass_by.Receiver(), ground.PorousGround(80e3), depth)
+        path = sound_path.SoundPath(
+            np.array([1000.0]), pass_by.Receiver(), sound_path.PorousGround(80e3), depth
+        )
         expected = 10.0 * np.log10(path.integral(0.0)[0] * np.hypot(7.5, 1.2) / np.pi)
         change = found["sound_exposure_level_a"] - heard()["sound_exposure_level_a"]
         assert_allclose(change.sel(radiator="rail"), expected, atol=1e-6)
