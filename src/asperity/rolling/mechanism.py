@@ -12,14 +12,16 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from asperity.arguments import Array, positive, require
-from asperity.errors import InputError, Outcome
+from asperity.errors import Outcome
 from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
-from asperity.laws.spec import Law
+from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
 from asperity.rolling import steps
 from asperity.rolling.assembly import (
     RUNAWAY,
+    STEPPED_TOLERANCE,
+    TOLERANCE,
     alternating,
     at_zero,
     equilibrium,
@@ -138,6 +140,10 @@ class _OnEdges:
 
     def __post_init__(self) -> None:
         self.contacts = len(self.mechanism.edges)
+        first = [edge.law.prepare(edge.positions(0, 1)) for edge in self.mechanism.edges]
+        solved = not all(isinstance(law, Prepared) for law in first)
+        # laws that are solved in every step remember where they were: all are laid out on all the way
+        self.whole = [_laid(edge, 0, self.total + 1) for edge in self.mechanism.edges] if solved else []
         # approach of each contact that is within its data at all steps laid out; and where these begin
         self.within, self.begun = np.full(self.contacts, np.inf), self.total
 
@@ -158,13 +164,13 @@ class _OnEdges:
                 shapes[:, k, modes] += side.sign * found
                 slopes[:, k, modes] += side.sign * rising * rate[:, None]
 
-    def prepared(self, first: int, stop: int) -> list[Prepared]:
-        """Laws from a step on to another."""
-        return [_laid(edge, first, stop) for edge in self.mechanism.edges]
+    def at_start(self) -> Sequence[Prepared | SteppedLaw]:
+        """Laws whose first step is the first of all."""
+        return self.whole or [_laid(edge, 0, 1) for edge in self.mechanism.edges]
 
     def laid(self, first: int, stop: int) -> Any:
         """The same, for the compiled kernel."""
-        prepared = self.prepared(first, stop)
+        prepared = [_looked_up(edge, first, stop) for edge in self.mechanism.edges]
         lowest = [law.planes.min() + (0.0 if law.form == TABLE else law.values.min()) for law in prepared]
         self.within = np.minimum(
             self.within, [law.upper + h for law, h in zip(prepared, lowest, strict=True)]
@@ -173,15 +179,49 @@ class _OnEdges:
         return Prepared(**stacked(prepared, Prepared._fields)), sizes_of(prepared)
 
 
-def _laid(edge: Edge, first: int, stop: int) -> Prepared:
+def _laid(edge: Edge, first: int, stop: int) -> Prepared | SteppedLaw:
     """The law of an edge; its textures are raised by the heights of the edge."""
     prepared = edge.law.prepare(edge.positions(first, stop))
-    if not isinstance(prepared, Prepared):
-        allowed = "laws that are looked up, as table, areal or hertz"
-        raise InputError(f"law {edge.law.name}", "one that is solved in every step", allowed)
     if edge.heights is None:
         return prepared
-    return prepared._replace(planes=prepared.planes - edge.heights(first, stop))
+    heights = edge.heights(first, stop)
+    if isinstance(prepared, Prepared):
+        return prepared._replace(planes=prepared.planes - heights)
+    return RaisedLaw(prepared, heights)
+
+
+def _looked_up(edge: Edge, first: int, stop: int) -> Prepared:
+    laid = _laid(edge, first, stop)
+    assert isinstance(laid, Prepared)
+    return laid
+
+
+@dataclass(frozen=True, eq=False)
+class RaisedLaw(SteppedLaw):
+    """A law that is solved in every step, with what is there raised by heights (steps,), m."""
+
+    law: SteppedLaw
+    heights: Array
+
+    def evaluate(self, step: int, approach: float) -> tuple[float, float]:
+        """Force, N, and stiffness, N/m, as of the law itself where bodies are closer by the height."""
+        return self.law.evaluate(step, approach + float(self.heights[step]))
+
+    def accept(self, step: int) -> None:
+        """Keep the last evaluation."""
+        self.law.accept(step)
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """What the law needs to go on."""
+        return self.law.state()
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from a saved state."""
+        self.law.restore(state)
+
+    def warn_of_flaws(self) -> None:
+        """Warn of what went wrong."""
+        self.law.warn_of_flaws()
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,8 +277,6 @@ def roll_mechanism(
 
     Raises
     ------
-    InputError
-        If a law is one that is solved in every step.
     ComputationError
         If nothing is at rest at the start, or the motion runs away.
     """
@@ -260,7 +298,7 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     course = _OnEdges(at, 1.0, 0)
     ground, bodies = _ground(course, np.zeros((0, at.first_modes[-1]))), at.still()
     system = system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, at.constant)
-    motion = _start(at, bodies, ground, system, course.prepared(0, 1))[1]
+    motion = _start(at, bodies, ground, system, course.at_start())[1]
     return motion.displacement[: at.first_modes[-1]]
 
 
@@ -294,7 +332,7 @@ def _kept(stepper: Stepper, settled: int, bodies: int, energy: Ledger) -> Rolled
 def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: float | None) -> Stepper:
     """Set everything at rest under the constant forces, with contacts soft enough for the time step."""
     mechanism, h, bodies = course.mechanism, course.time_step, course.mechanism.still()
-    ground, prepared = _ground(course, sensors), course.prepared(0, 1)
+    ground, prepared = _ground(course, sensors), course.at_start()
     loads = np.full(course.contacts, load)
     system = system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
     stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
@@ -310,7 +348,7 @@ def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: f
         system = system._replace(softening=softer)
         stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
     laws, largest = [edge.law for edge in mechanism.edges], RUNAWAY * max(load, *forces)
-    return Stepper(course, bodies, laws, (), system, motion, largest, np.inf, displacements=True)
+    return Stepper(course, bodies, laws, course.whole, system, motion, largest, np.inf, displacements=True)
 
 
 def _ground(course: _OnEdges, sensors: Array) -> Ground:
@@ -333,7 +371,11 @@ def _ground(course: _OnEdges, sensors: Array) -> Ground:
 
 
 def _start(
-    mechanism: Mechanism, bodies: Sequence[Body], ground: Ground, system: System, prepared: Sequence[Prepared]
+    mechanism: Mechanism,
+    bodies: Sequence[Body],
+    ground: Ground,
+    system: System,
+    prepared: Sequence[Prepared | SteppedLaw],
 ) -> tuple[Array, Motion]:
     """Stiffnesses of the contacts at rest (n,), N/m, and the state that goes on from there."""
     (n, f), b = system.shapes.shape, len(bodies)
@@ -348,7 +390,9 @@ def _start(
     pressing = np.concatenate([-constant, *(body.pressing for body in bodies), np.zeros(n)])
     every = np.hstack([shapes, rows, np.diag(np.sqrt(system.softening))])
     laws = [partial(evaluated, law) for law in prepared]
-    x, force, approach, stiffness = equilibrium(matrix, pressing, every, np.zeros(n), system.loads, laws)
+    relative = TOLERANCE if all(isinstance(law, Prepared) for law in prepared) else STEPPED_TOLERANCE
+    given = matrix, pressing, every, np.zeros(n), system.loads
+    x, force, approach, stiffness = equilibrium(*given, laws, relative)
     motion, count = at_zero(system), shapes.shape[1]
     motion.displacement[:] = x[:count]
     motion.push[:] = constant + force @ shapes
@@ -371,9 +415,11 @@ def _warn(stepper: Stepper, course: _OnEdges) -> None:
     seen = seen - stepper.system.softening[:, None] * stepper.record.contact_force
     beyond = np.zeros(course.contacts, dtype=np.int64)
     doubted = (seen.max(axis=1) > course.within) | (course.begun > 0)  # a run taken up has not laid out all
-    for k in np.flatnonzero(doubted).tolist():
+    for solved in stepper.stepped.values():
+        solved.warn_of_flaws()
+    for k in np.flatnonzero(doubted & [k not in stepper.stepped for k in range(len(doubted))]).tolist():
         for first in range(0, course.total + 1, CHECKED):
             stop = min(first + CHECKED, course.total + 1)
-            law = _laid(course.mechanism.edges[k], first, stop)
+            law = _looked_up(course.mechanism.edges[k], first, stop)
             beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first:stop]), 0)[2]
     warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])

@@ -22,6 +22,7 @@ from asperity.kernels.along import OVERLAP
 from asperity.kernels.pointforce import Prepared
 from asperity.laws import Law
 from asperity.laws.areal import Areal
+from asperity.laws.direct import Direct
 from asperity.laws.hertz import HertzLaw
 from asperity.laws.spec import SteppedLaw
 from asperity.laws.table import Table
@@ -36,7 +37,7 @@ from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
 from asperity.surfaces.strip import Rows
 
-LAWS = ("table", "areal", "hertz")
+LAWS = ("table", "areal", "hertz", "direct")
 """Laws that can be built on a raceway."""
 CELLS = (8, 16)
 """Cells along and across to a half axis of the contact under the load."""
@@ -372,6 +373,13 @@ class OnRaceway:
         plane = self._texture(self.felt)
         if name == "table":
             return Table(self.table, damping, plane)
+        if name == "direct":
+            half, (dx, dy) = len(self.shape.body) // 2, self.surface.spacing
+            whole = self._around(
+                self.surface.heights + self.surface.faults + self.surface.line[:, None], half
+            )
+            given = whole, self.shape.body, (dx, dy), self.contact.modulus, -half * dx, self.hardness
+            return Direct(*given, rtol=rtol_for(self.accuracy), damping=damping)
         if name == "hertz":
             texture = self._texture(self.wavy[:, self.wavy.shape[1] // 2] + self.over_faults)
             return HertzLaw(self.contact.stiffness_constant, texture, damping)
