@@ -1,6 +1,8 @@
 """Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import astuple
 from functools import cache
 from typing import Any
 
@@ -198,6 +200,8 @@ def _roughness(line: Array, spacing: float) -> Table | None:
 # --- from the vibration itself
 
 RADIATORS = ("rail", "sleepers", "wheel", "total")
+WITHIN = 10.0 ** (0.1 * (np.arange(9) - 4.0) / 9.0)
+"""Frequencies in a band over its centre, over which lengths are averaged."""
 PICOWATT = 1e-12
 """Of sound power levels, W."""
 
@@ -293,8 +297,7 @@ def radiation(computed: compute.Computed) -> Values:
         energy = np.maximum(band_energies(computed.frequency, of_modes, *edges), 0.0)
         rung = mode_by_mode(case, wheels * energy, band)
     # the length 8.686/Δ of the decay is the mean of those over a band
-    within = 10.0 ** (0.1 * (np.arange(9) - 4.0) / 9.0)
-    lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * within)
+    lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * WITHIN)
     return {
         schema.RADIATOR: RADIATORS,
         **laid_out(power, schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A),
@@ -378,41 +381,55 @@ def sources_of(case: Any) -> tuple[str, ...]:
     return ground if case.noise.vehicle is None else (*ground, tsi_noise.CITATION)
 
 
-def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
+def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | None = None) -> Values:
     """Lay out levels beside the track, from the sound power and the decay rates that the spectra hold.
 
-    All axles radiate alike: where several were rolled, as their mean.
+    All axles radiate alike: where several were rolled, as their mean. Where something moves sideways, that
+    and the sum with it stand `beside` what moves up and down alone, and last.
     """
     keys, passage, band = case.noise, case.passage, over_frequency[spectra.BAND.name].values
     sources, weights = _sources(case, over_frequency), 10.0 ** (a_weighting(band) / 10.0)
     length = max(float(np.max(source.length)) for source in sources)
+    radiators, whole = over_frequency[schema.RADIATOR.name].values.tolist(), range(len(sources))
+    if beside:
+        sources += _sideways(case, band, beside, length)
+        radiators += [schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH, schema.WITH_SIDEWAYS]
 
     @cache
-    def heard(at: pass_by.Receiver) -> tuple[Array, Array, Array, list[pass_by.PassByLevels]]:
-        """Times, squared pressure and exposure (laws, sources and their sum, …), and levels of each law."""
+    def heard(at: pass_by.Receiver) -> tuple[Array, ...]:
+        """Times, squared pressure and exposure (laws, radiators, …), and the single numbers of both."""
         path, time = keys.sound_path(band, at), passage.times(at, length)
-        squared, exposed = (
-            np.stack([*parts, np.sum(parts, axis=0)], axis=1)
-            for parts in (
-                [weights @ pass_by.squared_pressure(each, passage, at, time, path) for each in sources],
-                [pass_by.exposure(each, passage, at, path) for each in sources],
-            )
+        parts = (
+            [weights @ pass_by.squared_pressure(each, passage, at, time, path) for each in sources],
+            [pass_by.exposure(each, passage, at, path) for each in sources],
         )
-        return time, squared, exposed, [pass_by.pass_by_levels(time, law, passage.passed) for law in squared]
+
+        def of(numbers: Sequence[int]) -> list[Array]:
+            """These of some sources and, last, of their sum."""
+            chosen = ([every[n] for n in numbers] for every in parts)
+            squared, exposed = (np.stack([*each, np.sum(each, axis=0)], axis=1) for each in chosen)
+            levels = [pass_by.pass_by_levels(time, law, passage.passed) for law in squared]
+            return [squared, exposed, *map(np.stack, zip(*map(astuple, levels), strict=True))]
+
+        found = of(whole)
+        if beside:  # rail and sleepers up and down, too, but not the wheel
+            more = of([0, 1, 3, 4])
+            found = [np.append(own, each[:, 2:], axis=1) for own, each in zip(found, more, strict=True)]
+        return time, *found
 
     receiver = keys.receiver
-    time, squared, exposed, levels = heard(receiver)
+    time, squared, exposed, maximum, equivalent, transit_exposure = heard(receiver)
     step = float(time[1] - time[0])
     kept = slice(None, None, max(1, math.floor(KEPT_STEP / step)))
     laid_out: Values = {
         schema.PASS_BY_LAW: over_frequency[spectra.LAW.name].values,
-        schema.PASS_BY_RADIATOR: over_frequency[schema.RADIATOR.name].values,
+        schema.PASS_BY_RADIATOR: radiators,
         schema.PASS_BY_BAND: band,
         schema.PASS_BY_TIME: time[kept],
         schema.AXLE: 1 + np.arange(len(passage.axles)),
         schema.AXLE_TIME: np.array(passage.axles) / passage.speed,
         schema.PASS_BY_LEVEL: pass_by.pressure_level(pass_by.time_weighted(squared, step)[..., kept]),
-        schema.PASS_BY_MAXIMUM_LEVEL: np.stack([each.maximum for each in levels]),
+        schema.PASS_BY_MAXIMUM_LEVEL: maximum,
         schema.SOUND_EXPOSURE_LEVEL: pass_by.pressure_level(exposed),
         schema.SOUND_EXPOSURE_LEVEL_A: pass_by.pressure_level(exposed @ weights),
         schema.RECEIVER_DISTANCE: receiver.distance,
@@ -422,12 +439,10 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
         schema.RAIL_DISTANCE: keys.rail_distance or 0.0,
     }
     if passage.passed is not None:
-        laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
-        laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = np.stack([each.transit_exposure for each in levels])
+        laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = equivalent
+        laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = transit_exposure
         laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
-        laid_out |= limits.held_to_limits(
-            case, over_frequency, lambda at: np.stack([each.equivalent for each in heard(at)[-1]])
-        )
+        laid_out |= limits.held_to_limits(case, over_frequency, lambda at: heard(at)[4])
     main = laid_out[schema.PASS_BY_LEVEL][0, -1]
     return laid_out | measured_passage(case.noise, time[kept], main, passage.passed, band)
 
@@ -435,13 +450,25 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> Values:
 def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSource]:
     """What one axle makes radiate: a wheel from its axle, the others along the rail as its waves decay."""
     level = over_frequency[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
-    power = PICOWATT * np.nan_to_num(10.0 ** (level.values / 10.0)) / case.axles
     decay = over_frequency[schema.BAND_DECAY_RATE.name].values
     length = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
-    wheel, rail = case.noise.wheel_height, case.noise.rail_height
-    places = {"wheel": (0.0, case.rolling.radius if wheel is None else wheel)}
-    return [
-        pass_by.AxleSource(power[:, number], *places.get(name, (length, rail)))
-        for number, name in enumerate(level["radiator"].values.tolist())
-        if name != "total"
-    ]
+    parts = zip(level["radiator"].values.tolist(), np.moveaxis(level.values, 1, 0), strict=True)
+    return [_source(case, name, of_part, length) for name, of_part in parts if name != "total"]
+
+
+def _source(case: Any, name: str, level: Array, length: Array) -> pass_by.AxleSource:
+    """One of them by its sound power level (laws, b), dB re 1 pW, and the length of waves in the rail, m."""
+    keys, power = case.noise, PICOWATT * np.nan_to_num(10.0 ** (level / 10.0)) / case.axles
+    if not name.startswith("wheel"):
+        return pass_by.AxleSource(power, length, keys.rail_height)
+    height = case.rolling.radius if keys.wheel_height is None else keys.wheel_height
+    return pass_by.AxleSource(power, 0.0, height)
+
+
+def _sideways(case: Any, band: Array, beside: Values, longest: float) -> list[pass_by.AxleSource]:
+    """What radiates sideways of one axle; waves reach no farther than the `longest` up and down, m."""
+    frequency, decay = beside[schema.SIDEWAYS_FREQUENCY], beside[schema.LATERAL_DECAY_RATE]
+    length = np.mean(ONE_WAVE / np.interp(band[:, None] * WITHIN, frequency, decay), axis=1)
+    of_rail, _, of_wheel, _ = np.moveaxis(beside[schema.LATERAL_POWER_LEVEL], 1, 0)
+    parts = (schema.RAIL_SIDEWAYS, of_rail), (schema.WHEEL_BOTH, of_wheel)
+    return [_source(case, *part, np.minimum(length, longest)) for part in parts]

@@ -71,9 +71,10 @@ def computed_result(
             power = in_bands[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
             found += noise.findings_of_labels(case)
         found += measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
-        own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands)
+        beside = sideways.sideways_group(computed, in_bands)
+        own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands, beside)
         found += findings_of_passage(own)
-        own |= (beside := sideways.sideways_group(computed))
+        own |= beside
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))
         sources += sideways.SOURCES if beside else ()
         noise.warn_of_silence(case)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import xarray
 
 from asperity.arguments import Array, Complex
 from asperity.contact.hertz import stick_stiffness
@@ -15,7 +16,7 @@ from asperity.scenes import schema
 from asperity.scenes.compute import Computed
 from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
 from asperity.schema import Values
-from asperity.spectra import HALF_BAND, a_weighted_total, band_energies
+from asperity.spectra import HALF_BAND, a_weighted_total, band_energies, energy_sum
 from asperity.structures.lateral_contact import at_springs, lateral_force, vertical_change, wheel_receptances
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.modal import modal_answers
@@ -182,11 +183,11 @@ class Sideways:
         return radiator.power(self.lines, self.means(velocity)) * self.seen_of_all
 
 
-RADIATORS = ("rail sideways", "wheel, vertical force", "wheel, both forces")
+def sideways_group(computed: Computed, over_frequency: xarray.Dataset) -> Values:
+    """Lay out receptances and decay sideways, the lateral force of each law, its grip and its sound power.
 
-
-def sideways_group(computed: Computed) -> Values:
-    """Lay out receptances and decay sideways, the lateral force of each law, its grip and its sound power."""
+    The sound power of all together takes that of rail and sleepers from the spectra.
+    """
     if not moves_sideways(computed):
         return {}
     found, case, band = Sideways(computed), computed.case, computed.band
@@ -203,6 +204,9 @@ def sideways_group(computed: Computed) -> Values:
 
     powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
     power = levels(2.0 * case.axles / contacts / PICOWATT * np.stack(powers, axis=1))
+    up = over_frequency[schema.RADIATED_POWER_LEVEL.name].sel(radiator=["rail", "sleepers"]).values
+    together = np.concatenate([np.nan_to_num(up, nan=-np.inf), power[:, [0, 2]]], axis=1)
+    power = np.append(power, energy_sum(together, axis=1)[:, None], axis=1)
     lateral, of_each = (found.force_psd.sum(axis=1) / contacts, np.sqrt(found.force_psd.sum(axis=-1) * step))
     with np.errstate(divide="ignore"):
         slips = np.vectorize(math.erfc)(limit / (math.sqrt(2.0) * of_each)).mean(axis=1)
@@ -216,7 +220,7 @@ def sideways_group(computed: Computed) -> Values:
         schema.SIDEWAYS_LAW: list(computed.runs),
         schema.SIDEWAYS_FREQUENCY: frequency,
         schema.SIDEWAYS_BAND: band,
-        schema.SIDEWAYS_RADIATOR: RADIATORS,
+        schema.SIDEWAYS_RADIATOR: schema.SIDEWAYS_RADIATORS,
         schema.RAIL_LATERAL_RECEPTANCE: np.abs(rail[1, 1]),
         schema.RAIL_CROSS_RECEPTANCE: np.abs(rail[1, 0]),
         schema.WHEEL_LATERAL_RECEPTANCE: np.abs(wheel[1, 1]),

@@ -21,13 +21,20 @@ def _vehicle(tree: DataTree) -> str:
 
 
 def _levels(tree: DataTree, entry: Entry = schema.NORMALISED_LEVEL) -> dict[str, float]:
-    """Normalised levels of the main law by what radiates, as far as they are known; the whole last."""
+    """Normalised levels of the main law by what radiates, as far as they are known; the whole last.
+
+    Where something moves sideways, that is of the whole, and the wheel under both forces.
+    """
     found = data.stored_variable(tree, entry)
     if found is None or not (laws := data.laws(tree, entry)):
         return {}
     of_law = data.of_law(tree, entry, laws[0])
     levels = zip(map(str, found["radiator"].values), of_law.tolist(), strict=True)
-    return {name: level for name, level in levels if np.isfinite(level)}
+    known = {name: level for name, level in levels if np.isfinite(level)}
+    if schema.WITH_SIDEWAYS in known:
+        known = {n: each for n, each in known.items() if n not in ("total", "wheel")}
+        known = {"wheel" if n == schema.WHEEL_BOTH else n: each for n, each in known.items()}
+    return known
 
 
 def _result(tree: DataTree, level: float) -> tuple[str, bool | None]:

@@ -111,13 +111,16 @@ _LOOKS: dict[str, tuple[Any, ...]] = {
     "sleepers": (chart.GREEN, (4.0, 1.5), 1.2),
     "wheel": (chart.BLUE, (6.0, 1.5, 1.5, 1.5), 1.2),
     "total": (chart.BLUE, (), 1.6, "o"),
+    schema.RAIL_SIDEWAYS: (chart.VERMILLION, (6.0, 1.5), 1.2),
+    schema.WHEEL_BOTH: (chart.BLUE, (1.5, 1.5), 1.2),
+    schema.WITH_SIDEWAYS: (chart.INK, (6.0, 1.5), 1.6, "o"),
     "measured": (chart.INK, (), 2.2, "s"),
 }
 
 
 def _bands(tree: DataTree, lines: figure.Lines) -> list[Panel]:
     drawn = [Line(lines.at, s.values, s.label, *_LOOKS.get(s.label, ())) for s in lines.lines]
-    told = [line.y for line in drawn if line.label in ("total", "measured")]
+    told = [line.y for line in drawn if line.label in ("total", schema.WITH_SIDEWAYS, "measured")]
     axis = panels.levels_axis("sound pressure level / dB(A) re 20 µPa", told, span=50.0)
     return [Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)]
 

@@ -28,6 +28,8 @@ UNMEASURED, UNMEASURED_A = schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWE
 """The same without what was measured on the track, where something was."""
 STANDARD, STANDARD_A = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A
 """The same by CNOSSOS-EU, from tables by label, by source."""
+SIDE, SIDE_A = schema.LATERAL_POWER_LEVEL, schema.LATERAL_POWER_LEVEL_A
+"""The same of what moves sideways, and with it."""
 PASSING = schema.PASS_BY_LEVEL
 WHOLE, TRACK, BOTH = "total", "rail and sleepers", ("rail", "sleepers")
 _POWER = "sound power level / dB(A) re 1 pW"
@@ -188,7 +190,20 @@ LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of eac
     "sleepers": (chart.GREEN, (), 1.3, "s"),
     "wheel": (chart.BLUE, (), 1.3, "^"),
     WHOLE: (INK, (), 1.8),
+    schema.RAIL_SIDEWAYS: (chart.VERMILLION, (6.0, 1.5), 1.3),
+    schema.WHEEL_BOTH: (chart.BLUE, (6.0, 1.5), 1.3),
+    schema.WITH_SIDEWAYS: (INK, (6.0, 1.5), 1.8),
 }
+
+
+def with_sideways(tree: DataTree) -> str:
+    """Say what the total with sideways holds; nothing where nothing moves so."""
+    if not data.laws(tree, SIDE_A):
+        return ""
+    return (
+        f"The {WHOLE} is that of vertical motion; in the {schema.WITH_SIDEWAYS} the rail radiates sideways, "
+        "too, and the wheel answers to both forces instead of the vertical one, which damps its axial modes."
+    )
 
 
 def silence(tree: DataTree) -> str:
@@ -224,7 +239,8 @@ def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
     main, (weighting,) = data.laws(tree, OWN)[0], (series.values for series in lines.of(BAND))
     own = [
         Line(lines.at, series.values + weighting, series.label, *LOOKS.get(series.label, ()))
-        for series in lines.of(OWN, law=main)
+        for series in lines.of(OWN, SIDE, law=main)
+        if series.label != schema.WHEEL_VERTICAL
     ]
     for series in lines.of(UNMEASURED, law=main, radiator="rail"):
         look = chart.VERMILLION, (1.5, 1.5), 1.3
@@ -241,6 +257,7 @@ def _own_caption(tree: DataTree) -> str:
         "radiation ratio.",
         silence(tree),
         with_measured(tree),
+        with_sideways(tree),
     ]
     if data.laws(tree, STANDARD):
         told.append(
@@ -259,6 +276,7 @@ RADIATED = Figure(
         panels.products(BAND_TIME_PRODUCT),
         Of(OWN, "{radiator}, {law}", "{radiator}"),
         Of(UNMEASURED, "{radiator} without what was measured, {law}", "{radiator}", optional=True),
+        Of(SIDE, "{radiator}, {law}", "{radiator}", optional=True),
         _standard_there,
     ),
     _own_bands,
@@ -277,11 +295,16 @@ def radiated_table(tree: DataTree) -> ReportTable | None:
         rows = [f"{law}, track as measured" for law in laws] + [f"{law}, all computed" for law in beside]
         levels = np.vstack([levels, [data.of_law(tree, UNMEASURED_A, law) for law in beside]])
     columns, over = {"law": text_cells(rows), **_part_columns(tree, OWN_A, levels)}, ""
+    if data.laws(tree, SIDE_A) == laws:
+        side = np.array([data.of_law(tree, SIDE_A, law) for law in laws])
+        more = ((0, len(rows) - len(laws)), (0, 0))
+        columns |= _part_columns(tree, SIDE_A, np.pad(side, more, constant_values=np.nan))
+        columns.pop(schema.WHEEL_VERTICAL, None)
     own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
     if set(BOTH) <= set(own) and "track" in standard:
         both = data.signed(float(energy_sum([own[part] for part in BOTH])) - standard["track"])
         over = f"Rail and sleepers together are {both} dB over the track of CNOSSOS-EU ({laws[0]}). "
-    told = " ".join(filter(None, [silence(tree), with_measured(tree)]))
+    told = " ".join(filter(None, [silence(tree), with_measured(tree), with_sideways(tree)]))
     note = f"dB(A) re 1 pW, over the bands that were computed. {over}{told}"
     return table("radiated_power_table", "Sound power from vibration, A-weighted", columns, note)
 
@@ -290,7 +313,14 @@ def radiated_table(tree: DataTree) -> ReportTable | None:
 
 SPAN = 30.0
 """dB below the maximum that are drawn."""
-_DASHES = {"rail": (1.5, 1.5), "sleepers": (4.0, 1.5), "wheel": (6.0, 1.5, 1.5, 1.5)}
+_DASHES = {
+    "rail": (1.5, 1.5),
+    "sleepers": (4.0, 1.5),
+    "wheel": (6.0, 1.5, 1.5, 1.5),
+    WHOLE: (),
+    schema.RAIL_SIDEWAYS: (1.5, 4.0),
+    schema.WHEEL_BOTH: (6.0, 1.5, 1.5, 1.5, 1.5, 1.5),
+}
 SINGLE_NUMBERS = {
     "L_pAFmax / dB(A)": schema.PASS_BY_MAXIMUM_LEVEL,
     "L_pAeq,Tp / dB(A)": schema.PASS_BY_EQUIVALENT_LEVEL,
@@ -399,13 +429,17 @@ def noise_answers(tree: DataTree) -> Answers | None:
     own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
     if not own and not standard:
         return None
-    lead, *more = [*_by_vibration(tree, own), *_by_label(tree, standard)]
+    side, whole = by_part(tree, SIDE_A), own
+    lead, *more = [*_by_vibration(tree, own, side), *_by_label(tree, standard)]
     held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
     plain = by_part(tree, UNMEASURED_A).get(WHOLE)
     beside = "" if plain is None else f"; track as measured, {plain:.1f} dB(A) if all is computed"
+    if schema.WITH_SIDEWAYS in side and WHOLE in own:
+        whole = {WHOLE: side[schema.WITH_SIDEWAYS]}
+        beside += f"; vertical motion alone {own[WHOLE]:.1f} dB(A)"
     by_tables = "re 1 pW; track and wheel by its tables, from the computed contact force"
     models = (
-        ("own radiation model", own, f"re 1 pW; {held}, from their computed vibration{beside}"),
+        ("own radiation model", whole, f"re 1 pW; {held}, from their computed vibration{beside}"),
         ("CNOSSOS-EU", standard, by_tables),
     )
     cards = tuple(
@@ -413,20 +447,23 @@ def noise_answers(tree: DataTree) -> Answers | None:
         for how, of, note in models
         if WHOLE in of
     )
-    return Answers(lead, " ".join(more), cards, (_sources_table(own, standard),))
+    return Answers(lead, " ".join(more), cards, (_sources_table(own | side, standard),))
 
 
-def _by_vibration(tree: DataTree, own: Mapping[str, float]) -> list[str]:
+def _by_vibration(tree: DataTree, own: Mapping[str, float], side: Mapping[str, float]) -> list[str]:
     """Say what radiates most by its own vibration, and in which bands."""
     parts = {name: level for name, level in own.items() if name != WHOLE}
     if not parts:
         return []
     most = max(parts, key=lambda name: parts[name])
-    verb = "decide" if most == "sleepers" else "decides"
+    verb, with_side = "decide" if most == "sleepers" else "decides", ""
+    if schema.WITH_SIDEWAYS in side:
+        told = [f"{n} {side[n]:.1f}" for n in (schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH) if n in side]
+        with_side = f"With motion sideways it is {side[schema.WITH_SIDEWAYS]:.1f} dB(A): {'; '.join(told)}."
     return [
         f"By vibration the {most} {verb}: {parts[most]:.1f} of {own.get(WHOLE, parts[most]):.1f} dB(A) of "
         f"sound power, half of it in the bands of {_bands(tree, OWN, most)}.",
-        *filter(None, [silence(tree)]),
+        *filter(None, [with_side, silence(tree)]),
     ]
 
 
@@ -456,8 +493,11 @@ def _sources_table(own: Mapping[str, float], standard: Mapping[str, float]) -> R
     models = {"by vibration, own model": {**own, **track}, "by CNOSSOS-EU": {**standard, **by_label}}
     shown = {name: levels for name, levels in models.items() if levels}
     columns = {"dB(A) re 1 pW": text_cells(shown)}
-    for part, head in (*((name, name) for name in (*BOTH, TRACK, "wheel")), (WHOLE, "sum")):
-        look = "number total" if part == WHOLE else "number"
+    heads = {name: name for name in (*BOTH, TRACK, "wheel")} | {WHOLE: "sum"}
+    heads |= {name: name for name in (schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH) if name in own}
+    heads |= {schema.WITH_SIDEWAYS: "sum with sideways"} if schema.WITH_SIDEWAYS in own else {}
+    for part, head in heads.items():
+        look = "number total" if part in (WHOLE, schema.WITH_SIDEWAYS) else "number"
         columns[head] = number_cells((levels.get(part, np.nan) for levels in shown.values()), "{:.1f}", look)
     note = "" if "wheel" in own or not own else "–: not known. The first sum is without the wheel."
     return table("sound_power_sources", "Sound power by source", columns, note)
@@ -483,6 +523,10 @@ def pass_by_answers(tree: DataTree) -> Answers | None:
     held = "" if "wheel" in _passing_parts(tree) else ", without the wheel"
     heard, _ = compared_numbers(tree).get(first, (None, None))
     measured = "" if heard is None else f"; {first} measured {heard:.1f} dB(A)"
+    if schema.WITH_SIDEWAYS in (parts := parts_of(tree, _HEADLINES[first])):
+        entry = _HEADLINES[first]
+        own = data.of_law(tree, entry, data.laws(tree, entry)[0])[parts.index(WHOLE)]
+        told += f"; vertical motion alone {own:.1f} dB(A)"
     note = f"re 20 µPa{where}{told}{measured}; own radiation model{held}"
     number = HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note)
     return Answers(more=limit_sentence(tree), numbers=(number,))

@@ -16,7 +16,8 @@ from asperity.schema import spectra
 from asperity.spectra import a_weighting
 
 FORCE, POWER, POWER_A = schema.LATERAL_FORCE_LEVEL, schema.LATERAL_POWER_LEVEL, schema.LATERAL_POWER_LEVEL_A
-RAIL, VERTICAL, BOTH, UP = "rail sideways", "wheel, vertical force", "wheel, both forces", "rail up and down"
+RAIL, VERTICAL, BOTH, WHOLE = schema.SIDEWAYS_RADIATORS
+UP = "rail up and down"
 
 
 def _force(tree: DataTree, lines: Lines) -> Iterator[Panel]:
@@ -77,6 +78,7 @@ def _power(tree: DataTree, lines: Lines) -> list[Panel]:
         VERTICAL: (chart.BLUE, (1.5, 1.5), 1.3),
         BOTH: (chart.BLUE, (), 1.8, "^"),
         UP: (chart.VERMILLION, (1.5, 1.5), 1.3),
+        WHOLE: (INK, (), 1.8),
     }
     drawn = [
         Line(lines.at, series.values + weighting, series.label, *looks[series.label])
@@ -113,7 +115,7 @@ SIDEWAYS = (
         _power,
         "A-weighted one-third octaves. The rail radiates sideways over its height, beside its motion up and "
         "down (dotted); the modes of the wheel answer to both forces at once, beside the vertical one alone "
-        "(dotted). The total of the chapter on noise is without the motion sideways.",
+        "(dotted). The total holds rail and sleepers up and down, too.",
         any_of=(POWER,),
     ),
     Figure(
@@ -157,7 +159,7 @@ def sideways_table(tree: DataTree) -> ReportTable | None:
         "beyond friction": text_cells(map(data.in_percent, data.values(tree, schema.SLIP_SHARE)), "number"),
     }
     levels = {UP: [float(up.sel(law=law, radiator="rail")) for law in laws]} if up is not None else {}
-    levels |= {name: [each[name] for each in own] for name in (RAIL, VERTICAL, BOTH)}
+    levels |= {name: [each[name] for each in own] for name in schema.SIDEWAYS_RADIATORS}
     columns |= {name: number_cells(level, "{:.1f}") for name, level in levels.items()}
     note = (
         "Sound power in dB(A) re 1 pW, over the bands that were computed. Beyond friction: share of the "
