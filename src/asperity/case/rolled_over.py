@@ -11,19 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from asperity.arguments import Array
+from asperity.case import tables
 from asperity.case.body import INERTIA, MASS, PROFILE
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
 from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
-from asperity.case.tables import (
-    RECEPTANCES,
-    TableFile,
-    read_bays,
-    read_dynamic_stiffness,
-    read_seat_receptance,
-    read_table,
-)
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
     Choice,
@@ -132,7 +125,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     rail_head_width: float = key(LENGTH, "72 mm", "width of the rail's head, which radiates", _WIDTHS)
     material: Material = key(MaterialOrName(), "steel", "material of the rail")
     pad_table: Path | Array | None = optional(
-        TableFile(columns=(3, 4), read=read_dynamic_stiffness),
+        tables.TableFile(columns=(3, 4), read=tables.read_dynamic_stiffness),
         "pad.csv",
         "measured dynamic stiffness of a pad: frequency (Hz), real and imaginary part (N/m), or magnitude "
         "(N/m) and loss factor, and the preload (N) if at several; approximated in time; with pad_stiffness "
@@ -147,7 +140,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         goes_with="pad_table",
     )
     sleeper_table: Path | Array | None = optional(
-        TableFile(columns=(3,), read=read_seat_receptance),
+        tables.TableFile(columns=(3,), read=tables.read_seat_receptance),
         "sleeper.csv",
         "measured receptance of a sleeper at a rail seat with both pressed alike: frequency (Hz), real and "
         "imaginary part (m/N), or magnitude (m/N) and phase (deg); modes on sleeper_mass are fitted",
@@ -169,7 +162,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     ballast_scatter: float = _scatter("stiffnesses of ballast", 1)
     scatter_seed: int = key(INDEX, 1, "seed of these draws", goes_with="bays")
     bay_table: Path | Array | None = optional(
-        TableFile(columns=(3,), read=read_bays),
+        tables.TableFile(columns=(3,), read=tables.read_bays),
         "bays.csv",
         "bays one by one instead, after which the track repeats: distance to the next sleeper (m), stiffness "
         "of pad and of ballast (N/m); damping goes with stiffness",
@@ -182,14 +175,14 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "0 m to 100 km: tracks are rolled over for less",
     )
     decay_rates: Path | Array | None = optional(
-        TableFile(columns=(2, 3), read=read_decay_rates),
+        tables.TableFile(columns=(2, 3), read=read_decay_rates),
         "decay_rates.csv",
         "measured decay rates (EN 15461), which the sound power of rail and sleepers then follows, not the "
         "motion: one-third octave (Hz), vertical and, if it is there, lateral rate (dB/m)",
         "those of this track",
     )
     mobility: Path | Array | None = optional(
-        TableFile(columns=(2, 3), read=read_mobility),
+        tables.TableFile(columns=(2, 3), read=read_mobility),
         "mobility.csv",
         "measured point mobility of the rail at mid-span, likewise: frequency (Hz), magnitude or real and "
         "imaginary part ((m/s)/N; in a file also of an accelerance or receptance, by its unit)",
@@ -230,12 +223,12 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     @cached_property
     def _pad_rows(self) -> Array:
         assert self.pad_table is not None
-        return read_dynamic_stiffness(self.pad_table)
+        return tables.read_dynamic_stiffness(self.pad_table)
 
     @cached_property
     def _sleeper(self) -> MeasuredSleeper:
         assert self.sleeper_table is not None
-        frequency, receptance = read_seat_receptance(self.sleeper_table)
+        frequency, receptance = tables.read_seat_receptance(self.sleeper_table)
         track, bedded = Track.named(self.name, **self._told), self.sleeper_measured == BEDDED
         bed = track.support.below(2.0 * math.pi * frequency)[1] if bedded else None
         return measured_sleeper(frequency, receptance, track.sleeper_mass, bed)
@@ -243,7 +236,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     @cached_property
     def _listed(self) -> Array:
         assert self.bay_table is not None
-        return read_bays(self.bay_table)
+        return tables.read_bays(self.bay_table)
 
     def _drawn_or_listed(self) -> Bays | None:
         """How bays differ, if they do."""
@@ -455,7 +448,7 @@ class StructureKeys(RolledOver):
         from asperity.structures.receptance_fit import fit_structure, receptances_in
 
         assert self.receptances is not None
-        rows = read_table(self.receptances, RECEPTANCES)
+        rows = tables.read_table(self.receptances, tables.RECEPTANCES)
         at, driven, frequency, given = receptances_in(rows, name_of(self.receptances))
         fitted = fit_structure(at, driven, frequency, given, mass=self.mass, inertia=self.inertia)
         return fitted, frequency

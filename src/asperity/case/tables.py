@@ -22,10 +22,8 @@ from asperity.files import amount
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
 from asperity.spectra import energy_sum
-from asperity.structures.bays import MOST_BAYS
-from asperity.structures.measured_sleeper import check_receptance
+from asperity.structures import bays, measured_sleeper, stiffness_table
 from asperity.structures.outline import checked_outline
-from asperity.structures.stiffness_table import preloads_of, stiffness_at_preload
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
@@ -197,7 +195,7 @@ def read_seat_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex1
     """Read the receptance of a sleeper at its rail seat, as `read_receptance`, that makes no energy."""
     frequency, receptance = read_receptance(table)
     with fitted_to(table):
-        check_receptance(frequency, receptance)
+        measured_sleeper.check_receptance(frequency, receptance)
     return frequency, receptance
 
 
@@ -213,8 +211,8 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
         real = rows[:, 1] / np.hypot(1.0, rows[:, 2])
         rows = np.column_stack([rows[:, 0], real, real * rows[:, 2], rows[:, 3:]])
     try:
-        for preload in preloads_of(rows):
-            stiffness_at_preload(rows, preload)
+        for preload in stiffness_table.preloads_of(rows):
+            stiffness_table.stiffness_at_preload(rows, preload)
     except InputError as error:
         raise error.about(name_of(table), f"{error.received} ({error.what})") from None
     return rows
@@ -223,9 +221,9 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
 def read_bays(table: TableSource) -> Array:
     """Read the bays of a track one by one (n, 3): distance to the next sleeper, m, pad and ballast, N/m."""
     rows = read_table(table, BAYS)
-    if len(rows) > MOST_BAYS:
+    if len(rows) > bays.MOST_BAYS:
         raise InputError(
-            name_of(table), f"{len(rows)} bays", f"at most {MOST_BAYS}", "They repeat by themselves."
+            name_of(table), f"{len(rows)} bays", f"at most {bays.MOST_BAYS}", "They repeat by themselves."
         )
     for column, values in zip(BAYS, rows.T, strict=True):
         if (wrong := values <= 0.0).any():

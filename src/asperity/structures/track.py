@@ -12,18 +12,9 @@ from asperity.arguments import Array, Complex, finite_array, shown
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
 from asperity.structures import bays, periodic_rail, stiffness_table, track_parameters
+from asperity.structures import support as chains
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
 from asperity.structures.rail import Rail
-from asperity.structures.support import (
-    BendingSleeper,
-    Chain,
-    ConstantLoss,
-    Element,
-    Losses,
-    RigidMass,
-    Spring,
-    TunedDamper,
-)
 
 _LOSSES = [(f"{layer}_damping", f"{layer}_loss_factor") for layer in track_parameters.LAYERS]
 _INSTEAD = [*_LOSSES, *((b, a) for a, b in _LOSSES), *(("pad_table", each) for each in _LOSSES[0])]
@@ -151,10 +142,10 @@ class Track(track_parameters.TrackParameters):
         """All that its motion depends on, by name."""
         return {key: value for key, value in asdict(self).items() if key not in ("name", "sources")}
 
-    def _losses(self, part: str, factor: float | None) -> Losses:
+    def _losses(self, part: str, factor: float | None) -> chains.Losses:
         measured = self.pad_table if part == "pad" else None
-        relaxed: Losses | None = getattr(self.relaxations, part, None)
-        return relaxed or measured or ConstantLoss(factor)
+        relaxed: chains.Losses | None = getattr(self.relaxations, part, None)
+        return relaxed or measured or chains.ConstantLoss(factor)
 
     @property
     def rail(self) -> Rail:
@@ -166,7 +157,7 @@ class Track(track_parameters.TrackParameters):
         return Rail(self.bending_stiffness, self.mass_per_length, losses, *section)
 
     @property
-    def springs(self) -> dict[str, Spring]:
+    def springs(self) -> dict[str, chains.Spring]:
         """Springs between rail and ground by their names of `LAYERS`, those that give way at all."""
         own = self.under_sleeper_pad_stiffness, self.under_sleeper_pad_damping
         layers = (
@@ -176,47 +167,48 @@ class Track(track_parameters.TrackParameters):
             (self.subgrade_stiffness, self.subgrade_damping, self.subgrade_loss_factor),
         )
         return {
-            layer: Spring(stiffness, self._losses(layer, factor), damping or 0.0)
+            layer: chains.Spring(stiffness, self._losses(layer, factor), damping or 0.0)
             for layer, (stiffness, damping, factor) in zip(track_parameters.LAYERS, layers, strict=True)
             if stiffness is not None and stiffness < np.inf
         }
 
     @property
-    def elements(self) -> dict[str, Element]:
+    def elements(self) -> dict[str, chains.Element]:
         """What lies between rail and ground, by name, from the rail down."""
         springs = self.springs
-        sleeper: Element = self.measured_sleeper or RigidMass(self.sleeper_mass)
+        sleeper: chains.Element = self.measured_sleeper or chains.RigidMass(self.sleeper_mass)
         if self.sleeper_bending_stiffness is not None:
             beam = self.sleeper_length, self.sleeper_bending_stiffness, self.seat_distance
-            sleeper = BendingSleeper(self.sleeper_mass, *beam)
-        bed = {} if self.ballast_mass is None else {"ballast mass": RigidMass(self.ballast_mass)}
+            sleeper = chains.BendingSleeper(self.sleeper_mass, *beam)
+        bed = {} if self.ballast_mass is None else {"ballast mass": chains.RigidMass(self.ballast_mass)}
         found = {"pad": springs.pop("pad"), "sleeper": sleeper} | springs
         subgrade = {"subgrade": found.pop("subgrade")} if "subgrade" in found else {}
         return found | bed | subgrade
 
     @property
-    def support(self) -> Chain:
+    def support(self) -> chains.Chain:
         """What the rail lies on at each sleeper."""
-        return Chain(tuple(self.elements.values()))
+        return chains.Chain(tuple(self.elements.values()))
 
     @property
-    def damper(self) -> TunedDamper | None:
+    def damper(self) -> chains.TunedDamper | None:
         """What hangs at the rail in the middle of each bay."""
         if self.rail_damper_mass is None:
             return None
         assert self.rail_damper_frequency is not None
         assert self.rail_damper_loss_factor is not None
-        return TunedDamper(self.rail_damper_mass, self.rail_damper_frequency, self.rail_damper_loss_factor)
+        tuning = self.rail_damper_frequency, self.rail_damper_loss_factor
+        return chains.TunedDamper(self.rail_damper_mass, *tuning)
 
     @property
-    def lossy(self) -> dict[str, Losses]:
+    def lossy(self) -> dict[str, chains.Losses]:
         """Losses that are not causal, by part: of the rail, and of the springs below it."""
         parts = {"rail": self.rail.losses} | {layer: each.losses for layer, each in self.springs.items()}
         return {
             part: losses
             for part, losses in parts.items()
             if isinstance(losses, stiffness_table.StiffnessTable)
-            or (isinstance(losses, ConstantLoss) and losses.factor)
+            or (isinstance(losses, chains.ConstantLoss) and losses.factor)
         }
 
     @property

@@ -9,16 +9,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    as_completed,
-    wait,
-)
+from concurrent import futures
 from contextlib import closing, contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
@@ -48,7 +39,7 @@ BEAT = 5.0
 """How often an executor is asked whether it lives, s."""
 
 
-def through(executor: Executor, members: Sequence[Member]) -> Outcomes:
+def through(executor: futures.Executor, members: Sequence[Member]) -> Outcomes:
     """Compute members through any executor; yield each once, as they end, as `compute_member` returned it.
 
     A member whose worker is lost goes to another one.
@@ -56,24 +47,24 @@ def through(executor: Executor, members: Sequence[Member]) -> Outcomes:
     lost: dict[Member, Exception] = dict.fromkeys(members, Exception())
     heart = Heart(executor, len(members))
     for _ in range(ATTEMPTS):
-        futures: dict[Future[Outcome], Member] = {}
+        given: dict[futures.Future[Outcome], Member] = {}
         try:
             for member in lost:
-                futures[_submitted(executor, member)] = member
+                given[_submitted(executor, member)] = member
             lost = {}
-            for future in _ended(futures, heart):
+            for future in _ended(given, heart):
                 try:
                     outcome = future.result()
                 except Exception as error:
-                    lost[futures[future]] = error
+                    lost[given[future]] = error
                     continue
                 heart.finished += 1
-                yield futures[future], outcome
+                yield given[future], outcome
         except RuntimeError as error:  # broken, or shut down
             what = f"the executor takes no more members ({error})"
             raise ComputationError(what, "the same study again: it goes on where it was") from error
         finally:
-            for future in futures:
+            for future in given:
                 future.cancel()
         if not lost:
             return
@@ -83,24 +74,24 @@ def through(executor: Executor, members: Sequence[Member]) -> Outcomes:
         yield member, Failure.of(reason)
 
 
-def _ended(futures: Collection[Future[Outcome]], heart: Heart) -> Iterator[Future[Outcome]]:
+def _ended(given: Collection[futures.Future[Outcome]], heart: Heart) -> Iterator[futures.Future[Outcome]]:
     """Yield futures as they end, while there is life in the executor."""
-    waiting = set(futures)
+    waiting = set(given)
     while waiting:
-        done, waiting = wait(waiting, BEAT, FIRST_COMPLETED)
+        done, waiting = futures.wait(waiting, BEAT, futures.FIRST_COMPLETED)
         yield from done
         if not done:
             heart.listen()
 
 
-def _submitted(executor: Executor, member: Member) -> Future[Outcome]:
+def _submitted(executor: futures.Executor, member: Member) -> futures.Future[Outcome]:
     assert member.case is not None
     return executor.submit(compute_member, member.key, member.case)
 
 
 def _in_this_process(members: Sequence[Member]) -> Outcomes:
     """Compute members one by one where their laws are registered."""
-    with ThreadPoolExecutor(1) as here:
+    with futures.ThreadPoolExecutor(1) as here:
         yield from through(here, members)
 
 
@@ -126,17 +117,17 @@ def _in_processes(
 ) -> Generator[tuple[Member, Outcome], None, list[Member]]:
     """Compute members until all are, or a process ends; return those that are not, in their order."""
     missing = dict.fromkeys(members)
-    futures: dict[Future[Outcome], Member] = {}
+    given: dict[futures.Future[Outcome], Member] = {}
     with _pool(workers) as pool:
-        with suppress(BrokenExecutor):
+        with suppress(futures.BrokenExecutor):
             for member in members:
                 with no_interrupt_for_children():  # a process may start here
-                    futures[_submitted(pool, member)] = member
-        for future in as_completed(futures):
-            member = futures.pop(future)
+                    given[_submitted(pool, member)] = member
+        for future in futures.as_completed(given):
+            member = given.pop(future)
             try:
                 outcome = future.result()
-            except BrokenExecutor:
+            except futures.BrokenExecutor:
                 continue
             del missing[member]
             yield member, outcome
@@ -144,12 +135,12 @@ def _in_processes(
 
 
 @contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+def _pool(workers: int) -> Iterator[futures.ProcessPoolExecutor]:
     """Processes that end with this one, however it ends."""
     context = multiprocessing.get_context("spawn")  # forked processes may hang in compiled threads
     watched, held = context.Pipe(duplex=False)
     with no_interrupt_for_children():  # one that keeps track of shared memory
-        pool = ProcessPoolExecutor(
+        pool = futures.ProcessPoolExecutor(
             workers, context, initializer=_begin, initargs=(watched, max(1, processors() // workers))
         )
     try:
@@ -180,7 +171,7 @@ def study(
     definition: str | os.PathLike[str] | Mapping[str, Any] | Study | Case,
     sweep: Mapping[str, Any] | None = None,
     *,
-    executor: Executor | None = None,
+    executor: futures.Executor | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> xarray.Dataset:

@@ -8,20 +8,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    Axis,
-    Line,
-    Mark,
-    Note,
-    Numbers,
-    Panel,
-    Rules,
-)
+from asperity.reporting.chart import INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
@@ -97,7 +84,7 @@ def _short(at: Numbers) -> Rules:
 # --- receptances and decay rates
 
 
-_MIDSPAN = "rail, mid-span", (BLUE,)
+_MIDSPAN = "rail, mid-span", (chart.BLUE,)
 _SUPPORT = "rail, over a sleeper", (VERMILLION, (6, 1.5))
 RECEPTANCES = (
     Of(schema.RECEPTANCE_MIDSPAN, "", *_MIDSPAN),
@@ -106,7 +93,7 @@ RECEPTANCES = (
     Of(schema.RECEPTANCE_SUPPORT_PHASE, "receptance_support phase", *_SUPPORT),
     Of(schema.RECEPTANCE_ALL_BAYS, "", "rail, mid-spans of all bays, rms", (INK, (), 1.6), optional=True),
     Of(schema.RECEPTANCE_EQUAL_BAYS, "", "rail, mid-span of equal bays", (MUTED, (3, 1.5)), optional=True),
-    Of(schema.WHEEL_RECEPTANCE, "", "wheel", (GREEN, (6, 1.5, 1.5, 1.5))),
+    Of(schema.WHEEL_RECEPTANCE, "", "wheel", (chart.GREEN, (6, 1.5, 1.5, 1.5))),
     Of(schema.CONTACT_RECEPTANCE, "", "contact spring", (MUTED, (1.5, 1.5))),
 )
 _MOBILITY = over_bands(schema.MEASURED_MOBILITY, schema.RECEPTANCE_MIDSPAN)
@@ -174,7 +161,7 @@ def _bays(tree: DataTree, lines: Lines) -> Iterator[Panel]:
         (series,) = lines.of(entry)
         values = series.values * unit
         mean = Rules(np.array([values.mean()]), "y")
-        points = Line(lines.at, values, colour=BLUE, width=0.8, marker="o")
+        points = Line(lines.at, values, colour=chart.BLUE, width=0.8, marker="o")
         margin = 0.1 * max(float(np.ptp(values)), 0.1 * values.mean())
         yield Panel(
             along, Axis(label, values.min() - margin, values.max() + margin), (mean, points), height=1.5
@@ -211,12 +198,12 @@ def _decay_caption(tree: DataTree) -> str:
 
 
 _LAYERS = (
-    (BLUE, ()),
+    (chart.BLUE, ()),
     (VERMILLION, (6, 1.5)),
-    (GREEN, (3, 1.5)),
+    (chart.GREEN, (3, 1.5)),
     (MUTED, (6, 1.5, 1.5, 1.5)),
     (INK, (1.5, 1.5)),
-    (BLUE, (1.5, 1.5)),
+    (chart.BLUE, (1.5, 1.5)),
 )
 """Looks of parts of the track."""
 
@@ -317,7 +304,7 @@ TRACK = (
         "Decay rate of the track",
         Of(schema.TRACK_FREQUENCY),
         (
-            Of(schema.DECAY_RATE, "", "eigenvalue", (BLUE, (), 1.6)),
+            Of(schema.DECAY_RATE, "", "eigenvalue", (chart.BLUE, (), 1.6)),
             Of(schema.DECAY_RATE_EN15461, "", "EN 15461, sum over distances", (VERMILLION, (6, 1.5), 1.2)),
             Of(schema.DECAY_RATE_LIMIT, "", "lower limit, ISO 3095", (INK, (4, 2), 1.4)),
             over_bands(schema.MEASURED_DECAY_RATE, schema.DECAY_RATE),
@@ -378,7 +365,7 @@ def _loss(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     bands = panels.band_axis(lines.at)
     (error,) = (s.values for s in lines.of(_FORCE))
     edges = lines.at / panels.EDGE, lines.at * panels.EDGE, np.fmin(error, 0.0), np.fmax(error, 0.0)
-    errors: list[Mark] = [chart.Boxes(*edges, "contact force", BLUE, hatch="/")]
+    errors: list[Mark] = [chart.Boxes(*edges, "contact force", chart.BLUE, hatch="/")]
     for s in lines.of(_RAIL):
         errors.append(Line(lines.at, s.values, "receptance of the rail", MUTED, (6, 1.5), 1.2))
     errors.append(panels.zero(colour=INK, width=0.8))
