@@ -75,7 +75,7 @@ def test_force_closes_around_a_rough_raceway():
     assert np.std(averaged - exact) < 0.05 * np.std(exact)
 
 
-@pytest.mark.parametrize("waves", [3, 12])
+@pytest.mark.parametrize("waves", [4, 12])
 def test_waves_are_felt_by_sin_q_over_q(waves):
     radius, texture = 0.7 * MM, AroundTexture(waves=(waves,), amplitudes=(5 * NM,))
     surface = raceway_on(CONTACT, LOAD, radius, texture, seed=3)
@@ -137,6 +137,16 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
     )
     print(force(law, middle, sinks + APPROACH), exact)
     assert_allclose(force(law, middle, sinks + APPROACH), exact, rtol=0.1)
+
+
+def test_marks_all_around_repeat():
+    marks = Fault("mark", length=0.25 * MM, width=0.8 * MM, depth=2 * UM, count=4)
+    surface = raceway_on(CONTACT, LOAD, 0.3 * MM, faults=(marks,))
+    quarter, places = surface.circumference / 4, surface.circumference * np.arange(0.0, 0.25, 0.01)
+    law = laws_on(surface, ("table",))["table"]
+    found = force(law, places, APPROACH)
+    assert found[0] < 0.9 * LOAD
+    assert_allclose(force(law, places + quarter, APPROACH), found, rtol=0.02)
 
 
 def test_texture_of_a_ball_is_averaged_for_its_contact():
