@@ -102,26 +102,14 @@ def raceway_on(
         min([axis / cells, *wave, *(fault.size[i] / CELLS_OF_FAULT for fault in faults)])
         for i, (axis, cells) in enumerate(zip(axes, CELLS, strict=True))
     ]
-    hollows = [_wider(fault, contact, load) for fault in faults if fault.shape != "particle"]
-    half = HALF_WINDOW * axes[1] + max(hollows, default=0.0)
+    # a ball sinks into a hollow until it lands on edges, which may be as far out
+    rx, ry = 8.0 * contact.radius_x, 8.0 * contact.radius_y
+    sinks = max((min(f.depth, f.size[0] ** 2 / rx, f.size[1] ** 2 / ry) for f in faults), default=0.0)
+    half = HALF_WINDOW * axes[1] + 0.5 * math.sqrt(ry * sinks)
     stride = max(1, math.floor(axes[0] / CELLS[0] / spacing[0] + 1e-9))
     rows = stride * fft.next_fast_len(math.ceil(around / spacing[0] / stride), real=True)
     shape, steps = (rows, 2 * math.ceil(half / spacing[1]) + 1), (around / rows, spacing[1])
     return raceway(texture, faults, shape, steps, seed=seed, followed=FOLLOWED * axes[0])
-
-
-def _wider(fault: Fault, contact: Hertz, load: float) -> float:
-    """How much farther across than on a smooth raceway a ball in a hollow may touch, m.
-
-    It sinks by no more than the sagitta of the hollow's length or width; sides that lie deeper under the
-    largest force are not met.
-    """
-    radii = contact.radius_x, contact.radius_y
-    along, across = ((0.5 * size) ** 2 / (2.0 * r) for size, r in zip(fault.size, radii, strict=True))
-    drop = min(fault.depth, along)
-    if across > drop + contact.approach(HIGHEST_FORCE * load):
-        return 0.0
-    return math.sqrt(2.0 * contact.radius_y * min(drop, across))
 
 
 @dataclass(frozen=True, eq=False)
@@ -311,22 +299,17 @@ class OnRaceway:
         """Forces (states, positions) once around; where nothing is in the window they are solved once."""
         window, lines = self.shape.body.shape
         new, counts = self._met(self.surface.heights + self.surface.faults), []
-        forces = np.empty((len(self.approaches), len(new)))
-
-        def solve(at: slice | NDArray[np.bool_], rows: Array, planes: Array) -> None:
-            job = scan.ScanJob(
-                self.space, Rows(rows), self.shape.body, self.approaches, self.stride,
-                rtol_for(self.accuracy), planes,
-            )  # fmt: skip
+        forces, alike = np.empty((len(self.approaches), len(new))), np.zeros((window, lines))
+        runs: list[tuple[Any, Array, Array]] = [] if new.all() else [(~new, alike, np.zeros(1))]
+        for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
+            under = self.scanned[first * self.stride : (stop - 1) * self.stride + window]
+            runs.append((slice(first, stop), under, self.planes[first:stop]))
+        fixed = self.shape.body, self.approaches, self.stride, rtol_for(self.accuracy)
+        for at, rows, planes in runs:
+            job = scan.ScanJob(self.space, Rows(rows), *fixed, planes)
             found = scan.scan_forces(job, cache=self.cache, progress=self.progress)
             forces[:, at] = found.forces
             counts.append(found.counts)
-
-        if not new.all():
-            solve(~new, np.zeros((window, lines)), np.zeros(1))
-        for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
-            under = slice(first * self.stride, (stop - 1) * self.stride + window)
-            solve(slice(first, stop), self.scanned[under], self.planes[first:stop])
         scan.warn_of_flaws(scan.total(counts), "the raceway", "accuracy")
         return ScannedForces(forces, scan.total(counts), False)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,6 @@ from asperity.arguments import Array, require
 from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.heightmap import HeightMap
 
-Shape = Literal["pit", "spall", "dent", "particle", "mark", "map"]
 SHAPES = ("pit", "spall", "dent", "particle", "mark", "map")
 LENGTH = Quantity("m", above=0)
 MAP = File(held=(HeightMap,), content="a height map")
@@ -64,7 +63,7 @@ class Fault:
     [-0.00028, -0.00028, 0.0]
     """
 
-    shape: Shape = parameter(Choice(SHAPES), "pit", "kind of fault")  # noqa: RUF009
+    shape: str = parameter(Choice(SHAPES), "pit", "kind of fault")
     angle: float = parameter(Quantity("rad"), "0 deg", "angle of its middle around", default=0.0)
     offset: float = parameter(Quantity("m"), "0 mm", "distance of its middle from the path", default=0.0)
     length: float = parameter(LENGTH, "0.18 mm", "length along the path", _SIZE, default=None)
