@@ -10,7 +10,7 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from asperity.arguments import file_path, no_file, shown
+from asperity.arguments import ArrayLike, NDArray, file_path, no_file, shown
 from asperity.errors import InputError, reason
 from asperity.files import is_sealed, write_bytes
 from asperity.sandbox import Answer, sandboxed
@@ -19,7 +19,6 @@ from asperity.schema.provenance import ASPERITY_VERSION, CASE, SCHEMA_VERSION
 
 if TYPE_CHECKING:
     import xarray
-    from numpy.typing import ArrayLike, NDArray
 
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra")
 PACKED = {"fletcher32": True, "zlib": True, "complevel": 1, "shuffle": True}

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, ArrayLike, require
 from asperity.case.sideways import INCLINATIONS
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile

@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, NDArray, require
 from asperity.case.form import Section
 from asperity.case.toml import read_definition, read_toml, refuse_vast
 from asperity.errors import InputError

@@ -3,9 +3,8 @@
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.case.content import name_of
 from asperity.case.tables import Column, TableSource, read_table, refuse_disorder
 from asperity.errors import InputError

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from asperity.case.form import Section
 from asperity.parameters import Choice, Number, Quantity, key, keys_of, optional
-from asperity.structures.lateral_rail import LateralRail
-
-if TYPE_CHECKING:
-    from asperity.structures.lateral_rail import LateralTrack
-    from asperity.structures.track import Track
+from asperity.structures.lateral_rail import LateralRail, LateralTrack
+from asperity.structures.track import Track
 
 _PADS, _HEADS = "pads lie between", "rail heads lie between"
 INCLINATIONS = {"0": 0.0, "1:40": 1.0 / 40.0, "1:20": 1.0 / 20.0}
@@ -76,8 +71,6 @@ class SidewaysKeys(Section, parameters=keys_of(LateralRail, otherwise="of a UIC 
 
     def model(self, track: Track, foot_width: float) -> LateralTrack:
         """The track sideways, of a rail with a foot of a width, m."""
-        from asperity.structures.lateral_rail import LateralTrack
-
         own = {
             name: getattr(self, name) for name in ("pad_stiffness", "pad_roll_stiffness", "ballast_stiffness")
         }

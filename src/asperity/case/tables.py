@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array, no_file, shown
+from asperity.arguments import Array, NDArray, no_file, shown
 from asperity.case.content import name_of
 from asperity.case.headings import are_words, heading_of, unit_of
 from asperity.errors import InputError

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, not_negative, require
+from asperity.arguments import Array, ArrayLike, NDArray, not_negative, require
 from asperity.laws import spec
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
     from scipy.interpolate import BSpline
 
     from asperity.contact.in_place import ContactInPlace

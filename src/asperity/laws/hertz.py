@@ -3,16 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from asperity.laws import spec
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from asperity.kernels.pointforce import Prepared
-    from asperity.laws.spec import Materials
-    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +24,12 @@ class HertzLaw:
     """
 
     stiffness: float
-    texture: StateTexture | None = None
+    texture: spec.StateTexture | None = None
     damping: float = 0.0
     name: str = "hertz"
-    plane: StateTexture | None = None
+    plane: spec.StateTexture | None = None
 
-    def prepare(self, positions: ArrayLike) -> Prepared:
+    def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m; refuse numbers out of range."""
         from asperity.laws.layout import on_curve
         from asperity.reduction.stiffness import ForceCurve
@@ -46,7 +38,7 @@ class HertzLaw:
         return on_curve(curve, self.texture, positions, damping=self.damping, plane=self.plane)
 
 
-def _build(materials: Materials) -> HertzLaw:
+def _build(materials: spec.Materials) -> HertzLaw:
     """Build the law from the materials of a case; a filter is read by force, as rough contact is softer."""
     from asperity.reduction.stiffness import ForceCurve
 

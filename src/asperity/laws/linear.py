@@ -3,16 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from asperity.laws import spec
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from asperity.kernels.pointforce import Prepared
-    from asperity.laws.spec import Materials
-    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,11 +28,11 @@ class Linear:
     force: float
     stiffness: float
     approach: float = 0.0
-    texture: StateTexture | None = None
+    texture: spec.StateTexture | None = None
     damping: float = 0.0
     name: str = "linear"
 
-    def prepare(self, positions: ArrayLike) -> Prepared:
+    def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m; refuse numbers out of range."""
         from asperity.laws.layout import on_curve
         from asperity.reduction.stiffness import ForceCurve
@@ -49,7 +41,7 @@ class Linear:
         return on_curve(curve, self.texture, positions, damping=self.damping, damped_in_flight=True)
 
 
-def _build(materials: Materials) -> Linear:
+def _build(materials: spec.Materials) -> Linear:
     """Build the law from the materials of a case."""
     approach, stiffness = materials.working_point
     # one state: a texture that changed with it would not be linear

@@ -3,17 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from asperity.arguments import real
 from asperity.laws import spec
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from asperity.kernels.pointforce import Prepared
-    from asperity.reduction.stiffness import ForceCurve
-    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +34,8 @@ class Printed:
         If the datum leaves r <= 0 in contact.
     """
 
-    curve: ForceCurve
-    texture: StateTexture | None
+    curve: spec.ForceCurve
+    texture: spec.StateTexture | None
     datum: float
     damping: float = 0.0
     name: str = "printed"
@@ -54,7 +46,7 @@ class Printed:
         least = lowest * (1.0 - 1e-9)
         real("datum of the state (m)", self.datum, f"at least {lowest:.6g}", at_least=least, remedy=remedy)
 
-    def prepare(self, positions: ArrayLike) -> Prepared:
+    def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
         from asperity.laws.layout import on_curve
 

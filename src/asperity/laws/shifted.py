@@ -3,16 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from asperity.laws import spec
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from asperity.kernels.pointforce import Prepared
-    from asperity.reduction.stiffness import ForceCurve
-    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,13 +23,13 @@ class Shifted:
         Plane from which the states of the texture count, m, as in `Areal`; the mean plane by default.
     """
 
-    curve: ForceCurve
-    texture: StateTexture | None
+    curve: spec.ForceCurve
+    texture: spec.StateTexture | None
     damping: float = 0.0
     name: str = "shifted"
-    plane: StateTexture | None = None
+    plane: spec.StateTexture | None = None
 
-    def prepare(self, positions: ArrayLike) -> Prepared:
+    def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
         from asperity.laws.layout import on_curve
 

@@ -11,19 +11,17 @@ from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeGuard, runtime_checkable
 
-from asperity.arguments import require, shown
+from asperity.arguments import Array, NDArray, require, shown
 from asperity.errors import InputError
 from asperity.parameters import Key
 from asperity.schema import spectra
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from asperity.arguments import Array
-    from asperity.kernels.pointforce import Prepared
-    from asperity.reduction.stiffness import ForceCurve
-    from asperity.reduction.table import ForceTable
-    from asperity.reduction.texture import StateTexture
+    from asperity.arguments import ArrayLike as ArrayLike
+    from asperity.kernels.pointforce import Prepared as Prepared
+    from asperity.reduction.stiffness import ForceCurve as ForceCurve
+    from asperity.reduction.table import ForceTable as ForceTable
+    from asperity.reduction.texture import StateTexture as StateTexture
 
 Dashes = Literal["-"] | tuple[float, tuple[float, ...]]
 

@@ -3,16 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from asperity.laws import spec
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from asperity.kernels.pointforce import Prepared
-    from asperity.reduction.table import ForceTable
-    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +24,12 @@ class Table:
         Plane from which the table's approaches count, m; the mean plane by default.
     """
 
-    table: ForceTable
+    table: spec.ForceTable
     damping: float = 0.0
-    plane: StateTexture | None = None
+    plane: spec.StateTexture | None = None
     name: str = "table"
 
-    def prepare(self, positions: ArrayLike) -> Prepared:
+    def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
         """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
         from asperity.laws.layout import on_table
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.case import cases, describing, form, scene
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
 from asperity.errors import InputError

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, ArrayLike, Complex, NDArray
 from asperity.spectra import HALF_BAND
 from asperity.structures.track import Track, decay_rate_en15461
 

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.linalg import solve_banded
 from scipy.special import exp1
 
-from asperity.arguments import Array, Complex, finite_array, positive, real
+from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real
 from asperity.errors import ComputationError, InputError
 from asperity.radiation.track import IMPEDANCE
 

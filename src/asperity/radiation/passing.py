@@ -5,11 +5,10 @@ from collections.abc import Iterable
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebvander
-from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import correlate1d
 
-from asperity.arguments import Array, Complex, finite_array
+from asperity.arguments import Array, ArrayLike, Complex, finite_array
 from asperity.progress import Progress
 from asperity.structures.moving_kernel import ZONES, HatResponse, MovingKernel, lagrange_weights
 from asperity.threads import in_order

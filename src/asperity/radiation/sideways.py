@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, positive
+from asperity.arguments import Array, ArrayLike, Complex, positive
 from asperity.radiation.track import IMPEDANCE, above_zero, dipole_ratio
 from asperity.structures.lateral_rail import LateralTrack, contact_shapes
 

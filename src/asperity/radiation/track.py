@@ -4,10 +4,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.special import h2vp, j1
 
-from asperity.arguments import Array, finite_array, positive, whole
+from asperity.arguments import Array, ArrayLike, finite_array, positive, whole
 from asperity.radiation.mobility import ForceOverBay, Mobility
 from asperity.structures.track import Track
 

@@ -4,10 +4,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.special import beta, gamma
 
-from asperity.arguments import Array, finite_array, positive, whole
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, whole
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, above_zero
 from asperity.structures.modal import modal_answers
 from asperity.structures.wheel import Wheel

@@ -1,7 +1,5 @@
 """Bodies set on what they roll over: at rest, with contacts soft enough for the time step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,15 +1,12 @@
 """A ball bearing turns: each ball between both rings, on raceways that it rolls over."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, finite_array, positive, require
+from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.errors import Outcome
 from asperity.laws.spec import Law
 from asperity.progress import Progress

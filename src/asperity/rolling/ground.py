@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, positive, real
+from asperity.arguments import Array, ArrayLike, positive, real
 from asperity.errors import InputError, LargeDeflectionWarning
 from asperity.kernels.rail import Channels
 from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step

@@ -8,10 +8,9 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from asperity.arguments import Array, positive, require
+from asperity.arguments import Array, NDArray, positive, require
 from asperity.errors import Outcome
 from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System

@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.errors import (
     ComputationError,
     ExtrapolationWarning,

@@ -23,10 +23,9 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag, eigh
 
-from asperity.arguments import Array
+from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw

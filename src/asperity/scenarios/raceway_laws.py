@@ -1,7 +1,5 @@
 """Contact laws on raceways that are closed around: grids for slender contacts, one scan of what is new."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -9,10 +7,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from asperity.arguments import Array, one_of, positive
+from asperity.arguments import Array, ArrayLike, NDArray, one_of, positive
 from asperity.contact import scan
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.case.tables import read_ratios
 from asperity.errors import Finding, Grade, MissingSourceWarning
 from asperity.laws import Role, in_role

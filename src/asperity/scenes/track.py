@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array
+from asperity.arguments import Array, ArrayLike
 from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
 from asperity.reference.tracks import iso_3095_decay_rate

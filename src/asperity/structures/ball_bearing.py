@@ -7,9 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
-from numpy.typing import ArrayLike
-
-from asperity.arguments import not_negative, one_of, positive, real, require, whole
+from asperity.arguments import ArrayLike, not_negative, one_of, positive, real, require, whole
 from asperity.contact.hertz import Hertz, in_groove
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, parameter
 from asperity.reference.bearings import BEARINGS, CLEARANCE, CONFORMITY, HARDNESS, STATIC_PRESSURE

@@ -12,9 +12,8 @@ from typing import Any, Self
 import numpy as np
 import scipy
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, one_of, positive, real, require
+from asperity.arguments import Array, ArrayLike, one_of, positive, real, require
 from asperity.errors import InputError
 from asperity.kernels.along import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material

@@ -9,9 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, finite_array, not_negative, require
+from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, OutOfRangeWarning
 from asperity.reference.bearings import STATIC_PRESSURE

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, finite_array, positive, real
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real
 from asperity.errors import InputError
 from asperity.reference.materials import Material
 

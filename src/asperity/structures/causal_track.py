@@ -13,10 +13,9 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, Complex, NDArray
 from asperity.spectra import third_octave_bands
 from asperity.store import Cache, content_key, made
 from asperity.structures.stiffness_table import StiffnessTable

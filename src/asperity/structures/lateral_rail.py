@@ -7,9 +7,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, finite_array, positive
+from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.errors import InputError
 from asperity.parameters import Quantity, keys_of, parameter
 from asperity.structures.measured_sleeper import MeasuredSleeper

@@ -1,13 +1,10 @@
 """A sleeper by its receptance at the rail seat, as it was measured or computed: modes that meet the table."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, finite_array
+from asperity.arguments import Array, ArrayLike, Complex, finite_array
 from asperity.errors import InputError
 from asperity.structures.stiffness_table import band_of
 from asperity.structures.support import Element

@@ -9,9 +9,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, finite_array, positive, real, real_array, require
+from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real, real_array, require
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.piecewise import evaluate_pieces
 

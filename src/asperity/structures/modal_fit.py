@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
 
 from asperity import errors
-from asperity.arguments import Array, Complex, finite_array, require
+from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array, require
 from asperity.errors import ComputationError, InputError
 from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, finite_array, require
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, require
 from asperity.errors import ComputationError, InputError
 
 MOST_POINTS = 2000

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, Complex, finite_array, not_negative
+from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array, not_negative
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.progress import Progress
 from asperity.store import Cache, content_key, made

@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, Complex, real_array
+from asperity.arguments import Array, ArrayLike, Complex, NDArray, real_array
 from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, percent
 from asperity.structures import modal_fit
 from asperity.structures.body import GRAVITY, Body, carriage

@@ -11,9 +11,8 @@ and the integral around the axis is π, or 2π of n = 0.
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.reference.materials import Material
 from asperity.structures.outline import Mesh
 

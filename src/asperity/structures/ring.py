@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, not_negative, one_of, positive, real, require, whole
+from asperity.arguments import Array, ArrayLike, not_negative, one_of, positive, real, require, whole
 from asperity.structures.modal import Modal
 
 Direction = Literal["radial", "axial"]

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, Complex, finite_array
+from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array
 from asperity.errors import InputError
 
 NOMINAL = 300.0

@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, ArrayLike, Complex
 from asperity.structures.stiffness_table import StiffnessTable
 
 

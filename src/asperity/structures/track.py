@@ -6,9 +6,8 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, finite_array, shown
+from asperity.arguments import Array, ArrayLike, Complex, finite_array, shown
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
 from asperity.structures import bays, periodic_rail, stiffness_table, track_parameters

@@ -5,9 +5,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, finite_array, real
+from asperity.arguments import Array, ArrayLike, Complex, finite_array, real
 from asperity.structures.cell_waves import CellWaves, cell_waves
 from asperity.structures.measured_sleeper import MeasuredSleeper
 from asperity.structures.support import Spring

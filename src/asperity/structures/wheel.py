@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, Complex, positive
+from asperity.arguments import Array, ArrayLike, Complex, positive
 from asperity.errors import InputError
 from asperity.structures import modal_fit
 from asperity.structures.body import Body, no_modes, resonances

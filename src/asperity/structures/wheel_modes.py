@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, finite_array, positive, real
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real
 from asperity.errors import InputError
 from asperity.reference.materials import Material
 from asperity.store import Cache, content_key, made

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import require, shown
+from asperity.arguments import NDArray, require, shown
 from asperity.case.content import content, described_value, holds_memory
 from asperity.case.describing import CaseKey, entry_of, value_in_toml
 from asperity.case.form import Section

@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.arguments import one_of, shown
+from asperity.arguments import NDArray, one_of, shown
 from asperity.case import any_case, cases, rolled_over, toml
 from asperity.errors import InputError
 from asperity.progress import Progress

@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
 from concurrent import futures
 from contextlib import closing, contextmanager, suppress
+from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import require, shown, whole
@@ -18,20 +19,17 @@ from asperity.case.scene import Case
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
 from asperity.laws import comes_with_the_program
-from asperity.progress import shown_progress
+from asperity.progress import Progress, shown_progress
 from asperity.studies.cluster import Heart
 from asperity.studies.definition import Member, Study, load_study, study_of
 from asperity.studies.member import Failure, compute_member
 from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
-
-    Outcome = dict[str, Any] | Failure
-    Outcomes = Generator[tuple[Member, Outcome], None, None]
     import xarray
 
-    from asperity.progress import Progress
+Outcome = dict[str, Any] | Failure
+Outcomes = Generator[tuple[Member, Outcome], None, None]
 
 ATTEMPTS = 3
 """How often a member is given to an executor that loses it."""

@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
 
 from asperity import __version__
-from asperity.arguments import nearest, shown
+from asperity.arguments import NDArray, nearest, shown
 from asperity.case.content import described_value
 from asperity.errors import InputError
 from asperity.reporting.data import typed_unit, typed_values

@@ -1,16 +1,13 @@
 """Faults of raceways and balls as heights, positive out of the material: pits, spalls, dents, particles."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, ArrayLike, require
 from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.heightmap import HeightMap
 

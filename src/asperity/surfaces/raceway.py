@@ -1,7 +1,5 @@
 """Surfaces that are closed around: raceways and balls with waviness, roughness, a trace, and faults."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,10 +7,9 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
-from asperity.arguments import Array, finite_array, require, two_lengths
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, require, two_lengths
 from asperity.parameters import File, ListOf, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.faults import LENGTH, MAP, Fault, lay, map_of
 from asperity.surfaces.heightmap import HeightMap
