@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from surface_files import sdf_binary
 
 from asperity.errors import InputError
 from asperity.surfaces.faults import Fault, lay
@@ -118,6 +119,16 @@ def test_map_of_a_fault_lies_about_its_middle():
     assert_allclose(
         fault.heights([0.0, 0.01 * MM, 1 * MM], 0.005 * MM), UM * np.array([-1, -0.5, 0]), atol=1e-12
     )
+
+
+def test_maps_come_from_files(tmp_path):
+    (tmp_path / "hole.sdf").write_bytes(sdf_binary(np.full((5, 7), -100.0), 7))  # nm
+    fault = Fault("map", map=tmp_path / "hole.sdf")
+    assert fault.size == pytest.approx((7 * 2 * UM, 5 * 3 * UM), rel=1e-9, abs=0.0)
+    assert fault.heights([0.0], 0.0)[0] == pytest.approx(-0.1 * UM, rel=1e-9, abs=0.0)
+    (tmp_path / "line.csv").write_text("x (mm), z (um)\n" + "".join(f"{i}, {i % 3}\n" for i in range(9)))
+    with pytest.raises(InputError, match=r"map: received a line; .* as a trace"):
+        made(AroundTexture(map=tmp_path / "line.csv"))
 
 
 @pytest.mark.parametrize(
