@@ -9,6 +9,7 @@ from asperity import Profile, WheelOnRail
 from asperity.errors import CaseError, InputError
 from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.scene import scene_of
+from refusals import refusals
 from small_cases import HEARD
 
 WINDOW = {"spacing": "0.25 mm", "window": "16 mm"}
@@ -93,16 +94,12 @@ def test_a_place_that_is_given_is_that_of_both_and_moves_no_gap():
 NARROW = circle(0.3, first=-10e-3, last=10e-3, points=41)
 
 
-@pytest.mark.parametrize(
-    ("sections", "message"),
-    [
-        ((CONE, NARROW), "sections that meet 2.5 mm from an edge of what is known of them; allowed: a con"),
-        ((section(lambda y: -y), None), "meet 0.0 mm from an edge.*change sideways.wheel_shift"),
-        ((section(lambda y: y, first=0.05, last=0.09), NARROW), "at least 8 mm inside, half of contact.win"),
-        ((CONE, section(lambda y: 100.0 * y)), "rail_profile: received a section that overhangs"),
-        ((Profile([0.0, 0.0, 0.0], 0.04), None), "wheel.profile: received 3 points; allowed: at least 4"),
-    ],
+test_sections_that_cannot_touch_are_refused = refusals(
+    (CONE, NARROW, "sections that meet 2.5 mm from an edge of what is known of them; allowed: a con"),
+    (section(lambda y: -y), None, "meet 0.0 mm from an edge.*change sideways.wheel_shift"),
+    (section(lambda y: y, first=0.05, last=0.09), NARROW, "at least 8 mm inside, half of contact.win"),
+    (CONE, section(lambda y: 100.0 * y), "rail_profile: received a section that overhangs"),
+    (Profile([0.0, 0.0, 0.0], 0.04), None, "wheel.profile: received 3 points; allowed: at least 4"),
+    of=lambda wheel, rail: case_of(wheel, rail, rail_inclination="1:40"),
+    error=(CaseError, InputError),
 )
-def test_sections_that_cannot_touch_are_refused(sections, message):
-    with pytest.raises((CaseError, InputError), match=message):
-        case_of(*sections, rail_inclination="1:40")
