@@ -21,7 +21,7 @@ _HOME = {
     "Track": "structures.track",
     "Wheel": "structures.wheel",
     "WheelSection": "structures.wheel_section",
-    "compare": "scenes.comparing",
+    "compare": "scenes.report",
     "effects": "studies.effects",
     "laws": "laws",
     "listen": "reporting.sound",

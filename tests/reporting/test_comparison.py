@@ -14,7 +14,7 @@ import asperity
 from asperity.reporting.chart import Boxes
 from asperity.reporting.comparison import MAIN, working_filter
 from asperity.reporting.comparison_page import compared_sections, summary
-from asperity.scenes.comparing import comparison_of, names_of
+from asperity.scenes.report import comparison_of, names_of
 from asperity.spectra import a_weighted_total
 
 LAWS = ["areal", "linear-filtered", "linear"]

@@ -13,8 +13,7 @@ from asperity.reporting.data import signed
 from asperity.reporting.figure import chosen_figures, write_figures
 from asperity.reporting.sound import TABLE, listen
 from asperity.results import read_result
-from asperity.scenes import comparing
-from asperity.scenes.report import PAGE, SUMMARY, figures_of, write_page, write_summary
+from asperity.scenes.report import comparison_of, figures_of, write_comparison, write_page, write_summary
 from asperity.store import Store, is_private, kernel_folders
 from asperity.terminal import say, say_files, say_table
 
@@ -29,8 +28,8 @@ def report_again(run: Path, folder: Path | None, *, summary: bool) -> dict[str, 
     target = _folder_beside(run, folder)
     refuse_unwritable(target, "folder of the report", "Choose another folder with -o.")
     tree = read_result(run)
-    what, name, write = ("summary", SUMMARY, write_summary) if summary else ("report", PAGE, write_page)
-    with together(target, last=name) as new:
+    what, write = ("summary", write_summary) if summary else ("report", write_page)
+    with together(target, last=(name := f"{what}.html")) as new:
         write(tree, new / name)
     files = {what: target / name}
     say_files(files)
@@ -67,7 +66,7 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
     """Compare runs into a page and a table, and say in short what differs."""
     folder = target.parent if target.suffix.lower() == ".html" else target
     refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
-    found = comparing.comparison_of(paths, laws=laws)
+    found = comparison_of(paths, laws=laws)
     table, names = found.table, found.names
     keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.telling_keys]
     if keys:
@@ -81,7 +80,7 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
     ]
     say_table(f"A-weighted, less {names[0]}, in dB", ["run", "law", *found.levels.values()], rows, width=120)
     say(sentence := summary(found))
-    page, numbers = comparing.write_comparison(found, target)
+    page, numbers = write_comparison(found, target)
     files = {"page": page, "table": numbers}
     say_files(files)
     columns = {

@@ -17,9 +17,8 @@ from asperity.reporting.page import PageFigure, page_figure, page_template
 from asperity.reporting.payload import charts_json
 from asperity.reporting.tables import ReportTable
 from asperity.results import read_result
-from asperity.scenes import comparing
 from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
-from asperity.scenes.report import report
+from asperity.scenes.report import compare, comparison_of, report
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.serving.stored_runs import SOUNDS
@@ -139,7 +138,7 @@ def numbered_names(names: Sequence[str]) -> list[str]:
 
 def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
     """A sentence, and what the page of the comparison shows below it."""
-    found = comparing.comparison_of(paths, numbered_names(names))
+    found = comparison_of(paths, numbered_names(names))
     blocks = [block for section in compared_sections(found) for block in section.blocks]
     return {"summary": summary(found), **told_blocks(blocks)}
 
@@ -149,7 +148,7 @@ def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
 
 def write_comparison_page(paths: list[str], names: list[str], folder: str) -> dict[str, Any]:
     """Write the page of a comparison, with its table, into a folder."""
-    comparing.compare(*paths, names=numbered_names(names), path=folder)
+    compare(*paths, names=numbered_names(names), path=folder)
     return {}
 
 
