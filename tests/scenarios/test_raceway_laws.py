@@ -177,9 +177,8 @@ def test_unknown_law_is_refused():
 def test_direct_solves_what_the_table_holds():
     texture = AroundTexture(roughness=20 * NM, longest=0.3 * MM, shortest=0.1 * MM)
     on = OnRaceway(CONTACT, raceway_on(CONTACT, LOAD, RADIUS, texture, [PIT]), LOAD)
-    places = (
-        np.array([0, 3, len(on.positions) // 2, -4]) % len(on.positions) * on.stride * on.surface.spacing[0]
-    )
-    approach = APPROACH - on.felt[(places / on.surface.spacing[0]).round().astype(int)]
+    rows = np.array([0, 3, on.rows // 2, -4, -0.4]) % on.rows  # one between the last and the first
+    places = rows * on.surface.spacing[0]
+    approach = APPROACH - on.felt[rows.round().astype(int) % on.rows]
     table, direct = (force(on.law(name, 0.0), places, approach) for name in ("table", "direct"))
     assert_allclose(table, direct, rtol=5e-3)

@@ -349,16 +349,14 @@ class OnRaceway:
 
     def law(self, name: str, damping: float) -> Law:
         """A law of `LAWS` by its name, with a contact damping, N s/m."""
+        if name == "direct":
+            half, (dx, dy) = len(self.shape.body) // 2, self.surface.spacing
+            whole = self._around(self.wavy + self.surface.faults, half + 1)
+            given = whole, self.shape.body, (dx, dy), self.contact.modulus, -(half + 1) * dx, self.hardness
+            return Direct(*given, rtol=rtol_for(self.accuracy), damping=damping)
         plane = self._texture(self.felt)
         if name == "table":
             return Table(self.table, damping, plane)
-        if name == "direct":
-            half, (dx, dy) = len(self.shape.body) // 2, self.surface.spacing
-            whole = self._around(
-                self.surface.heights + self.surface.faults + self.surface.line[:, None], half
-            )
-            given = whole, self.shape.body, (dx, dy), self.contact.modulus, -half * dx, self.hardness
-            return Direct(*given, rtol=rtol_for(self.accuracy), damping=damping)
         if name == "hertz":
             texture = self._texture(self.wavy[:, self.wavy.shape[1] // 2] + self.over_faults)
             return HertzLaw(self.contact.stiffness_constant, texture, damping)
@@ -418,7 +416,7 @@ def raceway_laws(
         contact, surface, positive("load of a ball (N)", load), hardness, accuracy, cache, progress
     )
     chosen = [one_of("law of a raceway", name, LAWS) for name in names]
-    if surface.faults.any() and set(chosen) - {"table"}:
+    if surface.faults.any() and set(chosen) & {"areal", "hertz"}:
         on.warn_of_faults()
     return {name: Closed(on.law(name, damping), surface.circumference) for name in chosen}
 
