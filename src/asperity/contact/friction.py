@@ -1,0 +1,145 @@
+"""Coulomb's law, and what is known of a contact with friction once it is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, real
+from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.errors import Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class Friction:
+    """Coefficient of friction: one number, or one for each cell.
+
+    Parameters
+    ----------
+    static : float or array_like (nx, ny)
+        Of a cell that sticks.
+    kinetic : float, optional
+        Share of it that is left to a cell that slips, from 0 to 1; by default all of it.
+    velocity : float, optional
+        Slip velocity, m/s, over which the coefficient falls: µ(v) = µ_s (k + (1 − k) exp(−v/velocity)). By
+        default it falls at once.
+
+    Raises
+    ------
+    InputError
+        If a coefficient is below zero or no number.
+
+    Notes
+    -----
+    The exponential is that of O. Polach, Wear 258 (2005) 992, here at each cell. Where the coefficient falls
+    at once, a cell that has slipped in a solution keeps the lower one in it.
+    """
+
+    static: float | ArrayLike
+    kinetic: float = 1.0
+    velocity: float | None = None
+
+    def __post_init__(self) -> None:
+        allowed = "coefficients of friction of at least 0"
+        finite_array("friction", self.static, allowed, at_least=0.0)
+        real("kinetic share of friction", self.kinetic, "from 0 to 1", at_least=0.0, at_most=1.0)
+        if self.velocity is not None:
+            real("slip velocity of friction", self.velocity, "a velocity above 0, m/s", above=0.0)
+
+    def coefficient(self, velocity: Array, slipped: Array) -> Array:
+        """Coefficient of cells (nx, ny) at a slip velocity, m/s, that have slipped or not."""
+        fallen = slipped if self.velocity is None else -np.expm1(-velocity / self.velocity)
+        return np.asarray(self.static, dtype=float) * (1.0 - (1.0 - self.kinetic) * fallen)
+
+
+@dataclass(frozen=True, eq=False)
+class SlidingContact:
+    """A contact with friction.
+
+    Attributes
+    ----------
+    normal : Contact
+        The contact under its load, with what tractions of unlike bodies change in it.
+    traction : ndarray, shape (2, nx, ny)
+        On the first body, along and across the rolling direction, Pa.
+    slip : ndarray, shape (2, nx, ny)
+        Of the first body against the second, zero out of contact: over the rolled distance; of a shift m.
+    sticks : ndarray of bool, shape (nx, ny)
+        Cells in contact that stick.
+    bound : ndarray, shape (nx, ny)
+        Largest traction, µ p, Pa.
+    creepage : tuple of float
+        ξ, η (a shift: m) and spin φ, 1/m (a shift: rad).
+    speed : float
+        Rolling speed, m/s; zero for a shift.
+    iterations, convolutions : int
+        Of Newton's method, all solutions together.
+    residual : float
+        Largest slip against Coulomb's law, over the largest rigid slip.
+    outcome : Outcome
+        How the solution ended.
+    """
+
+    normal: Contact = field(repr=False)
+    traction: Array = field(repr=False)
+    slip: Array = field(repr=False)
+    sticks: NDArray[np.bool_] = field(repr=False)
+    bound: Array = field(repr=False)
+    creepage: tuple[float, float, float]
+    speed: float
+    iterations: int
+    convolutions: int
+    residual: float
+    outcome: Outcome
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance was met."""
+        return self.outcome.ok
+
+    @property
+    def force(self) -> tuple[float, float]:
+        """Resultant on the first body, along and across, N."""
+        fx, fy = (float(each.sum()) * self.normal.half_space.cell_area for each in self.traction)
+        return fx, fy
+
+    @property
+    def moment(self) -> float:
+        """Moment on the first body about the normal through the middle of the grid, N m."""
+        x, y = places(self.normal.half_space)
+        arms = x * self.traction[1] - y * self.traction[0]
+        return float(arms.sum()) * self.normal.half_space.cell_area
+
+    @property
+    def limit(self) -> float:
+        """Largest force that friction carries, N."""
+        return float(self.bound.sum()) * self.normal.half_space.cell_area
+
+    @property
+    def stick_area(self) -> float:
+        """Area that sticks, m²."""
+        return float(self.sticks.sum()) * self.normal.half_space.cell_area
+
+    @property
+    def slip_area(self) -> float:
+        """Area that slips, m²."""
+        return self.normal.area - self.stick_area
+
+    @property
+    def work(self) -> float:
+        """What friction turns into heat over a rolled distance, J/m; of a shift J. At least zero."""
+        return -float((self.traction * self.slip).sum()) * self.normal.half_space.cell_area
+
+    @property
+    def dissipated_power(self) -> float:
+        """What friction turns into heat at the rolling speed, W."""
+        return self.work * self.speed
+
+
+def places(space: HalfSpace) -> tuple[Array, Array]:
+    """Places of the cells from the middle of the grid, (nx, 1) and (1, ny), m."""
+    x, y = (
+        d * (np.arange(float(n)) - 0.5 * (n - 1)) for n, d in zip(space.shape, space.spacing, strict=True)
+    )
+    return x[:, None], y[None, :]

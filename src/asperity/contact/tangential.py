@@ -1,0 +1,420 @@
+"""The tangential problem of a contact that is known: shift, transient and steady rolling with friction."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from asperity import arguments
+from asperity.arguments import Array, ArrayLike, Complex, finite_array, real, require
+from asperity.contact.friction import Friction, SlidingContact, places
+from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
+from asperity.kernels import traction as kernel
+from asperity.kernels.projected_cg import inverse_stencil
+from asperity.reference.materials import Material
+
+MAX_ITERATIONS, MAX_ROUNDS = 300, 60
+"""Of Newton's iteration, and of solutions whose bound, pressure or motion follows the last one."""
+CARRIED, DAMPING = 0.92, 5.0
+"""Share of a row's slip that the row ahead tells the preconditioner of steady rolling; damping of the first
+steps of a shift, over what a cell is displaced by its own traction. Found by trial."""
+ROUNDS_AGREE, FORCES_AGREE = 1e-4, 1e-6
+"""Change of the bound, and error of a force that is given, over the largest there is."""
+LARGE_CREEPAGE = 0.05
+"""Above this strains are no longer small."""
+PIVOTING = 0.99
+"""Share of slip from which on spin may say more than creepage."""
+Forces = tuple[float | None, float | None]
+
+
+class Manner(NamedTuple):
+    """How two bodies move."""
+
+    ahead: float  # rolled distance, m; zero for a shift
+    steady: bool
+    before: SlidingContact | None
+    start: SlidingContact | None
+    speed: float  # m/s
+    rtol: float
+
+    @property
+    def step(self) -> float:
+        """Over which slip is counted."""
+        return self.ahead or 1.0
+
+
+class FrictionalHalfSpace:
+    """The tangential problem of two bodies on the grid of a half-space.
+
+    Parameters
+    ----------
+    half_space : HalfSpace
+        Grid and modulus. The contact rolls along the first axis: material enters at its upper end.
+    bodies : (Material, Material)
+        Of the half-space's modulus. Traction acts on the first, whose creepage counts against the second.
+    friction : float, array_like (nx, ny) or Friction
+        Coefficient of friction.
+    coupled : bool
+        Whether pressure and traction of unlike bodies act on each other, iterated under constant load until
+        the bound changes by no more than 1e-4 of the largest. If not, a warning tells what is neglected.
+
+    Raises
+    ------
+    InputError
+        If the bodies have another modulus than the half-space.
+
+    Notes
+    -----
+    Slip over a rolled distance δ is ``s = δ (ξ − φ y, η + φ x) + u(x) − u'(x + δ)`` with the displacement
+    u' before, at the same material; in steady rolling u' is u. Traction is at most µ p, and opposite to the
+    slip where there is any: J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990). Small
+    creepages, no inertia, nothing between the bodies.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import FrictionalHalfSpace, HalfSpace, material
+    >>> steel, x = material("steel"), 0.4e-3 * (np.arange(32) - 15.5)
+    >>> wheel = np.add.outer(x**2, x**2) / (2 * 0.4)
+    >>> space = HalfSpace(wheel.shape, 0.4e-3, 0.5 * 210e9 / (1 - 0.3**2))
+    >>> rolling = FrictionalHalfSpace(space, (steel, steel), 0.3)
+    >>> found = rolling.roll(space.solve(wheel, load=50e3), creepage=(0.001, 0.0))
+    >>> found.converged, f"{-found.force[0] / found.limit:.2f}"
+    (True, '0.58')
+    """
+
+    def __init__(
+        self,
+        half_space: HalfSpace,
+        bodies: tuple[Material, Material],
+        friction: float | ArrayLike | Friction,
+        coupled: bool = True,
+    ) -> None:
+        self.half_space, self.coupled = half_space, coupled
+        self.friction = friction if isinstance(friction, Friction) else Friction(friction)
+        nu = np.array([body.poisson_ratio for body in bodies])
+        compliance = 2.0 * (1.0 + nu) / np.array([body.youngs_modulus for body in bodies])  # 1/G
+        total = float(compliance.sum())
+        self.shear_modulus, self.poisson_ratio = 2.0 / total, float(compliance @ nu) / total
+        self.unlikeness = 0.25 * float(np.subtract(*((1.0 - 2.0 * nu) * compliance)))  # K/G, 1/Pa
+        modulus, shape = self.shear_modulus / (1.0 - self.poisson_ratio), np.shape(self.friction.static)
+        same = math.isclose(modulus, half_space.modulus, rel_tol=1e-6)
+        allowed = f"the {half_space.modulus:.6g} Pa of the half-space"
+        require(
+            same, "modulus of the bodies", f"{modulus:.6g} Pa", allowed, "Take the same materials for both."
+        )
+        fits = shape in ((), half_space.shape)
+        require(fits, "friction", f"a map of shape {shape}", f"a number, or a map {half_space.shape}")
+        (dx, dy), scale = half_space.spacing, math.pi * self.shear_modulus
+        x, y = dx * np.arange(32.0)[:, None], dy * np.arange(32.0)[None, :]
+        along, across, _ = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
+        own = along[0, 0]
+        self._taps = inverse_stencil(0.5 * (along + across) / own) * (scale / own)
+        self._kernels: dict[float, tuple[Complex, Complex]] = {}
+        self._prepared: dict[tuple[int, int, float, bool], kernel.TractionConvolution] = {}
+
+    def shift(
+        self,
+        normal: Contact,
+        shift: tuple[float, float] = (0.0, 0.0),
+        rotation: float = 0.0,
+        *,
+        force: Forces = (None, None),
+        before: SlidingContact | None = None,
+        rtol: float = 1e-6,
+    ) -> SlidingContact:
+        """Shift the first body against the second.
+
+        Parameters
+        ----------
+        normal : Contact
+            The contact after the shift.
+        shift : tuple of float
+            Along and across, m, from the state before.
+        rotation : float
+            About the middle of the grid, rad.
+        force : tuple of (float or None)
+            On the first body, N, where it is given instead of a component of the shift.
+        before : SlidingContact, optional
+            Where the shift starts, as in a load that grows or turns back; by default without traction.
+        rtol : float
+            Largest slip that is against Coulomb's law, over the largest without traction.
+
+        Returns
+        -------
+        SlidingContact
+            With the shift as its creepage.
+
+        Raises
+        ------
+        InputError
+            For input that has no meaning, or a force that friction does not carry.
+        """
+        return self._find(normal, (*shift, rotation), force, Manner(0.0, False, before, before, 0.0, rtol))
+
+    def roll(
+        self,
+        normal: Contact,
+        creepage: tuple[float, float] = (0.0, 0.0),
+        spin: float = 0.0,
+        *,
+        distance: float | None = None,
+        force: Forces = (None, None),
+        before: SlidingContact | None = None,
+        start: SlidingContact | None = None,
+        speed: float = 1.0,
+        rtol: float = 1e-6,
+    ) -> SlidingContact:
+        """Roll steadily, or over a distance from a state before: one step of a transient.
+
+        Parameters
+        ----------
+        normal : Contact
+            The contact, after the distance; in steady rolling it stays as it is.
+        creepage : tuple of float
+            Velocity of the first body against the second over the rolling speed, along and across.
+        spin : float
+            Likewise the turning velocity about the normal through the middle of the grid, 1/m.
+        distance : float, optional
+            Over which slip is counted, m; by default the length of a cell.
+        force : tuple of (float or None)
+            On the first body, N, where it is given instead of a component of the creepage.
+        before : SlidingContact, optional
+            Where a transient starts, as ``shift(normal)`` without traction; by default it rolls steadily.
+        start : SlidingContact, optional
+            A solution nearby, as the last point of a creep curve.
+        speed : float
+            Rolling speed, m/s, for friction that falls with the slip velocity and for the power.
+        rtol : float
+            As in `shift`.
+
+        Returns
+        -------
+        SlidingContact
+            The state after the distance.
+
+        Raises
+        ------
+        InputError
+            For input that has no meaning, or a force that friction does not carry.
+        """
+        allowed = "a distance above 0, m"
+        distance = self.half_space.spacing[0] if distance is None else distance
+        distance = real("rolled distance", distance, allowed, above=0.0)
+        speed = real("rolling speed", speed, "at least 0, m/s", at_least=0.0)
+        manner = Manner(distance, before is None, before, start or before, speed, rtol)
+        return self._find(normal, (*creepage, spin), force, manner)
+
+    def displacement(self, traction: ArrayLike, pressure: ArrayLike, ahead: float = 0.0) -> Array:
+        """Displacement (2, nx, ny) of the first body against the second, m, at places so far ahead, m.
+
+        Under a traction (2, nx, ny) and, of unlike bodies that are coupled, a pressure (nx, ny), Pa.
+        """
+        nx, ny = self.half_space.shape
+        p = finite_array("traction", traction, f"finite numbers (2, {nx}, {ny})", shape=(2, nx, ny))
+        convolution = self._convolution(nx, ny, ahead, False)
+        box = kernel.traction_box(nx, ny, convolution)
+        _fields(box.traction, box)[:] = p
+        kernel.convolve_traction(convolution, box.traction, nx, ny, box.pitch, box.work, box.response)
+        return _fields(box.response, box) + self._of_pressure(np.asarray(pressure), ahead)
+
+    def _separations(self, ahead: float) -> tuple[Array, Array]:
+        (nx, ny), (dx, dy) = self.half_space.shape, self.half_space.spacing
+        return dx * np.arange(1.0 - nx, nx)[:, None] + ahead, dy * np.arange(1.0 - ny, ny)[None, :]
+
+    def _of_traction(self, ahead: float) -> tuple[Complex, Complex]:
+        """Kernels α and β on the whole grid, m/Pa."""
+        if ahead not in self._kernels:
+            at, cell = self._separations(ahead), self.half_space.spacing
+            along, across, mixed = kernel.traction_displacement(*at, *cell, self.poisson_ratio)
+            scale = 0.5 / (math.pi * self.shear_modulus)
+            self._kernels[ahead] = scale * (along + across), scale * (along - across + 2j * mixed)
+        return self._kernels[ahead]
+
+    def _unlike(self, ahead: float = 0.0) -> Complex:
+        """Gap by a traction of unlike bodies, x + iy, on the whole grid, m/Pa; likewise −u by a pressure."""
+        spread = kernel.pressure_displacement(*self._separations(ahead), *self.half_space.spacing)
+        return np.asarray(self.unlikeness / math.pi * spread)
+
+    def _of_pressure(self, pressure: Array, ahead: float, steady: bool = False) -> Array:
+        """Displacement (2, nx, ny) of unlike bodies by a pressure, m; in steady rolling less that ahead."""
+        if not (self.coupled and self.unlikeness):
+            return np.zeros((2, *self.half_space.shape))
+        spread = self._unlike() - self._unlike(ahead) if steady else self._unlike(ahead)
+        return -np.array([_convolved(part, pressure) for part in (spread.real, spread.imag)])
+
+    def _convolution(self, nx: int, ny: int, ahead: float, steady: bool) -> kernel.TractionConvolution:
+        """Influence of tractions on a box so far ahead; in steady rolling here, less that."""
+        key = (nx, ny, ahead, steady)
+        if key not in self._prepared:
+            middle, kernels = self.half_space.shape, list(self._of_traction(ahead))
+            if steady:
+                kernels = [a - b for a, b in zip(self._of_traction(0.0), kernels, strict=True)]
+            inside = tuple(slice(m - n, m + n - 1) for m, n in zip(middle, (nx, ny), strict=True))
+            self._prepared[key] = kernel.traction_convolution(*(each[inside] for each in kernels))
+        return self._prepared[key]
+
+    def _own(self, manner: Manner) -> float:
+        """Displacement of a cell by its own traction, m/Pa, less that ahead in steady rolling."""
+        middle = tuple(n - 1 for n in self.half_space.shape)
+        ahead = self._of_traction(manner.ahead)[0][middle] if manner.steady else 0.0
+        return float((self._of_traction(0.0)[0][middle] - ahead).real)
+
+    def _find(
+        self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: Manner
+    ) -> SlidingContact:
+        """Check the input, find the components of the motion whose force is given, and look at the result."""
+        require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
+        real("rtol", manner.rtol, "a number between 0 and 1, as 1e-6", above=0.0, below=1.0)
+        allowed = "two forces, N, or None where the motion is given"
+        wanted = {
+            i: real("force", f, allowed)
+            for i, f in enumerate(arguments.two("force", force, allowed))
+            if f is not None
+        }
+        motion = tuple(real("creepage or shift", each, "a finite number") for each in motion)
+        found = self._rounds(normal, motion, manner)
+        if wanted:
+            found = self._under_force(found, np.array(list(wanted)), np.array(list(wanted.values())), manner)
+        if not found.converged:
+            words = f"friction at {found.creepage} did not converge: {found.outcome.value}"
+            warnings.warn(words, UnconvergedWarning, stacklevel=3)
+        self._doubt(found, manner)
+        return found
+
+    def _doubt(self, found: SlidingContact, manner: Manner) -> None:
+        """Warn of what is outside the range of the theory."""
+        (xi, eta, spin), words, creepage = found.creepage, [], math.hypot(*found.creepage[:2])
+        slipping = percent(found.slip_area / found.normal.area) if found.normal.area else "nothing"
+        if manner.ahead and creepage > LARGE_CREEPAGE:
+            words.append(
+                f"A creepage of {creepage:.3g} is above {LARGE_CREEPAGE:g}: strains and paths are those of "
+                f"small creepages, and {slipping} of the contact slips. Lower it."
+            )
+        x, y = places(self.half_space)
+        if spin and found.slip_area > PIVOTING * found.normal.area:
+            away = np.hypot(x + eta / spin, y - xi / spin)[found.normal.pressure > 0.0]
+            if away.min(initial=math.inf) < math.hypot(*self.half_space.spacing):
+                words.append(
+                    f"A spin of {spin:.3g} /m makes the contact pivot on a place inside of it: {slipping} of "
+                    "it slips, and the force says little of the creepage. Lower the spin."
+                )
+        if self.unlikeness and not self.coupled:
+            neglected = abs(self.unlikeness) * self.shear_modulus / (1.0 - self.poisson_ratio)
+            words.append(
+                "The bodies are unlike, and that is neglected: a pressure displaces along the surface about "
+                f"{percent(neglected)} of what it displaces into it. Take coupled = True."
+            )
+        for each in words:
+            warnings.warn(OutOfRangeWarning(each), stacklevel=4)
+
+    def _under_force(
+        self, found: SlidingContact, index: Array, target: Array, manner: Manner
+    ) -> SlidingContact:
+        """Find a motion by Broyden's iteration on −ln(1 − |F|/limit), which is about linear in creepage."""
+        normal, size = found.normal, float(np.linalg.norm(target))
+        remedy = "Press more, or ask for less."
+        require(
+            size < found.limit, "force", f"{size:.6g} N", f"less than {found.limit:.6g} N of friction", remedy
+        )
+
+        def stretched(force: Array) -> Array:
+            share = min(float(np.linalg.norm(force)) / found.limit, 1.0 - 1e-12)
+            return np.asarray(force * (-math.log1p(-share) / share if share else 1.0))
+
+        motion = np.array(found.creepage)
+        softness = self._own(manner) / (manner.step * normal.area)
+        jacobian_inverse = -softness * np.eye(len(index))
+        missing = stretched(np.array(found.force)[index]) - stretched(target)
+        for _ in range(MAX_ROUNDS):
+            if np.abs(np.array(found.force)[index] - target).max() <= FORCES_AGREE * found.limit:
+                return found
+            change = -jacobian_inverse @ missing
+            motion[index] += change
+            found = self._rounds(normal, tuple(motion.tolist()), manner._replace(start=found))
+            after = stretched(np.array(found.force)[index]) - stretched(target)
+            along, moved = change @ jacobian_inverse, after - missing
+            if along @ moved:
+                jacobian_inverse += np.outer(change - jacobian_inverse @ moved, along) / (along @ moved)
+            missing = after
+        raise ComputationError(f"no creepage was found for a force of {size:.6g} N", "a smaller force")
+
+    def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: Manner) -> SlidingContact:
+        """Solve until bound and pressure are those of the solution."""
+        space, before = self.half_space, manner.before
+        velocity, slipped = np.zeros(space.shape), np.zeros(space.shape, dtype=bool)
+        past, counts = np.zeros((2, *space.shape)), np.zeros(2, dtype=int)
+        if before is not None:
+            past = self.displacement(before.traction, before.normal.pressure, manner.ahead)
+        loaded = normal
+        bound = self.friction.coefficient(velocity, slipped) * normal.pressure
+        for _ in range(MAX_ROUNDS):
+            found = self._solve(loaded, bound, past, motion, manner)
+            counts += found.iterations, found.convolutions
+            slipping = (found.bound > 0.0) & np.logical_not(found.sticks)
+            # half of the way: slip and coefficient chase each other where friction falls steeply
+            velocity = 0.5 * (velocity + np.hypot(*found.slip) * manner.speed * slipping)
+            slipped |= slipping
+            if self.coupled and self.unlikeness:
+                spread, p = self._unlike(), found.traction
+                gap = normal.undeformed_gap + _convolved(spread.real, p[0]) + _convolved(spread.imag, p[1])
+                loaded = space.at_load(gap, normal.force, loaded.pressure, 1e-8)
+            last, bound = bound, self.friction.coefficient(velocity, slipped) * loaded.pressure
+            if np.abs(bound - last).max() <= ROUNDS_AGREE * last.max():
+                break
+            manner = manner._replace(start=found)
+        else:
+            found = replace(found, outcome=Outcome.ITERATION_LIMIT)
+        return replace(found, iterations=int(counts[0]), convolutions=int(counts[1]))
+
+    def _solve(
+        self, normal: Contact, bound: Array, past: Array, motion: tuple[float, ...], manner: Manner
+    ) -> SlidingContact:
+        """Solve at a bound, on the box of the contact."""
+        (x, y), (along, across, spin), own = places(self.half_space), motion, self._own(manner)
+        rigid = manner.step * np.array(np.broadcast_arrays(along - spin * y, across + spin * x)) - past
+        rigid += self._of_pressure(normal.pressure, manner.ahead if manner.steady else 0.0, manner.steady)
+        carries, contact = bound > 0.0, normal.pressure > 0.0
+        box_of = contact if contact.any() else np.ones_like(contact)
+        rows, columns = (np.flatnonzero(box_of.any(axis=axis)) for axis in (1, 0))
+        inside = slice(*rows[[0, -1]] + [0, 1]), slice(*columns[[0, -1]] + [0, 1])
+        nx, ny = bound[inside].shape
+        convolution = self._convolution(nx, ny, manner.ahead if manner.steady else 0.0, manner.steady)
+        box = kernel.traction_box(nx, ny, convolution)
+        _fields(box.bound, box)[:], _fields(box.rigid, box)[:] = bound[inside], rigid[:, *inside]
+        if manner.start is not None:
+            _fields(box.traction, box)[:] = manner.start.traction[:, *inside]
+        largest = float(np.hypot(*rigid)[carries].max(initial=0.0))
+        carried, damping = (CARRIED, own) if manner.steady else (0.0, DAMPING * own)
+        task = kernel.TractionTask(
+            own, carried, damping, not manner.steady, manner.rtol * largest, MAX_ITERATIONS
+        )
+        iterations, convolutions, worst = kernel.solve_traction(convolution, self._taps, box, task)
+        outcome = Outcome.CONVERGED if worst <= task.tolerance else Outcome.ITERATION_LIMIT
+        traction, slip, sticks = np.zeros_like(rigid), np.zeros_like(rigid), np.zeros_like(carries)
+        traction[:, *inside], slip[:, *inside] = (
+            _fields(box.traction, box),
+            _fields(box.slip, box) / manner.step,
+        )
+        sticks[inside] = (_fields(box.normal, box) == 0.0).all(axis=0)
+        return SlidingContact(
+            normal, traction, slip * contact, np.asarray(sticks & carries), bound, (along, across, spin),
+            manner.speed, iterations, convolutions, worst / largest if largest else 0.0, outcome,
+        )  # fmt: skip
+
+
+def _fields(flat: Array, box: kernel.TractionBox) -> Array:
+    """View of the cells of a box in a field, (…, nx, ny)."""
+    return flat.reshape(-1, box.nx, box.pitch)[:, :, : box.ny]
+
+
+def _convolved(spread: Array, values: Array) -> Array:
+    """Values (nx, ny) convolved with a kernel whose origin is in its middle."""
+    from scipy.signal import fftconvolve
+
+    return np.asarray(fftconvolve(spread, values, mode="valid"))
