@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from superposed import superposed
 
 from asperity.errors import InputError
 from asperity.structures.cell_waves import CellWaves, cell_waves
 from asperity.structures.track import Track
+from superposed import superposed
 
 TIMOSHENKO = {"shear_stiffness": 243e6, "rotary_inertia": 0.24}
 PAIRS = [(0.0, 0.0), (0.3, 0.3), (0.1, 0.5), (0.6, 0.2), (13.3, 0.25), (0.31, -8.21), (59.9, 59.7)]

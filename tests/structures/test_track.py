@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from superposed import euler_free, free_rail, superposed, supports_by_hand
 
 from asperity import Track
 from asperity.reference.tracks import TRACKS
 from asperity.structures.support import Relaxation, relaxing
 from asperity.structures.track import EN_15461_BAYS, decay_rate, decay_rate_en15461, decay_rate_of_responses
 from refusals import refusals
+from superposed import euler_free, free_rail, superposed, supports_by_hand
 
 BENDING, MASS, SPACING = 4.725e6, 60.0, 0.6
 SHEAR, INERTIA = 2.435e8, 0.238

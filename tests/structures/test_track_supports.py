@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from superposed import free_rail, superposed
 
 from asperity import Track
 from asperity.scenes.track import loss_factor_error
@@ -17,6 +16,7 @@ from asperity.structures.support import BendingSleeper, RigidMass, Spring, Tuned
 from asperity.structures.track import decay_rate
 from asperity.structures.wheel import Wheel
 from refusals import refusals
+from superposed import free_rail, superposed
 
 FREQUENCY = np.array([30.0, 120.0, 400.0, 800.0, 1063.0, 2500.0, 5000.0])
 OMEGA = 2.0 * np.pi * FREQUENCY

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from superposed import free_rail, superposed, supports_by_hand
 
 from asperity import Track
 from asperity.errors import InputError
@@ -13,6 +12,7 @@ from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import decay_rate, decay_rate_en15461
 from refusals import refusals
+from superposed import free_rail, superposed, supports_by_hand
 
 EULER = Track.named("x2000")
 UIC60 = Track.named("uic60")
