@@ -107,7 +107,7 @@ class SlidingContact:
     @property
     def moment(self) -> float:
         """Moment on the first body about the normal through the middle of the grid, N m."""
-        x, y = places(self.normal.half_space)
+        x, y = cell_places(self.normal.half_space)
         arms = x * self.traction[1] - y * self.traction[0]
         return float(arms.sum()) * self.normal.half_space.cell_area
 
@@ -137,7 +137,7 @@ class SlidingContact:
         return self.work * self.speed
 
 
-def places(space: HalfSpace) -> tuple[Array, Array]:
+def cell_places(space: HalfSpace) -> tuple[Array, Array]:
     """Places of the cells from the middle of the grid, (nx, 1) and (1, ny), m."""
     x, y = (
         d * (np.arange(float(n)) - 0.5 * (n - 1)) for n, d in zip(space.shape, space.spacing, strict=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, real, require
-from asperity.contact.friction import Friction, SlidingContact, places
+from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
@@ -32,7 +32,7 @@ PIVOTING = 0.99
 Forces = tuple[float | None, float | None]
 
 
-class Manner(NamedTuple):
+class Motion(NamedTuple):
     """How two bodies move."""
 
     ahead: float  # rolled distance, m; zero for a shift
@@ -155,7 +155,7 @@ class FrictionalHalfSpace:
         InputError
             For input that has no meaning, or a force that friction does not carry.
         """
-        return self._find(normal, (*shift, rotation), force, Manner(0.0, False, before, before, 0.0, rtol))
+        return self._find(normal, (*shift, rotation), force, Motion(0.0, False, before, before, 0.0, rtol))
 
     def roll(
         self,
@@ -207,7 +207,7 @@ class FrictionalHalfSpace:
         distance = self.half_space.spacing[0] if distance is None else distance
         distance = real("rolled distance", distance, allowed, above=0.0)
         speed = real("rolling speed", speed, "at least 0, m/s", at_least=0.0)
-        manner = Manner(distance, before is None, before, start or before, speed, rtol)
+        manner = Motion(distance, before is None, before, start or before, speed, rtol)
         return self._find(normal, (*creepage, spin), force, manner)
 
     def displacement(self, traction: ArrayLike, pressure: ArrayLike, ahead: float = 0.0) -> Array:
@@ -259,14 +259,14 @@ class FrictionalHalfSpace:
             self._prepared[key] = kernel.traction_convolution(*(each[inside] for each in kernels))
         return self._prepared[key]
 
-    def _own(self, manner: Manner) -> float:
+    def _own(self, manner: Motion) -> float:
         """Displacement of a cell by its own traction, m/Pa, less that ahead in steady rolling."""
         middle = tuple(n - 1 for n in self.half_space.shape)
         ahead = self._of_traction(manner.ahead)[0][middle] if manner.steady else 0.0
         return float((self._of_traction(0.0)[0][middle] - ahead).real)
 
     def _find(
-        self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: Manner
+        self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: Motion
     ) -> SlidingContact:
         """Check the input, find the components of the motion whose force is given, and look at the result."""
         require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
@@ -287,7 +287,7 @@ class FrictionalHalfSpace:
         self._doubt(found, manner)
         return found
 
-    def _doubt(self, found: SlidingContact, manner: Manner) -> None:
+    def _doubt(self, found: SlidingContact, manner: Motion) -> None:
         """Warn of what is outside the range of the theory."""
         (xi, eta, spin), words, creepage = found.creepage, [], math.hypot(*found.creepage[:2])
         slipping = percent(found.slip_area / found.normal.area) if found.normal.area else "nothing"
@@ -296,7 +296,7 @@ class FrictionalHalfSpace:
                 f"A creepage of {creepage:.3g} is above {LARGE_CREEPAGE:g}: strains and paths are those of "
                 f"small creepages, and {slipping} of the contact slips. Lower it."
             )
-        x, y = places(self.half_space)
+        x, y = cell_places(self.half_space)
         if spin and found.slip_area > PIVOTING * found.normal.area:
             away = np.hypot(x + eta / spin, y - xi / spin)[found.normal.pressure > 0.0]
             if away.min(initial=math.inf) < math.hypot(*self.half_space.spacing):
@@ -314,7 +314,7 @@ class FrictionalHalfSpace:
             warnings.warn(OutOfRangeWarning(each), stacklevel=4)
 
     def _under_force(
-        self, found: SlidingContact, index: Array, target: Array, manner: Manner
+        self, found: SlidingContact, index: Array, target: Array, manner: Motion
     ) -> SlidingContact:
         """Find a motion by Broyden's iteration on −ln(1 − |F|/limit), which is about linear in creepage."""
         normal, size = found.normal, float(np.linalg.norm(target))
@@ -344,7 +344,7 @@ class FrictionalHalfSpace:
             missing = after
         raise ComputationError(f"no creepage was found for a force of {size:.6g} N", "a smaller force")
 
-    def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: Manner) -> SlidingContact:
+    def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: Motion) -> SlidingContact:
         """Solve until bound and pressure are those of the solution."""
         space, before = self.half_space, manner.before
         velocity, slipped = np.zeros(space.shape), np.zeros(space.shape, dtype=bool)
@@ -373,10 +373,10 @@ class FrictionalHalfSpace:
         return replace(found, iterations=int(counts[0]), convolutions=int(counts[1]))
 
     def _solve(
-        self, normal: Contact, bound: Array, past: Array, motion: tuple[float, ...], manner: Manner
+        self, normal: Contact, bound: Array, past: Array, motion: tuple[float, ...], manner: Motion
     ) -> SlidingContact:
         """Solve at a bound, on the box of the contact."""
-        (x, y), (along, across, spin), own = places(self.half_space), motion, self._own(manner)
+        (x, y), (along, across, spin), own = cell_places(self.half_space), motion, self._own(manner)
         rigid = manner.step * np.array(np.broadcast_arrays(along - spin * y, across + spin * x)) - past
         rigid += self._of_pressure(normal.pressure, manner.ahead if manner.steady else 0.0, manner.steady)
         carries, contact = bound > 0.0, normal.pressure > 0.0
