@@ -32,7 +32,7 @@ PIVOTING = 0.99
 Forces = tuple[float | None, float | None]
 
 
-class Motion(NamedTuple):
+class _Manner(NamedTuple):
     """How two bodies move."""
 
     ahead: float  # rolled distance, m; zero for a shift
@@ -155,7 +155,7 @@ class FrictionalHalfSpace:
         InputError
             For input that has no meaning, or a force that friction does not carry.
         """
-        return self._find(normal, (*shift, rotation), force, Motion(0.0, False, before, before, 0.0, rtol))
+        return self._find(normal, (*shift, rotation), force, _Manner(0.0, False, before, before, 0.0, rtol))
 
     def roll(
         self,
@@ -207,7 +207,7 @@ class FrictionalHalfSpace:
         distance = self.half_space.spacing[0] if distance is None else distance
         distance = real("rolled distance", distance, allowed, above=0.0)
         speed = real("rolling speed", speed, "at least 0, m/s", at_least=0.0)
-        manner = Motion(distance, before is None, before, start or before, speed, rtol)
+        manner = _Manner(distance, before is None, before, start or before, speed, rtol)
         return self._find(normal, (*creepage, spin), force, manner)
 
     def displacement(self, traction: ArrayLike, pressure: ArrayLike, ahead: float = 0.0) -> Array:
@@ -259,14 +259,14 @@ class FrictionalHalfSpace:
             self._prepared[key] = kernel.traction_convolution(*(each[inside] for each in kernels))
         return self._prepared[key]
 
-    def _own(self, manner: Motion) -> float:
+    def _own(self, manner: _Manner) -> float:
         """Displacement of a cell by its own traction, m/Pa, less that ahead in steady rolling."""
         middle = tuple(n - 1 for n in self.half_space.shape)
         ahead = self._of_traction(manner.ahead)[0][middle] if manner.steady else 0.0
         return float((self._of_traction(0.0)[0][middle] - ahead).real)
 
     def _find(
-        self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: Motion
+        self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: _Manner
     ) -> SlidingContact:
         """Check the input, find the components of the motion whose force is given, and look at the result."""
         require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
@@ -287,7 +287,7 @@ class FrictionalHalfSpace:
         self._doubt(found, manner)
         return found
 
-    def _doubt(self, found: SlidingContact, manner: Motion) -> None:
+    def _doubt(self, found: SlidingContact, manner: _Manner) -> None:
         """Warn of what is outside the range of the theory."""
         (xi, eta, spin), words, creepage = found.creepage, [], math.hypot(*found.creepage[:2])
         slipping = percent(found.slip_area / found.normal.area) if found.normal.area else "nothing"
@@ -314,7 +314,7 @@ class FrictionalHalfSpace:
             warnings.warn(OutOfRangeWarning(each), stacklevel=4)
 
     def _under_force(
-        self, found: SlidingContact, index: Array, target: Array, manner: Motion
+        self, found: SlidingContact, index: Array, target: Array, manner: _Manner
     ) -> SlidingContact:
         """Find a motion by Broyden's iteration on −ln(1 − |F|/limit), which is about linear in creepage."""
         normal, size = found.normal, float(np.linalg.norm(target))
@@ -344,7 +344,7 @@ class FrictionalHalfSpace:
             missing = after
         raise ComputationError(f"no creepage was found for a force of {size:.6g} N", "a smaller force")
 
-    def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: Motion) -> SlidingContact:
+    def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: _Manner) -> SlidingContact:
         """Solve until bound and pressure are those of the solution."""
         space, before = self.half_space, manner.before
         velocity, slipped = np.zeros(space.shape), np.zeros(space.shape, dtype=bool)
@@ -373,7 +373,7 @@ class FrictionalHalfSpace:
         return replace(found, iterations=int(counts[0]), convolutions=int(counts[1]))
 
     def _solve(
-        self, normal: Contact, bound: Array, past: Array, motion: tuple[float, ...], manner: Motion
+        self, normal: Contact, bound: Array, past: Array, motion: tuple[float, ...], manner: _Manner
     ) -> SlidingContact:
         """Solve at a bound, on the box of the contact."""
         (x, y), (along, across, spin), own = cell_places(self.half_space), motion, self._own(manner)
