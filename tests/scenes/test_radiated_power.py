@@ -110,6 +110,7 @@ def assert_summed(found, names):
 @pytest.mark.parametrize(
     ("wheel", "reason"),
     [
+        ({}, ""),  # the default wheel is drawn
         ({"modes": MODES[:, :3]}, "the table wheel.modes does not say how the modes move disc and tread"),
         ({"modes": MODES}, ""),
         (
