@@ -20,9 +20,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import asperity  # noqa: E402
 from asperity import sandbox  # noqa: E402
-from asperity.case import PRESETS  # noqa: E402
 from asperity.case.cases import as_case  # noqa: E402
-from small_cases import Made, changed  # noqa: E402
+from small_cases import CASES, Made, changed  # noqa: E402
 
 hypothesis.settings.register_profile("untimed", deadline=None)
 hypothesis.settings.load_profile("untimed")
@@ -91,7 +90,7 @@ def real_runs(runs):
     return Made(lambda kind: runs(changed(kind, contact={"hardness": HARDNESS[kind], "running_in": 1})))
 
 
-@pytest.fixture(scope="session", params=list(PRESETS))
+@pytest.fixture(scope="session", params=list(CASES))
 def real_run(request, real_runs):
     """Result of one kind of case after the other."""
     return real_runs[request.param]

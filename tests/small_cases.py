@@ -57,6 +57,19 @@ BODIES = {
 CASES = {case["kind"]: case for case in (BALL, WHEEL, BODIES)}
 
 
+BEARING = {
+    "kind": "ball-bearing",
+    "speed": "1800 1/min",
+    "radial": "100 N",
+    "laws": ["hertz"],
+    "duration": "0.1 s",
+    "settling": "10 ms",
+    "bearing": {"name": "6205"},
+    "fault": {"on": "outer", "length": "0.18 mm", "depth": "0.1 mm"},
+}
+"""A ball bearing with a pit in the middle of the load zone."""
+
+
 def changed(kind, **keys):
     """A small case of a kind with other keys, in its sections too; a surface is another one altogether."""
     base = CASES[kind]

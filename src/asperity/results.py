@@ -20,7 +20,7 @@ from asperity.schema.provenance import ASPERITY_VERSION, CASE, SCHEMA_VERSION
 if TYPE_CHECKING:
     import xarray
 
-GROUPS = ("scenario", "surface", "contact", "rolling", "spectra")
+GROUPS = ("scenario", "contact", "rolling", "spectra")
 PACKED = {"fletcher32": True, "zlib": True, "complevel": 1, "shuffle": True}
 """How numbers are written: with a checksum, and compressed."""
 LARGEST_FILE = 16 * 2**30  # bytes

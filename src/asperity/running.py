@@ -85,8 +85,7 @@ def run(
             warnings.simplefilter("always", PhysicsWarning)
             prepared = loaded if isinstance(loaded, ReadyCase) else prepare_case(loaded)
             caught += prepared.caught
-            module = import_module(prepared.case.COMPUTED_BY)
-            result: DataTree = module.computed_result(prepared, told, caught, brief=brief)
+            result: DataTree = _named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence import with_convergence
                 from asperity.scenarios.preparing import PreparedCase
@@ -139,5 +138,11 @@ def open_result(path: str | os.PathLike[str]) -> Result:
 
 def prepare_case(case: AnyCase, source: str = "case") -> ReadyCase:
     """Lay a case of any kind ready to be run or announced; messages call it `source`."""
-    prepared: ReadyCase = import_module(case.COMPUTED_BY).prepare(case, source)
+    prepared: ReadyCase = _named(case.PREPARED_BY)(case, source)
     return prepared
+
+
+def _named(function: str) -> Any:
+    """A function by its module and name."""
+    module, _, name = function.rpartition(".")
+    return getattr(import_module(module), name)

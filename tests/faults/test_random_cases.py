@@ -9,7 +9,6 @@ import pytest
 from program import LONG
 
 import asperity
-from asperity.case import PRESETS
 from asperity.case.cases import case_class, case_of
 from asperity.case.describing import entries
 from asperity.errors import AsperityError
@@ -58,7 +57,7 @@ def drawn(entry, source):
 
 
 def random_case(source):
-    kind = source.choice(list(PRESETS))
+    kind = source.choice(list(SHORT))
     case = deepcopy(SHORT[kind]) | {
         "kind": kind,
         "laws": source.sample(LAWS, 2),

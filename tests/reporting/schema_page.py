@@ -7,6 +7,7 @@ from asperity.schema import (
     VERSION,
     Attribute,
     Entry,
+    bearing,
     contact,
     convergence,
     provenance,
@@ -23,6 +24,9 @@ HEAD = f"""# What `run.nc` holds
 Version {VERSION} of the schema: the attribute `schema_version` of a file names its own. A file of another
 version is refused, with what to do. Every variable has `units` and `long_name`; where values are missing
 (NaN), `missing` says why. "Not in all" says which results have what not all have.
+"""
+OF_BEARINGS = """A run of a ball bearing holds these and, of the above, the attributes of the root and of
+`scenario`, `contact: validity`, laws, time and frequency, and the energy balance.
 """
 
 
@@ -56,10 +60,11 @@ def table(entries, attributes):
 
 def page():
     """Text of the page."""
-    parts = [HEAD, "## All kinds of case\n", table(*contents_of(*SHARED)), ""]
+    parts = [HEAD, "## Bodies that roll, of any kind\n", table(*contents_of(*SHARED)), ""]
     shared = [item for items in contents_of(*SHARED) for item in items]
     own = ([item for item in items if item not in shared] for items in contents_of(schema))
     parts += ["## What depends on the scene\n", table(*own), ""]
+    parts += ["## Ball bearings\n", OF_BEARINGS, table(*contents_of(bearing)), ""]
     return "\n".join(parts)
 
 

@@ -3,13 +3,13 @@
 import pytest
 from drawn import assert_accessible, assert_readable, pages_of
 
-from asperity.case import PRESETS
+from small_cases import CASES
 
 WIDEST = "wheel-on-rail"
 """Its report has figures of all sorts; those of the others are looked at by --long."""
 
 
-@pytest.fixture(params=[pytest.param(kind, marks=[pytest.mark.long] * (kind != WIDEST)) for kind in PRESETS])
+@pytest.fixture(params=[pytest.param(kind, marks=[pytest.mark.long] * (kind != WIDEST)) for kind in CASES])
 def address(request, reports):
     """A report of each kind."""
     return (reports[request.param] / "report.html").as_uri()

@@ -9,7 +9,8 @@ from schema_page import PAGE, SHARED, contents_of, page
 import asperity
 from asperity.scenes import schema
 from asperity.scenes.report import CHAPTERS, figures_of
-from asperity.schema import UNKNOWN, VERSION, convergence
+from asperity.schema import UNKNOWN, VERSION, bearing, convergence
+from small_cases import BEARING
 
 SOURCE = Path(asperity.__file__).parent
 GROUPS = (
@@ -22,6 +23,7 @@ GROUPS = (
     "pass_by",
     "convergence",
     "effects",
+    "bearing",
 )
 
 
@@ -115,8 +117,28 @@ def test_result_states_speed_and_sleepers(real_runs):
     assert wheel["spectra"].attrs["sleeper_passing_frequency"] == pytest.approx(passing, rel=1e-12)
 
 
+OF_BEARINGS = ("bearing", "load")
+"""Chapters of ball bearings."""
+
+
+def test_a_bearing_writes_and_draws_what_its_schema_says(runs):
+    tree = runs(BEARING)
+    own, facts = contents_of(bearing)
+    entries = {entry.path: entry for entry in (*own, *schema_of(tree)[0])}
+    found = written(tree)
+    assert {entry.path for entry in own} <= set(found) <= set(entries)
+    for path, values in found.items():
+        entry = entries[path]
+        told = entry.dims, entry.units, entry.long_name
+        assert (values.dims, values.attrs["units"], values.attrs["long_name"]) == told, path
+        assert values.attrs.get("missing") != UNKNOWN, path
+    assert {fact.name for fact in facts} == set(tree["bearing"].attrs)
+    shown = [part.name for chapter in CHAPTERS if chapter.name in OF_BEARINGS for part in chapter.figures]
+    assert [part.name for part in figures_of(tree)] == shown
+
+
 def test_names_stand_once():
-    entries, attributes = contents_of(*SHARED, schema)
+    entries, attributes = contents_of(*SHARED, schema, bearing)
     for items in (entries, attributes):
         places = [(item.group, item.name) for item in items]
         assert len(places) == len(set(places))
@@ -139,6 +161,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
         for part in chapter.figures:
             elsewhere = any(on_track(e) for e in part.needs) if not track else chapter.name == "acceleration"
             elsewhere |= chapter.name == "contacts" and not several
+            elsewhere |= chapter.name in OF_BEARINGS
             elsewhere |= part.name == "what_helps"  # where it is asked
             elsewhere |= part.name == ("force_piece" if track else "force_peak")
             elsewhere |= part.name in ("pass_by_bands", "bays")  # of what was measured, and where they differ
@@ -146,7 +169,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
 
 
 def test_needs_of_figures_are_in_the_schema():
-    entries, _ = contents_of(*SHARED, schema)
+    entries, _ = contents_of(*SHARED, schema, bearing)
     for chapter in CHAPTERS:
         for part in chapter.figures:
             assert set(part.needs) | set(part.any_of) <= set(entries), part.name

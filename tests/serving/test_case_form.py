@@ -2,7 +2,6 @@
 
 import pytest
 
-from asperity.case import PRESETS
 from asperity.case.cases import case_class, case_of, parse_case, template
 from asperity.case.describing import entries
 from asperity.case.toml import read_toml
@@ -33,7 +32,7 @@ def test_the_form_holds_every_key_with_its_words(form):
             assert companion.partition("=")[0] in fields, field
 
 
-@pytest.mark.parametrize("kind", PRESETS)
+@pytest.mark.parametrize("kind", [form.kind for form in forms()])
 def test_what_is_typed_reads_as_the_case_file_does(kind):
     text = template(kind)
     data = read_toml(text, "case", "case")

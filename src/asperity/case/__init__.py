@@ -4,5 +4,6 @@ PRESETS: dict[str, str] = {
     "ball-on-beam": "asperity.case.ball_on_beam.BallOnBeam",
     "wheel-on-rail": "asperity.case.wheel_on_rail.WheelOnRail",
     "bodies": "asperity.case.bodies.Bodies",
+    "ball-bearing": "asperity.case.ball_bearing.BallBearingCase",
 }
 """Kinds of case by name, each with its module and class."""

@@ -19,8 +19,10 @@ class AnyCase(Section):
 
     TITLE: ClassVar[str]
     """One sentence: what rolls over what."""
+    PREPARED_BY: ClassVar[str]
+    """Function (case, source) that makes a `ReadyCase` of it, by module and name."""
     COMPUTED_BY: ClassVar[str]
-    """Module with ``prepare(case, source)`` and ``computed_result(prepared, progress, caught, brief=…)``."""
+    """Function (ready case, progress, warnings caught, brief=…) that makes its result."""
     WRITTEN_OUT: ClassVar[Mapping[str, str]] = {}
     """Values, in TOML, of keys that have no default and shall stand in a commented case."""
     SHOWN: ClassVar[Mapping[str, tuple[str, ...]]] = {}

@@ -57,7 +57,8 @@ class Case(AnyCase):
     Cases are equal if all their keys are.
     """
 
-    COMPUTED_BY = "asperity.scenes.result"
+    PREPARED_BY = "asperity.scenarios.preparing.prepare"
+    COMPUTED_BY = "asperity.scenes.result.computed_result"
     ROLLING: ClassVar[str]
     """Section of what rolls; of a contact of several, its name in messages."""
     OVER: ClassVar[str] = ""

@@ -65,14 +65,19 @@ def planned(prepared: ReadyCase, *, converge: bool = False) -> dict[str, Any]:
     from asperity.scenarios.preparing import PreparedCase, expect
     from asperity.scenes.validity import foreseen
 
-    assert isinstance(prepared, PreparedCase)
-    with progress_bar() as progress:
-        work = expect(prepared, progress)
-        rows = plan(prepared, work) + (_convergence(prepared, work) if converge else [])
-        case, choice = (prepared.case, prepared.shape, prepared.textures), _law_choice(prepared)
-        faults = [] if work.tried is None else foreseen(*case, work.tried, choice)
     caught = [(getattr(each.message, "grade", Grade.WARNING), str(each.message)) for each in prepared.caught]
-    caught += [(each.grade, each.message) for each in faults if each.grade]
+    if isinstance(prepared, PreparedCase):
+        with progress_bar() as progress:
+            work = expect(prepared, progress)
+            rows = plan(prepared, work) + (_convergence(prepared, work) if converge else [])
+            case, choice = (prepared.case, prepared.shape, prepared.textures), _law_choice(prepared)
+            faults = [] if work.tried is None else foreseen(*case, work.tried, choice)
+        caught += [(each.grade, each.message) for each in faults if each.grade]
+    else:
+        from asperity.scenarios.bearing import PreparedBearing, expected
+
+        assert isinstance(prepared, PreparedBearing)
+        rows, work = expected(prepared)
     return {
         "plan": [{"name": name, "value": value} for name, value in rows],
         "work": {

@@ -19,7 +19,7 @@ from asperity.case.cases import of_bodies
 from asperity.case.content import content, file_digest
 from asperity.errors import InputError
 from asperity.progress import COMPILATION, duration, progress_bar
-from asperity.schema import provenance, rolling, spectra
+from asperity.schema import bearing, provenance, rolling, spectra
 from asperity.store import Store, content_key
 from asperity.terminal import detail, remark, say, say_files
 
@@ -217,7 +217,14 @@ def _warn(tree: DataTree) -> None:
 
 
 def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
-    """Numbers of each law's force, in SI: mean, rms about it, largest, and losses of contact."""
+    """Numbers of each law's force, in SI: mean, rms about it, largest, and losses of contact.
+
+    Of a bearing the rms velocities, m/s, in the bands in which it is judged, at the first accelerometer.
+    """
+    if bearing.BAND_VELOCITY.group in tree.children:
+        found = tree[bearing.BAND_VELOCITY.group].to_dataset()[bearing.BAND_VELOCITY.name]
+        first = zip(found["law"].values.tolist(), found.values[:, 0].tolist(), strict=True)
+        return [{"law": law, bearing.BAND_VELOCITY.name: velocities} for law, velocities in first]
     group = tree["rolling"].to_dataset().isel({rolling.CONTACT.name: 0}, missing_dims="ignore")
     force = group[rolling.CONTACT_FORCE.name]
     reduced = zip(rolling.FORCES, (force.mean, force.std, force.max), strict=True)

@@ -17,7 +17,7 @@ from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Chart, Line, Numbers, colour_variables
 from asperity.reporting.figure import Chapter, Figure, Lines
 from asperity.reporting.tables import ReportTable, setting_names
-from asperity.schema import provenance
+from asperity.schema import provenance, rolling
 
 _UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
 
@@ -99,8 +99,9 @@ def figures_page(
 SUMMARY_FIGURES = 3
 """That a summary shows, of each chapter the first of these that it has."""
 ON_SHEET = (
-    "radiated_power_bands", "sound_power_bands", "sound_power", "pass_by_level", "acceleration_sensors",
-    "body_acceleration", "force_bands", "roughness", "texture_psd", "texture_path", "texture_sample",
+    "load_zone", "ball_turn", "radiated_power_bands", "sound_power_bands", "sound_power", "pass_by_level",
+    "acceleration_sensors", "body_acceleration", "force_bands", "roughness", "texture_psd", "texture_path",
+    "texture_sample",
 )  # fmt: skip
 CHANGES = 8
 """Parameters that the top of the page tells of."""
@@ -195,7 +196,7 @@ def page(
     changed = [parameter for parameter in parameters if not parameter.get("is_default", True)]
     differing = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]
     differing += [f"and {len(changed) - CHANGES} more"] if len(changed) > CHANGES else []
-    verdict = str(data.stated(tree, provenance.VERDICT) or "")
+    verdict, force = str(data.stated(tree, provenance.VERDICT) or ""), rolling.CONTACT_FORCE
     seed = data.stated(tree, provenance.SEED)
     button = (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
     blocks = [block for section in drawn for block in section.blocks]
@@ -207,7 +208,7 @@ def page(
         summary=summary,
         on_sheet={figure.name for figure in on_sheet},
         answers=_answers(tree, chapters, verdict),
-        verdict=verdict,
+        verdict=verdict if data.present(tree, force) else "",  # of a bearing it stands at the top
         validity=headline.validity(checks),
         lights=checks,
         version=data.stated(tree, provenance.ASPERITY_VERSION) or "unknown",

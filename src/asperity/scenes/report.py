@@ -20,6 +20,7 @@ from asperity.reporting.figure import Chapter, Figure, figure_format, write_colu
 from asperity.reporting.page import drawable_figures, page
 from asperity.results import read_result
 from asperity.scenes.figures import (
+    bearing,
     contacts,
     effects,
     force,
@@ -40,6 +41,14 @@ PAGE = "report.html"
 OF_OTHERS = "asperity.chapters"
 """Group of entry points under which other packages name chapters of their own."""
 CHAPTERS = (
+    Chapter(
+        "bearing",
+        "How quiet it runs",
+        bearing.QUIET,
+        (bearing.bands_table, bearing.alone_table, bearing.lines_table),
+        bearing.bearing_answers,
+    ),
+    Chapter("load", "How it carries its load", bearing.LOADED, (bearing.ball_contacts_table,)),
     Chapter(
         "noise",
         "Rolling noise",
@@ -256,6 +265,9 @@ def comparison_of(
     if len(called) != len(results) or len(set(called)) != len(called):
         raise InputError("names", shown(list(called)), "one name for each run, each once")
     runs = [NamedRun(printable(name), _tree(result)) for name, result in zip(called, results, strict=True)]
+    if not any(run.laws for run in runs):
+        remedy = "'asperity report' writes the numbers of their figures as CSV."
+        raise InputError("runs to compare", "runs of bearings", "runs of bodies that roll", remedy)
     held = {name for run in runs for group in run.tree.children.values() for name in group.data_vars}
     levels = (e for e in KEPT if e.units.startswith("dB re") and e.dims[-1].endswith("band"))
     return compared(runs, [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)], laws)

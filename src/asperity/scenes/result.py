@@ -20,7 +20,6 @@ from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.preparing import prepare as prepare
 from asperity.scenes import measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group

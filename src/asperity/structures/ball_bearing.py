@@ -92,15 +92,33 @@ class BallBearing:
         _CONFORMITY, 0.52, "groove radius of the outer ring over ball diameter", _USUAL, default=CONFORMITY
     )
     clearance: float | None = parameter(
-        Quantity("m"), "10 um", "diametral clearance; below zero the balls are pressed", default=None
+        Quantity("m"),
+        "10 um",
+        "diametral clearance; below zero the balls are pressed",
+        "-1 mm to 10 mm: bearings lie between",
+        default=None,
     )
     contact_angle: float | None = parameter(
-        Quantity("rad", at_least=0), "15 deg", "free contact angle, instead of the clearance", default=None
+        Quantity("rad", at_least=0),
+        "15 deg",
+        "free contact angle, instead of the clearance",
+        "0 deg to 80 deg: balls touch both grooves between",
+        default=None,
     )
     preload: float = parameter(
-        Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", default=0.0
+        Quantity("N", at_least=0),
+        "0 N",
+        "constant axial force, as of a spring",
+        "0 N to 100 MN: bearings carry less",
+        default=0.0,
     )
-    hardness: float = parameter(Quantity("Pa", above=0), "7 GPa", "hardness of the rings", default=HARDNESS)
+    hardness: float = parameter(
+        Quantity("Pa", above=0),
+        "7 GPa",
+        "hardness of the rings",
+        "1 MPa to 100 GPa: no solid is as soft, or as hard",
+        default=HARDNESS,
+    )
     material: Material = parameter(  # noqa: RUF009
         MaterialOrName(), "steel", "material of the rings", default=STEEL
     )

@@ -25,6 +25,8 @@ TOLERANCE = 1e-10
 PATIENCE, ROUNDED = 30, 1e-7
 """Steps after which this much is taken: where loads are of millinewtons, rounding may allow no better."""
 MOST_STEPS = 100
+LOOSE = 1e-4
+"""Way, m, that what nothing holds yet is moved by a step, at most."""
 HALVINGS = 40
 """Of a step that does not go downhill."""
 SPEEDS = 14
@@ -178,7 +180,8 @@ def _descended(
         if size.max() <= (TOLERANCE if step < PATIENCE else ROUNDED) * scale:
             return place, float(size.max() / scale), step
         trace = np.trace(hessian, axis1=-2, axis2=-1)
-        ridge = np.maximum(1e-13 * trace, 1e-9 * trace.max())[..., None, None] * np.eye(place.shape[-1])
+        least = np.maximum(np.maximum(1e-13 * trace, 1e-9 * trace.max()), (trace == 0.0) * scale / LOOSE)
+        ridge = least[..., None, None] * np.eye(place.shape[-1])
         move = -np.linalg.solve(hessian + ridge, gradient[..., None])[..., 0]
         slope, share = (move * gradient).sum(-1), np.ones(size.shape)
         for _ in range(HALVINGS):

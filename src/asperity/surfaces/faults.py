@@ -16,6 +16,9 @@ LENGTH = Quantity("m", above=0)
 MAP = File(held=(HeightMap,), content="a height map")
 _SIZE = "1 um to 1 m: faults lie between"
 _DEPTH = "1 nm to 100 mm: faults lie between"
+_TURN = "-360 deg to 360 deg: raceways end there"
+_OFFSET = "-1 m to 1 m: raceways end"
+_RIM = Number(at_least=0, at_most=10)
 _COUNT = "1 to 500: balls are fewer"
 
 
@@ -61,16 +64,20 @@ class Fault:
     """
 
     shape: str = parameter(Choice(SHAPES), "pit", "kind of fault")
-    angle: float = parameter(Quantity("rad"), "0 deg", "angle of its middle around", default=0.0)
-    offset: float = parameter(Quantity("m"), "0 mm", "distance of its middle from the path", default=0.0)
+    angle: float = parameter(Quantity("rad"), "0 deg", "angle of its middle around", _TURN, default=0.0)
+    offset: float = parameter(
+        Quantity("m"), "0 mm", "distance of its middle from the path", _OFFSET, default=0.0
+    )
     length: float = parameter(LENGTH, "0.18 mm", "length along the path", _SIZE, default=None)
     width: float = parameter(LENGTH, "0.18 mm", "width across, as its length", _SIZE, default=None)
     depth: float = parameter(LENGTH, "0.28 mm", "depth, or height of a particle", _DEPTH, default=None)
     edge: float = parameter(
-        Quantity("m", at_least=0), "10 um", "length over which a pit or spall falls", default=0.0
+        Quantity("m", at_least=0), "10 um", "length over which a pit or spall falls", _SIZE, default=0.0
     )
-    rim: float = parameter(Number(at_least=0), 1.0, "volume of a dent's rim over the dent's", default=1.0)
-    rim_width: float = parameter(Number(above=0), 1.0, "width of the rim over half a dent's", default=1.0)
+    rim: float = parameter(_RIM, 1.0, "volume of a dent's rim over the dent's", default=1.0)
+    rim_width: float = parameter(
+        Number(above=0, at_most=10), 1.0, "width of the rim over half a dent's", default=1.0
+    )
     count: int = parameter(Number(at_least=1, whole=True), 1, "faults alike around", _COUNT, default=1)
     map: HeightMap | Path | None = parameter(  # noqa: RUF009
         MAP, "spall.x3p", "heights of the fault", default=None

@@ -22,6 +22,9 @@ MOST_POINTS = 2**26
 _WAVES = "1 nm to 1 mm: raceways and balls are rounder"
 _RMS = "0.01 nm to 0.1 mm: finishes lie between"
 _HIGHEST = "1 to 100000: others are shorter than contacts"
+_LENGTHS = "1 nm to 1 m: textures lie between"
+_RATIOS = "0.001 to 1000: lay is no longer"
+_FALL = Number(at_least=-10, at_most=10)
 _ORDER = Number(at_least=1, whole=True)
 _AMPLITUDES = ListOf(Quantity("m", at_least=0))
 _TRACE = File(columns=(2,), content="a table of angle and deviation")
@@ -56,23 +59,23 @@ class AroundTexture:
         If numbers do not fit each other, or the trace does not close.
     """
 
-    waves: tuple[int, ...] = parameter(ListOf(_ORDER), [3, 9], "waves per turn", default=())
+    waves: tuple[int, ...] = parameter(ListOf(_ORDER), [3, 9], "waves per turn", _HIGHEST, default=())
     amplitudes: tuple[float, ...] = parameter(
-        _AMPLITUDES, ["1 um", "0.1 um"], "amplitude of each of the waves", default=()
+        _AMPLITUDES, ["1 um", "0.1 um"], "amplitude of each of the waves", _WAVES, default=()
     )
     waviness: float | None = parameter(LENGTH, "0.5 um", "amplitude at first_order", _WAVES, default=None)
-    first_order: int = parameter(_ORDER, 2, "fewest waves per turn of the waviness", default=2)
+    first_order: int = parameter(_ORDER, 2, "fewest waves per turn of the waviness", _HIGHEST, default=2)
     last_order: int = parameter(_ORDER, 100, "most waves per turn of it", _HIGHEST, default=100)
-    fall: float = parameter(Number(), 1.5, "p of its amplitudes, which fall as order^-p", default=1.5)
+    fall: float = parameter(_FALL, 1.5, "p of its amplitudes, which fall as order^-p", default=1.5)
     trace: Array | None = parameter(  # noqa: RUF009
         _TRACE, "roundness.csv", "measured roundness", default=None
     )
     roughness: float | None = parameter(LENGTH, "20 nm", "rms of the roughness", _RMS, default=None)
     hurst: float = parameter(Number(above=0, at_most=1), 0.8, "its Hurst exponent", default=0.8)
-    longest: float = parameter(LENGTH, "0.5 mm", "its roll-off wavelength", default=0.5e-3)
-    shortest: float = parameter(LENGTH, "50 um", "its shortest wavelength", default=50e-6)
+    longest: float = parameter(LENGTH, "0.5 mm", "its roll-off wavelength", _LENGTHS, default=0.5e-3)
+    shortest: float = parameter(LENGTH, "50 um", "its shortest wavelength", _LENGTHS, default=50e-6)
     anisotropy: float = parameter(
-        Number(above=0), 1.0, "its correlation length along over that across", default=1.0
+        Number(above=0), 1.0, "its correlation length along over that across", _RATIOS, default=1.0
     )
     map: HeightMap | Path | None = parameter(  # noqa: RUF009
         MAP, "raceway.x3p", "measured roughness instead", default=None

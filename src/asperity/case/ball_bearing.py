@@ -1,0 +1,342 @@
+"""A ball bearing that runs under a load: its rings, what they carry, and how it is computed."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import MISSING, fields, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.case.any_case import AnyCase
+from asperity.case.bearing import LOAD, LOADS, BearingGeometry
+from asperity.case.body import DAMPING
+from asperity.case.form import Section, section
+from asperity.case.sections import DURATION, DURATION_OR_ZERO
+from asperity.case.surface import INDEX
+from asperity.case.tables import Column, TableFile, TableSource, read_table
+from asperity.errors import InputError, PhysicsWarning
+from asperity.parameters import Choice, Flag, Key, ListOf, Number, Quantity, key, keys_of, optional
+from asperity.structures.ball_bearing import PARTS
+from asperity.surfaces.faults import Fault
+from asperity.surfaces.raceway import AroundTexture, closed_trace
+from asperity.units import written
+
+if TYPE_CHECKING:
+    from asperity.structures.ball_bearing import Kinematics
+    from asperity.structures.bearing_statics import LoadedBearing
+
+LAWS = ("table", "areal", "hertz")
+SAMPLING = 2.56
+"""Samples per period of the highest frequency that a record holds, as analysers have it."""
+STEPS_PER_PERIOD = 10
+"""Time steps per period of that frequency, and of a ball's resonance between the rings, at least."""
+MOST_STEPS = 10**8
+FEWEST = 5.0
+"""Periods of the slowest tone in a record, at least."""
+_STIFFNESS, _STIFF = Quantity("N/m", at_least=0), "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
+_LENGTH, _RINGS = Quantity("m", above=0), "0.1 mm to 1 m: rings lie between"
+
+
+class ShaftKeys(Section):
+    """What a ring carries, and what holds it."""
+
+    mass: float = key(
+        Quantity("kg", above=0),
+        "1 kg",
+        "mass of the ring with all that moves with it",
+        "1 mg to 1000 t: what runs in bearings lies between",
+    )
+    radial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it radially; 0 for none", _STIFF)
+    axial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it axially; 0 for none", _STIFF)
+    damping_ratio: float = key(
+        Number(at_least=0, at_most=0.99), 0.02, "damping ratio on these springs, and of its lobes"
+    )
+
+
+class HousingKeys(ShaftKeys):
+    """The same of the outer ring, which may bend."""
+
+    lobes: int | None = optional(
+        Number(at_least=2, at_most=20, whole=True),
+        4,
+        "largest number of lobes in which the ring bends, free all around",
+        "it is rigid",
+    )
+    width: float = key(_LENGTH, "15 mm", "width of its section, where it bends", _RINGS, goes_with="lobes")
+    thickness: float = key(
+        _LENGTH, "3 mm", "thickness of its section, where it bends", _RINGS, goes_with="lobes"
+    )
+
+
+def read_roundness(table: TableSource) -> Array:
+    """Read a roundness trace (n, 2), rad and m, over one turn that closes."""
+    rows = read_table(table, (Column("angle", "rad"), Column("deviation", "m")))
+    closed_trace(rows)
+    return rows
+
+
+def _same(example: Any, default: Any) -> bool:
+    return math.isclose(example, default) if isinstance(default, float) else bool(example == default)
+
+
+def _keys_of(model: Any) -> dict[str, Key]:
+    """Keys of what a dataclass declares, with a default where that of the class is its example."""
+    found = keys_of(model, otherwise="none")
+    for field in fields(model):
+        key = found[field.name]
+        if field.default not in (None, MISSING) and _same(key.kind(key.example), field.default):
+            found[field.name] = replace(key, default=key.example, otherwise="")
+    return found
+
+
+_AROUND, _FAULT = _keys_of(AroundTexture), _keys_of(Fault)
+_TRACE = TableFile(columns=(2,), content="a table of angle and deviation", read=read_roundness)
+
+
+def _values(section: Section) -> dict[str, Any]:
+    return {name: value for name in section.keys if (value := getattr(section, name)) is not None}
+
+
+class AroundKeys(Section, parameters=_AROUND | {"trace": replace(_AROUND["trace"], kind=_TRACE)}):
+    """What is on a raceway or on the balls all around."""
+
+    if TYPE_CHECKING:
+        trace: Path | Array | None
+
+    def texture(self) -> AroundTexture:
+        """It, with what its files hold."""
+        given = _values(self)
+        if self.trace is not None:
+            given["trace"] = read_roundness(self.trace)
+        return AroundTexture(**given)
+
+    def problems(self) -> Iterator[InputError]:
+        """Waves with their amplitudes, one texture of each sort."""
+        try:
+            self.texture()
+        except InputError as error:
+            yield error
+
+
+class FaultKeys(Section, parameters=_FAULT | {"shape": replace(_FAULT["shape"], default="pit")}):
+    """One fault of a raceway or of the first ball, or several alike around it."""
+
+    on: str | None = optional(Choice(PARTS), "outer", "part that has it", "no fault")
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """The fault, if there is one."""
+        given = _values(self)
+        return (Fault(**given),) if given.pop("on", None) else ()
+
+    def problems(self) -> Iterator[InputError]:
+        """All that a fault of its shape has, and a part that has it."""
+        if self.on is None and self.given():
+            yield InputError("on", "nothing", Choice(PARTS).allowed, "Say which part has the fault.")
+        try:
+            _ = self.faults
+        except InputError as error:
+            yield error
+
+
+class BallBearingCase(AnyCase):
+    """A ball bearing runs under a constant load.
+
+    Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
+    default and allowed values are printed by ``asperity new ball-bearing``.
+
+    Examples
+    --------
+    >>> from asperity import BallBearingCase
+    >>> case = BallBearingCase(speed="1797 1/min", radial=100, bearing={"name": "6205"})
+    >>> f"{case.kinematics.ball_pass_outer:.1f} Hz"
+    '107.4 Hz'
+    """
+
+    TITLE = "A ball bearing runs under a load."
+    PREPARED_BY = "asperity.scenarios.bearing.prepare_bearing"
+    COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
+    WRITTEN_OUT: ClassVar = {"bearing.name": '"6205"', "axial": '"100 N"'}
+
+    kind: str = key(Choice(("ball-bearing",)), "ball-bearing", "what rolls")
+    speed: float = key(
+        Quantity("Hz", above=0),
+        "1800 1/min",
+        "speed of the ring that turns",
+        "0.001 Hz to 10 kHz: bearings turn slower",
+    )
+    radial: float = key(LOAD, "0 N", "radial load on the inner ring, and opposite on the outer one", LOADS)
+    axial: float = key(LOAD, "0 N", "axial load on the inner ring, and opposite on the outer one", LOADS)
+    laws: tuple[str, ...] = key(
+        ListOf(Choice(LAWS), least=1), list(LAWS), "laws of the contact force; the first is the main one"
+    )
+    seed: int = key(INDEX, 1, "seed of everything random")
+    duration: float = key(DURATION, "1 s", "time that is recorded", "1 ms to 1 h: records lie between")
+    settling: float = key(
+        DURATION_OR_ZERO,
+        "0.1 s",
+        "time that it runs before the record starts, so that the start from rest is forgotten",
+        "1 us to 1 h: records lie between",
+    )
+    time_step: float | None = optional(
+        DURATION,
+        "4 us",
+        "time step",
+        "a tenth of the period of a ball's resonance between the rings, or of the highest frequency, if less",
+        "1 ns to 1 ms: bearings ring between",
+    )
+    sampling_rate: float = key(
+        Quantity("Hz", above=0),
+        "51.2 kHz",
+        "samples per second of what is written, which holds frequencies up to 1/2.56 of it",
+        "1 kHz to 1 MHz: bearings are measured between",
+    )
+    sensors: tuple[float, ...] = key(
+        ListOf(Quantity("rad"), least=1),
+        ["0 deg"],
+        "angles from the radial load of accelerometers on the outer ring, which feel it radially",
+        "-360 deg to 360 deg: the ring ends there",
+    )
+    envelope_band: tuple[float, ...] | None = optional(
+        ListOf(Quantity("Hz", at_least=0), least=2),
+        ["2 kHz", "6 kHz"],
+        "ends of the band of which the envelope is taken",
+        "that in which the acceleration is most impulsive",
+        "1 Hz to 500 kHz: bearings ring between",
+    )
+    contact_damping: float = key(
+        DAMPING,
+        "20 N s/m",
+        "damping of each contact",
+        "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid",
+    )
+    centrifugal: bool = key(Flag(), True, "whether balls press the outer ring as they go round")
+    cage_slip: tuple[float, ...] = key(
+        ListOf(Number(at_least=0, at_most=0.2), least=2),
+        [0.0, 0.0],
+        "least and largest share by which the cage is slower than in pure rolling, drawn anew at each turn",
+    )
+    bearing: BearingGeometry = section(BearingGeometry, "the bearing: named, or by its dimensions")
+    shaft: ShaftKeys = section(ShaftKeys, "what the inner ring carries, and what holds it")
+    housing: HousingKeys = section(
+        HousingKeys,
+        "what the outer ring carries, and what holds it",
+        mass="0.06 kg",
+        radial_stiffness="0 N/m",
+        axial_stiffness="0 N/m",
+    )
+
+    inner_raceway: AroundKeys = section(AroundKeys, "what is on the inner raceway all around")
+    outer_raceway: AroundKeys = section(AroundKeys, "what is on the outer raceway all around")
+    balls: AroundKeys = section(AroundKeys, "what is on each ball all around")
+    fault: FaultKeys = section(FaultKeys, "a fault of a raceway, or of the first ball")
+
+    # --- what follows from the keys
+
+    @property
+    def title(self) -> str:
+        """Say what runs."""
+        name = "Ball bearing" if self.bearing.name is None else f"Ball bearing {self.bearing.name}"
+        return f"{name} at {60.0 * self.speed:.5g} 1/min"
+
+    @cached_property
+    def static(self) -> LoadedBearing:
+        """The bearing under its load while it turns, at angles of the cage over the passing of a ball."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PhysicsWarning)  # told when it is prepared
+            return self.loaded()
+
+    def loaded(self) -> LoadedBearing:
+        """The same with its warnings."""
+        speed = self.speed if self.centrifugal else 0.0
+        return self.bearing.bearing.loaded(self.radial, self.axial, speed=speed)
+
+    @property
+    def has_smooth_balls(self) -> bool:
+        """Whether nothing is on any ball."""
+        return self.fault.on != "ball" and not self.balls.given()
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """What turns how fast, without slip, at the contact angle of the load."""
+        return self.bearing.bearing.kinematics(self.speed, contact_angle=self.static.contact_angle)
+
+    @property
+    def largest_loads(self) -> tuple[float, float]:
+        """Largest static load of a contact with the inner and the outer ring, N."""
+        return float(self.static.inner_load.max()), float(self.static.outer_load.max())
+
+    @property
+    def ball_resonance(self) -> float:
+        """Natural frequency, Hz, of the most loaded ball between both rings at rest."""
+        of = self.bearing.bearing
+        contacts = zip((of.inner_contact, of.outer_contact), self.largest_loads, strict=True)
+        stiffness = sum(each.tangent_stiffness(each.approach(load)) for each, load in contacts)
+        return math.sqrt(stiffness / of.ball_mass) / (2.0 * math.pi)
+
+    @property
+    def highest_frequency(self) -> float:
+        """Highest frequency that the record holds, Hz."""
+        return self.sampling_rate / SAMPLING
+
+    @property
+    def steps_per_sample(self) -> int:
+        """Time steps between two samples that are written."""
+        wanted = 1.0 / (STEPS_PER_PERIOD * max(self.ball_resonance, self.highest_frequency))
+        return max(1, math.ceil(1.0 / (self.sampling_rate * (self.time_step or wanted)) * (1.0 - 1e-9)))
+
+    @property
+    def step(self) -> float:
+        """Time step, s, of which a whole number lies between two samples."""
+        return 1.0 / (self.sampling_rate * self.steps_per_sample)
+
+    @property
+    def numbers_written(self) -> float:
+        """How many numbers its result holds, at most."""
+        each = 5 * self.bearing.bearing.balls + 10
+        return len(self.laws) * each * self.duration * self.sampling_rate
+
+    def problems(self) -> Iterator[InputError]:
+        """A load that is carried, at a speed at which balls stay between the rings; and a record of it."""
+        try:
+            leaving = self.static.leaving_speed
+        except InputError as error:
+            yield error.about("radial") if error.what == "load" else error
+            return
+        if leaving is not None:
+            received = (
+                f"{60.0 * self.speed:.5g} 1/min, where centrifugal force lifts balls off the inner ring"
+            )
+            allowed = f"less than {60.0 * leaving:.5g} 1/min, or a larger axial load or bearing.preload"
+            yield InputError("speed", received, allowed)
+        for law in sorted(set(self.laws)):
+            if self.laws.count(law) > 1:
+                yield InputError("laws", f'"{law}" more than once', "each law once")
+        for name in ("cage_slip", "envelope_band"):
+            pair = getattr(self, name)
+            if pair is not None and (len(pair) != 2 or pair[0] > pair[1]):
+                yield InputError(name, ", ".join(f"{each:g}" for each in pair), "two values that do not fall")
+        if self.envelope_band is not None and self.envelope_band[-1] > 0.5 * self.sampling_rate:
+            received, allowed = f"up to {self.envelope_band[-1]:g} Hz", f"{0.5 * self.sampling_rate:g} Hz"
+            yield InputError("envelope_band", received, f"at most half the sampling_rate, {allowed}")
+        tones = [self.kinematics.tone(part) for part in PARTS]
+        if self.duration * min(tones) < FEWEST:
+            least = f"{1e3 * FEWEST / min(tones):.4g} ms"
+            allowed = f"at least {least}, in which the slowest tone comes {FEWEST:g} times"
+            yield InputError("duration", written(self.duration, "s", "ms"), allowed)
+        if self.envelope_band is not None and np.ptp(self.envelope_band) < 1.1 * max(tones):
+            received = f"a width of {np.ptp(self.envelope_band):g} Hz"
+            allowed = f"more than the fastest tone, {max(tones):.4g} Hz, and a tenth"
+            yield InputError("envelope_band", received, allowed, "Take a wider band.")
+        for way in ("radial", "axial") if self.static.contact_angle else ("radial",):
+            if not any(getattr(keys, f"{way}_stiffness") for keys in (self.shaft, self.housing)):
+                received, allowed = "0 N/m of [shaft] and of [housing]", "one of them that holds its ring"
+                yield InputError(f"shaft.{way}_stiffness", received, allowed)
+        if (steps := (self.duration + self.settling) / self.step) > MOST_STEPS:
+            yield InputError("duration", f"{steps:.2g} time steps", f"at most {MOST_STEPS:g} time steps")

@@ -1,0 +1,157 @@
+"""A ball bearing of a case laid ready: what is on its parts, its rings, how much work it is; and its runs."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.case.ball_bearing import BallBearingCase
+from asperity.contact.hertz import Hertz
+from asperity.errors import InputError, PhysicsWarning
+from asperity.progress import Progress
+from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
+from asperity.scenarios.preparing import START_TIME, Work, refuse
+from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.reducing import STATES
+from asperity.store import Store
+from asperity.structures.ball_bearing import PARTS
+from asperity.structures.ring import Ring
+from asperity.surfaces.raceway import Raceway
+
+RINGS = ("inner", "outer")
+NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
+ON = {
+    "inner_raceway": "the inner raceway",
+    "outer_raceway": "the outer raceway",
+    "balls": "the balls",
+    "fault": "the fault",
+}
+"""Sections of a case that say what is on a part."""
+LEFT_OUT = (
+    "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the contact "
+    "angle is that of the static load."
+)
+STEP_TIME, SOLUTION_TIME = 1.5e-6, 1e-3
+"""Times of a step of one ball, and of a contact of a scan, s."""
+SEEDS = 1000
+"""Seeds of the parts of a bearing lie beside each other, and no two bearings share any."""
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedBearing:
+    """A case of a bearing that can be computed."""
+
+    case: BallBearingCase
+    raceways: tuple[Raceway, Raceway]  # inner and outer one
+    balls: tuple[Raceway, ...]  # their surfaces; none where all are smooth
+    caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
+
+
+def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBearing:
+    """Load the bearing at rest and lay out what is on its parts; refuse what cannot be."""
+    errors, made = list[InputError](), list[Raceway]()
+    of = case.bearing.bearing
+    around = [case.inner_raceway, case.outer_raceway] + [case.balls] * of.balls * (not case.has_smooth_balls)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", PhysicsWarning)
+        case.loaded()
+        for number, keys in enumerate(around):
+            name = (*RINGS, "ball")[min(number, 2)]
+            radius = (*of.raceway_radii, 0.5 * of.ball_diameter)[min(number, 2)]
+            faults = case.fault.faults if case.fault.on == name and number < 3 else ()
+            contact, load = contact_of(
+                case, min(number, 1)
+            )  # balls are looked at as the outer ring feels them
+            seed = SEEDS * case.seed + number
+            try:
+                made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
+            except InputError as error:
+                errors.append(error.about(f"{NAMES[name]}: {error.what}"))
+    refuse(errors, source)
+    return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
+
+
+def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
+    """What will be computed, in words, and how much work it is; coarsely, as nothing is solved for that."""
+    case, turning, found = prepared.case, prepared.case.kinematics, prepared.case.static
+    steps = round((case.settling + case.duration) / case.step)
+    textured = sum(bool(getattr(case, key).given()) for key in ON)
+    runs, solutions = len(case.laws) + textured + (textured > 0), {}
+    for name, surface in zip(RINGS, prepared.raceways, strict=True):
+        rough = np.count_nonzero((surface.heights + surface.faults).any(axis=1))
+        if "table" in case.laws and rough:
+            solutions[f"scan of the {NAMES[name]}"] = int(rough) * STATES
+    seconds = START_TIME + STEP_TIME * steps * found.bearing.balls * runs
+    tones = ", ".join(f"{NAMES[part]} {turning.tone(part):.4g} Hz" for part in PARTS)
+    load, least, angle = max(case.largest_loads), found.touching.min(), np.degrees(found.contact_angle)
+    rows = [
+        ("heaviest load of a ball", f"{load:.4g} N, contact angle {angle:.3g}°"),
+        ("balls that touch both rings", f"{least:.0f} or more of {found.bearing.balls}"),
+        ("tones", f"{tones}; cage {turning.cage:.4g} Hz"),
+        ("time", f"{steps} steps of {case.step * 1e6:.4g} µs, {case.settling:g} s of them before the record"),
+        ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} with the textures of parts alone"),
+        *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
+        ("not in it", LEFT_OUT),
+    ]
+    return rows, Work({}, solutions, steps, None, seconds + SOLUTION_TIME * sum(solutions.values()))
+
+
+def contact_of(case: BallBearingCase, ring: int) -> tuple[Hertz, float]:
+    """Smooth contact of a ball with the inner (0) or the outer ring, and its largest static load, N."""
+    of = case.bearing.bearing
+    return (of.inner_contact, of.outer_contact)[ring], case.largest_loads[ring]
+
+
+def bearing_rings(case: BallBearingCase) -> BearingRings:
+    """Both rings with what they carry, on what holds them; the outer one bends if the case says so."""
+    angle, outer, of = case.static.contact_angle, case.housing, case.bearing.bearing
+    inner, held = (
+        Ring.rigid(
+            keys.mass, angle, radial_stiffness=keys.radial_stiffness, axial_stiffness=keys.axial_stiffness,
+            damping_ratio=keys.damping_ratio,
+        )
+        for keys in (case.shaft, outer)
+    )  # fmt: skip
+    if outer.lobes is None:
+        return BearingRings(inner, held)
+    radius = of.raceway_radii[1] + 0.5 * outer.thickness
+    mass = of.material.density * 2.0 * np.pi * radius * outer.width * outer.thickness
+    stiffness = of.material.youngs_modulus * outer.width * outer.thickness**3 / 12.0
+    lobes: dict[str, Any] = {"most_lobes": outer.lobes, "damping_ratio": outer.damping_ratio}
+    return BearingRings(inner, held, outer_bending=Ring.bending(mass, radius, stiffness, angle, **lobes))
+
+
+def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:
+    """Slip of the cage at times (n,), s, drawn anew for each of its turns, and straight between these."""
+    least, most = case.cage_slip
+    rate = case.kinematics.cage
+    turns = int(rate * (case.settling + case.duration)) + 3
+    drawn = np.random.default_rng([case.seed, 7]).uniform(least, most, turns)
+    return lambda at: np.interp((at + case.settling) * rate + 1.0, np.arange(turns), drawn)
+
+
+def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBearing]:
+    """Run the bearing by each law."""
+    case, store = prepared.case, Store()
+    keys: dict[str, Any] = {"damping": case.contact_damping, "hardness": case.bearing.bearing.hardness}
+    laws_of = []
+    for ring, surface in enumerate(prepared.raceways):
+        smooth, load = contact_of(case, ring)
+        laws_of.append(raceway_laws(case.laws, smooth, surface, load, cache=store, progress=progress, **keys))
+    heights = [ball_heights(smooth, surface, load) for surface in prepared.balls]
+    sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
+    return {
+        name: roll_bearing(
+            case.bearing.bearing, bearing_rings(case), *(built[name] for built in laws_of),
+            speed=case.speed, radial=case.radial, axial=case.axial, duration=case.duration,
+            time_step=case.step, settling=case.settling, slip=cage_slip(case),
+            ball_heights=heights, centrifugal=case.centrifugal, sensors=sensors,
+            highest_frequency=case.highest_frequency, progress=progress,
+        )
+        for name in case.laws
+    }  # fmt: skip

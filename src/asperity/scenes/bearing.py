@@ -1,0 +1,280 @@
+"""A ball bearing computed: at rest, in time by each law, and what its acceleration says; as a result."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray
+
+from asperity import laws
+from asperity.arguments import Array
+from asperity.case.ball_bearing import BallBearingCase
+from asperity.diagnostics import (
+    ISO_BANDS,
+    LineFamily,
+    amplitude_spectrum,
+    band_velocities,
+    envelope_spectrum,
+    explained_lines,
+    impulsive_band,
+)
+from asperity.errors import Finding, Grade, percent, warn_of_findings
+from asperity.progress import Progress
+from asperity.rolling.bearing import RolledBearing
+from asperity.scenarios.bearing import LEFT_OUT, NAMES, ON, RINGS, PreparedBearing, prepare_bearing, rolled
+from asperity.scenes import schema
+from asperity.scenes.result import root_attributes
+from asperity.schema import Values, bearing, contact, provenance, rolling, spectra, tree
+from asperity.structures.ball_bearing import PARTS
+
+DIRECTIONS = ("along", "across", "axial")
+HARMONICS = 5
+REACH = 1.2
+"""How far the envelope spectrum is kept, beyond the highest harmonic of a tone."""
+FAINT = 0.1
+"""Share of the clearest line of a part below which others are not told apart from what modulates it."""
+CHEAPEST = ("areal", "hertz", "table")
+RESIDUAL = 1e-3
+"""What the energy balance may leave open, relative to the throughput."""
+SOURCES = (
+    "T. A. Harris and M. N. Kotzalas, Essential Concepts of Bearing Technology, 5th ed. (2007).",
+    "F. P. Wardle, Proc. IMechE 202 C (1988) 305 (vibration of ball bearings by waviness).",
+    "ISO 15242-2 (velocities in three bands).",
+    "R. B. Randall and J. Antoni, Mechanical Systems and Signal Processing 25 (2011) 485 (envelope).",
+    "J. Antoni, Mechanical Systems and Signal Processing 21 (2007) 108 (spectral kurtosis, of the band).",
+    "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies).",
+)
+
+
+def bearing_result(
+    prepared: PreparedBearing,
+    progress: Progress,
+    caught: list[warnings.WarningMessage],
+    *,
+    brief: bool = False,
+) -> xarray.DataTree:
+    """Run a bearing by each of its laws and lay its result out, as `asperity.scenes.result` does others."""
+    case, began = prepared.case, time.monotonic()
+    runs = rolled(prepared, progress)
+    heard, apart = heard_group(case, runs), Values() if brief else alone(prepared, progress)
+    found = list(_findings(case, runs))
+    warn_of_findings(found)
+    numerics = [{"name": name, "value": value} for name, value in _numerics(case)]
+    numerics.append({"name": "wall time", "value": f"{time.monotonic() - began:.2f} s"})
+    scenario: Values = {
+        provenance.KIND: case.kind,
+        provenance.PARAMETERS: case.parameters(),
+        provenance.LAWS: [laws.spec_of(name).entry() for name in case.laws],
+        provenance.NUMERICS: numerics,
+        contact.VALIDITY: [finding.row() for finding in found],
+    }
+    result = tree(scenario | static_group(case) | motion_group(case, runs) | heard | apart)
+    result.attrs = root_attributes(case, case.title, SOURCES, _verdict(heard, _deciding(apart)), caught)
+    return result
+
+
+# --- at rest
+
+
+def static_group(case: BallBearingCase) -> Values:
+    """Lay out how the bearing carries its load, and what turns how fast."""
+    found, turning, of = case.static, case.kinematics, case.bearing.bearing
+    along, across = np.transpose([found.semi_axes(ring) for ring in RINGS], (1, 0, 2, 3))
+
+    def both(what: str) -> list[Array]:
+        return [getattr(found, f"{ring}_{what}") for ring in RINGS]
+
+    return {
+        bearing.BALL: 1 + np.arange(of.balls),
+        bearing.RING: list(RINGS),
+        bearing.DIRECTION: list(DIRECTIONS),
+        bearing.CAGE_ANGLE: found.azimuth[:, 0],
+        bearing.AZIMUTH: found.azimuth,
+        bearing.BALL_LOAD: both("load"),
+        bearing.BALL_ANGLE: both("angle"),
+        bearing.PEAK_PRESSURE: both("pressure"),
+        bearing.SEMI_AXIS_ALONG: along,
+        bearing.SEMI_AXIS_ACROSS: across,
+        bearing.RING_DISPLACEMENT: found.displacement.T,
+        bearing.RING_STIFFNESS: np.diagonal(found.stiffness, axis1=1, axis2=2).T,
+        bearing.BALL_DIAMETER: of.ball_diameter,
+        bearing.PITCH_DIAMETER: of.pitch_diameter,
+        bearing.CONTACT_ANGLE: found.contact_angle,
+        bearing.LEFT_OUT: LEFT_OUT,
+        bearing.PART: list(PARTS),
+        bearing.TONE: [turning.tone(part) for part in PARTS],
+        bearing.MODULATION: [turning.modulation(part) for part in PARTS],
+        bearing.TURNING: turning.turning,
+        bearing.CAGE: turning.cage,
+    }
+
+
+# --- in time
+
+
+def thinned(signal: Array, every: int) -> Array:
+    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
+    if every == 1:
+        return signal
+    from scipy.signal import resample_poly
+
+    return np.asarray(resample_poly(signal, 1, every, axis=-1, padtype="line"))
+
+
+def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
+    """Lay out what was recorded in time, at the sampling rate of the case."""
+    every, (first, *_), balls = case.steps_per_sample, runs.values(), np.arange(case.bearing.bearing.balls)
+
+    def stacked(name: str) -> Array:
+        return np.stack([thinned(getattr(run, name), every) for run in runs.values()])
+
+    return {
+        rolling.LAW: list(runs),
+        rolling.TIME: first.time[::every],
+        bearing.ROLLING_BALL: 1 + balls,
+        bearing.ROLLING_RING: list(RINGS),
+        bearing.ROLLING_DIRECTION: list(DIRECTIONS),
+        bearing.ROLLING_SENSOR: case.sensors,
+        bearing.BALL_AZIMUTH: first.cage[::every] + 2.0 * np.pi / len(balls) * balls[:, None],
+        bearing.INNER_FORCE: stacked("inner_force"),
+        bearing.OUTER_FORCE: stacked("outer_force"),
+        bearing.BALL_MOTION: stacked("ball_motion"),
+        bearing.RING_MOTION: np.stack([stacked(f"{ring}_motion") for ring in RINGS], axis=1),
+        bearing.RING_ACCELERATION: stacked("acceleration"),
+        schema.ENERGY_TERM: list(first.energy.shares),
+        schema.ENERGY: [list(run.energy.shares.values()) for run in runs.values()],
+        schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs.values()],
+    }
+
+
+# --- what its acceleration says
+
+
+def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
+    """Lay out velocities in bands at all sensors; spectrum, envelope and lines in it at the first one."""
+    rate, every, turning = case.sampling_rate, case.steps_per_sample, case.kinematics
+    signals = np.stack([thinned(run.acceleration, every) for run in runs.values()])
+    tones = {part: (turning.tone(part), turning.modulation(part)) for part in PARTS}
+    highest = REACH * HARMONICS * max(tone for tone, _ in tones.values())
+    low, high = case.envelope_band or impulsive_band(signals[0, 0], rate, highest)
+    lines = [amplitude_spectrum(law[0], rate) for law in signals]
+    frequency = lines[0][0]
+    kept = (frequency > 0.0) & (frequency <= case.highest_frequency)
+    struck = [envelope_spectrum(law[0], rate, (low, high)) for law in signals]
+    within = struck[0][0] <= highest
+    found = [explained_lines(each, tones, harmonics=HARMONICS) for each in struck]
+    judged = [[band_velocities(one, rate, quantity="acceleration") for one in law] for law in signals]
+    return {
+        spectra.LAW: list(runs),
+        spectra.FREQUENCY: frequency[kept],
+        bearing.VELOCITY_AMPLITUDE: [each[kept] / (2.0 * np.pi * frequency[kept]) for _, each in lines],
+        bearing.LAW: list(runs),
+        bearing.SENSOR: case.sensors,
+        bearing.JUDGED_BAND: [f"{first:g} to {last:g} Hz" for first, last in ISO_BANDS],
+        bearing.BAND_VELOCITY: judged,
+        bearing.ENVELOPE_FREQUENCY: struck[0][0][within],
+        bearing.ENVELOPE: [each[within] for _, each in struck],
+        bearing.ENVELOPE_LOW: low,
+        bearing.ENVELOPE_HIGH: high,
+        bearing.HARMONIC: 1 + np.arange(HARMONICS),
+        **{entry: [_of_lines(each, what) for each in found] for entry, what in LINES.items()},
+        bearing.LINES_FOUND: [_stand_out(each) for each in found],
+    }
+
+
+LINES = {
+    bearing.LINE_FREQUENCY: "frequency",
+    bearing.LINE_AMPLITUDE: "amplitude",
+    bearing.LINE_SIDE_BANDS: "side_bands",
+}
+
+
+def _of_lines(found: dict[str, LineFamily], what: str) -> list[Array]:
+    """Numbers of the lines of each part (parts, harmonics), of side bands the larger; NaN if not reached."""
+    values = [getattr(found[part], what) for part in PARTS]
+    each = [value.max(axis=1) if value.ndim == 2 else value for value in values]
+    return [np.pad(value, (0, HARMONICS - len(value)), constant_values=np.nan) for value in each]
+
+
+def _stand_out(found: dict[str, LineFamily]) -> list[float]:
+    """Whether the lines of each part stand out, from what is around them and beside those of other parts."""
+    clearest = max(float(each.amplitude[0]) for each in found.values())
+    return [float(found[part].found and found[part].amplitude[0] >= FAINT * clearest) for part in PARTS]
+
+
+def _verdict(heard: Values, deciding: Sequence[str]) -> str:
+    """How quiet the bearing is, by what in each band, and which part is heard."""
+    velocities = heard[bearing.BAND_VELOCITY][0][0]
+    told = ", ".join(
+        f"{1e6 * rms:.3g} µm/s in {band}{part}"
+        for rms, band, part in zip(velocities, heard[bearing.JUDGED_BAND], deciding, strict=True)
+        if np.isfinite(rms)
+    )
+    lines = zip(PARTS, heard[bearing.LINES_FOUND][0], heard[bearing.LINE_FREQUENCY][0], strict=True)
+    parts = " and of the ".join(f"{NAMES[part]} ({at[0]:.4g} Hz)" for part, found, at in lines if found)
+    lead = f"Radial velocity by {heard[bearing.LAW][0]}: {told or 'no band is sampled'}"
+    return f"{lead}. Its envelope has lines of {f'the {parts}' if parts else 'no part'}. {LEFT_OUT}"
+
+
+# --- which part makes it so
+
+
+def alone(prepared: PreparedBearing, progress: Progress) -> Values:
+    """Velocities with what is on each part alone, and on none, by a cheap law that sees whole contacts."""
+    case = prepared.case
+    textured = [key for key in ON if getattr(case, key).given()]
+    if not textured:
+        return {}
+    law = min(case.laws, key=CHEAPEST.index)
+    names, found = ["perfect surfaces", *(ON[key] for key in textured)], list[Array]()
+    for kept in (None, *textured):
+        others = case.with_(laws=[law], **{key: None for key in textured if key != kept})
+        (run,) = rolled(prepare_bearing(others), progress).values()
+        signal = thinned(run.acceleration[0], case.steps_per_sample)
+        found.append(band_velocities(signal, case.sampling_rate, quantity="acceleration"))
+    held = bearing.ALONE_VELOCITY.variable(np.array(found), law=law)
+    return {bearing.SOURCE: names, bearing.ALONE_VELOCITY: held}
+
+
+def _deciding(apart: Values) -> list[str]:
+    """Which part makes most of each band, in brackets after a blank; empty where none is known to."""
+    found = [""] * len(ISO_BANDS)
+    if apart:
+        names, velocities = apart[bearing.SOURCE], apart[bearing.ALONE_VELOCITY].values
+        for band, energy in enumerate(velocities.T**2):
+            if np.isfinite(energy).all():
+                parts = np.append(energy[0], np.maximum(energy[1:] - energy[0], 0.0))
+                share = percent(float(parts.max() / parts.sum()))
+                found[band] = f" ({share} from {names[int(parts.argmax())]})"
+    return found
+
+
+# --- how sure it is
+
+
+def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator[Finding]:
+    """Numbers of the runs that must be in range."""
+    steps = len(next(iter(runs.values())).time) * (1.0 + case.settling / case.duration)
+    for name, run in runs.items():
+        share, left = run.unconverged_steps / steps, run.energy.residual
+        yield Finding(
+            f"share of the time steps that missed their tolerance, {name}", percent(share), "below 1 %",
+            Grade.of_share(share) if share else None, "Their contact forces are too coarse.",
+            "Take a smaller time_step.", warned=True,
+        )  # fmt: skip
+        yield Finding(
+            f"energy that the balance leaves open, {name}", f"{left:.1e} of the throughput",
+            f"up to {RESIDUAL:g}", Grade.WARNING if left > RESIDUAL else None,
+            "The time step is coarse for what moves.", "Take a smaller time_step.",
+        )  # fmt: skip
+
+
+def _numerics(case: BallBearingCase) -> Iterator[tuple[str, str]]:
+    """Numbers of the computation: names and values."""
+    yield "time step", f"{case.step * 1e6:.4g} µs"
+    yield "time steps per sample that is written", f"{case.steps_per_sample}"
+    yield "resonance of the most loaded ball between the rings", f"{case.ball_resonance:.4g} Hz"
+    yield "imbalance of the static solution", f"{case.static.imbalance:.0e} of the load"

@@ -1,0 +1,357 @@
+"""A ball bearing on its page: how it carries its load, what moves, how quiet it is, which part is heard."""
+
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from xarray import DataTree
+
+from asperity.reporting import chart, data, panels
+from asperity.reporting.bearing_figures import COLOURS
+from asperity.reporting.chart import BLUE, INK, VERMILLION, Axis, Line, Mark, Numbers, Panel, Shape
+from asperity.reporting.figure import Figure, Lines, Of
+from asperity.reporting.headline import Answers, HeadlineNumber
+from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
+from asperity.schema import bearing, provenance
+from asperity.schema.rolling import TIME
+from asperity.schema.spectra import FREQUENCY
+
+CORNERS = 180
+RING = 0.35
+"""Thickness in which rings are drawn, over the diameter of a ball: a case does not hold it."""
+TURNS = 3.0
+"""Turns of the ring of which the acceleration is drawn."""
+PER_OCTAVE = 96
+"""Stretches of an octave of which the highest line is drawn."""
+LOWEST = 10.0
+"""Hz, from which spectra are drawn."""
+NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
+RINGS = {"inner": (VERMILLION, (), 1.3, "o"), "outer": (BLUE, (5.0, 1.5), 1.3, "s")}
+"""Looks of lines of the contacts with each ring."""
+RIGHT_ANGLES = tuple((each, f"{each:g}") for each in (-180.0, -90.0, 0.0, 90.0, 180.0))
+AROUND = Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_ANGLES)
+
+
+def _main(tree: DataTree) -> str:
+    return next(iter(data.laws(tree, bearing.BAND_VELOCITY)), "")
+
+
+def _degrees(azimuth: Numbers) -> Numbers:
+    return np.degrees(np.angle(np.exp(1j * azimuth)))
+
+
+# --- how it carries its load
+
+
+def _at(radius: Any, azimuth: Any) -> tuple[Numbers, Numbers]:
+    """Places on paper: the load points down, and what turns turns anticlockwise."""
+    return np.atleast_1d(radius * np.sin(azimuth)), np.atleast_1d(-radius * np.cos(azimuth))
+
+
+def _round(radius: float, x: Any = 0.0, y: Any = 0.0, **look: Any) -> Shape:
+    around = _at(radius, np.linspace(0.0, 2.0 * np.pi, CORNERS, endpoint=False))
+    return Shape(x + around[0], y + around[1], **look)
+
+
+def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
+    """The bearing from the side, each ball as dark as it is loaded, and its load outside."""
+    azimuth, _, outer = (series.values for series in lines.lines)
+    lengths = (bearing.BALL_DIAMETER, bearing.PITCH_DIAMETER, bearing.CONTACT_ANGLE)
+    ball, pitch, angle = (data.number(tree, each) or 0.0 for each in lengths)
+    ball, pitch = 1e3 * ball, 1e3 * pitch
+    half = 0.5 * ball * np.cos(angle)
+    raceways = {"inner": 0.5 * pitch - half, "outer": 0.5 * pitch + half}
+    rim = raceways["outer"] + RING * ball
+    circles = (raceways["inner"] - RING * ball, *raceways.values(), rim)
+    marks: list[Mark] = [_round(radius, width=1.0) for radius in circles]
+    for place, share in zip(azimuth, outer / max(outer.max(), 1e-300), strict=True):
+        x, y = _at(0.5 * pitch, place)
+        fill = _round(0.5 * ball, x, y, fill=BLUE, colour="", opacity=0.08 + 0.8 * float(share))
+        marks += [fill, _round(0.5 * ball, x, y)]
+        if share:
+            bar = _at(rim + np.array([0.1, 0.1 + 1.3 * share]) * ball, place)
+            marks.append(Line(*bar, colour=VERMILLION, width=2.2))
+    if (part := data.case_words(tree, "fault.on")) in NAMES:
+        where = data.case_quantity(tree, "fault.angle", "rad") or 0.0
+        x, y = _at(raceways.get(part, 0.5 * ball), where)
+        middle = _at(0.5 * pitch * (part == "ball"), azimuth[0])
+        named = f"fault of the {NAMES[part]}", COLOURS[part]
+        marks.append(Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
+    sensors = _at(rim - 0.5 * RING * ball, data.values(tree, bearing.SENSOR))
+    marks.append(Line(*sensors, "accelerometer", INK, width=0.0, marker="^"))
+    side = Axis("mm", -rim - 1.5 * ball, rim + 1.5 * ball)
+    seen = "from the side, the radial load downwards"
+    return [Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)]
+
+
+def _drawing_words(tree: DataTree) -> str:
+    part, turning = data.case_words(tree, "fault.on"), data.case_words(tree, "bearing.turning")
+    turns = " where the record begins" * (part in ("ball", turning))
+    fault = f" Diamond: the fault of the {NAMES[part]}{turns}." if part in NAMES else ""
+    return (
+        "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
+        "below the load; balls are as dark, and bars as long, as their static load. The bearing turns "
+        f"anticlockwise. Triangles: accelerometers.{fault}"
+    )
+
+
+DRAWING = Figure(
+    "load_zone",
+    "The bearing and its load zone",
+    Of(bearing.BALL),
+    (Of(bearing.AZIMUTH), Of(bearing.BALL_LOAD, "load on the {ring} ring")),
+    _drawing,
+    _drawing_words,
+    (bearing.SENSOR,),
+)
+
+
+# --- what moves
+
+
+def _one_turn(tree: DataTree) -> slice:
+    """The last turn of the cage."""
+    azimuth = data.values(tree, bearing.BALL_AZIMUTH)[0]
+    return slice(int(np.searchsorted(azimuth, azimuth[-1] - 2.0 * np.pi)), len(azimuth))
+
+
+def _turn(tree: DataTree, lines: Lines) -> list[Panel]:
+    degrees = _degrees(lines.at)
+    back = np.abs(np.diff(degrees, prepend=degrees[0])) > 180.0  # where the turn begins again on the left
+    drawn = [
+        Line(degrees, np.where(back, np.nan, each.values), each.label, *RINGS[ring][:2], 0.9)
+        for each, ring in zip(lines.lines, RINGS, strict=True)
+    ]
+    rests = zip(RINGS, data.values(tree, bearing.BALL_LOAD).reshape(2, -1), strict=True)
+    places = _degrees(data.values(tree, bearing.AZIMUTH).ravel())
+    order = np.argsort(places)
+    drawn += [
+        Line(places[order], load[order], f"static, {ring} ring", INK, RINGS[ring][1], 1.6, opacity=0.6)
+        for ring, load in rests
+    ]
+    return [Panel(AROUND, Axis("force / N", low=0.0), tuple(drawn), height=4.0)]
+
+
+TURN = Figure(
+    "ball_turn",
+    "Load of a ball over a turn of the cage",
+    Of(bearing.BALL_AZIMUTH, "azimuth"),
+    (
+        Of(bearing.INNER_FORCE, "inner force", "on the inner ring"),
+        Of(bearing.OUTER_FORCE, "outer force", "on the outer ring"),
+    ),
+    _turn,
+    "Contact forces of the first ball by the main law in its last turn, over the load that it has at rest.",
+    (bearing.BALL_LOAD, bearing.AZIMUTH),
+    rows=_one_turn,
+)
+
+
+def _some_turns(tree: DataTree) -> slice:
+    time = data.values(tree, TIME)
+    length = TURNS / (data.number(tree, bearing.TURNING) or TURNS)
+    return slice(0, int(np.searchsorted(time, length)) + 1)
+
+
+def _acceleration(tree: DataTree, lines: Lines) -> list[Panel]:
+    axis, unit = panels.time_axis(tree, lines.at)
+    drawn = [replace(each, width=0.8) for each in panels.styled(tree, lines.at / unit, lines.lines)]
+    return [Panel(axis, Axis("acceleration / (m/s²)"), tuple(drawn), height=3.4)]
+
+
+ACCELERATION = Figure(
+    "ring_acceleration",
+    "Acceleration of the outer ring",
+    Of(TIME),
+    (Of(bearing.RING_ACCELERATION, "{law}"),),
+    _acceleration,
+    "At the first accelerometer, radially outwards, in the first three turns of the record.",
+    rows=_some_turns,
+)
+
+
+# --- how quiet it is, and what is heard
+
+
+def _tones(tree: DataTree, highest: float) -> list[Mark]:
+    """Tones of the parts and their multiples."""
+    count = len(data.values(tree, bearing.HARMONIC))
+    return [
+        chart.Rules(
+            at[at < highest], label=f"{NAMES[part]}: {tone:.1f} Hz and multiples", colour=COLOURS[part],
+            dashes=(2.0, 2.0),
+        )
+        for part, tone in zip(data.words(tree, bearing.PART), data.values(tree, bearing.TONE), strict=True)
+        for at in [tone * np.arange(1.0, count + 1.0)]
+    ]  # fmt: skip
+
+
+def _orders(tree: DataTree) -> chart.Second:
+    return chart.Second("orders of the speed", 1.0 / (data.number(tree, bearing.TURNING) or 1.0))
+
+
+def _velocity(tree: DataTree, lines: Lines) -> list[Panel]:
+    """Highest lines in stretches of an octave, in dB, and the tones of the parts."""
+    kept = lines.at >= LOWEST
+    frequency = lines.at[kept]
+    starts = np.flatnonzero(np.diff(np.floor(PER_OCTAVE * np.log2(frequency / frequency[0])), prepend=-1.0))
+    levels = [
+        replace(each, values=20.0 * np.log10(np.maximum.reduceat(each.values[kept], starts) / 1e-6))
+        for each in lines.lines
+    ]
+    drawn = panels.styled(tree, frequency[starts], levels)
+    along = replace(panels.frequency_axis(LOWEST, frequency[-1]), second=_orders(tree))
+    across = panels.levels_axis("amplitude of the velocity / dB re 1 µm/s", [each.y for each in drawn], 100.0)
+    return [Panel(along, across, (*_tones(tree, frequency[-1]), *drawn), height=4.4)]
+
+
+SPECTRUM = Figure(
+    "velocity_spectrum",
+    "Spectrum of the radial velocity",
+    Of(FREQUENCY),
+    (Of(bearing.VELOCITY_AMPLITUDE, "{law}"),),
+    _velocity,
+    "Lines of the radial velocity of the outer ring at the first accelerometer; the highest of each 1/96 "
+    "octave. Dashed: at which frequencies the places of a part are met, in pure rolling.",
+    (bearing.TONE, bearing.HARMONIC),
+)
+
+
+def _envelope(tree: DataTree, lines: Lines) -> list[Panel]:
+    highest = float(lines.at[-1])
+    main = _main(tree)
+    found = data.of_law(tree, bearing.LINES_FOUND, main)
+    where, size = (data.of_law(tree, each, main) for each in (bearing.LINE_FREQUENCY, bearing.LINE_AMPLITUDE))
+    marks = [
+        Line(where[row], size[row], f"{NAMES[part]}: found", COLOURS[part], width=0.0, marker="o")
+        for row, part in enumerate(data.words(tree, bearing.PART))
+        if found[row]
+    ]
+    drawn = [replace(each, width=0.9) for each in panels.styled(tree, lines.at, lines.lines)]
+    along = Axis("frequency / Hz", 0.0, highest, second=_orders(tree))
+    across = Axis("amplitude of the envelope / (m/s²)", low=0.0)
+    return [Panel(along, across, (*_tones(tree, highest), *drawn, *marks), height=4.4)]
+
+
+def _envelope_words(tree: DataTree) -> str:
+    low, high = (data.number(tree, each) or 0.0 for each in (bearing.ENVELOPE_LOW, bearing.ENVELOPE_HIGH))
+    return (
+        "How evenly the outer ring is struck: lines in the envelope of its acceleration between "
+        f"{low:.0f} and {high:.0f} Hz, at the first accelerometer. Dashed: expected in pure rolling; dots: "
+        "lines of the main law that stand out, with their multiples."
+    )
+
+
+ENVELOPE = Figure(
+    "envelope_spectrum",
+    "Envelope spectrum",
+    Of(bearing.ENVELOPE_FREQUENCY),
+    (Of(bearing.ENVELOPE, "{law}"),),
+    _envelope,
+    _envelope_words,
+    (bearing.TONE, bearing.LINE_FREQUENCY, bearing.LINE_AMPLITUDE),
+)
+
+
+QUIET, LOADED = (DRAWING, SPECTRUM, ENVELOPE, ACCELERATION), (TURN,)
+
+
+def _in_bands(tree: DataTree, velocities: Numbers) -> dict[str, list[Cell]]:
+    """Columns of velocities (rows, bands), m/s."""
+    bands = zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True)
+    return {f"{band}, µm/s": number_cells(values, "{:.3g}") for band, values in bands}
+
+
+def bands_table(tree: DataTree) -> ReportTable | None:
+    """Velocities in the bands in which bearings are judged, by law and accelerometer."""
+    if not data.present(tree, bearing.BAND_VELOCITY):
+        return None
+    found = data.values(tree, bearing.BAND_VELOCITY)
+    rows = list(product(data.laws(tree, bearing.BAND_VELOCITY), data.values(tree, bearing.SENSOR)))
+    columns = {
+        "law": text_cells(law for law, _ in rows),
+        "at": text_cells((f"{np.degrees(at):.0f}°" for _, at in rows), "number"),
+    } | _in_bands(tree, found.reshape(-1, found.shape[-1]))
+    note = (
+        "Rms radial velocity of the outer ring. ISO 15242-2 measures it at 1800 1/min of the inner ring, "
+        "under an axial load, with filters whose slopes this leaves out."
+    )
+    return table("judged_bands", "Velocities in the bands of ISO 15242-2", columns, note)
+
+
+def alone_table(tree: DataTree) -> ReportTable | None:
+    """Velocities with the texture of each part alone."""
+    if not data.present(tree, bearing.ALONE_VELOCITY):
+        return None
+    found = data.variable_of(tree, bearing.ALONE_VELOCITY)
+    columns = {"with alone": text_cells(data.words(tree, bearing.SOURCE))} | _in_bands(tree, found.values)
+    law = found.attrs.get("law", "")
+    note = f"Runs by {law} with one part as it is and all others smooth, at the first accelerometer."
+    return table("alone", "Which part makes it so", columns, note)
+
+
+def lines_table(tree: DataTree) -> ReportTable | None:
+    """Tones of the parts, and what the envelope has of them, by law."""
+    if not data.present(tree, bearing.TONE, bearing.LINES_FOUND):
+        return None
+    tones, turning = data.values(tree, bearing.TONE), data.number(tree, bearing.TURNING) or 1.0
+    columns = {
+        "part": text_cells(NAMES[part] for part in data.words(tree, bearing.PART)),
+        "tone / Hz": number_cells(tones, "{:.2f}"),
+        "orders": number_cells(tones / turning, "{:.3f}"),
+        "side bands ± / Hz": number_cells(data.values(tree, bearing.MODULATION), "{:.2f}"),
+    }
+    for law in data.laws(tree, bearing.LINES_FOUND):
+        entries = (bearing.LINE_AMPLITUDE, bearing.LINE_SIDE_BANDS, bearing.LINES_FOUND)
+        lines, sides, found = (data.of_law(tree, each, law) for each in entries)
+        told = zip(lines[:, 0], sides[:, 0], found, strict=True)
+        columns[f"{law}, m/s²"] = text_cells(
+            f"{line:.3g}, side bands {data.in_percent(side / line)}" if seen else "–"
+            for line, side, seen in told
+        )
+    note = "First line of each part in the envelope, where it and its multiples stand out."
+    return table("tones", "Tones of the parts", columns, note)
+
+
+def ball_contacts_table(tree: DataTree) -> ReportTable | None:
+    """Contacts of each ball at rest."""
+    if not data.present(tree, bearing.BALL_LOAD):
+        return None
+    degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
+    columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
+    shown = (
+        (bearing.BALL_LOAD, "N", 1.0, "{:.4g}"), (bearing.BALL_ANGLE, "°", np.pi / 180.0, "{:.1f}"),
+        (bearing.SEMI_AXIS_ALONG, "along, mm", 1e-3, "{:.3f}"),
+        (bearing.SEMI_AXIS_ACROSS, "across, mm", 1e-3, "{:.3f}"),
+        (bearing.PEAK_PRESSURE, "GPa", 1e9, "{:.2f}"),
+    )  # fmt: skip
+    for row, ring in enumerate(data.words(tree, bearing.RING)):
+        loose = data.values(tree, bearing.BALL_LOAD)[row, 0] == 0.0
+        for entry, unit, size, form in shown:
+            values = np.where(loose, np.nan, data.values(tree, entry)[row, 0] / size)
+            columns[f"{ring}, {unit}"] = number_cells(values, form)
+    stiffness = 1e-6 * data.values(tree, bearing.RING_STIFFNESS)
+    ways = zip(data.words(tree, bearing.DIRECTION), stiffness.min(axis=1), stiffness.max(axis=1), strict=True)
+    note = (
+        "At rest, the first ball below the load: load, contact angle, half axes along and across the "
+        "raceway, largest pressure. Stiffness of the bearing while a ball passes: "
+        f"{', '.join(f'{way} {low:.3g} to {high:.3g} MN/m' for way, low, high in ways)}. "
+        f"{data.stated(tree, bearing.LEFT_OUT) or ''}"
+    )
+    return table("ball_contacts", "Contacts of the balls", columns, note)
+
+
+def bearing_answers(tree: DataTree) -> Answers | None:
+    """How quiet the bearing is, in three bands, and which part makes it so."""
+    if not data.present(tree, bearing.BAND_VELOCITY):
+        return None
+    lead, _, more = str(data.stated(tree, provenance.VERDICT) or "").partition(". ")
+    velocities = data.of_law(tree, bearing.BAND_VELOCITY, _main(tree))[0]
+    numbers = [
+        HeadlineNumber(band, f"{1e6 * rms:.3g} µm/s", "rms radial velocity, outer ring")
+        for band, rms in zip(data.words(tree, bearing.JUDGED_BAND), velocities, strict=True)
+    ]
+    load, peak = (float(data.values(tree, each).max()) for each in (bearing.BALL_LOAD, bearing.PEAK_PRESSURE))
+    heaviest = HeadlineNumber("heaviest load of a ball", f"{load:.3g} N", f"{peak / 1e9:.2f} GPa at rest")
+    return Answers(f"{lead}.", more, (*numbers, heaviest))

@@ -1,0 +1,105 @@
+"""A ball bearing that runs: how it carries its load, what moves, how quiet it is, which part is heard."""
+
+from functools import partial
+
+from asperity.schema import Attribute, Entry
+
+OF_BEARING = "of a ball bearing"
+_bearing, _rolling, _spectra = (
+    partial(Entry, group, condition=OF_BEARING) for group in ("bearing", "rolling", "spectra")
+)
+_fact = partial(Attribute, "bearing", condition=OF_BEARING)
+
+# --- how it carries its load
+
+_BALL, _RING = "number of the ball", "ring: inner or outer"
+_DIRECTION = "direction: along the radial load, across it in the sense of rotation, along the axis"
+_LOOSE = "balls that do not touch have no contact angle"
+BALL, ROLLING_BALL = (each("ball", "1", _BALL) for each in (_bearing, _rolling))
+RING, ROLLING_RING = (each("ring", "1", _RING) for each in (_bearing, _rolling))
+DIRECTION, ROLLING_DIRECTION = (each("direction", "1", _DIRECTION) for each in (_bearing, _rolling))
+CAGE_ANGLE = _bearing("cage_angle", "rad", "angle of the first ball from the radial load, at rest")
+AZIMUTH = _bearing("azimuth(cage_angle, ball)", "rad", "angle of a ball from the radial load")
+BALL_LOAD = _bearing("ball_load(ring, cage_angle, ball)", "N", "static load of a contact")
+BALL_ANGLE = _bearing("ball_angle(ring, cage_angle, ball)", "rad", "contact angle", missing=_LOOSE)
+PEAK_PRESSURE = _bearing("peak_pressure(ring, cage_angle, ball)", "Pa", "largest pressure of a contact")
+SEMI_AXIS_ALONG, SEMI_AXIS_ACROSS = (
+    _bearing(f"semi_axis_{way}(ring, cage_angle, ball)", "m", f"semi-axis of a contact {way} its raceway")
+    for way in ("along", "across")
+)
+RING_DISPLACEMENT = _bearing(
+    "ring_displacement(direction, cage_angle)", "m", "static displacement of the inner ring"
+)
+RING_STIFFNESS = _bearing(
+    "ring_stiffness(direction, cage_angle)", "N/m", "stiffness of the bearing under its load"
+)
+BALL_DIAMETER = _fact("ball_diameter", "m", "diameter of a ball")
+PITCH_DIAMETER = _fact("pitch_diameter", "m", "diameter of the circle of the balls' centres")
+CONTACT_ANGLE = _fact("contact_angle", "rad", "contact angle of the run, mean of the static ones")
+LEFT_OUT = _fact("left_out", "text", "what is not in the computation")
+
+# --- what turns how fast
+
+_PART = "part of the bearing: outer or inner raceway, or ball"
+PART = _bearing("part", "1", _PART)
+TONE = _bearing("tone(part)", "Hz", "frequency at which a place of a part is met, in pure rolling")
+MODULATION = _bearing("modulation(part)", "Hz", "turns of that place past the radial load")
+TURNING = _fact("turning_frequency", "Hz", "turns of the ring that turns")
+CAGE = _fact("cage_frequency", "Hz", "turns of the cage, in pure rolling")
+
+# --- what was recorded
+
+_SENSOR = "angle of an accelerometer on the outer ring from the radial load"
+SENSOR, ROLLING_SENSOR = (each("ring_sensor", "rad", _SENSOR) for each in (_bearing, _rolling))
+BALL_AZIMUTH = _rolling("ball_azimuth(ball, time)", "rad", "angle of a ball from the radial load, counted on")
+INNER_FORCE, OUTER_FORCE = (
+    _rolling(f"{ring}_force(law, ball, time)", "N", f"contact force of a ball and the {ring} ring")
+    for ring in ("inner", "outer")
+)
+BALL_MOTION = _rolling("ball_motion(law, ball, time)", "m", "motion of a ball along its contacts, outwards")
+RING_MOTION = _rolling("ring_motion(law, ring, direction, time)", "m", "motion of a ring")
+RING_ACCELERATION = _rolling(
+    "ring_acceleration(law, ring_sensor, time)", "m/s2", "acceleration of the outer ring, radially outwards"
+)
+
+# --- how quiet it is, and what is heard
+
+LAW = _bearing("law", "1", "contact law")
+JUDGED_BAND = _bearing("judged_band", "1", "band in which bearings are judged (ISO 15242-2)")
+_BEYOND = "the sampling does not reach the band"
+BAND_VELOCITY = _bearing(
+    "band_velocity(law, ring_sensor, judged_band)", "m/s", "rms radial velocity in a band", missing=_BEYOND
+)
+SOURCE = _bearing("source", "1", "part that is as it is, where all others are smooth")
+ALONE_VELOCITY = _bearing(
+    "alone_velocity(source, judged_band)",
+    "m/s",
+    "rms radial velocity in a band with the texture of one part alone, first sensor",
+    missing=_BEYOND,
+    attributes=("law",),
+)
+VELOCITY_AMPLITUDE = _spectra(
+    "velocity_amplitude(law, frequency)", "m/s", "amplitude of lines of the radial velocity, first sensor"
+)
+ENVELOPE_FREQUENCY = _bearing("envelope_frequency", "Hz", "frequency of the envelope")
+ENVELOPE = _bearing(
+    "envelope(law, envelope_frequency)",
+    "m/s2",
+    "amplitude of lines in the envelope of the acceleration, first sensor",
+)
+ENVELOPE_LOW, ENVELOPE_HIGH = (
+    _fact(f"envelope_{end}", "Hz", f"{end} end of the band of which the envelope is taken")
+    for end in ("low", "high")
+)
+HARMONIC = _bearing("harmonic", "1", "multiple of the tone of a part")
+_BEYOND = "the envelope does not reach it"
+
+
+def _line(name: str, units: str, meaning: str) -> Entry:
+    return _bearing(f"line_{name}(law, part, harmonic)", units, meaning, missing=_BEYOND)
+
+
+LINE_FREQUENCY = _line("frequency", "Hz", "frequency of the line found next to it, first sensor")
+LINE_AMPLITUDE = _line("amplitude", "m/s2", "amplitude of that line")
+LINE_SIDE_BANDS = _line("side_bands", "m/s2", "larger amplitude one modulation beside it")
+LINES_FOUND = _bearing("lines_found(law, part)", "1", "whether its lines stand out, 1 or 0")

@@ -1,0 +1,141 @@
+"""The case of a ball bearing: what follows from its keys, what is refused, what it reads."""
+
+import math
+
+import numpy as np
+import pytest
+
+from asperity.case.cases import as_case, parse_case, template
+from asperity.errors import CaseError, InputError
+
+CASE = {"kind": "ball-bearing", "bearing": {"name": "6205"}, "axial": "100 N"}
+TIGHT = {"name": "6205", "clearance": "-4 um"}
+REFUSED = (
+    ({"axial": "0 N"}, r"radial: received none; allowed: a radial or axial load"),
+    (
+        {"bearing": {"name": "6205", "balls": 20}},
+        r"bearing\.balls: received 20 of 7.94 mm .* fit side by side",
+    ),
+    ({"bearing": {"balls": 9}}, r"bearing\.name: received none, and no ball_diameter and no"),
+    (
+        {"bearing": {"name": "6205", "clearance": "-0.2 mm"}},
+        r"bearing\.clearance: .* which presses the balls",
+    ),
+    (
+        {"bearing": TIGHT, "axial": "0 N", "radial": "0 N", "speed": "60000 1/min"},
+        r"speed: received 60000 1/min, where .* lifts balls off .* allowed: less than \d+ 1/min",
+    ),
+    ({"axial": "100 kN"}, r"100000 N|contact"),
+    ({"laws": ["hertz", "hertz"]}, r'laws: received "hertz" more than once'),
+    ({"laws": ["direct"]}, r'laws\[1\]: received \'direct\'; allowed: "table", "areal", "hertz"'),
+    ({"cage_slip": [0.1]}, "at least 2"),
+    ({"cage_slip": [0.1, 0.05]}, r"cage_slip: received 0.1, 0.05; allowed: two values that do not fall"),
+    ({"envelope_band": ["2 kHz", "30 kHz"]}, r"envelope_band: received up to 30000 Hz; .* 25600 Hz"),
+    (
+        {"envelope_band": ["2 kHz", "2.1 kHz"]},
+        r"envelope_band: received a width of 100 Hz; .* fastest tone, 16",
+    ),
+    ({"duration": "10 ms"}, r"duration: received 10 ms; allowed: at least .* slowest tone comes 5 times"),
+    ({"duration": "1000 s", "time_step": "1 us"}, r"duration: received 1e\+09 time steps"),
+    ({"shaft": {"radial_stiffness": "0 N/m"}}, r"shaft\.radial_stiffness: received 0 N/m of \[shaft\]"),
+    ({"shaft": {"axial_stiffness": "0 N/m"}}, r"shaft\.axial_stiffness: received 0 N/m of \[shaft\]"),
+    ({"housing": {"width": "10 mm"}}, r"housing\.width: received 0.01; allowed: only together with lobes"),
+    ({"inner_raceway": {"waves": [3]}}, r"inner_raceway\.waves: received 1 waves and 0 amplitudes"),
+    ({"fault": {"length": "0.2 mm"}}, r'fault\.on: received nothing; allowed: "outer", "inner", "ball"'),
+    ({"fault": {"on": "outer"}}, r"fault\.length of a fault, a pit: received nothing"),
+)
+
+
+@pytest.mark.parametrize(("keys", "message"), REFUSED)
+def test_what_cannot_be_is_told(keys, message):
+    with pytest.raises(CaseError, match=message):
+        as_case(CASE | keys)
+
+
+def test_the_commented_case_is_a_case_of_smooth_parts():
+    case = parse_case(template("ball-bearing"))
+    assert (case.bearing.name, case.axial, case.has_smooth_balls) == ("6205", 100.0, True)
+    assert case.fault.faults == ()
+    assert parse_case(case.to_toml()) == case
+    assert case.with_(fault={"on": "ball", "length": 1e-4, "depth": 1e-5}).has_smooth_balls is False
+
+
+def test_the_time_step_divides_a_sample_and_resolves_a_ball_between_the_rings():
+    case = as_case(CASE)
+    bearing, load = case.bearing.bearing, case.static
+    stiffness = sum(  # of Hertz, dQ/dδ = 1.5 Q/δ
+        1.5 * load / (load / contact.stiffness_constant) ** (2.0 / 3.0)
+        for contact, load in (
+            (bearing.inner_contact, load.inner_load.max()), (bearing.outer_contact, load.outer_load.max())
+        )
+    )  # fmt: skip
+    mass = math.pi / 6.0 * 7.94e-3**3 * bearing.ball_material.density
+    resonance = math.sqrt(stiffness / mass) / (2.0 * math.pi)
+    assert case.ball_resonance == pytest.approx(resonance, rel=1e-9)
+    assert case.step == pytest.approx(1.0 / (51_200.0 * case.steps_per_sample), rel=1e-12)
+    assert 0.1 / resonance / (1.0 + 1.0 / case.steps_per_sample) <= case.step <= 0.1 / resonance
+    assert case.with_(time_step="10 us").step == pytest.approx(1.0 / (51_200.0 * 2), rel=1e-12)
+    slow = case.with_(sampling_rate="1 MHz", envelope_band=None)
+    assert slow.step == pytest.approx(1e-6 / math.ceil(10.0 / 2.56), rel=1e-12)
+
+
+def test_without_centrifugal_force_both_rings_carry_the_same():
+    resting = as_case(CASE | {"axial": "0 N", "radial": "50 N", "centrifugal": False}).largest_loads
+    turning = as_case(CASE | {"axial": "0 N", "radial": "50 N"})
+    inner, outer = turning.largest_loads
+    assert resting[0] == pytest.approx(resting[1], rel=1e-9)
+    of = turning.bearing.bearing
+    cosine = 1.0 - 10e-6 / (2.0 * 0.04 * 7.94e-3)  # of the free contact angle, by the clearance
+    cage = 15.0 * (1.0 - 7.94 / 39.04 * cosine)
+    lift = 0.5 * of.ball_mass * 39.04e-3 * (2.0 * math.pi * cage) ** 2
+    assert outer - inner == pytest.approx(lift, rel=1e-6)
+
+
+def trace(path, turned=360.0, drift=0.0):
+    angle = np.linspace(0.0, turned, 361)
+    deviation = 3.0 * np.cos(np.radians(5.0 * angle)) + drift * angle / 360.0
+    rows = "\n".join(f"{a},{d}" for a, d in zip(angle, deviation, strict=True))
+    path.write_text(f"angle (deg),deviation (um)\n{rows}\n")
+    return path
+
+
+def test_a_roundness_trace_is_read_with_its_units(tmp_path):
+    case = as_case(CASE | {"outer_raceway": {"trace": str(trace(tmp_path / "round.csv"))}})
+    waves = np.abs(case.outer_raceway.texture().line(4096, 1))
+    assert waves[5] == pytest.approx(3e-6, rel=1e-3)
+    assert np.delete(waves, 5).max() < 1e-9
+
+
+@pytest.mark.parametrize(("shape", "message"), [
+    ({"drift": 2.0}, r"ends that differ by 2 um"),
+    ({"turned": 300.0}, "300 deg in open.csv; allowed: one turn, 360 deg"),
+])  # fmt: skip
+def test_a_trace_that_does_not_close_is_refused(shape, message, tmp_path):
+    with pytest.raises(CaseError, match=rf"outer_raceway\.trace.*{message}"):
+        as_case(CASE | {"outer_raceway": {"trace": str(trace(tmp_path / "open.csv", **shape))}})
+
+
+@pytest.mark.parametrize(("fault", "message"), [
+    ({"on": "outer", "length": "0.2 mm", "depth": "10 um", "offset": "5 mm"}, r"outer raceway: offset of"),
+    ({"on": "inner", "length": "5 mm", "depth": "10 um", "count": 90}, r"inner raceway: length of the fault"),
+])  # fmt: skip
+def test_a_fault_off_the_raceway_is_refused_before_the_run(fault, message):
+    from asperity.running import prepare_case
+
+    with pytest.raises(InputError, match=message):
+        prepare_case(as_case(CASE | {"fault": fault}))
+
+
+@pytest.mark.parametrize("what", ["study", "optimisation", "what helps", "convergence"])
+def test_what_is_not_there_for_a_bearing_says_so(what):
+    import asperity
+    from asperity.optimising.definition import assignment_of
+
+    asked = {
+        "study": lambda: asperity.study(CASE, {"speed": ["10 Hz"]}),
+        "optimisation": lambda: assignment_of(CASE, {}),
+        "what helps": lambda: asperity.what_helps(CASE),
+        "convergence": lambda: asperity.run(CASE, converge=True),
+    }[what]
+    with pytest.raises(InputError, match=f"{what}: received a ball-bearing case, of which there is none"):
+        asked()

@@ -1,0 +1,212 @@
+"""A ball bearing that runs: its load at rest, how it moves, how quiet it is, which part is heard."""
+
+import json
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity.case.cases import as_case
+from asperity.errors import OutOfRangeWarning
+from asperity.reference.materials import MATERIALS
+from asperity.scenarios.bearing import bearing_rings, cage_slip, prepare_bearing
+from asperity.scenes.bearing import heard_group, thinned
+from asperity.schema import bearing as schema
+from small_cases import BEARING
+
+D, PITCH, BALLS, TURNS = 7.94e-3, 39.04e-3, 9, 30.0
+RATE = 51_200.0
+OUTER = 0.5 * BALLS * TURNS * (1.0 - D / PITCH)
+INNER = 0.5 * BALLS * TURNS * (1.0 + D / PITCH)
+
+
+def group(tree, name="bearing"):
+    return tree[name].to_dataset()
+
+
+def test_the_static_load_is_in_balance_and_pressures_are_those_of_hertz(runs):
+    found = group(runs(BEARING))
+    load, azimuth = found["ball_load"], found["azimuth"]
+    inner = load.sel(ring="inner")
+    assert (inner * np.cos(azimuth)).sum("ball").values == pytest.approx(100.0, rel=1e-8)
+    assert (inner * np.sin(azimuth)).sum("ball").values == pytest.approx(0.0, abs=1e-6)
+    area = math.pi * found["semi_axis_along"] * found["semi_axis_across"]
+    pressed = load.values > 0.0
+    assert found["peak_pressure"].values[pressed] == pytest.approx(
+        (1.5 * load / area).values[pressed], rel=1e-9
+    )
+    # stiffness is the derivative of the load
+    case = as_case(BEARING)
+    step, of = 1e-3, case.bearing.bearing
+    moved = [of.loaded(100.0 + d, speed=TURNS, cage_angles=[0.0]).displacement[0, 0] for d in (-step, step)]
+    slope = 2.0 * step / (moved[1] - moved[0])
+    assert found["ring_stiffness"].sel(direction="along").values[0] == pytest.approx(slope, rel=1e-5)
+
+
+def test_tones_are_those_of_pure_rolling(runs):
+    found = group(runs(BEARING))
+    spin = 0.5 * TURNS * PITCH / D * (1.0 - (D / PITCH) ** 2)
+    assert found["part"].values.tolist() == ["outer", "inner", "ball"]
+    assert found["tone"].values == pytest.approx([OUTER, INNER, 2.0 * spin], rel=1e-12)
+    assert found["modulation"].values == pytest.approx([0.0, TURNS, OUTER / BALLS], rel=1e-12)
+
+
+def test_a_pit_of_the_outer_ring_is_heard_at_its_tone_alone(runs):
+    found = group(runs(BEARING))
+    assert found["lines_found"].values[0].tolist() == [1.0, 0.0, 0.0]
+    lines = found["line_frequency"].values[0, 0]
+    assert lines == pytest.approx(OUTER * np.arange(1, 6), abs=0.5 / 0.1)
+    assert found["line_side_bands"].values[0, 0, 0] == 0.0  # it stands still
+
+
+def test_a_pit_of_the_inner_ring_has_side_bands_one_turn_beside_its_lines():
+    """It turns through the load zone."""
+    case = BEARING | {"fault": BEARING["fault"] | {"on": "inner"}, "duration": "0.25 s"}
+    found = group(asperity.run(case, brief=True))
+    assert found["lines_found"].values[0].tolist() == [0.0, 1.0, 0.0]
+    assert found["line_frequency"].values[0, 1] == pytest.approx(INNER * np.arange(1, 6), abs=0.5 / 0.25)
+    spectrum, frequency = found["envelope"].values[0], found["envelope_frequency"].values
+
+    def near(tone):
+        return spectrum[np.abs(frequency - tone) < 0.5 / 0.25].max()
+
+    beside = min(near(INNER - TURNS), near(INNER + TURNS))
+    assert near(INNER) > beside > 0.3 * near(INNER)
+    assert beside > 5.0 * near(INNER + 0.5 * TURNS)
+    assert found["line_side_bands"].values[0, 1, 0] == pytest.approx(
+        max(near(INNER - TURNS), near(INNER + TURNS)), rel=0.05
+    )
+
+
+def test_opposite_the_load_a_pit_is_hardly_heard(runs):
+    opposite = BEARING | {"fault": BEARING["fault"] | {"angle": "180 deg"}}
+    loaded, free = (group(runs(case))["band_velocity"].values[0, 0, 2] for case in (BEARING, opposite))
+    assert free < 0.1 * loaded
+
+
+def test_what_a_part_makes_alone_is_told(runs):
+    tree = runs(BEARING)
+    found = group(tree)
+    assert found["source"].values.tolist() == ["perfect surfaces", "the fault"]
+    alone, whole = found["alone_velocity"].values, found["band_velocity"].values[0, 0]
+    assert alone[1] == pytest.approx(whole, rel=1e-12)  # nothing else is rough
+    assert alone[0, 2] < 0.1 * whole[2]
+    share = 1.0 - (alone[0, 2] / alone[1, 2]) ** 2
+    assert f"µm/s in 1800 to 10000 Hz ({100 * share:.0f} % from the fault)" in tree.attrs["verdict"]
+    assert "no film of lubricant" in tree.attrs["verdict"]
+    smooth = runs({name: each for name, each in BEARING.items() if name != "fault"})
+    assert "source" not in group(smooth)
+
+
+def test_forces_over_a_turn_follow_the_static_load(runs):
+    tree = runs({name: each for name, each in BEARING.items() if name != "fault"})
+    moved, found = group(tree, "rolling"), group(tree)
+    order = np.argsort(np.mod(found["azimuth"].values.ravel(), 2.0 * np.pi))
+    places = np.mod(found["azimuth"].values.ravel(), 2.0 * np.pi)[order]
+    for ring in ("inner", "outer"):
+        load = found["ball_load"].sel(ring=ring).values.ravel()[order]
+        force, azimuth = moved[f"{ring}_force"].values[0], np.mod(moved["ball_azimuth"].values, 2.0 * np.pi)
+        expected = np.interp(azimuth, places, load, period=2.0 * np.pi)
+        assert np.sqrt(np.mean((force - expected) ** 2)) < 0.03 * load.max()
+    assert moved["time"].values[1] == pytest.approx(1.0 / RATE, rel=1e-9)
+
+
+def run_of(acceleration):
+    return SimpleNamespace(acceleration=np.atleast_2d(acceleration))
+
+
+@pytest.fixture(scope="module")
+def case():
+    return as_case({name: each for name, each in BEARING.items() if name != "fault"} | {"duration": "1 s"})
+
+
+def test_velocities_in_bands_are_those_of_a_sine(case):
+    time = np.arange(round(1.0 / case.step)) * case.step
+    signal = 2.0 * np.sin(2.0 * np.pi * 500.0 * time)
+    found = heard_group(case, {"hertz": run_of(signal)})
+    velocity = 2.0 / (2.0 * np.pi * 500.0)
+    low, middle, high = found[schema.BAND_VELOCITY][0][0]
+    assert middle == pytest.approx(velocity / math.sqrt(2.0), rel=1e-3)
+    assert max(low, high) < 1e-3 * middle
+    assert max(found[schema.VELOCITY_AMPLITUDE][0]) == pytest.approx(velocity, rel=2e-3)
+
+
+def test_a_resonance_struck_at_a_tone_is_found_in_the_band_it_rings_in(case):
+    time, random = np.arange(round(1.0 / case.step)) * case.step, np.random.default_rng(3)
+    signal = 0.02 * random.normal(size=len(time))
+    for strike in np.arange(0.0, 1.0, 1.0 / INNER):
+        since = time - strike
+        signal += np.exp(-((since / 0.3e-3) ** 2)) * np.sin(2.0 * np.pi * 5600.0 * since)
+    found = heard_group(case, {"hertz": run_of(signal)})
+    assert found[schema.LINES_FOUND] == [[0.0, 1.0, 0.0]]
+    assert found[schema.ENVELOPE_LOW] <= 5600.0 <= found[schema.ENVELOPE_HIGH]
+    given = case.with_(envelope_band=["5 kHz", "7 kHz"])
+    chosen = heard_group(given, {"hertz": run_of(signal)})
+    assert (chosen[schema.ENVELOPE_LOW], chosen[schema.ENVELOPE_HIGH]) == (5000.0, 7000.0)
+
+
+def test_bands_beyond_the_sampling_are_missing(case):
+    coarse = case.with_(sampling_rate="12.8 kHz")
+    noise = np.random.default_rng(1).normal(size=round(1.0 / coarse.step))
+    assert np.isnan(heard_group(coarse, {"hertz": run_of(noise)})[schema.BAND_VELOCITY][0][0]).tolist() == [
+        False, False, True,
+    ]  # fmt: skip
+
+
+def test_thinned_signals_hold_what_fewer_samples_hold_and_nothing_more():
+    time = np.arange(80_000) / 400e3
+    kept, lost = (np.sin(2.0 * np.pi * frequency * time) for frequency in (5e3, 36e3))
+    inside = slice(100, -100)
+    assert thinned(kept, 8)[inside] == pytest.approx(kept[::8][inside], abs=2e-3)
+    assert np.abs(thinned(lost, 8)[inside]).max() < 2e-3  # it would be seen at 14 kHz
+    assert thinned(kept, 1) is kept
+
+
+def test_the_cage_slips_within_its_bounds_and_by_its_share(runs):
+    slipping = as_case(BEARING | {"cage_slip": [0.01, 0.03], "duration": "3 s"})
+    drawn = cage_slip(slipping)(np.linspace(-0.01, 3.0, 20_001))
+    assert 0.01 <= drawn.min() < 0.012 < 0.028 < drawn.max() <= 0.03
+    assert np.abs(np.diff(drawn)).max() < 0.001  # it wanders
+    even = runs({n: v for n, v in BEARING.items() if n != "fault"} | {"cage_slip": [0.02, 0.02]})
+    azimuth = group(even, "rolling")["ball_azimuth"].values[0]
+    assert azimuth[-1] - azimuth[0] == pytest.approx(
+        2.0 * np.pi * 0.98 * OUTER / BALLS * (len(azimuth) - 1) / RATE, rel=1e-9
+    )
+
+
+def test_an_outer_ring_that_bends_has_the_frequencies_of_its_section():
+    case = as_case(BEARING | {"housing": {"lobes": 3, "width": "15 mm", "thickness": "3 mm"}})
+    steel, radius = MATERIALS["steel"], case.bearing.bearing.raceway_radii[1] + 1.5e-3
+    assert bearing_rings(as_case(BEARING)).outer_bending is None
+    found = np.unique(bearing_rings(case).outer_bending.natural_frequencies.round(6))
+    n = np.array([2.0, 3.0])  # of a thin ring: E I/(ρ A R⁴) with I/A = h²/12
+    squares = n**2 * (n**2 - 1.0) ** 2 / (n**2 + 1.0) * steel.youngs_modulus / steel.density
+    expected = np.sqrt(squares * (3e-3) ** 2 / 12.0 / radius**4) / (2.0 * np.pi)
+    assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_balls_differ_and_one_alone_has_the_fault():
+    waves = {"balls": {"waviness": "10 nm"}, "fault": BEARING["fault"] | {"on": "ball"}}
+    prepared = prepare_bearing(as_case(BEARING | waves))
+    faults = [np.abs(surface.faults).max() for surface in prepared.balls]
+    assert len(prepared.balls) == BALLS
+    assert faults[0] == pytest.approx(0.1e-3)
+    assert max(faults[1:]) == 0.0
+    lines = [surface.line for surface in prepared.balls]
+    assert not np.allclose(lines[0], lines[1], atol=1e-9)
+    assert not prepared.raceways[0].faults.any()
+
+
+def test_pressures_that_dent_are_warned_of():
+    heavy = prepare_bearing(as_case(BEARING | {"radial": "10 kN"}))
+    assert any(issubclass(each.category, OutOfRangeWarning) for each in heavy.caught)
+    assert prepare_bearing(as_case(BEARING)).caught == ()
+
+
+def test_a_result_says_how_sure_it_is(runs):
+    tree = runs(BEARING)
+    checks = json.loads(tree["contact"].attrs["validity"])
+    assert [check["grade"] for check in checks] == ["", ""]
+    assert tree["rolling/energy_residual"].values[0] < 1e-6
