@@ -14,13 +14,17 @@ CONTACT = BallBearing.named("6205").outer_contact
 LOAD = 68.0
 APPROACH = CONTACT.approach(LOAD)
 ALONG, ACROSS = CONTACT.semi_axes(APPROACH)
-RADIUS = 0.5 * MM  # of a path that is short enough for a test
 PIT = Fault("pit", angle=np.pi, length=0.18 * MM, depth=0.28 * MM)
 ALL = ("table", "areal", "hertz")
 
 
-def laws_on(surface, names=ALL, load=LOAD):
-    return raceway_laws(names, CONTACT, surface, load)
+def laws_on(surface, *names):
+    return raceway_laws(names or ALL, CONTACT, surface, LOAD)
+
+
+def rough(rms, radius=0.2 * MM, seed=4):
+    texture = AroundTexture(roughness=rms, longest=0.3 * MM, shortest=0.1 * MM)
+    return raceway_on(CONTACT, LOAD, radius, texture, [PIT] if radius > 0.2 * MM else (), seed=seed)
 
 
 def solved(heights, approach, cells=(16, 40)):
@@ -58,8 +62,7 @@ def test_higher_raceway_is_a_larger_approach(where):
 
 
 def test_force_closes_around_a_rough_raceway():
-    texture = AroundTexture(roughness=30 * NM, longest=0.3 * MM, shortest=0.08 * MM)
-    surface = raceway_on(CONTACT, LOAD, 0.2 * MM, texture, seed=4)
+    surface = rough(30 * NM)
     around = surface.circumference
     step = np.arange(-4, 5) * 1e-3 * surface.spacing[0]
     law = laws_on(surface)
@@ -99,15 +102,12 @@ def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
     assert 0 < on.around.counts.solved < 110 * len(on.approaches)  # of 720
     for away in (0.0, 0.07 * MM, 0.12 * MM):
         for approach in (APPROACH, CONTACT.approach(4 * LOAD)):
-            exact = solved(
-                lambda x, y, x0=away: np.where(np.hypot(x + x0, y) < 0.09 * MM, -0.28 * MM, 0.0), approach
-            )
+            exact = solved(lambda x, y, x0=away: -0.28 * MM * (np.hypot(x + x0, y) < 0.09 * MM), approach)
             found = force(law["table"], [middle + away, middle - away], approach)
             assert 0.5 < exact / CONTACT.force(approach) < 1.001
             assert_allclose(found, exact, rtol=6e-3)
             assert_allclose(found[0], found[1], rtol=2e-3)
-    lost = 1.0 - force(law["table"], middle, APPROACH) / LOAD
-    assert 0.02 < lost < 0.3
+    assert 0.02 < 1.0 - force(law["table"], middle, APPROACH) / LOAD < 0.3
     # under the load for which they are made the simple laws have it, too; far from it nothing is lost
     sunk = APPROACH - ball_heights(CONTACT, on.surface, LOAD)[round(middle / on.surface.spacing[0])]
     for name in ALL:
@@ -119,7 +119,7 @@ def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
 def test_ball_over_a_spall_touches_its_edges_first(width):
     length, depth = 0.8 * MM, 0.2 * MM
     spall = Fault("spall", angle=np.pi, length=length, width=width, depth=depth)
-    law = laws_on(raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(spall,)), ("table",))["table"]
+    law = laws_on(raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(spall,)), "table")["table"]
     along, across = (length / 2) ** 2 / (2 * CONTACT.radius_x), (width / 2) ** 2 / (2 * CONTACT.radius_y)
     sinks, middle = min(along, across), np.pi * MM
     cell = ALONG / 8 * length / 2 / CONTACT.radius_x, ACROSS / 16 * width / 2 / CONTACT.radius_y
@@ -131,11 +131,9 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
         beside = middle + np.array([-length, length]) / 4
         assert (force(law, beside, along / 4 - within) == 0.0).all()
         assert (force(law, beside, along / 4 + within) > 0.0).all()
-    hollow = solved(
-        lambda x, y: np.where((abs(x) < length / 2) & (abs(y) < width / 2), -depth, 0.0),
-        sinks + 4 * APPROACH, (8, 20),
-    )  # fmt: skip
-    assert_allclose(force(law, middle, sinks + 4 * APPROACH), hollow, rtol=1.5 * cell / (4 * APPROACH))
+    deep = sinks + 4 * APPROACH
+    hollow = solved(lambda x, y: -depth * (abs(x) < length / 2) * (abs(y) < width / 2), deep, (8, 20))
+    assert_allclose(force(law, middle, deep), hollow, rtol=1.5 * cell / (4 * APPROACH))
     both = force(law, middle + 0.375 * np.array([-length, length]), 2 * APPROACH)
     assert_allclose(both[0], both[1], rtol=1e-3)
 
@@ -144,23 +142,18 @@ def test_marks_all_around_repeat():
     marks = Fault("mark", length=0.25 * MM, width=0.8 * MM, depth=2 * UM, count=4)
     surface = raceway_on(CONTACT, LOAD, 0.3 * MM, faults=(marks,))
     quarter, places = surface.circumference / 4, surface.circumference * np.arange(0.0, 0.25, 0.01)
-    law = laws_on(surface, ("table",))["table"]
+    law = laws_on(surface, "table")["table"]
     found = force(law, places, APPROACH)
     assert found[0] < 0.9 * LOAD
     assert_allclose(force(law, places + quarter, APPROACH), found, rtol=0.02)
 
 
 def test_texture_of_a_ball_is_averaged_for_its_contact():
-    textures = (
-        AroundTexture(roughness=rms, longest=0.3 * MM, shortest=0.08 * MM) for rms in (20 * NM, 10 * NM)
-    )
-    raceway, ball = (
-        raceway_on(CONTACT, LOAD, 0.2 * MM, texture, seed=seed) for seed, texture in enumerate(textures)
-    )
+    raceway, ball = rough(20 * NM), rough(10 * NM, seed=1)
     heights, places = ball_heights(CONTACT, ball, LOAD), raceway.spacing[0] * np.arange(len(raceway.heights))
-    together = laws_on(Raceway(raceway.heights + ball.heights, raceway.spacing), ("table",))["table"]
+    together = laws_on(Raceway(raceway.heights + ball.heights, raceway.spacing), "table")["table"]
     exact = force(together, places, APPROACH)
-    law = laws_on(raceway, ("table", "areal"))
+    law = laws_on(raceway, "table", "areal")
     for name in law:
         off = force(law[name], places, APPROACH + heights) - exact
         assert np.std(off) < 0.05 * np.std(exact)
@@ -171,12 +164,11 @@ def test_unknown_law_is_refused():
     with pytest.raises(
         InputError, match="law of a raceway: received 'printed'; allowed: one of table, areal"
     ):
-        laws_on(raceway_on(CONTACT, LOAD, 0.1 * MM), ("printed",))
+        laws_on(raceway_on(CONTACT, LOAD, 0.1 * MM), "printed")
 
 
 def test_direct_solves_what_the_table_holds():
-    texture = AroundTexture(roughness=20 * NM, longest=0.3 * MM, shortest=0.1 * MM)
-    on = OnRaceway(CONTACT, raceway_on(CONTACT, LOAD, RADIUS, texture, [PIT]), LOAD)
+    on = OnRaceway(CONTACT, rough(20 * NM, 0.5 * MM), LOAD)
     rows = np.array([0, 3, on.rows // 2, -4, -0.4]) % on.rows  # one between the last and the first
     places = rows * on.surface.spacing[0]
     approach = APPROACH - on.felt[rows.round().astype(int) % on.rows]
