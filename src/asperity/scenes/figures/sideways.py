@@ -40,12 +40,14 @@ def _force(tree: DataTree, lines: Lines) -> Iterator[Panel]:
 
 
 def _force_caption(tree: DataTree) -> str:
-    place, stiffness = (data.number(tree, a) for a in (schema.CONTACT_PLACE, schema.STICK_STIFFNESS))
+    facts = schema.CONTACT_PLACE, schema.RAIL_CONTACT_PLACE, schema.STICK_STIFFNESS
+    place, head, stiffness = (data.number(tree, fact) for fact in facts)
     told = ""
     if place is not None and stiffness is not None:
+        own = "" if head in (None, place) else f" of the tread, and {1e3 * head:.3g} mm off that of the head"
         told = (
-            f" The contact is {1e3 * place:.3g} mm off the middle, positive towards the field side, and as "
-            f"stiff as {data.engineering(stiffness, 'N/m')} sideways (Mindlin)."
+            f" The contact is {1e3 * place:.3g} mm off the middle{own}, positive towards the field side, and "
+            f"as stiff as {data.engineering(stiffness, 'N/m')} sideways (Mindlin)."
         )
     change = data.values(tree, schema.VERTICAL_FORCE_CHANGE)
     most = change[np.argmax(np.abs(change))]
