@@ -8,6 +8,7 @@ import numpy as np
 from ledger import Check
 
 from asperity.reference.materials import contact_modulus, material
+from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.beam import Beam, Support, SupportedBeam
 from asperity.structures.body import Ball, carriage, chain
 from asperity.structures.outline import checked_outline, mesh_of
@@ -107,6 +108,22 @@ def ball():
     yield row("steel ball, R = 25 mm: load of its weight", weight, ball.static_load, "N", source=source)
     modulus, found = STEEL.youngs_modulus / (2 * (1 - STEEL.poisson_ratio**2)), contact_modulus(STEEL, STEEL)
     yield row("steel on steel: E*", modulus, found, "GPa", source="1/E* = Σ (1 − ν²)/E")
+
+
+def loaded_bearings():
+    """Very many balls, and loads so small that contact angles stay: what catalogues print of any bearing."""
+    row = partial(Check, source="printed, NSK CAT. No. E728g, 5.1", tolerance=5e-4, absolute=True)
+    many = BallBearing(199, 1e-3, 80e-3, clearance=0.0).loaded(100.0, cage_angles=[0.0])
+    body = "ball bearing without clearance, radial load F"
+    yield row("largest ball load Z/F", 4.37, many.inner_load.max() * 199 / 100.0, body=body, tolerance=5e-3)
+    angle, ratios = math.radians(30.0), np.array([1.21, 1.22])
+    tilted = BallBearing(199, 1e-3, 80e-3, contact_angle=angle)
+    axial = [
+        tilted.loaded(1e-3, 1e-3 * ratio * math.tan(angle), cage_angles=[0.0]).displacement[0, 2]
+        for ratio in ratios
+    ]
+    found = np.interp(tilted.groove_distance * math.sin(angle), axial, ratios)  # as far as without load
+    yield row("axial over radial load and tan α, half of it loaded", 1.216, found, body="ball bearing of 30°")
 
 
 def wheels():
