@@ -1,7 +1,5 @@
 """What can go wrong, and what to do about it: errors, physics warnings and solver outcomes."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Iterable
@@ -50,7 +48,7 @@ class InputError(AsperityError, ValueError):
         message = f"{_cut(what)}: received {_cut(received)}; allowed: {allowed}."
         super().__init__(printable(f"{message} {remedy}".strip()))
 
-    def about(self, what: str, received: object = None) -> InputError:
+    def about(self, what: str, received: object = None) -> "InputError":
         """The same error, told of something else; what was received may be told in other words."""
         return InputError(what, self.received if received is None else received, self.allowed, self.remedy)
 
@@ -112,7 +110,7 @@ class Grade(Enum):
     OUT = "out of range"
 
     @classmethod
-    def of_share(cls, share: float) -> Grade:
+    def of_share(cls, share: float) -> "Grade":
         """Grade what befell a share of all contact solutions or time steps: from 1 % and from 10 % on."""
         return cls.OUT if share >= 0.1 else cls.WARNING if share >= 0.01 else cls.NOTE
 

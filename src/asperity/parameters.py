@@ -1,7 +1,5 @@
 """A parameter, declared once: kind of value, default, meaning, limits; cases and forms follow from it."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -66,7 +64,7 @@ class Origin:
     units: bool = False
 
     @classmethod
-    def file(cls, path: object) -> Origin:
+    def file(cls, path: object) -> "Origin":
         """Origin of what stands in a file."""
         return cls(str(path), Path(str(path)).parent, units=True)
 

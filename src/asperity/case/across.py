@@ -1,7 +1,5 @@
 """Sections of two bodies across the path: read, and as they lie on each other."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,7 +89,7 @@ class Meeting:
         return np.asarray(self.tread(y)[..., 0] + self.head(y)[..., 0])
 
     @classmethod
-    def of(cls, tread: Any, head: Any, keys: str, clear: float) -> Meeting:
+    def of(cls, tread: Any, head: Any, keys: str, clear: float) -> "Meeting":
         """Find the lowest gap, at least `clear` m inside of what is known; messages tell of `keys`."""
         low, high = max(tread.t[0], head.t[0]), min(tread.t[-1], head.t[-1])
         places, anywhere = np.linspace(low, max(low, high), POINTS), cls(tread, head, 0.0)
@@ -130,7 +128,7 @@ def _lying(measured: Path | Profile | None, radius: float, key: str, angle: floa
     return scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3)
 
 
-def meeting_of(case: Case) -> Meeting:
+def meeting_of(case: "Case") -> Meeting:
     """Lay the sections of what rolls, and of the rail, inclined towards the middle of the track, together."""
     body, over, keys = case.rolling, case.rolled_over, case.sideways
     names = f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"

@@ -1,7 +1,5 @@
 """Beams that are rolled over: of one span, or on further supports."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -87,7 +85,7 @@ class BeamKeys(RolledOver):
         """Frequency up to which modes are kept, Hz, for spectra up to a highest one, Hz."""
         return self.modes_up_to or MODES_BEYOND * highest_frequency
 
-    def model(self, highest_frequency: float) -> Modal:
+    def model(self, highest_frequency: float) -> "Modal":
         """Build the beam: of one span, or on further supports."""
         from asperity.structures.beam import Beam, SupportedBeam
 
@@ -106,7 +104,7 @@ class BeamKeys(RolledOver):
         )
 
     @property
-    def held(self) -> list[Support]:
+    def held(self) -> "list[Support]":
         """All supports, those of the ends among them."""
         from asperity.structures.beam import Support
 

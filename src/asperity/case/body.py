@@ -1,7 +1,5 @@
 """What rolls: one body or several alike, each on one contact or several, with textures of their own."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -371,7 +369,7 @@ class Rolling(Ringing, FlatOnTread):
         held = {"element_mass": mass, "upper_stiffness": upper, "upper_damping": dampers[0], "load": extra}
         return carriage(above[0], inertia, places, **held)
 
-    def tread(self, highest_frequency: float, speed: float, place: float = 0.0) -> Wheel:
+    def tread(self, highest_frequency: float, speed: float, place: float = 0.0) -> "Wheel":
         """What touches at each contact, at a place, m, by itself: mass and modes, as `model` has them."""
         from asperity.structures.wheel import Wheel
 

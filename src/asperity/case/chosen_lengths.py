@@ -1,7 +1,5 @@
 """Lengths that a case need not give: grid, window and waves follow from the contact of its smooth bodies."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, Self
@@ -46,7 +44,7 @@ class NominalPatch(NamedTuple):
         return cls((a * stretch, a / stretch), a**2 / radius)
 
 
-def chosen_lengths(case: Case, patch: NominalPatch) -> dict[str, dict[str, float]]:
+def chosen_lengths(case: "Case", patch: NominalPatch) -> dict[str, dict[str, float]]:
     """Grid, window and waves of a self-affine texture, m, by section: as given, else as fits the contact."""
     small, large = min(patch.semi_axes), max(patch.semi_axes)
     surface, contact = (
@@ -79,13 +77,13 @@ def rounded(length: float, *, up: bool = False) -> float:
     return max(each for each in lengths if each <= length * (1 + 1e-9))
 
 
-def with_chosen(case: Case, chosen: Mapping[str, Mapping[str, float]]) -> Case:
+def with_chosen(case: "Case", chosen: Mapping[str, Mapping[str, float]]) -> "Case":
     """Return a case with lengths, m, by section, where it gives none; they do not count as given."""
     sections = {title: getattr(case, title).with_chosen(**lengths) for title, lengths in chosen.items()}
     return case.with_chosen(**sections)
 
 
-def shared_lengths(cases: Sequence[Case]) -> dict[str, float]:
+def shared_lengths(cases: "Sequence[Case]") -> dict[str, float]:
     """Lengths that were chosen otherwise for some of these cases than for others, fit for all of them, m."""
     shared = {}
     for key, fit in _FIT_FOR_ALL.items():

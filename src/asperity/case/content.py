@@ -1,7 +1,5 @@
 """What a value of a case says, whatever object it is: to compare cases, to name results, to tell people."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Callable, Mapping
@@ -24,7 +22,7 @@ if TYPE_CHECKING:
 class Keyed:
     """What has keys, and sections of further ones, by name: each value is an attribute."""
 
-    keys: ClassVar[dict[str, Key]] = {}
+    keys: ClassVar["dict[str, Key]"] = {}
     inner: ClassVar[dict[str, Any]] = {}
 
     @property

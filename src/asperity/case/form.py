@@ -1,7 +1,5 @@
 """A section of a case: keys with their defaults, read into a frozen object in SI, with all errors at once."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -18,11 +16,11 @@ from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, outside
 class Inner(NamedTuple):
     """A section inside another one."""
 
-    model: type[Section]
+    model: "type[Section]"
     meaning: str
 
 
-def section(model: type[Section], meaning: str, **defaults: Any) -> Any:
+def section(model: "type[Section]", meaning: str, **defaults: Any) -> Any:
     """Declare a section inside another one, and other defaults that its keys have there, as in TOML."""
     return Inner(model.with_defaults(**defaults) if defaults else model, meaning)
 
@@ -78,7 +76,7 @@ class Section(Keyed):
         return type(cls.__name__, (cls,), own, defaults=defaults)
 
     def _fill(
-        self, given: Mapping[str, Any], origin: Origin, whole: type[Section], title: str = ""
+        self, given: Mapping[str, Any], origin: Origin, whole: "type[Section]", title: str = ""
     ) -> list[InputError]:
         """Read all keys as a section of a whole, or the whole itself; return what is wrong with them."""
         errors, held = list[InputError](), self.__dict__

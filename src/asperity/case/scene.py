@@ -1,7 +1,5 @@
 """The case of any scene: what rolls over what, by which laws, for how long; and what must fit together."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -107,7 +105,7 @@ class Case(AnyCase):
         numerics: NumericsKeys
         track: TrackKeys
         noise: NoiseKeys
-        sideways: SidewaysKeys
+        sideways: "SidewaysKeys"
 
     @classmethod
     def sections(cls) -> Mapping[str, Inner]:
@@ -201,7 +199,7 @@ class Case(AnyCase):
         return tuple(ahead[0] - place for place in ahead)
 
     @cached_property
-    def meeting(self) -> Meeting | None:
+    def meeting(self) -> "Meeting | None":
         """Where the sections of wheel and rail touch as they lie; None where the case does not say how."""
         if "sideways" not in self.inner or self.sideways.rail_inclination is None:
             return None
@@ -223,7 +221,7 @@ class Case(AnyCase):
         return self.noise.axles or len(self.contacts_behind)
 
     @property
-    def passage(self) -> Passage:
+    def passage(self) -> "Passage":
         """The axles that pass a receiver beside the track."""
         return self.noise.passage(self.contacts_behind, self.speed)
 

@@ -1,7 +1,5 @@
 """How the contact is solved and reduced, how finely time is resolved, and what radiates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -346,7 +344,7 @@ class NoiseKeys(form.Section):
             return self.axle_positions
         return contacts if self.wheelbase is None else (0.0, self.wheelbase)
 
-    def passage(self, contacts: tuple[float, ...], speed: float) -> Passage:
+    def passage(self, contacts: tuple[float, ...], speed: float) -> "Passage":
         """All axles of the train, of contacts so far behind the first, m, passing at a speed, m/s."""
         from asperity.radiation.pass_by import Passage
 
@@ -357,7 +355,7 @@ class NoiseKeys(form.Section):
         return Passage(train, speed, self.vehicles * length)
 
     @property
-    def receiver(self) -> Receiver:
+    def receiver(self) -> "Receiver":
         """Where the sound is heard."""
         from asperity.radiation.pass_by import Receiver
 
@@ -370,7 +368,7 @@ class NoiseKeys(form.Section):
             return f"ground of {written(self.flow_resistivity, 'Pa s/m^2', 'kPa s/m^2')}"
         return self.ground or grounds.HARD
 
-    def sound_path(self, band: Array, receiver: Receiver | None = None) -> SoundPath | None:
+    def sound_path(self, band: Array, receiver: "Receiver | None" = None) -> "SoundPath | None":
         """What stands between rails and a receiver, in one-third octaves, Hz, where anything does."""
         from asperity.radiation.sound_path import PorousGround, SoundPath
 

@@ -1,7 +1,5 @@
 """Frictionless contact of an elastic half-space with a rough or smooth body, at given approach or load."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -72,7 +70,7 @@ class Contact:
     iterations: int
     residual: float
     outcome: Outcome
-    half_space: HalfSpace = field(repr=False)
+    half_space: "HalfSpace" = field(repr=False)
     undeformed_gap: Array = field(repr=False)
 
     @property
@@ -292,7 +290,7 @@ class HalfSpace:
         cache: Cache | None = None,
         progress: Progress | None = None,
         device: str | None = None,
-    ) -> xarray.DataArray:
+    ) -> "xarray.DataArray":
         """Move a body along a surface and record the contact force at fixed approaches.
 
         Parameters

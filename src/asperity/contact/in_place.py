@@ -1,7 +1,5 @@
 """One contact after the other on the same grid, as a body rolls along, without making anything anew."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,7 +28,7 @@ class ContactInPlace:
     The body (nx, ny), m, has the shape of the half-space; `rtol` is as in `HalfSpace.solve`.
     """
 
-    def __init__(self, half_space: HalfSpace, body: Array, rtol: float) -> None:
+    def __init__(self, half_space: "HalfSpace", body: Array, rtol: float) -> None:
         self.half_space = half_space
         self.block = half_space.block(np.zeros(half_space.shape), body, np.zeros(1), np.zeros(1), 0, rtol)
         self.pressure, self.start = self.block.pressures[:, 0]

@@ -1,7 +1,5 @@
 """A body moved along a surface: what is asked of the scan, its blocks on threads or a device, its flaws."""
 
-from __future__ import annotations
-
 import time
 from collections import deque
 from collections.abc import Generator, Iterable, Sequence
@@ -124,7 +122,7 @@ def window_for(body: Array, spacing: tuple[float, float], overlap: float) -> flo
     return 1.1 * float(max(n * d * g for n, d, g in zip(body.shape, spacing, grown, strict=True)))
 
 
-def heights_on(half_space: HalfSpace, surface: ArrayLike | HeightMap, what: str) -> Array:
+def heights_on(half_space: "HalfSpace", surface: ArrayLike | HeightMap, what: str) -> Array:
     """Heights of a surface, complete and on the grid of a half-space, m; `what` names it in messages."""
     require(not isinstance(surface, Profile), what, "a line of heights", "a map of heights")
     if isinstance(surface, HeightMap):
@@ -184,7 +182,7 @@ BLOCK_BYTES = 1200
 class ScanJob:
     """A body to be moved along a surface, and how its contacts are solved: all that the forces depend on."""
 
-    half_space: HalfSpace  # grid of the window, (nx, ny) cells; modulus and hardness
+    half_space: "HalfSpace"  # grid of the window, (nx, ny) cells; modulus and hardness
     surface: Strip  # (n, ny) heights, m, peaks positive
     body: Array  # (nx, ny), shape of the smooth body, m, zero at its lowest point
     approaches: Array  # (k,), from the planes, m, increasing
@@ -381,7 +379,7 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
     return result
 
 
-def labelled(job: ScanJob, scanned: ScannedForces[Array]) -> xarray.DataArray:
+def labelled(job: ScanJob, scanned: ScannedForces[Array]) -> "xarray.DataArray":
     """Forces as `HalfSpace.scan` returns them."""
     import xarray
 

@@ -1,7 +1,5 @@
 """What an optimisation asks: a case, limits, and the texture by its one-third octaves of wavelength."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -41,7 +39,7 @@ class Bands:
     changed: NDArray[np.bool_]  # (n,), which of them may be changed
     lateral: float | None  # correlation length across over that along; None of a line
 
-    def with_changed(self, levels: Array, lateral: float | None) -> Bands:
+    def with_changed(self, levels: Array, lateral: float | None) -> "Bands":
         """The same with other levels of those that may be changed."""
         every = self.levels.copy()
         every[self.changed] = levels

@@ -1,7 +1,5 @@
 """Optimising the texture of a case: from the case and an aim to textures that were rolled over."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import warnings
@@ -69,8 +67,8 @@ class Optimised:
     trials: tuple[Trial, ...]
     settled: bool
     case: Case
-    result_before: Result
-    result_after: Result
+    result_before: "Result"
+    result_after: "Result"
 
     def level(self, after: bool, law: str) -> float:
         """Level of the quantity, dB, of one of the two textures with a law that was rolled over both."""
@@ -79,7 +77,7 @@ class Optimised:
         density = self.measure.density(tree, law)
         return float(10.0 * np.log10(density.sum() * (frequency[1] - frequency[0])))
 
-    def band_levels(self, tree: Result, law: str) -> Array:
+    def band_levels(self, tree: "Result", law: str) -> Array:
         """Level of the quantity (b,), dB, while each changed band is passed, of one of the results."""
         density = self.measure.density(tree, law)
         edges = self.after.edges(self.case.speed)

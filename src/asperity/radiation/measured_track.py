@@ -1,7 +1,5 @@
 """What a hammer finds on a track in one-third octaves, measured or computed; and what follows for sound."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -39,7 +37,7 @@ class HammerTest:
     mobility: Complex
 
     @classmethod
-    def of_track(cls, track: Track, band: ArrayLike) -> HammerTest:
+    def of_track(cls, track: Track, band: ArrayLike) -> "HammerTest":
         """What the test would find on a computed track, in bands by their centres (b,), Hz.
 
         Responses are summed over the band before they are compared: 1/Δ is a mean that is weighted with the
@@ -56,7 +54,7 @@ class HammerTest:
 
     def measured(
         self, decay_rates: tuple[Array, Array] | None, mobility: tuple[Array, NDArray[np.inexact]] | None
-    ) -> HammerTest:
+    ) -> "HammerTest":
         """What was measured, in the bands of this test of the computed track.
 
         Decay rates in one-third octaves by their centres, dB/m; mobility over frequencies that rise, Hz,
@@ -93,11 +91,11 @@ class HammerTest:
         with np.errstate(invalid="ignore"):  # where none was measured
             return np.asarray(np.mean(np.abs(self.mobility / (other + receptance)) ** 2, axis=1))
 
-    def longer(self, computed: HammerTest) -> Array:
+    def longer(self, computed: "HammerTest") -> Array:
         """Length of the rail that radiates over that computed (b,); one where no decay rate was measured."""
         return np.nan_to_num(computed.decay_rate / self.decay_rate, nan=1.0)
 
-    def louder(self, computed: HammerTest, other: Complex) -> Array:
+    def louder(self, computed: "HammerTest", other: Complex) -> Array:
         """Mean square velocity at the contact over that computed (b,); one where no mobility was measured.
 
         With the linear contact's force: the other receptance as in `driven`.

@@ -5,8 +5,6 @@ evenly in all directions and stand on reflecting ground, so that p² = W ρc Q/(
 d, and lie in the middle of the track.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -162,7 +160,7 @@ def divergence(length: float, distance: float, along: ArrayLike) -> Array:
 
 
 def squared_pressure(
-    source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike, path: SoundPath | None = None
+    source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike, path: "SoundPath | None" = None
 ) -> Array:
     """Mean square sound pressure (..., b, t), Pa², of what all axles make radiate, at times (t,), s.
 
@@ -173,7 +171,7 @@ def squared_pressure(
 
 
 def exposure(
-    source: AxleSource, passage: Passage, receiver: Receiver, path: SoundPath | None = None
+    source: AxleSource, passage: Passage, receiver: Receiver, path: "SoundPath | None" = None
 ) -> Array:
     """Integral of the squared sound pressure over the whole passage (..., b), Pa² s: W ρc Q/(4 d v) per axle.
 
@@ -187,7 +185,7 @@ def exposure(
 
 
 def _divergences(
-    source: AxleSource, passage: Passage, receiver: Receiver, time: Array, path: SoundPath | None
+    source: AxleSource, passage: Passage, receiver: Receiver, time: Array, path: "SoundPath | None"
 ) -> Array:
     """Sum of `divergence` over the axles (b, t), 1/m², of each band's length."""
     bands = np.shape(source.power)[-1:]

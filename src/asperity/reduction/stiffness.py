@@ -1,7 +1,5 @@
 """The force-approach curve f(approach), from which the state-dependent contact stiffness follows."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -35,7 +33,7 @@ class ForceCurve:
     @classmethod
     def from_samples(
         cls, approach: ArrayLike, force: ArrayLike, exponent: float = 1.5, stiffness: ArrayLike | None = None
-    ) -> ForceCurve:
+    ) -> "ForceCurve":
         """Curve through computed pairs of approach, m, increasing, and force, N, with dF/ds, N/m, if known.
 
         Forces are not negative, increase once positive, and at least two are. The exponent is that of the
@@ -58,13 +56,13 @@ class ForceCurve:
         return cls(s, cubic_coefficients(s, g, slopes), exponent, float(s[-1]))
 
     @classmethod
-    def hertz(cls, stiffness: float) -> ForceCurve:
+    def hertz(cls, stiffness: float) -> "ForceCurve":
         """Hertzian point contact, F = K s^1.5, exact everywhere; K in N/m^1.5, 4/3 E* sqrt(R) for a ball."""
         slope = float(np.cbrt(positive("Hertz constant (N/m^1.5)", stiffness))) ** 2
         return cls(np.array([0.0, 1.0]), np.array([[0.0, 0.0, slope, 0.0]]))
 
     @classmethod
-    def linear(cls, force: float, stiffness: float, approach: float = 0.0) -> ForceCurve:
+    def linear(cls, force: float, stiffness: float, approach: float = 0.0) -> "ForceCurve":
         """Linear spring through a working point, N, N/m and m, acting in tension too."""
         positive("contact stiffness (N/m)", stiffness)
         knots = np.array([approach, approach + 1.0])

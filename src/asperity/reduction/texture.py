@@ -1,7 +1,5 @@
 """Textures that change with the state of the contact: lines, and heights averaged under the patch."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -35,11 +33,11 @@ class StateTexture:
         object.__setattr__(self, "approaches", approaches)
 
     @classmethod
-    def unfiltered(cls, heights: ArrayLike, spacing: float, start: float = 0.0) -> StateTexture:
+    def unfiltered(cls, heights: ArrayLike, spacing: float, start: float = 0.0) -> "StateTexture":
         """One line texture (m,) for all states, m, positive away from the contact, from a position on, m."""
         return cls(np.atleast_2d(np.asarray(heights, dtype=float)), np.zeros(1), start, spacing)
 
-    def held_at(self, approach: float) -> StateTexture:
+    def held_at(self, approach: float) -> "StateTexture":
         """One line texture for all states: that at an approach, m."""
         states = self.approaches
         above = int(np.clip(np.searchsorted(states, approach), 1, max(len(states) - 1, 1)))

@@ -1,7 +1,5 @@
 """What presses on what: the gap of the bodies on the contact grid, and Hertz's answer to it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -100,7 +98,7 @@ class Geometry:
             "contact.approaches there."
         )
 
-    def within_window(self) -> Geometry:
+    def within_window(self) -> "Geometry":
         """Bound the states by a contact that the window holds."""
         held = max(FILLED**3 * self.filling_force, self.load)
         return replace(self, largest_force=min(self.largest_force, held))

@@ -1,7 +1,5 @@
 """What the laws of a case are made of: its textures and state functions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -39,7 +37,7 @@ class LawMaterials:
     cache: Cache  # for the scan of the path
     progress: Progress
 
-    def of_contact(self, own: OtherContact) -> LawMaterials:
+    def of_contact(self, own: OtherContact) -> "LawMaterials":
         """Those of another contact of the same bodies."""
         textures, shape = own.textures(self.textures), replace(self.shape, load=own.load)
         planes = None if textures.path is None else reducing.patch_planes(textures.path, self.shape)

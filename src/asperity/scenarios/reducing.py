@@ -1,7 +1,5 @@
 """The reduction of a case: from textures to the state functions and line filters that the laws use."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -90,7 +88,7 @@ class Reduction:
     # d0, m, by what it counts from: ``"samples"``, or ``"path"`` with strips and path as well
     datums: dict[str, float]
     semi_axes: Array  # (k, 2), of the nominal patch at the mean force of each state, m
-    filters: LineFilters  # of the states that carry load, on their own approaches, by normalisation
+    filters: "LineFilters"  # of the states that carry load, on their own approaches, by normalisation
     pressed: PressedSamples  # under the working load
     remedy: str  # a window that holds the contacts of all states
     # (positions,), first touch along the path, before defects are put on it, at every row on which the window

@@ -1,7 +1,5 @@
 """The textures of a case: samples that are reduced, and the path that is rolled over, under each contact."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -65,7 +63,7 @@ class Textures:
     areal: bool = True
     # measured ones that a texture is interpolated between, by the body that bears them, m
     lines: dict[str, tuple[Profile, ...]] = field(default_factory=dict)
-    untouched: Textures | None = None  # as they were before running-in; None where they still are
+    untouched: "Textures | None" = None  # as they were before running-in; None where they still are
 
     @property
     def rms_slope(self) -> float:

@@ -1,7 +1,5 @@
 """A result that shows itself in a notebook: verdict, warnings, numbers, and its figures."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Callable
 from html import escape
@@ -33,11 +31,11 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
     __slots__ = ()
 
     @classmethod
-    def of(cls, tree: DataTree) -> Result:
+    def of(cls, tree: DataTree) -> "Result":
         """Make a result of a tree."""
         return cls(tree.to_dataset(inherit=False), children=tree.children)
 
-    def plot(self, name: str | None = None) -> Figure:
+    def plot(self, name: str | None = None) -> "Figure":
         """Draw a figure of the result, for a notebook to show or for ``savefig``.
 
         Parameters

@@ -1,7 +1,5 @@
 """What is looked at where a track is rolled over: texture, linear reference, the rail and its losses."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -172,7 +170,7 @@ KERNEL_LAG = 0.25
 """Longest lag of the moving kernel that is kept in a result, s."""
 
 
-def track_group(computed: compute.Computed, losses: LossFactorError) -> Values:
+def track_group(computed: compute.Computed, losses: "LossFactorError") -> Values:
     """Lay out what the wheel rolls on: receptances, decay rates, moving kernel, loss factors and numbers.
 
     None of it depends on what has rolled.

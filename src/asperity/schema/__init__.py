@@ -4,8 +4,6 @@ One module per group holds what all kinds of case share; what depends on the sce
 `asperity.scenes.schema`. ``docs/result_file.md`` lists it all.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -51,7 +49,7 @@ class Entry:
         """As ``"contact/force"``."""
         return f"{self.group}/{self.name}"
 
-    def variable(self, values: ArrayLike, **attributes: Any) -> xarray.Variable:
+    def variable(self, values: "ArrayLike", **attributes: Any) -> "xarray.Variable":
         """Make the variable; what is not a finite number is missing, and the variable says why."""
         import numpy as np
         import xarray
@@ -83,7 +81,7 @@ Values = dict[Entry | Attribute, Any]
 """What is laid out: arrays, or variables that are made already, and attributes, each by what it is."""
 
 
-def group(values: Mapping[Entry | Attribute, Any]) -> xarray.Dataset:
+def group(values: Mapping[Entry | Attribute, Any]) -> "xarray.Dataset":
     """Lay out one group."""
     import xarray
 
@@ -100,7 +98,7 @@ def group(values: Mapping[Entry | Attribute, Any]) -> xarray.Dataset:
     return xarray.Dataset(held, attrs=told)
 
 
-def tree(values: Mapping[Entry | Attribute, Any]) -> xarray.DataTree:
+def tree(values: Mapping[Entry | Attribute, Any]) -> "xarray.DataTree":
     """Lay out all groups, in the order in which they come first."""
     import xarray
 

@@ -5,8 +5,6 @@ process ends nothing else. Questions, answers and progress are a line of JSON ea
 server.
 """
 
-from __future__ import annotations
-
 import base64
 import json
 import os
@@ -52,7 +50,7 @@ INTERVAL = 0.1
 """Time between two reports of progress, s."""
 MOST_CHANGED = 4  # keys that the list of runs names
 _HINTS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill", "spikes")}
-_pressed: OrderedDict[str, PressedSample] = OrderedDict()
+_pressed: "OrderedDict[str, PressedSample]" = OrderedDict()
 
 
 # --- questions about cases and files

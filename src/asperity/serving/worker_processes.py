@@ -3,8 +3,6 @@
 One that ends or takes too long is replaced; runs are rolled one after the other, and can be cancelled.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import sys
@@ -47,7 +45,7 @@ class WorkerProcess:
         self.process, self.stdin, self.stdout = process, process.stdin, process.stdout
 
     @classmethod
-    async def start(cls, function: str, *words: str) -> WorkerProcess:
+    async def start(cls, function: str, *words: str) -> "WorkerProcess":
         """Start it."""
         code, pipe = _START.format(function=function), asyncio.subprocess.PIPE
         with no_interrupt_for_children():

@@ -1,7 +1,5 @@
 """Bays that differ: distances of sleepers, pads and ballast of a cell, after which the track repeats."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import NamedTuple
@@ -56,14 +54,14 @@ class Bays:
             )
 
     @classmethod
-    def equal(cls, count: int = 1) -> Bays:
+    def equal(cls, count: int = 1) -> "Bays":
         """Bays that do not differ."""
         return cls(*[(1.0,) * count] * 3)
 
     @classmethod
     def drawn(
         cls, count: int, *, spacing: float = 0.0, pad: float = 0.0, ballast: float = 0.0, seed: int = 0
-    ) -> Bays:
+    ) -> "Bays":
         """Draw bays from normal distributions, of which these are the standard deviations over the mean.
 
         Of the lengths the mean is taken out, so that the cell is as long as one of equal bays. The draws of
@@ -80,7 +78,7 @@ class Bays:
         )
 
     @classmethod
-    def listed(cls, spacing: Array, pad: Array, ballast: Array) -> Bays:
+    def listed(cls, spacing: Array, pad: Array, ballast: Array) -> "Bays":
         """Bays one by one (n,), in any unit: of each quantity the mean is taken for the nominal one."""
         return cls(*(tuple((each / each.mean()).tolist()) for each in (spacing, pad, ballast)))
 

@@ -1,7 +1,5 @@
 """Beams in bending by their modes: of one span, and on any supports."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -470,7 +468,7 @@ class SupportedBeam(_Uniform):
         shapes = pieces_of(scipy.interpolate.BSpline(self._knots, free @ vectors, DEGREE))
         return np.sqrt(squares) / (2.0 * np.pi), ratios, shapes
 
-    def _energies(self, basis: scipy.interpolate.BSpline) -> tuple[Array, Array]:
+    def _energies(self, basis: "scipy.interpolate.BSpline") -> tuple[Array, Array]:
         """Matrices of mass and of bending stiffness, by Gauss's rule, which is exact for splines."""
         breaks = np.unique(self._knots)
         nodes, weights = leggauss(DEGREE + 1)

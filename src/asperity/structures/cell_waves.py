@@ -5,8 +5,6 @@ decays: what a stretch reflects and lets through (never what it would take to un
 half a track by doubling the cell, and from there waves that are carried from support to support.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -53,13 +51,13 @@ class CellWaves:
         """Change of each wave over the stretch (2, f)."""
         return self._carried(self._span(0.0)[0], self._span(self.spacing)[0])
 
-    def bay(self, number: int) -> CellWaves:
+    def bay(self, number: int) -> "CellWaves":
         """One of the equal parts of the cell, counted from the first support; it goes on in the next cell."""
         length = self.edges[-1] / self.bays
         return replace(self, start=number % self.bays * length, spacing=length)
 
     @property
-    def spans(self) -> list[CellWaves]:
+    def spans(self) -> "list[CellWaves]":
         """Stretches of the cell from each support to the next."""
         ends = zip(self.edges[:-1], np.diff(self.edges), strict=True)
         return [replace(self, start=float(start), spacing=float(length)) for start, length in ends]

@@ -1,7 +1,5 @@
 """The rail sideways: lateral bending and torsion on periodic supports, solved exactly."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -103,7 +101,7 @@ class LateralRail:
 
     def free_waves(
         self, omega: Complex, mass: float, losses: Complex, foundation: Complex | float = 0.0
-    ) -> FreeWaves:
+    ) -> "FreeWaves":
         """Waves of the rail without supports at angular frequencies (f,), rad/s, as of `Track.waves`.
 
         Mass per length, kg/m; stiffness relative to the nominal one, (f,) or a scalar; stiffness per length

@@ -1,7 +1,5 @@
 """Structures by their modes along the path: the protocol, and tables of modes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import factorial
@@ -127,7 +125,7 @@ class Pieces(NamedTuple):
     breaks: Array  # (pieces + 1,), m
 
 
-def pieces_of(spline: scipy.interpolate.BSpline) -> Pieces:
+def pieces_of(spline: "scipy.interpolate.BSpline") -> Pieces:
     """Polynomials of a spline of many columns."""
     breaks = np.unique(spline.t)
     powers = range(spline.k, -1, -1)
@@ -250,7 +248,7 @@ class ModalStructure(Modal):
 
     def with_rigid_body(
         self, mass: float, *, inertia: float | None = None, centre: float | None = None
-    ) -> ModalStructure:
+    ) -> "ModalStructure":
         """Add the modes of a rigid body that nothing holds.
 
         Parameters

@@ -1,7 +1,5 @@
 """Response of a track to a hat of force in time, from its receptance in frequency."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -92,7 +90,7 @@ class MovingKernel:
     distance: float = 0.0  # of the contact whose displacement it is ahead of the force, m; negative behind
 
     @property
-    def kernel(self) -> MovingKernel:
+    def kernel(self) -> "MovingKernel":
         """Itself, as of `RailPoles` what was fitted."""
         return self
 

@@ -1,7 +1,5 @@
 """The exact receptance of a rail on periodic supports."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,12 +29,12 @@ class PeriodicWaves:
     spacing: float  # distance of the supports L, m
     bays = 1  # after which the track repeats
 
-    def bay(self, number: int) -> PeriodicWaves:
+    def bay(self, number: int) -> "PeriodicWaves":
         """Itself, as every bay: `asperity.structures.cell_waves.CellWaves` has others."""
         return self
 
     @property
-    def spans(self) -> list[PeriodicWaves]:
+    def spans(self) -> "list[PeriodicWaves]":
         """Stretches from each support to the next, as of `CellWaves`."""
         return [self]
 

@@ -1,7 +1,5 @@
 """Rings as harmonics around their circumference: rigid on springs, bending, seen at a moving angle."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal
@@ -49,7 +47,7 @@ class Ring(Modal):
         radial_stiffness: float = 0.0,
         axial_stiffness: float = 0.0,
         damping_ratio: float = 0.0,
-    ) -> Ring:
+    ) -> "Ring":
         """A rigid ring that moves along the radial load, across it, and axially if contacts do.
 
         Parameters
@@ -94,7 +92,7 @@ class Ring(Modal):
         *,
         most_lobes: int,
         damping_ratio: float,
-    ) -> Ring:
+    ) -> "Ring":
         """Lobes cos nψ and sin nψ of a free thin ring that bends in its plane without stretching.
 
         ω_n² = n² (n² − 1)²/(n² + 1) EI/(ρA R⁴), and the mass of each mode is half of the ring's times

@@ -1,7 +1,5 @@
 """What a rail lies on: elements below one another, each with a dynamic stiffness, down to rigid ground."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -161,7 +159,7 @@ class BendingSleeper(Element):
         at_rest = self._waves(np.zeros(()), np.asarray(complex(below)))
         return float(1.0 / at_rest.at(0.5 * self.seat_distance).real)
 
-    def _waves(self, omega: ArrayLike, below: Complex) -> _SleeperWaves:
+    def _waves(self, omega: ArrayLike, below: Complex) -> "_SleeperWaves":
         half = 0.5 * self.length
         stiffness = (below - self.mass * np.asarray(omega, dtype=complex) ** 2) / half
         return _SleeperWaves(stiffness, self.bending_stiffness, half, 0.5 * self.seat_distance)

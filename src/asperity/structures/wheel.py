@@ -1,7 +1,5 @@
 """The wheel: a mass under a constant load, rigid or with resonances."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -76,7 +74,7 @@ class Wheel:
         receptance: ArrayLike,
         *,
         highest_frequency: float = np.inf,
-    ) -> Wheel:
+    ) -> "Wheel":
         """Wheel given by its measured or computed receptance.
 
         The mass is taken off; what is left is fitted by modes with positive modal masses, so the

@@ -1,7 +1,5 @@
 """One member of a study: computed wherever the executor puts it, and what is kept of it."""
 
-from __future__ import annotations
-
 import json
 import threading
 from collections.abc import Mapping
@@ -170,7 +168,7 @@ class Failure:
     message: str  # what failed, and what to try
 
     @classmethod
-    def of(cls, error: BaseException) -> Failure:
+    def of(cls, error: BaseException) -> "Failure":
         """Describe an error."""
         if isinstance(error, MemoryError):
             return cls("MemoryError", f"{TOO_MUCH_MEMORY} Or fewer workers.")
@@ -178,7 +176,7 @@ class Failure:
         return cls(name, str(error) if isinstance(error, AsperityError) else f"{name}: {error}")
 
 
-def compute_member(key: str, case: Case) -> dict[str, NDArray[Any]] | Failure:
+def compute_member(key: str, case: "Case") -> dict[str, NDArray[Any]] | Failure:
     """Compute a member, or take what an earlier study has kept of it under its key, `packed`."""
     from asperity.running import run
     from asperity.store import Store

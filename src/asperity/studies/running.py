@@ -1,7 +1,5 @@
 """From the definition of a study to its table: members computed by processes, a cluster, or any executor."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import signal
@@ -172,7 +170,7 @@ def study(
     executor: futures.Executor | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
-) -> xarray.Dataset:
+) -> "xarray.Dataset":
     """Compute a case for every combination of the values of some keys.
 
     Parameters
@@ -271,7 +269,7 @@ def _planned(
 
 def _outcomes(
     members: Sequence[Member], compute: Callable[[Sequence[Member]], Outcomes], report: Progress
-) -> tuple[dict[tuple[int, ...], xarray.Dataset], dict[tuple[int, ...], Failure]]:
+) -> "tuple[dict[tuple[int, ...], xarray.Dataset], dict[tuple[int, ...], Failure]]":
     """Results and failures of all members by their places; every result is kept as soon as it is there."""
     from asperity.store import Store
     from asperity.studies.member import unpacked

@@ -1,7 +1,5 @@
 """What a measured surface lacks or has too much: points without a height, and spikes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
@@ -100,7 +98,7 @@ def _harmonic(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> Ar
     return np.atleast_1d(spsolve(matrix, right))
 
 
-def spikes(surface: HeightMap) -> NDArray[np.bool_]:
+def spikes(surface: "HeightMap") -> NDArray[np.bool_]:
     """Find the spikes of a map: Hampel's identifier on the distance from the local median.
 
     A point is a spike if it is farther from the median of its 5 × 5 neighbours than `FARTHEST`
@@ -128,7 +126,7 @@ def spikes(surface: HeightMap) -> NDArray[np.bool_]:
     return np.asarray(distance > FARTHEST * MAD * _typical(distance))
 
 
-def without_spikes(surface: HeightMap) -> HeightMap:
+def without_spikes(surface: "HeightMap") -> "HeightMap":
     """Take the spikes of a map away: they become points without a height; `source` says how many."""
     spiky = spikes(surface)
     count = int(np.count_nonzero(spiky))

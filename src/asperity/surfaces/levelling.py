@@ -1,7 +1,5 @@
 """From raw heights to the roughness that is meant: levelling, wavelength band, form, grid."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import product
@@ -141,7 +139,7 @@ def remove_form(surface: S, form: FormName = "sphere", *, degree: int = 2) -> S:
     return replace(surface, heights=surface.heights - fit_form(surface, form, degree=degree).heights)
 
 
-def fit_form(surface: Heights, form: FormName = "sphere", *, degree: int = 2) -> Form:
+def fit_form(surface: "Heights", form: FormName = "sphere", *, degree: int = 2) -> Form:
     """Fit a form by least squares of the height differences, m.
 
     A cylinder lies in any direction of the plane and may be tilted slightly along its axis; for a profile,
@@ -210,7 +208,7 @@ def _cylinder(p: Array, x: Array, y: Array) -> Array:
     return p[0] + bow + p[4] * along
 
 
-def _coordinates(surface: Heights) -> tuple[Array, Array, float]:
+def _coordinates(surface: "Heights") -> tuple[Array, Array, float]:
     """Centred x and y, broadcast to the heights and divided by half the longest side, with that half side."""
     along = surface.x - surface.x.mean()
     across = np.arange(surface.heights[0].size) * float(np.atleast_1d(surface.spacing)[-1])
