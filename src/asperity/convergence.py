@@ -14,7 +14,7 @@ from asperity.arguments import Array, NDArray
 from asperity.case.content import case_key, content, file_digest
 from asperity.case.scene import Case
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
-from asperity.progress import COMPILED, Progress
+from asperity.progress import COMPILED, Progress, counted
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.preparing import PreparedCase, prepare
 from asperity.scenarios.refining import Setting, Way, restricted, shared_settings
@@ -70,11 +70,8 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
         warnings.simplefilter("ignore", PhysicsWarning)  # those of the case itself were told
         states = result[contact.APPROACH.group].to_dataset()[contact.APPROACH.name].values
         settings = settings_for(prepared, states)
-        found = []
-        for number, setting in enumerate(settings):
-            progress(number, len(settings), "convergence")
-            found.append(_compared(prepared, result, setting, _named(setting, progress)))
-        progress(len(settings), len(settings), "convergence")
+        each = (_compared(prepared, result, setting, _named(setting, progress)) for setting in settings)
+        found = list(counted(each, len(settings), "convergence", progress))
     group = convergence_group(result, found)
     told = [str(result.attrs[provenance.VERDICT.name]), str(group.attrs[convergence.SENTENCE.name])]
     if told[1].startswith(NOT_CONVERGED):

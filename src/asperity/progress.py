@@ -4,11 +4,11 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, contextmanager
 from html import escape
 from importlib import import_module
-from typing import TextIO
+from typing import TextIO, TypeVar
 
 from asperity.printable import printable
 from asperity.terminal import manner, write
@@ -22,6 +22,23 @@ COMPILING = "compiling functions, once: later runs load them …"
 
 Progress = Callable[[int, int, str], object]
 """What long work calls, as ``progress(done, total, message)``: so many steps of the work are finished."""
+R = TypeVar("R")
+
+
+def counted(
+    results: Iterable[R],
+    total: int,
+    message: str,
+    progress: Progress | None,
+    steps: Callable[[R], int] = lambda _: 1,
+) -> Iterator[R]:
+    """Hand results on as they come, and tell with each how many steps of the work are done."""
+    tell, done = progress or (lambda *_: None), 0
+    tell(done, total, message)
+    for result in results:
+        done += steps(result)
+        tell(done, total, message)
+        yield result
 
 
 class Compilation:

@@ -7,7 +7,7 @@ import sys
 import textwrap
 import traceback
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import groupby
 from typing import Any
@@ -91,14 +91,7 @@ class Program(Command, click.Group):
 
     command_class = Command
 
-    def main(
-        self,
-        args: Sequence[str] | None = None,
-        prog_name: str | None = None,
-        complete_var: str | None = None,
-        standalone_mode: bool = True,
-        **extra: Any,
-    ) -> Any:
+    def main(self, args: Any = None, *, standalone_mode: bool = True, **extra: Any) -> Any:  # type: ignore[override]
         """Run the program, with standard streams that need no reader."""
         args = sys.argv[1:] if args is None else list(args)
         name = next((word for word in args if not word.startswith("-")), "")
@@ -106,7 +99,7 @@ class Program(Command, click.Group):
         wanted = Manner(document="--json" in args)  # known before anything can be wrong
         with standard_streams(), speaking(wanted), interruptible(), _warnings_in_lines() as warned:
             try:
-                content = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+                content = super().main(args, standalone_mode=False, **extra)
                 code = content if isinstance(content, int) else 0
                 if isinstance(content, Mapping) and manner().document:
                     met = [{"grade": "warning", "message": message} for message in warned]

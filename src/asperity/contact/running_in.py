@@ -11,7 +11,7 @@ from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
-from asperity.progress import Progress
+from asperity.progress import Progress, counted
 from asperity.store import Cache, content_key
 from asperity.threads import in_order
 
@@ -115,15 +115,8 @@ def _pass(
     size = max(PIECE, -(-job.body.shape[0] // job.stride))
     pieces = [positions[first : first + size] for first in range(0, len(positions), size)]
     roll, message = partial(_piece, heights, state, job), f"running in, pass {len(state['largest']) + 1}"
-    counts = Counts()
-    if progress:
-        progress(0, len(positions), message)
-    for parity in (0, 1):
-        for found in in_order(roll, pieces[parity::2], workers):
-            counts = total([counts, found])
-            if progress:
-                progress(counts.solved, len(positions), message)
-    return counts
+    rolled = (found for parity in (0, 1) for found in in_order(roll, pieces[parity::2], workers))
+    return total(counted(rolled, len(positions), message, progress, lambda found: found.solved))
 
 
 def _piece(heights: Array, state: dict[str, NDArray[Any]], job: RunningIn, positions: range) -> Counts:

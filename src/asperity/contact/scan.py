@@ -16,7 +16,7 @@ from asperity.arguments import Array, finite_array, real, real_array, require, s
 from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
-from asperity.progress import Progress
+from asperity.progress import Progress, counted
 from asperity.store import PATIENCE, Cache, claimed, content_key, made
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import Rows, Strip
@@ -329,27 +329,13 @@ def solved_blocks(
         kept = solve() if cache is None else made(cache, key, solve, help_along)
         return SolvedBlock(key, kept["forces"], Counts(*kept["counts"].tolist()))
 
-    done = 0
-    if progress:
-        progress(done, job.positions, message)
     with closing(in_order(block, job.starts, min(count, len(job.starts)))) as blocks:
-        for found in blocks:
-            done += found.forces.shape[1]
-            if progress:
-                progress(done, job.positions, message)
-            yield found
+        yield from counted(blocks, job.positions, message, progress, lambda found: found.forces.shape[1])
 
 
-def scan_forces(
-    job: ScanJob,
-    *,
-    cache: Cache | None = None,
-    workers: int | None = None,
-    progress: Progress | None = None,
-    beside: Sequence[ScanJob] = (),
-) -> ScannedForces[Array]:
-    """Scan, and hold the forces in memory; arguments as in `solved_blocks`."""
-    blocks = list(solved_blocks(job, cache, workers, progress, beside=beside))
+def scan_forces(job: ScanJob, **how: Any) -> ScannedForces[Array]:
+    """Scan, and hold the forces in memory; further arguments as in `solved_blocks`."""
+    blocks = list(solved_blocks(job, **how))
     forces = np.concatenate([block.forces for block in blocks], axis=1)
     return ScannedForces(forces, total(block.counts for block in blocks), job.single)
 

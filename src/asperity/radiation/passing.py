@@ -9,7 +9,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import correlate1d
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array
-from asperity.progress import Progress
+from asperity.progress import Progress, counted
 from asperity.structures.moving_kernel import ZONES, HatResponse, MovingKernel, lagrange_weights
 from asperity.threads import in_order
 
@@ -56,10 +56,9 @@ def passed_points(
         moved = [point.moved(bay, acting, within, sent)[:, : until - begin] for point in passed]
         return slice(begin, until), moved
 
-    for done, (steps, moved) in enumerate(in_order(by_forces_in, bays), 1):
+    parts = in_order(by_forces_in, bays)
+    for steps, moved in counted(parts, len(bays), "the rail at the points passed", progress):
         displacement[..., steps] += moved
-        if progress is not None:
-            progress(done, len(bays), "the rail at the points passed")
     displacement = displacement.swapaxes(0, 1)
     padded = np.pad(displacement, ((0, 0), (0, 0), (3, 3)), mode="reflect", reflect_type="odd")
     velocity = correlate1d(padded, DIFFERENCE / kernel.time_step)[..., 3:-3]

@@ -9,7 +9,7 @@ from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.kernels.piecewise import continued_to_touch, cubic_coefficients, monotone_slopes
-from asperity.progress import Progress
+from asperity.progress import Progress, counted
 from asperity.threads import in_order
 
 
@@ -271,13 +271,8 @@ def stiffness_ensemble(
         ]
         return forces, np.array(tangents), Counts(*block.counts.tolist())
 
-    scans, message = [], "pressing the samples"
-    if progress:
-        progress(0, len(samples), message)
-    for scanned in in_order(load, samples, workers):
-        scans.append(scanned)
-        if progress:
-            progress(len(scans), len(samples), message)
+    pressed = in_order(load, samples, workers)
+    scans = list(counted(pressed, len(samples), "pressing the samples", progress))
     forces, tangents = (np.array([scanned[i] for scanned in scans]) for i in (0, 1))
     counts = [scanned[2] for scanned in scans]
     warn_of_flaws(total(counts), "the loading curves", tolerance, remedy)

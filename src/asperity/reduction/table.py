@@ -1,6 +1,7 @@
 """The scanned force of a path, kept on disk in blocks, to look forces up in."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -8,7 +9,6 @@ from asperity.arguments import Array, ArrayLike, finite_array, require
 from asperity.contact.scan import FORCE_ACCURACY, ScanJob, ScannedForces, solved_blocks, total
 from asperity.errors import ComputationError
 from asperity.kernels.along import OVERLAP, splines_along
-from asperity.progress import Progress
 from asperity.reduction.texture import check_states, grid_index
 from asperity.store import Cache
 
@@ -39,20 +39,13 @@ class StoredForces:
         raise ComputationError("forces of the path are no longer in the cache", remedy)
 
 
-def scan_into(
-    cache: Cache,
-    job: ScanJob,
-    *,
-    workers: int | None = None,
-    progress: Progress | None = None,
-    message: str = "scanning the contact",
-) -> ScannedForces[StoredForces]:
+def scan_into(cache: Cache, job: ScanJob, **how: Any) -> ScannedForces[StoredForces]:
     """Scan a path of any length: its forces stay in the cache, block by block.
 
-    Memory holds the blocks in work and eight bytes a position. Arguments as in `solved_blocks`.
+    Memory holds the blocks in work and eight bytes a position. Further arguments as in `solved_blocks`.
     """
     keys, counts = [], []
-    for block in solved_blocks(job, cache, workers, progress, message):
+    for block in solved_blocks(job, cache, **how):
         keys.append(block.key)
         counts.append(block.counts)
     shape = (len(job.approaches), job.positions)

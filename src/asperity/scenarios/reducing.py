@@ -14,7 +14,7 @@ from asperity.contact.batched import find_device
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import ContactFilterWarning, InputError
 from asperity.laws import LawSpec, Need, spec_of
-from asperity.progress import Progress
+from asperity.progress import Progress, counted
 from asperity.reduction import filter, stiffness
 from asperity.reduction.texture import areal_texture, punch_weights
 from asperity.scenarios.geometry import Geometry
@@ -331,18 +331,13 @@ def _scanned_strips(
 ) -> list[scan.ScannedForces[Array]]:
     """Forces at constant approach along each strip."""
     workers = thread_count() if jobs[0].device is None else 1  # one block fills a device
-    message = "scanning for the contact filters"
 
     def scanned(job: scan.ScanJob) -> scan.ScannedForces[Array]:
         # one strip is a block or two: strips beside each other keep all processors busy
         return scan.scan_forces(job, cache=cache, workers=math.ceil(workers / len(jobs)), beside=jobs)
 
-    progress(0, len(jobs), message)
-    scans = []
-    for each in in_order(scanned, jobs, workers):
-        scans.append(each)
-        progress(len(scans), len(jobs), message)
-    return scans
+    scans = in_order(scanned, jobs, workers)
+    return list(counted(scans, len(jobs), "scanning for the contact filters", progress))
 
 
 def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) -> None:
