@@ -23,9 +23,9 @@ REFUSED = (
     ),
     (
         {"bearing": TIGHT, "axial": "0 N", "radial": "0 N", "speed": "60000 1/min"},
-        r"speed: received 60000 1/min, where .* lifts balls off .* allowed: less than \d+ 1/min",
+        r"speed: received 60000 1/min, which lifts balls off .* allowed: less than \d+ 1/min",
     ),
-    ({"axial": "100 kN"}, r"100000 N|contact"),
+    ({"axial": "100 kN"}, r"of one ball on the inner ring, a contact that fills 0\.79 rad of the groove"),
     ({"laws": ["hertz", "hertz"]}, r'laws: received "hertz" more than once'),
     ({"laws": ["direct"]}, r'laws\[1\]: received \'direct\'; allowed: "table", "areal", "hertz"'),
     ({"cage_slip": [0.1]}, "at least 2"),
@@ -36,7 +36,10 @@ REFUSED = (
         r"envelope_band: received a width of 100 Hz; .* fastest tone, 16",
     ),
     ({"duration": "10 ms"}, r"duration: received 10 ms; allowed: at least .* slowest tone comes 5 times"),
-    ({"duration": "1000 s", "time_step": "1 us"}, r"duration: received 1e\+09 time steps"),
+    (
+        {"duration": "1000 s", "time_step": "1 us"},
+        r"duration: received 9.2e\+09 time steps of balls; allowed: at most 1e\+08",
+    ),
     ({"shaft": {"radial_stiffness": "0 N/m"}}, r"shaft\.radial_stiffness: received 0 N/m of \[shaft\]"),
     ({"shaft": {"axial_stiffness": "0 N/m"}}, r"shaft\.axial_stiffness: received 0 N/m of \[shaft\]"),
     ({"housing": {"width": "10 mm"}}, r"housing\.width: received 0.01; allowed: only together with lobes"),
@@ -108,7 +111,7 @@ def test_a_roundness_trace_is_read_with_its_units(tmp_path):
 
 @pytest.mark.parametrize(("shape", "message"), [
     ({"drift": 2.0}, r"ends that differ by 2 um"),
-    ({"turned": 300.0}, "300 deg in open.csv; allowed: one turn, 360 deg"),
+    ({"turned": 300.0}, "300 deg in open.csv; allowed: one turn, 360 deg")
 ])  # fmt: skip
 def test_a_trace_that_does_not_close_is_refused(shape, message, tmp_path):
     with pytest.raises(CaseError, match=rf"outer_raceway\.trace.*{message}"):
@@ -117,7 +120,7 @@ def test_a_trace_that_does_not_close_is_refused(shape, message, tmp_path):
 
 @pytest.mark.parametrize(("fault", "message"), [
     ({"on": "outer", "length": "0.2 mm", "depth": "10 um", "offset": "5 mm"}, r"outer raceway: offset of"),
-    ({"on": "inner", "length": "5 mm", "depth": "10 um", "count": 90}, r"inner raceway: length of the fault"),
+    ({"on": "inner", "length": "5 mm", "depth": "10 um", "count": 90}, r"inner raceway: length of the fault")
 ])  # fmt: skip
 def test_a_fault_off_the_raceway_is_refused_before_the_run(fault, message):
     from asperity.running import prepare_case

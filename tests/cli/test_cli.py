@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from click.shell_completion import BashComplete
 
+from asperity.case import PRESETS
 from asperity.case.cases import load_case
 from asperity.cli import main
 from asperity.errors import ComputationError
@@ -156,7 +157,7 @@ def test_help_lists_every_command_with_a_whole_sentence():
 @pytest.mark.parametrize(
     ("words", "completions"),
     [
-        ("new ", {"ball-on-beam", "wheel-on-rail", "bodies", "study", "what-helps", "optimisation"}),
+        ("new ", {*PRESETS, "study", "what-helps", "optimisation"}),
         ("new w", {"wheel-on-rail", "what-helps"}),
         ("new --law sh", {"shifted", "shifted-unfiltered"}),
         ("compare --law dir", {"direct"}),

@@ -19,6 +19,8 @@ class AnyCase(Section):
 
     TITLE: ClassVar[str]
     """One sentence: what rolls over what."""
+    NEEDED: ClassVar[str] = "a source of texture, or smooth = true"
+    """What a case cannot do without, beside its kind."""
     PREPARED_BY: ClassVar[str]
     """Function (case, source) that makes a `ReadyCase` of it, by module and name."""
     COMPUTED_BY: ClassVar[str]

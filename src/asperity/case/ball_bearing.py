@@ -37,9 +37,14 @@ SAMPLING = 2.56
 STEPS_PER_PERIOD = 10
 """Time steps per period of that frequency, and of a ball's resonance between the rings, at least."""
 MOST_STEPS = 10**8
+"""Time steps of all balls: 4 GB while they roll."""
 FEWEST = 5.0
 """Periods of the slowest tone in a record, at least."""
 _STIFFNESS, _STIFF = Quantity("N/m", at_least=0), "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
+_RATE, _MASS = Quantity("Hz", above=0), Quantity("kg", above=0)
+_DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
+_BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("rad"), least=1)
+_RATIO, _SLIPS = Number(at_least=0, at_most=0.99), ListOf(Number(at_least=0, at_most=0.2), least=2)
 _LENGTH, _RINGS = Quantity("m", above=0), "0.1 mm to 1 m: rings lie between"
 
 
@@ -47,31 +52,21 @@ class ShaftKeys(Section):
     """What a ring carries, and what holds it."""
 
     mass: float = key(
-        Quantity("kg", above=0),
-        "1 kg",
-        "mass of the ring with all that moves with it",
-        "1 mg to 1000 t: what runs in bearings lies between",
+        _MASS, "1 kg", "mass of the ring with all that moves with it", "1 mg to 1000 t: what bearings carry"
     )
     radial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it radially; 0 for none", _STIFF)
     axial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it axially; 0 for none", _STIFF)
-    damping_ratio: float = key(
-        Number(at_least=0, at_most=0.99), 0.02, "damping ratio on these springs, and of its lobes"
-    )
+    damping_ratio: float = key(_RATIO, 0.02, "damping ratio on these springs, and of its lobes")
 
 
 class HousingKeys(ShaftKeys):
     """The same of the outer ring, which may bend."""
 
     lobes: int | None = optional(
-        Number(at_least=2, at_most=20, whole=True),
-        4,
-        "largest number of lobes in which the ring bends, free all around",
-        "it is rigid",
+        Number(at_least=2, at_most=20, whole=True), 4, "most lobes in which the ring bends", "it is rigid"
     )
-    width: float = key(_LENGTH, "15 mm", "width of its section, where it bends", _RINGS, goes_with="lobes")
-    thickness: float = key(
-        _LENGTH, "3 mm", "thickness of its section, where it bends", _RINGS, goes_with="lobes"
-    )
+    width: float = key(_LENGTH, "15 mm", "width of its section", _RINGS, goes_with="lobes")
+    thickness: float = key(_LENGTH, "3 mm", "thickness of its section", _RINGS, goes_with="lobes")
 
 
 def read_roundness(table: TableSource) -> Array:
@@ -160,19 +155,17 @@ class BallBearingCase(AnyCase):
     """
 
     TITLE = "A ball bearing runs under a load."
+    NEEDED = "a bearing and its load"
     PREPARED_BY = "asperity.scenarios.bearing.prepare_bearing"
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
     WRITTEN_OUT: ClassVar = {"bearing.name": '"6205"', "axial": '"100 N"'}
 
     kind: str = key(Choice(("ball-bearing",)), "ball-bearing", "what rolls")
     speed: float = key(
-        Quantity("Hz", above=0),
-        "1800 1/min",
-        "speed of the ring that turns",
-        "0.001 Hz to 10 kHz: bearings turn slower",
+        _RATE, "1800 1/min", "speed of the ring that turns", "0.001 Hz to 10 kHz: bearings turn slower"
     )
-    radial: float = key(LOAD, "0 N", "radial load on the inner ring, and opposite on the outer one", LOADS)
-    axial: float = key(LOAD, "0 N", "axial load on the inner ring, and opposite on the outer one", LOADS)
+    radial: float = key(LOAD, "0 N", "radial load of the inner on the outer ring", LOADS)
+    axial: float = key(LOAD, "0 N", "axial load of the inner on the outer ring", LOADS)
     laws: tuple[str, ...] = key(
         ListOf(Choice(LAWS), least=1), list(LAWS), "laws of the contact force; the first is the main one"
     )
@@ -181,46 +174,39 @@ class BallBearingCase(AnyCase):
     settling: float = key(
         DURATION_OR_ZERO,
         "0.1 s",
-        "time that it runs before the record starts, so that the start from rest is forgotten",
+        "time that it runs before the record, so that the start is forgotten",
         "1 us to 1 h: records lie between",
     )
     time_step: float | None = optional(
         DURATION,
         "4 us",
         "time step",
-        "a tenth of the period of a ball's resonance between the rings, or of the highest frequency, if less",
+        "a tenth of a ball's period between the rings, or of the highest frequency",
         "1 ns to 1 ms: bearings ring between",
     )
     sampling_rate: float = key(
-        Quantity("Hz", above=0),
+        _RATE,
         "51.2 kHz",
-        "samples per second of what is written, which holds frequencies up to 1/2.56 of it",
+        "samples per second of what is written",
         "1 kHz to 1 MHz: bearings are measured between",
     )
     sensors: tuple[float, ...] = key(
-        ListOf(Quantity("rad"), least=1),
+        _ANGLES,
         ["0 deg"],
-        "angles from the radial load of accelerometers on the outer ring, which feel it radially",
-        "-360 deg to 360 deg: the ring ends there",
+        "angles of accelerometers on the outer ring",
+        "-360 deg to 360 deg: a turn ends there",
     )
     envelope_band: tuple[float, ...] | None = optional(
-        ListOf(Quantity("Hz", at_least=0), least=2),
+        _BAND,
         ["2 kHz", "6 kHz"],
-        "ends of the band of which the envelope is taken",
-        "that in which the acceleration is most impulsive",
+        "band of the envelope",
+        "the most impulsive one",
         "1 Hz to 500 kHz: bearings ring between",
     )
-    contact_damping: float = key(
-        DAMPING,
-        "20 N s/m",
-        "damping of each contact",
-        "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid",
-    )
+    contact_damping: float = key(DAMPING, "20 N s/m", "damping of each contact", _DAMPED)
     centrifugal: bool = key(Flag(), True, "whether balls press the outer ring as they go round")
     cage_slip: tuple[float, ...] = key(
-        ListOf(Number(at_least=0, at_most=0.2), least=2),
-        [0.0, 0.0],
-        "least and largest share by which the cage is slower than in pure rolling, drawn anew at each turn",
+        _SLIPS, [0.0, 0.0], "least and largest share by which the cage lags, drawn anew at each turn"
     )
     bearing: BearingGeometry = section(BearingGeometry, "the bearing: named, or by its dimensions")
     shaft: ShaftKeys = section(ShaftKeys, "what the inner ring carries, and what holds it")
@@ -310,9 +296,7 @@ class BallBearingCase(AnyCase):
             yield error.about("radial") if error.what == "load" else error
             return
         if leaving is not None:
-            received = (
-                f"{60.0 * self.speed:.5g} 1/min, where centrifugal force lifts balls off the inner ring"
-            )
+            received = f"{60.0 * self.speed:.5g} 1/min, which lifts balls off the inner ring"
             allowed = f"less than {60.0 * leaving:.5g} 1/min, or a larger axial load or bearing.preload"
             yield InputError("speed", received, allowed)
         for law in sorted(set(self.laws)):
@@ -338,5 +322,7 @@ class BallBearingCase(AnyCase):
             if not any(getattr(keys, f"{way}_stiffness") for keys in (self.shaft, self.housing)):
                 received, allowed = "0 N/m of [shaft] and of [housing]", "one of them that holds its ring"
                 yield InputError(f"shaft.{way}_stiffness", received, allowed)
-        if (steps := (self.duration + self.settling) / self.step) > MOST_STEPS:
-            yield InputError("duration", f"{steps:.2g} time steps", f"at most {MOST_STEPS:g} time steps")
+        steps = (self.duration + self.settling) / self.step * self.bearing.bearing.balls
+        if steps > MOST_STEPS:
+            received, allowed = f"{steps:.2g} time steps of balls", f"at most {MOST_STEPS:g}"
+            yield InputError("duration", received, allowed, "Record several shorter times.")

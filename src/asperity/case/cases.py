@@ -20,7 +20,7 @@ from asperity.parameters import FROM_PYTHON, Origin
 
 _HEAD = """\
 # {title} Run it with: asperity run CASE
-# Every key may be left out, but for kind and a source of texture, or smooth = true.
+# Every key may be left out, but for kind and {needed}.
 # Lines that start with '#' show keys that have no fixed default, or that go with another key.
 
 """
@@ -165,7 +165,9 @@ def template(kind: str, laws: Sequence[str] = ()) -> str:
     own = {"laws": json.dumps(chosen)} if chosen else {}
     rolled = {family_of(law) for law in chosen or model.keys["laws"].default}
     shown_keys = {**dict.fromkeys(law_keys().keys() - rolled, ()), **model.SHOWN}
-    return _HEAD.format(title=model.TITLE) + commented(model, {**model.WRITTEN_OUT, **own}, shown_keys)
+    return _HEAD.format(title=model.TITLE, needed=model.NEEDED) + commented(
+        model, {**model.WRITTEN_OUT, **own}, shown_keys
+    )
 
 
 def demo_case() -> AnyCase:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -113,7 +113,7 @@ def bearing_rings(case: BallBearingCase) -> BearingRings:
     inner, held = (
         Ring.rigid(
             keys.mass, angle, radial_stiffness=keys.radial_stiffness, axial_stiffness=keys.axial_stiffness,
-            damping_ratio=keys.damping_ratio,
+            damping_ratio=keys.damping_ratio
         )
         for keys in (case.shaft, outer)
     )  # fmt: skip
@@ -136,7 +136,7 @@ def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:
 
 
 def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBearing]:
-    """Run the bearing by each law."""
+    """Run the bearing by each law, at the sampling rate of the case."""
     case, store = prepared.case, Store()
     keys: dict[str, Any] = {"damping": case.contact_damping, "hardness": case.bearing.bearing.hardness}
     laws_of = []
@@ -145,13 +145,33 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
         laws_of.append(raceway_laws(case.laws, smooth, surface, load, cache=store, progress=progress, **keys))
     heights = [ball_heights(smooth, surface, load) for surface in prepared.balls]
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
-    return {
-        name: roll_bearing(
+    found = {}
+    for name in case.laws:
+        run = roll_bearing(
             case.bearing.bearing, bearing_rings(case), *(built[name] for built in laws_of),
             speed=case.speed, radial=case.radial, axial=case.axial, duration=case.duration,
-            time_step=case.step, settling=case.settling, slip=cage_slip(case),
-            ball_heights=heights, centrifugal=case.centrifugal, sensors=sensors,
-            highest_frequency=case.highest_frequency, progress=progress,
-        )
-        for name in case.laws
-    }  # fmt: skip
+            time_step=case.step, settling=case.settling, slip=cage_slip(case), ball_heights=heights,
+            centrifugal=case.centrifugal, sensors=sensors, highest_frequency=case.highest_frequency,
+            progress=progress
+        )  # fmt: skip
+        record: dict[str, Any] = {each: getattr(run, each)[:: case.steps_per_sample] for each in ANGLES}
+        record |= {each: thinned(getattr(run, each), case.steps_per_sample) for each in RECORDED}
+        found[name] = replace(run, **record)
+    return found
+
+
+ANGLES = ("time", "cage", "inner_angle", "outer_angle")
+RECORDED = (
+    "inner_force", "outer_force", "inner_approach", "outer_approach", "ball_motion", "inner_motion",
+    "outer_motion", "acceleration"
+)  # fmt: skip
+"""What a run holds over time: what grows evenly, and signals."""
+
+
+def thinned(signal: Array, every: int) -> Array:
+    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
+    if every == 1:
+        return signal
+    from scipy.signal import resample_poly
+
+    return np.asarray(resample_poly(signal, 1, every, axis=-1, padtype="line"))

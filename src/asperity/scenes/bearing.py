@@ -34,6 +34,8 @@ DIRECTIONS = ("along", "across", "axial")
 HARMONICS = 5
 REACH = 1.2
 """How far the envelope spectrum is kept, beyond the highest harmonic of a tone."""
+RESOLVED = 0.003
+"""Share by which a line may lie beside the tone of pure rolling, beyond the slip of the cage."""
 FAINT = 0.1
 """Share of the clearest line of a part below which others are not told apart from what modulates it."""
 CHEAPEST = ("areal", "hertz", "table")
@@ -115,30 +117,21 @@ def static_group(case: BallBearingCase) -> Values:
 # --- in time
 
 
-def thinned(signal: Array, every: int) -> Array:
-    """A signal (…, n) at one of so many samples, without what the fewer samples do not hold."""
-    if every == 1:
-        return signal
-    from scipy.signal import resample_poly
-
-    return np.asarray(resample_poly(signal, 1, every, axis=-1, padtype="line"))
-
-
 def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
     """Lay out what was recorded in time, at the sampling rate of the case."""
-    every, (first, *_), balls = case.steps_per_sample, runs.values(), np.arange(case.bearing.bearing.balls)
+    (first, *_), balls = runs.values(), np.arange(case.bearing.bearing.balls)
 
     def stacked(name: str) -> Array:
-        return np.stack([thinned(getattr(run, name), every) for run in runs.values()])
+        return np.stack([getattr(run, name) for run in runs.values()])
 
     return {
         rolling.LAW: list(runs),
-        rolling.TIME: first.time[::every],
+        rolling.TIME: first.time,
         bearing.ROLLING_BALL: 1 + balls,
         bearing.ROLLING_RING: list(RINGS),
         bearing.ROLLING_DIRECTION: list(DIRECTIONS),
         bearing.ROLLING_SENSOR: case.sensors,
-        bearing.BALL_AZIMUTH: first.cage[::every] + 2.0 * np.pi / len(balls) * balls[:, None],
+        bearing.BALL_AZIMUTH: first.cage + 2.0 * np.pi / len(balls) * balls[:, None],
         bearing.INNER_FORCE: stacked("inner_force"),
         bearing.OUTER_FORCE: stacked("outer_force"),
         bearing.BALL_MOTION: stacked("ball_motion"),
@@ -155,17 +148,17 @@ def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Value
 
 def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
     """Lay out velocities in bands at all sensors; spectrum, envelope and lines in it at the first one."""
-    rate, every, turning = case.sampling_rate, case.steps_per_sample, case.kinematics
-    signals = np.stack([thinned(run.acceleration, every) for run in runs.values()])
+    rate, turning, signals = case.sampling_rate, case.kinematics, [run.acceleration for run in runs.values()]
     tones = {part: (turning.tone(part), turning.modulation(part)) for part in PARTS}
     highest = REACH * HARMONICS * max(tone for tone, _ in tones.values())
-    low, high = case.envelope_band or impulsive_band(signals[0, 0], rate, highest)
+    low, high = case.envelope_band or impulsive_band(signals[0][0], rate, highest)
     lines = [amplitude_spectrum(law[0], rate) for law in signals]
     frequency = lines[0][0]
     kept = (frequency > 0.0) & (frequency <= case.highest_frequency)
     struck = [envelope_spectrum(law[0], rate, (low, high)) for law in signals]
     within = struck[0][0] <= highest
-    found = [explained_lines(each, tones, harmonics=HARMONICS) for each in struck]
+    slip = max(case.cage_slip) + RESOLVED
+    found = [explained_lines(each, tones, slip=slip, harmonics=HARMONICS) for each in struck]
     judged = [[band_velocities(one, rate, quantity="acceleration") for one in law] for law in signals]
     return {
         spectra.LAW: list(runs),
@@ -233,8 +226,7 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
     for kept in (None, *textured):
         others = case.with_(laws=[law], **{key: None for key in textured if key != kept})
         (run,) = rolled(prepare_bearing(others), progress).values()
-        signal = thinned(run.acceleration[0], case.steps_per_sample)
-        found.append(band_velocities(signal, case.sampling_rate, quantity="acceleration"))
+        found.append(band_velocities(run.acceleration[0], case.sampling_rate, quantity="acceleration"))
     held = bearing.ALONE_VELOCITY.variable(np.array(found), law=law)
     return {bearing.SOURCE: names, bearing.ALONE_VELOCITY: held}
 
@@ -257,18 +249,18 @@ def _deciding(apart: Values) -> list[str]:
 
 def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator[Finding]:
     """Numbers of the runs that must be in range."""
-    steps = len(next(iter(runs.values())).time) * (1.0 + case.settling / case.duration)
+    steps = (case.settling + case.duration) / case.step
     for name, run in runs.items():
         share, left = run.unconverged_steps / steps, run.energy.residual
         yield Finding(
             f"share of the time steps that missed their tolerance, {name}", percent(share), "below 1 %",
             Grade.of_share(share) if share else None, "Their contact forces are too coarse.",
-            "Take a smaller time_step.", warned=True,
+            "Take a smaller time_step.", warned=True
         )  # fmt: skip
         yield Finding(
             f"energy that the balance leaves open, {name}", f"{left:.1e} of the throughput",
             f"up to {RESIDUAL:g}", Grade.WARNING if left > RESIDUAL else None,
-            "The time step is coarse for what moves.", "Take a smaller time_step.",
+            "The time step is coarse for what moves.", "Take a smaller time_step."
         )  # fmt: skip
 
 

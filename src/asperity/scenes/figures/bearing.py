@@ -27,7 +27,7 @@ PER_OCTAVE = 96
 LOWEST = 10.0
 """Hz, from which spectra are drawn."""
 NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
-RINGS = {"inner": (VERMILLION, (), 1.3, "o"), "outer": (BLUE, (5.0, 1.5), 1.3, "s")}
+RINGS = {"inner": (VERMILLION, ()), "outer": (BLUE, (5.0, 1.5))}
 """Looks of lines of the contacts with each ring."""
 RIGHT_ANGLES = tuple((each, f"{each:g}") for each in (-180.0, -90.0, 0.0, 90.0, 180.0))
 AROUND = Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_ANGLES)
@@ -86,8 +86,9 @@ def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
 
 
 def _drawing_words(tree: DataTree) -> str:
-    part, turning = data.case_words(tree, "fault.on"), data.case_words(tree, "bearing.turning")
-    turns = " where the record begins" * (part in ("ball", turning))
+    part, parts = data.case_words(tree, "fault.on"), data.words(tree, bearing.PART)
+    moves = part in parts and data.values(tree, bearing.MODULATION)[parts.index(part)] > 0.0
+    turns = ", where the record begins" * moves
     fault = f" Diamond: the fault of the {NAMES[part]}{turns}." if part in NAMES else ""
     return (
         "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
@@ -117,18 +118,16 @@ def _one_turn(tree: DataTree) -> slice:
 
 
 def _turn(tree: DataTree, lines: Lines) -> list[Panel]:
-    degrees = _degrees(lines.at)
+    degrees, places = _degrees(lines.at), _degrees(data.values(tree, bearing.AZIMUTH).ravel())
     back = np.abs(np.diff(degrees, prepend=degrees[0])) > 180.0  # where the turn begins again on the left
+    order, loads = np.argsort(places), data.values(tree, bearing.BALL_LOAD).reshape(2, -1)
     drawn = [
-        Line(degrees, np.where(back, np.nan, each.values), each.label, *RINGS[ring][:2], 0.9)
-        for each, ring in zip(lines.lines, RINGS, strict=True)
+        Line(places[order], load[order], f"static, {ring} ring", INK, RINGS[ring][1], 2.4, opacity=0.4)
+        for ring, load in zip(RINGS, loads, strict=True)
     ]
-    rests = zip(RINGS, data.values(tree, bearing.BALL_LOAD).reshape(2, -1), strict=True)
-    places = _degrees(data.values(tree, bearing.AZIMUTH).ravel())
-    order = np.argsort(places)
     drawn += [
-        Line(places[order], load[order], f"static, {ring} ring", INK, RINGS[ring][1], 1.6, opacity=0.6)
-        for ring, load in rests
+        Line(degrees, np.where(back, np.nan, each.values), each.label, *RINGS[ring], 0.9)
+        for each, ring in zip(lines.lines, RINGS, strict=True)
     ]
     return [Panel(AROUND, Axis("force / N", low=0.0), tuple(drawn), height=4.0)]
 
@@ -180,7 +179,7 @@ def _tones(tree: DataTree, highest: float) -> list[Mark]:
     return [
         chart.Rules(
             at[at < highest], label=f"{NAMES[part]}: {tone:.1f} Hz and multiples", colour=COLOURS[part],
-            dashes=(2.0, 2.0),
+            dashes=(2.0, 2.0)
         )
         for part, tone in zip(data.words(tree, bearing.PART), data.values(tree, bearing.TONE), strict=True)
         for at in [tone * np.arange(1.0, count + 1.0)]
@@ -324,7 +323,7 @@ def ball_contacts_table(tree: DataTree) -> ReportTable | None:
         (bearing.BALL_LOAD, "N", 1.0, "{:.4g}"), (bearing.BALL_ANGLE, "°", np.pi / 180.0, "{:.1f}"),
         (bearing.SEMI_AXIS_ALONG, "along, mm", 1e-3, "{:.3f}"),
         (bearing.SEMI_AXIS_ACROSS, "across, mm", 1e-3, "{:.3f}"),
-        (bearing.PEAK_PRESSURE, "GPa", 1e9, "{:.2f}"),
+        (bearing.PEAK_PRESSURE, "GPa", 1e9, "{:.2f}")
     )  # fmt: skip
     for row, ring in enumerate(data.words(tree, bearing.RING)):
         loose = data.values(tree, bearing.BALL_LOAD)[row, 0] == 0.0
