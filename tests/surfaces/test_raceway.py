@@ -113,11 +113,11 @@ def test_faults_lie_where_they_are_told_across_the_seam_and_all_around():
 
 def test_map_of_a_fault_lies_about_its_middle():
     x, y = (np.arange(9) - 4.0)[:, None], np.arange(7) - 3.0
-    fault = Fault("map", map=HeightMap(UM * (x - 2 * y), (0.02 * MM, 0.01 * MM)))
+    fault = Fault("map", map=HeightMap(UM * (x - 2 * y + 1), (0.02 * MM, 0.01 * MM)))
     assert fault.size == pytest.approx((0.18 * MM, 0.07 * MM), rel=1e-9, abs=0.0)
-    assert fault.depth == pytest.approx(10 * UM, rel=1e-9, abs=0.0)
+    assert fault.depth == pytest.approx(9 * UM, rel=1e-9, abs=0.0)
     found = fault.heights([0.0, 0.01 * MM, 1 * MM], 0.005 * MM)
-    assert_allclose(found, UM * np.array([-1, -0.5, 0]), atol=1e-12)
+    assert_allclose(found, UM * np.array([0, 0.5, 0]), atol=1e-12)
 
 
 def test_maps_come_from_files(tmp_path):
