@@ -168,7 +168,7 @@ def test_waves_of_a_ball_meet_those_of_a_raceway_as_if_solved_together():
     smooth, of_ball, of_raceway = raceway_on(CONTACT, LOAD, 1.0 * MM), 120, 40  # waves
     circle, rows, around = smooth.circumference, len(smooth.heights), 7.94 * MM * np.pi
     line = 60 * NM * np.cos(2 * np.pi * of_raceway * np.arange(rows) / rows)
-    law = laws_on(Raceway(smooth.heights + line[:, None], smooth.spacing), ("table",))["table"]
+    law = laws_on(Raceway(smooth.heights + line[:, None], smooth.spacing), "table")["table"]
     off = []
     for size in (200 * NM, 100 * NM):
         texture = AroundTexture(waves=(of_ball,), amplitudes=(size,))
