@@ -36,7 +36,7 @@ from asperity.structures.body import Body
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailBetween, RailPoles, rail_poles
 from asperity.structures.track import Track
-from asperity.surfaces.synthesis import from_bands
+from asperity.surfaces.bands import from_bands
 
 SPEED, STEP, LOAD, MASS = 56.0, 40e-6, 65e3, 600.0  # m/s, s (25 kHz), N, kg
 STATES = 14

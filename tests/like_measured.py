@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from asperity.reference.cnossos import wheel_roughness
-from asperity.surfaces.synthesis import self_affine, strip_from_bands
+from asperity.surfaces.bands import strip_from_bands
+from asperity.surfaces.synthesis import self_affine
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 MM, UM = 1e-3, 1e-6

@@ -11,29 +11,10 @@ from refusals import refusals
 
 def test_nominal_names_are_those_of_the_standard():
     """IEC 61260-1:2014, annex E: 3162.28 Hz is called 3.15 kHz."""
-    assert [spectra.nominal_frequency(1000 * 10 ** (n / 10)) for n in (-16, -15, 0, 1, 5, 7)] == [
-        "25 Hz",
-        "31.5 Hz",
-        "1 kHz",
-        "1.25 kHz",
-        "3.15 kHz",
-        "5 kHz",
-    ]
-    assert [spectra.nominal_length(10 ** (n / 10)) for n in (4, 0, -2, -15, -29, -31)] == [
-        "2.5 m",
-        "1 m",
-        "630 mm",
-        "31.5 mm",
-        "1.25 mm",
-        "800 µm",
-    ]
-
-
-def test_psd_of_a_sine_holds_half_the_squared_amplitude():
-    time = np.arange(4096) / 1000.0
-    frequency, density = spectra.psd(7.0 + 3.0 * np.sin(2 * np.pi * 125.0 * time), 1e-3, segment=512)
-    assert_allclose(density.sum() * frequency[1], 4.5, rtol=1e-12)
-    assert frequency[density.argmax()] == 125.0
+    found = [spectra.nominal_frequency(1000 * 10 ** (n / 10)) for n in (-16, -15, 0, 1, 5, 7)]
+    assert ", ".join(found) == "25 Hz, 31.5 Hz, 1 kHz, 1.25 kHz, 3.15 kHz, 5 kHz"
+    found = [spectra.nominal_length(10 ** (n / 10)) for n in (4, 0, -2, -15, -29, -31)]
+    assert ", ".join(found) == "2.5 m, 1 m, 630 mm, 31.5 mm, 1.25 mm, 800 µm"
 
 
 def test_exact_base_ten_bands():
@@ -59,17 +40,9 @@ def test_a_line_on_an_edge_is_shared_in_proportion():
     assert_allclose(energies, [2.0, 6.0])
 
 
-def test_band_level_of_a_known_sine():
-    time = np.arange(20000) / 20000.0
-    sine = 2e-6 * np.sin(2 * np.pi * 1000.0 * time)
-    centres, levels = spectra.band_levels(*spectra.psd(sine, 1 / 20000.0), reference=1e-6)
-    assert_allclose(levels[np.isclose(centres, 1000.0)], 10 * np.log10(2.0), atol=1e-9)
-    assert levels[np.isclose(centres, 100.0)] < -100.0
-
-
 def test_bands_are_those_that_the_lines_cover():
     frequency = np.arange(0.0, 501.0)
-    centres, levels = spectra.band_levels(frequency, np.ones(501))
+    centres, levels = spectra.band_levels(frequency, np.full(501, 4e-12), reference=2e-6)
     assert_allclose(centres[[0, -1]], [5.01187, 398.107], rtol=1e-5)
     assert_allclose(levels, 10 * np.log10(centres * (10**0.05 - 10**-0.05)), atol=1e-9)
     chosen, _ = spectra.band_levels(frequency, np.ones(501), low=100.0, high=200.0)

@@ -13,7 +13,7 @@ from asperity.running import prepare_case
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
 from asperity.schema.spectra import FORCE_LEVEL
-from asperity.surfaces.synthesis import from_bands
+from asperity.surfaces.bands import from_bands
 from small_cases import changed
 
 pytestmark = pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")

@@ -16,7 +16,7 @@ from asperity.structures.bays import Bays
 from asperity.structures.moving_kernel import ZONES, HatResponse, moving_kernel
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
-from asperity.surfaces.synthesis import from_bands
+from asperity.surfaces.bands import from_bands
 from one_contact import roll_wheel
 
 SPEED, STEP = 56.0, 50e-6

@@ -10,6 +10,7 @@ from scipy.stats import kstest
 from asperity.spectra import psd
 from asperity.surfaces import statistics
 from asperity.surfaces import strip as module
+from asperity.surfaces.bands import strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.statistics import areal_statistics, survey_strip
 from asperity.surfaces.strip import Fields, LongStrip, Rows, raised, turning
@@ -19,7 +20,6 @@ from asperity.surfaces.synthesis import (
     long_strip_from_bands,
     long_strip_like,
     self_affine,
-    strip_from_bands,
 )
 from refusals import refusals
 

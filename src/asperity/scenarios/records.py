@@ -20,14 +20,14 @@ from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces import measured_lines
-from asperity.surfaces.bands import check_levels, strip_from_bands
+from asperity.surfaces.bands import check_levels, from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.steps import QUARTER, rotated
 from asperity.surfaces.strip import Rows, Strip
-from asperity.surfaces.synthesis import Continuation, close, extend, from_bands, long_strip_from_bands
+from asperity.surfaces.synthesis import Continuation, close, extend, long_strip_from_bands
 
 MOST_POINTS = 2.0**27
 """Points of a measured map on the contact grid (1 GiB)."""

@@ -8,25 +8,10 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, require, two_lengths
-from asperity.surfaces.bands import from_bands, strip_from_bands
+from asperity.surfaces.bands import strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip, check_shape
-
-__all__ = [
-    "CHOICES",
-    "Continuation",
-    "close",
-    "closed_around",
-    "extend",
-    "from_bands",
-    "from_map",
-    "long_self_affine",
-    "long_strip_from_bands",
-    "long_strip_like",
-    "self_affine",
-    "strip_from_bands",
-]
 
 Continuation = Literal["refuse", "mirror", "repeat"]
 CHOICES = ("refuse", "mirror", "repeat")
