@@ -286,6 +286,7 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
 @options.run_folder
 @click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]")
 @click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
+@options.signals
 @options.overwrite("another study")
 @options.device
 def study(
@@ -314,6 +315,8 @@ def study(
     asperity study case.toml --what-helps
     # a study file, on four processes
     asperity study study.toml -o runs/grid --workers 4
+    # labelled signals of faulty bearings, behind a measured path
+    asperity study bearing.toml --vary "fault.length = 0.1..0.5 mm, 5 steps" --signals set --path path.wav
     """
     from asperity.cli.studying import run_study, varied
     from asperity.studies.definition import load_study

@@ -42,6 +42,22 @@ def overwrite(what: str) -> Any:
     return click.option("--overwrite", is_flag=True, help=f"Replace {what} in the folder.")
 
 
+SIGNALS = {
+    "signals": ("FOLDER", "Of ball bearings: write the acceleration of each, and labels.csv."),
+    "format": ("FORMAT", "Of these signals: nc, npy or wav. [default: nc]"),
+    "path": ("FILE", "Impulse response of a path to the sensor: .npy, .wav or a table."),
+    "path-rate": ("FREQUENCY", "Its sampling rate, as '48 kHz'."),
+    "noise": ("LEVEL", "Noise: '20 dB' below the signal, or an rms, '0.5 m/s^2'."),
+}
+
+
+def signals(function: Any) -> Any:
+    """What a study writes of each bearing, and what lies between it and the record."""
+    for name, (metavar, help) in reversed(SIGNALS.items()):
+        function = click.option(f"--{name}", metavar=metavar, help=help)(function)
+    return function
+
+
 def _choose_device(context: click.Context, option: click.Parameter, name: str | None) -> None:
     if name is not None:
         from asperity.contact.batched import choose_device

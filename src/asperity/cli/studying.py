@@ -21,12 +21,14 @@ from asperity.reporting.page import PageFigure, figures_page
 from asperity.reporting.tables import ReportTable
 from asperity.results import attributes_of, save
 from asperity.scenes.figures.effects import Effects, effects_caption, effects_chart, effects_table
+from asperity.schema.spectra import FORCE_LEVEL
 from asperity.studies import table as tables
 from asperity.studies.axes import VARIANT
 from asperity.studies.definition import Study, separated, study_of
-from asperity.studies.effects import effects, what_helps
+from asperity.studies.effects import effects, weighted_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SCATTER, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES, names_kept
+from asperity.studies.signals import SignalSet
 from asperity.terminal import line_width, remark, say, say_table
 from asperity.text_files import write_csv
 
@@ -46,17 +48,18 @@ def run_study(
     scheduler: str | None = None,
     overwrite: bool = False,
     show: Sequence[str] = (),
+    **signals: str | None,
 ) -> dict[str, Any]:
     """Compute a study and write its tables and figures to a folder; return what a program wants to know.
 
     Either processes of this machine compute it, one per processor by default, or the workers of the Dask
     scheduler at an address. `overwrite` says whether another study in the folder may be replaced, `show`
-    names what is printed and drawn instead of what is usual.
+    names what is printed and drawn instead of what is usual. `signals` are those of `options.SIGNALS`.
     """
     from asperity.studies.cluster import cluster
     from asperity.studies.running import study as computed
 
-    asked = tables.chosen(show)
+    asked, heard = tables.chosen(show), _signals(**signals)
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
     files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
@@ -66,11 +69,11 @@ def run_study(
         remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
         place = nullcontext() if scheduler is None else cluster(scheduler)
         with place as executor, progress_bar() as progress:
-            table = computed(study, executor=executor, workers=workers, progress=progress)
+            table = computed(study, executor=executor, workers=workers, progress=progress, signals=heard)
         several = table.sizes.get(SEED, 0)
         means = mean_and_scatter(table) if several > 1 else None
-        band = prediction_band(table) if several >= FEWEST else None
-        effect = effects(table) if VARIANT in table.dims else None
+        band = prediction_band(table) if several >= FEWEST and FORCE_LEVEL.name in table else None
+        effect = effects(table) if VARIANT in table.dims and weighted_levels(table) else None
         told = _by_place(table, effect)
         for words, found in told:
             _print_effects(words, found)
@@ -81,6 +84,9 @@ def run_study(
             say(f"{name}: no member has it; there {reason}", err=True)
         _print_messages(table, left_out=bool(told))
         written = _write(directory, table, means, band, effect, asked)
+        if heard is not None:
+            written["labels"] = heard.labels_file
+            say(f"Signals: {heard.labels_file.resolve()}", lines=True)
     chosen = table[[name for name in asked if name in table]].assign_attrs(table.attrs) if asked else table
     heading, rows = tables.columns_of(chosen, bands=bool(asked))
     return {
@@ -94,6 +100,15 @@ def run_study(
         "failures": json.loads(table.attrs["failures"]),
         "files": written,
     }
+
+
+def _signals(signals: str | None = None, **how: str | None) -> SignalSet | None:
+    """Signals that are asked for, by the words of the command line."""
+    given = {name: word for name, word in how.items() if word is not None}
+    for name in given if signals is None else ():
+        option = f"--{name.replace('_', '-')}"
+        raise InputError(option, "signals of no study", "it goes with --signals", "Say in which folder.")
+    return None if signals is None else SignalSet(signals, **given)
 
 
 def varied(case: Path, words: Sequence[str], *, helps: bool = False) -> Study:
@@ -214,7 +229,7 @@ def _figures(
         scatter = means[deviations].rename({name: name.removesuffix(SCATTER) for name in deviations})
     figures = []
     for key in json.loads(table.attrs["sweep"]):
-        if drawn.sizes.get(key, 0) > 1 and key != VARIANT:
+        if drawn.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(drawn)):
             chart = study_figures.key_chart(drawn, scatter, key, looks, names)
             caption = study_figures.key_caption(drawn, scatter, key)
             figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart))

@@ -1,5 +1,6 @@
 """Figures of studies, seeds and optimised textures."""
 
+import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -115,7 +116,6 @@ PLACES = ("sensor", "point")
 """Dimensions over which levels are averaged; other words, as what radiates, are told apart."""
 SPREAD = 20.0
 """Ratio of the largest value to the smallest from which the axis is logarithmic."""
-WEIGHTED = f"{FORCE_LEVEL.name}_a"
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
@@ -153,7 +153,7 @@ def _says_something(found: xarray.DataArray) -> bool:
 
 def _others(table: xarray.Dataset, key: str) -> list[str]:
     """Keys that are swept beside one."""
-    return _others_of(table[WEIGHTED if WEIGHTED in table else "mean_force"], LAW.name, key)[0]
+    return [name for name in json.loads(table.attrs["sweep"]) if name in table.dims and name != key]
 
 
 def _main(table: xarray.Dataset) -> str:

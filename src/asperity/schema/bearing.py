@@ -100,6 +100,19 @@ def _line(name: str, units: str, meaning: str) -> Entry:
 
 
 LINE_FREQUENCY = _line("frequency", "Hz", "frequency of the line found next to it, first sensor")
-LINE_AMPLITUDE = _line("amplitude", "m/s2", "amplitude of that line")
+LINE_AMPLITUDE = _line("amplitude", "m/s2", "amplitude of the line of the envelope next to it")
 LINE_SIDE_BANDS = _line("side_bands", "m/s2", "larger amplitude one modulation beside it")
 LINES_FOUND = _bearing("lines_found(law, part)", "1", "whether its lines stand out, 1 or 0")
+
+FIRST = {"harmonic": 1}
+KEPT: dict[Entry, dict[str, int]] = {
+    BAND_VELOCITY: {},
+    TONE: {},
+    LINE_FREQUENCY: FIRST,
+    LINE_AMPLITUDE: FIRST,
+    LINE_SIDE_BANDS: FIRST,
+    LINES_FOUND: {},
+}
+"""What a study keeps of it, and where of it; of several sensors, of the first."""
+SHOWN = (BAND_VELOCITY.name, LINE_AMPLITUDE.name, LINES_FOUND.name)
+"""What a study shows of it unasked."""

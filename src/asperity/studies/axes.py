@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import NDArray, require, shown
+from asperity.case.any_case import AnyCase
 from asperity.case.content import content, described_value, holds_memory
 from asperity.case.describing import CaseKey, entry_of, value_in_toml
 from asperity.case.form import Section
-from asperity.case.scene import Case
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin, Text, key, keys_of
 from asperity.reference.materials import Material
@@ -98,12 +98,12 @@ class Unfit(Exception):
     """Why a change does not apply to a case."""
 
 
-def _refuse_measured(case: Case, entry: CaseKey) -> None:
+def _refuse_measured(case: AnyCase, entry: CaseKey) -> None:
     """What was measured on a track holds for that track alone, whose sound power it decides."""
     if entry.section != "track" or entry.name not in keys_of(Track, ""):
         return
     for name in ("decay_rates", "mobility"):
-        if getattr(case.track, name, None) is not None:
+        if getattr(getattr(case, entry.section), name, None) is not None:
             raise Unfit(f"track.{name} was measured on the track as it is: leave it out to ask for another")
 
 
@@ -137,7 +137,7 @@ class Change:
             return cls(entry, written, value, content(entry.read(former, origin)))
         return cls(entry, written, as_in_toml(written, entry.read(written, origin), entry))
 
-    def applied(self, case: Case) -> Any:
+    def applied(self, case: AnyCase) -> Any:
         """The value that the key gets in a case, as it stands in TOML; `Unfit` says why there is none."""
         _refuse_measured(case, self.entry)
         if self.factor is None and self.former is None:
@@ -152,7 +152,7 @@ class Change:
         return value_in_toml(int(found) if whole else found, self.entry.key)
 
 
-def _value_of(case: Case, entry: CaseKey) -> Any:
+def _value_of(case: AnyCase, entry: CaseKey) -> Any:
     """Value of a key in a case, that of a named set where it gives none."""
     section: Section = getattr(case, entry.section) if entry.section else case
     companion = entry.key.goes_with
@@ -185,7 +185,7 @@ class VariantAxis(SweptAxis):
             for name, changes in self.changes.items()
         }
 
-    def keys(self, name: str, case: Case) -> dict[str, Any]:
+    def keys(self, name: str, case: AnyCase) -> dict[str, Any]:
         """Keys that a variant changes in a case, with their values; an error says why it changes none.
 
         What a case does not have is not changed: half of no damping is none.

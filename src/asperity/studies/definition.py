@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import require, shown
-from asperity.case.cases import case_class, case_of, keys_and_origin, of_bodies, read_with_case
+from asperity.case.any_case import AnyCase
+from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
 from asperity.case.chosen_lengths import shared_lengths
 from asperity.case.content import case_key, content, file_digest
 from asperity.case.describing import entry_of
@@ -107,7 +108,7 @@ class Member:
 
     index: tuple[int, ...]  # its place on the axes
     values: dict[str, Any]  # the swept keys with their values as they stand in TOML
-    case: Case | None  # None if its values do not fit together
+    case: AnyCase | None  # None if its values do not fit together
     error: CaseError | None  # why there is no case
     key: str  # names its result by everything the result depends on
 
@@ -147,7 +148,7 @@ class Study:
         """
         digest_of = lru_cache(maxsize=None)(file_digest)
         found = [self._member(index, digest_of, {}) for index in np.ndindex(self.shape)]
-        if shared := shared_lengths([member.case for member in found if member.case is not None]):
+        if shared := shared_lengths([member.case for member in found if isinstance(member.case, Case)]):
             found = [self._member(member.index, digest_of, shared) for member in found]
         errors = [member.error for member in found if member.error is not None]
         if len(errors) == len(found):
@@ -165,13 +166,13 @@ class Study:
             return Member(index, values, None, error, "")
         return Member(index, values, case, None, case_key("member", FORMAT, case, of_file=digest_of))
 
-    def _case(self, values: Mapping[str, Any]) -> Case:
+    def _case(self, values: Mapping[str, Any]) -> AnyCase:
         """The case with values of the swept keys, and with what a variant changes of that."""
         data = _with_values(self.data, {key: value for key, value in values.items() if key != VARIANT})
-        case = of_bodies(case_of(data, self.origin), "study")
+        case = case_of(data, self.origin)
         for axis in self.axes:
             if isinstance(axis, VariantAxis) and (keys := axis.keys(values[VARIANT], case)):
-                changed = of_bodies(case_of(_with_values(data, keys), self.origin), "study")
+                changed = case_of(_with_values(data, keys), self.origin)
                 if changed == case:
                     raise CaseError(values[VARIANT], ["nothing changes: the case is so already"])
                 return changed
@@ -191,7 +192,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     return _checked(base, origin, data.get("sweep", {}), path)
 
 
-def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Mapping[str, Any]) -> Study:
+def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase, sweep: Mapping[str, Any]) -> Study:
     """Make a study of a case.
 
     Parameters

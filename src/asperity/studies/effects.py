@@ -81,6 +81,11 @@ def with_effects(case: any_case.AnyCase, result: DataTree, progress: Progress | 
     return tree
 
 
+def weighted_levels(table: xarray.Dataset) -> list[str]:
+    """A-weighted levels of a study, by which effects are told."""
+    return [str(name) for name, each in table.data_vars.items() if each.attrs["units"].startswith("dB(A)")]
+
+
 def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     """What each variant of a study does to a level, the quietest first.
 
@@ -125,9 +130,7 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     if not isinstance(table, xarray.Dataset) or VARIANT not in table.dims:
         received = list(map(str, table.dims)) if isinstance(table, xarray.Dataset) else shown(table)
         raise InputError("table of the study", received, f'one with the dimension "{VARIANT}"')
-    weighted = [
-        str(name) for name, each in table.data_vars.items() if each.attrs["units"].startswith("dB(A)")
-    ]
+    weighted = weighted_levels(table)
     usual = schema.RADIATED_POWER_LEVEL_A.name
     usual = usual if usual in weighted else f"{spectra.FORCE_LEVEL.name}_a"
     held = table[one_of("quantity", quantity or usual, weighted)]

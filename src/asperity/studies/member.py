@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from asperity.errors import TOO_MUCH_MEMORY, AsperityError, ComputationError
 from asperity.results import variable
 from asperity.scenes import schema as scene
-from asperity.schema import Entry, contact, provenance, rolling, spectra
+from asperity.schema import Entry, bearing, contact, provenance, rolling, spectra
 from asperity.spectra import a_weighted_total
 
 if TYPE_CHECKING:
-    from asperity.case.scene import Case
+    from asperity.case.any_case import AnyCase
 
 KEPT = (
     spectra.FORCE_LEVEL,
@@ -40,12 +40,54 @@ LEVEL = "dB re"
 PLACES = ("sensor", "point")
 """Dimensions whose positions may differ between members: they are numbered, from 1."""
 
+SIGNAL = "signal"
+"""Acceleration (sensors, n), m/s2, of a bearing by its main law: kept of every member, and in no table."""
+
 
 def kept(tree: xarray.DataTree) -> xarray.Dataset:
     """Choose what a study keeps of a result: quantities by law, and by band where they have bands.
 
     With citations and warnings as attributes.
     """
+    found = _of_bearing(tree) if bearing.TONE.group in tree.children else _of_bodies(tree)
+    table = xarray.Dataset(found).drop_attrs(deep=False)
+    for place in set(PLACES) & set(map(str, table.dims)):
+        table = _numbered(table, place)
+    for fact in FACTS:
+        if (value := tree[fact.group].attrs.get(fact.name)) is not None:
+            table[fact.name] = variable((), value, fact.units, fact.meaning)
+    told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
+    return table.assign_attrs({name: tree.attrs[name] for name in told})
+
+
+def _of_bearing(tree: xarray.DataTree) -> dict[str, Any]:
+    """What is kept of a bearing, at its first sensor; ranges of its velocities are told apart by words."""
+    found: dict[str, Any] = {
+        entry.name: tree[entry.path]
+        .sel(at, drop=True)
+        .isel({bearing.SENSOR.name: 0}, missing_dims="ignore", drop=True)
+        for entry, at in bearing.KEPT.items()
+    }
+    found[bearing.BAND_VELOCITY.name] = found[bearing.BAND_VELOCITY.name].rename(judged_band="range")
+    load = tree["bearing"].to_dataset()[bearing.BALL_LOAD.name].max(("cage_angle", "ball"))
+    motion = tree["rolling"].to_dataset()
+    each = [motion[entry.name].max(("ball", "time")) for entry in (bearing.INNER_FORCE, bearing.OUTER_FORCE)]
+    peak = xarray.concat(each, "ring").assign_coords(ring=load["ring"]).transpose("law", "ring")
+    found["largest_load"] = _described(load, "N", LOADS["largest_load"])
+    found["peak_force"] = _described(peak, "N", LOADS["peak_force"])
+    found[SIGNAL] = motion[bearing.RING_ACCELERATION.name][0].variable
+    return found
+
+
+LOADS = {
+    "largest_load": "largest static load of a contact",
+    "peak_force": "largest contact force",
+}
+"""What is kept of the forces of a bearing."""
+
+
+def _of_bodies(tree: xarray.DataTree) -> dict[str, Any]:
+    """What is kept of bodies that roll."""
     own, first = scene.KEPT, {rolling.CONTACT.name: 0}
     found = {
         entry.name: tree[entry.path]
@@ -64,23 +106,19 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
     if lowering.name in tree[lowering.group]:
         most = tree[lowering.group].to_dataset()[lowering.name].max(contact.RUNNING_IN_PASS.name)
         found[lowering.name] = _described(most, "m", "largest lowering of a place in a pass of running-in")
-    found |= _weighted(
+    return found | _weighted(
         {name: values for name, values in found.items() if isinstance(values, xarray.DataArray)}
     )
-    table = xarray.Dataset(found).drop_attrs(deep=False)
-    for place in set(PLACES) & set(map(str, table.dims)):
-        table = _numbered(table, place)
-    for fact in FACTS:
-        if (value := tree[fact.group].attrs.get(fact.name)) is not None:
-            table[fact.name] = variable((), value, fact.units, fact.meaning)
-    told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
-    return table.assign_attrs({name: tree.attrs[name] for name in told})
 
 
 def names_kept() -> dict[str, str]:
     """Names that the table of a study may have, each with which results have it, if not all."""
-    entries = (*KEPT, contact.RUNNING_IN_LOWERING, *scene.KEPT)
-    found = dict.fromkeys(rolling.FORCES, "") | {entry.name: entry.condition for entry in entries}
+    entries = (*KEPT, contact.RUNNING_IN_LOWERING, *scene.KEPT, *bearing.KEPT)
+    found = (
+        dict.fromkeys(LOADS, bearing.OF_BEARING)
+        | dict.fromkeys(rolling.FORCES, "")
+        | {entry.name: entry.condition for entry in entries}
+    )
     found |= {fact.name: fact.condition for fact in FACTS} | {OF_CONTACTS.name: "of several contacts"}
     for entry in (*entries, OF_CONTACTS):
         if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"):
@@ -123,7 +161,7 @@ def _total(level: xarray.DataArray, band: str) -> xarray.DataArray:
 
 
 def _described(values: xarray.DataArray, units: str, long_name: str) -> xarray.DataArray:
-    return values.drop_attrs().assign_attrs(units=units, long_name=long_name)
+    return values.drop_attrs(deep=False).assign_attrs(units=units, long_name=long_name)
 
 
 def _numbered(table: xarray.Dataset, place: str) -> xarray.Dataset:
@@ -176,7 +214,7 @@ class Failure:
         return cls(name, str(error) if isinstance(error, AsperityError) else f"{name}: {error}")
 
 
-def compute_member(key: str, case: "Case") -> dict[str, NDArray[Any]] | Failure:
+def compute_member(key: str, case: "AnyCase") -> dict[str, NDArray[Any]] | Failure:
     """Compute a member, or take what an earlier study has kept of it under its key, `packed`."""
     from asperity.running import run
     from asperity.store import Store

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import require, shown, whole
-from asperity.case.scene import Case
+from asperity.case.any_case import AnyCase
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
 from asperity.laws import comes_with_the_program
@@ -25,6 +25,8 @@ from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
     import xarray
+
+    from asperity.studies.signals import SignalSet
 
 Outcome = dict[str, Any] | Failure
 Outcomes = Generator[tuple[Member, Outcome], None, None]
@@ -164,12 +166,13 @@ def _end_with(watched: Connection) -> None:
 
 
 def study(
-    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | Case,
+    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | AnyCase,
     sweep: Mapping[str, Any] | None = None,
     *,
     executor: futures.Executor | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
+    signals: "str | os.PathLike[str] | SignalSet | None" = None,
 ) -> "xarray.Dataset":
     """Compute a case for every combination of the values of some keys.
 
@@ -188,6 +191,9 @@ def study(
         Number of these processes; one per processor by default.
     progress : callable, optional
         ``progress(done, total, message)``, called whenever a member has ended.
+    signals : path or SignalSet, optional
+        Folder into which the acceleration of each ball bearing is written with its labels; a
+        `asperity.studies.signals.SignalSet` says in which format, behind which path, with which noise.
 
     Returns
     -------
@@ -230,6 +236,10 @@ def study(
     from asperity.studies.table import tabulated
 
     members = plan.members()
+    if signals is not None:
+        from asperity.studies.signals import SignalSet
+
+        signals = SignalSet.of(signals, members)
 
     def compute(waiting: Sequence[Member]) -> Outcomes:
         if executor is not None:
@@ -242,7 +252,7 @@ def study(
         return locally(waiting, workers)
 
     with shown_progress(progress) as told:
-        results, failures = _outcomes(members, compute, told)
+        results, failures = _outcomes(members, compute, told, signals)
     if not results:
         first = next(iter(failures.values()))
         what = f"all {len(members)} members failed, the first one so: {first.message.rstrip('.')}"
@@ -251,7 +261,7 @@ def study(
 
 
 def _planned(
-    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | Case, sweep: Mapping[str, Any] | None
+    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | AnyCase, sweep: Mapping[str, Any] | None
 ) -> Study:
     if isinstance(definition, Study):
         allowed = "a case with keys, or a study alone"
@@ -261,28 +271,42 @@ def _planned(
         return study_of(definition, sweep)
     if isinstance(definition, str | os.PathLike):
         return load_study(definition)
-    a_case = isinstance(definition, Case | Mapping)
+    a_case = isinstance(definition, AnyCase | Mapping)
     require(not a_case, "sweep", "nothing", "keys of the case, each with a list of values")
     allowed = "the path of a study file, or with keys to sweep a case"
     raise InputError("definition of the study", shown(definition), allowed)
 
 
 def _outcomes(
-    members: Sequence[Member], compute: Callable[[Sequence[Member]], Outcomes], report: Progress
+    members: Sequence[Member],
+    compute: Callable[[Sequence[Member]], Outcomes],
+    report: Progress,
+    signals: "SignalSet | None",
 ) -> "tuple[dict[tuple[int, ...], xarray.Dataset], dict[tuple[int, ...], Failure]]":
-    """Results and failures of all members by their places; every result is kept as soon as it is there."""
+    """Results and failures of all members by their places; every result is kept as soon as it is there.
+
+    So is its signal, in a file, where they are asked for.
+    """
     from asperity.store import Store
-    from asperity.studies.member import unpacked
+    from asperity.studies.member import SIGNAL, unpacked
 
     store = Store()
     results: dict[tuple[int, ...], xarray.Dataset] = {}
     failures: dict[tuple[int, ...], Failure] = {}
     waiting: list[Member] = []
+    labels: dict[tuple[int, ...], dict[str, Any]] = {}
+
+    def take(member: Member, found: dict[str, Any]) -> None:
+        table = unpacked(found)
+        if signals is not None:
+            labels[member.index] = signals.write(member, table)
+        results[member.index] = table.drop_vars(SIGNAL, errors="ignore")
+
     for member in members:
         if member.error is not None:
             failures[member.index] = Failure("CaseError", "; ".join(member.error.errors))
         elif (found := store.get(member.key)) is not None:
-            results[member.index] = unpacked(found)
+            take(member, found)
         else:
             waiting.append(member)
     what = f"study of {len(members)} members"
@@ -294,6 +318,8 @@ def _outcomes(
             else:
                 if not store.path(member.key).exists():  # computed where this store is not
                     store.put(member.key, outcome)
-                results[member.index] = unpacked(outcome)
+                take(member, outcome)
             report(len(results) + len(failures), len(members), what)
+    if signals is not None:
+        signals.label(labels)
     return results, failures

@@ -16,7 +16,7 @@ from asperity.errors import InputError
 from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
 from asperity.scenes.schema import SHOWN
-from asperity.schema import contact, rolling, spectra
+from asperity.schema import bearing, contact, rolling, spectra
 from asperity.studies.definition import Member, Study
 from asperity.studies.ensemble import SCATTER
 from asperity.studies.member import Failure, names_kept
@@ -238,9 +238,9 @@ _THEN = (
 )
 
 
-USUAL = (*_FIRST, *SHOWN, *_THEN)
+USUAL = (*_FIRST, *SHOWN, *_THEN, *bearing.SHOWN)
 """Names of what a study shows unasked, where its table has it."""
-USUAL_IN_FIGURES = tuple(name for name in USUAL if not name.startswith(OVER))
+USUAL_IN_FIGURES = tuple(name for name in USUAL if not name.startswith((OVER, bearing.LINES_FOUND.name)))
 """Names of what its figures show unasked."""
 
 
