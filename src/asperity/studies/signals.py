@@ -193,7 +193,7 @@ def _labels(member: Member, case: BallBearingCase) -> dict[str, Any]:
         elif _titled(name) not in found:
             value = getattr(getattr(case, section) if section else case, key)
             number = np.nan if value is None else value
-            found[_titled(name)] = number if isinstance(number, int | float) else written_out(value)
+            found[_titled(name)] = number if type(number) in (int, float) else written_out(value)
     turning = case.kinematics
     found |= {f"{part}_tone [Hz]": turning.tone(part) for part in PARTS}
     found |= {"cage_tone [Hz]": turning.cage, "sampling_rate [Hz]": case.sampling_rate}
