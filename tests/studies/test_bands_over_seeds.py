@@ -57,9 +57,10 @@ class TestBand:
         assert held(found, level[6]).mean() == pytest.approx(share, abs=0.01)
 
     def test_failed_members_are_left_out(self):
-        level = np.array([[1.0, 1.0], [2.0, np.nan], [np.nan, np.nan], [4.0, -np.inf]])
-        found = asperity.prediction_band(table(level, place=[0.0, 1.0]))
-        assert float(found["force_level"][0]) == pytest.approx(7 / 3)
+        level = np.array([[1.0, 1.0, 1.0], [2.0, np.nan, 3.0], [np.nan] * 3, [4.0, -np.inf, np.nan]])
+        found = asperity.prediction_band(table(level, place=[0.0, 1.0, 2.0]))
+        assert found["force_level"][::2].values == pytest.approx([7 / 3, 2.0])  # two are enough
+        assert np.isfinite(found["force_level_low"][2])
         assert np.isnan(found["force_level"][1])
         assert found["force_level"].attrs["missing"] == "fewer than two members have it"
         assert found.attrs["members"] == 3

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, not_negative, whole
+from asperity.arguments import Array, not_negative, require, whole
 from asperity.errors import InputError
 
 MOST_BAYS = 100
@@ -41,17 +41,14 @@ class Bays:
         whole("bays of a cell", len(self.spacing), f"1 to {MOST_BAYS}", at_least=1, at_most=MOST_BAYS)
         for each in fields(self):
             values = np.array(getattr(self, each.name))
-            if len(values) != len(self.spacing):
-                allowed = f"as many as bays, {len(self.spacing)}"
-                raise InputError(f"{each.name} of the bays", f"{len(values)} values", allowed)
+            what, count = f"{each.name} of the bays", f"as many as bays, {len(self.spacing)}"
+            require(len(values) == len(self.spacing), what, f"{len(values)} values", count)
             if wrong := np.flatnonzero(~((values > 0.0) & np.isfinite(values))).tolist():
                 received = f"{values[wrong[0]]:.3g} times the nominal one in bay {wrong[0] + 1}"
-                remedy = "Lower its scatter, or take another seed."
-                raise InputError(f"{each.name} of the bays", received, "above zero", remedy)
-        if not np.isclose(mean := np.mean(self.spacing), 1.0, rtol=1e-9):
-            raise InputError(
-                "mean spacing of the bays", f"{mean:.6g} times the nominal one", "the nominal one"
-            )
+                raise InputError(what, received, "above zero", "Lower its scatter, or take another seed.")
+        received, allowed = f"{np.mean(self.spacing):.6g} times the nominal one", "the nominal one"
+        even = np.isclose(np.mean(self.spacing), 1.0, rtol=1e-9)
+        require(even, "mean spacing of the bays", received, allowed)
 
     @classmethod
     def equal(cls, count: int = 1) -> "Bays":
