@@ -13,5 +13,10 @@ GROUNDS: dict[str, float] = {
     "lawn": 500e3,
     "gravel-road": 2e6,
     "asphalt": 20e6,
+    "ballast-shoulder": 200e3,
 }
-"""Flow resistivity, Pa s/m²: the classes C (turf, loose soil) to G (asphalt, concrete) of `CITATION`."""
+"""Flow resistivity, Pa s/m²: the classes C (turf, loose soil) to G (asphalt, concrete) of `CITATION`.
+
+Of ballast none is printed: it has that of the hardest class, D, of those that CNOSSOS-EU counts as wholly
+absorbing, G = 1 (Directive (EU) 2015/996, table 2.5.a), as it counts rail tracks on ballast (2.5.6).
+"""
