@@ -88,6 +88,21 @@ def test_opposite_the_load_a_pit_is_hardly_heard(runs):
     assert free < 0.1 * loaded
 
 
+def test_a_pit_that_is_solved_strikes_much_as_its_average_under_the_contact():
+    """It is narrower than the contact, and the load is near that for which the average is exact."""
+    found = group(asperity.run(BEARING | {"laws": ["table", "areal"], "duration": "50 ms"}, brief=True))
+    table, areal = found["band_velocity"].values[:, 0]
+    assert table == pytest.approx(areal, rel=0.05)
+    assert abs(table[2] / areal[2] - 1.0) > 1e-6  # it is another computation
+    assert found["lines_found"].values[:, 0].tolist() == [1.0, 1.0]
+
+
+def test_a_notebook_shows_the_verdict_and_the_load_zone(runs):
+    tree = runs(BEARING)
+    assert tree.attrs["verdict"][:40] in tree._repr_html_()
+    assert tree.plot().axes[0].get_xlabel() == "mm"
+
+
 def test_what_a_part_makes_alone_is_told(runs):
     tree = runs(BEARING)
     found = group(tree)

@@ -36,7 +36,7 @@ LEFT_OUT = (
     "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the contact "
     "angle is that of the static load."
 )
-STEP_TIME, SOLUTION_TIME = 1.5e-6, 1e-3
+STEP_TIME, SOLUTION_TIME = 1e-6, 1e-3
 """Times of a step of one ball, and of a contact of a scan, s."""
 SEEDS = 1000
 """Seeds of the parts of a bearing lie beside each other, and no two bearings share any."""

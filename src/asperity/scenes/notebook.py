@@ -11,12 +11,15 @@ from xarray import DataTree
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Of
 from asperity.schema import Entry, provenance
+from asperity.schema.bearing import BALL_LOAD
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, LONGEST_LOSS, TIME
 from asperity.schema.spectra import BAND, FORCE_LEVEL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+LOAD_ZONE = "load_zone"
+"""Figure that stands for the run of a bearing."""
 COLUMNS = 350
 """Stretches in which a long force is drawn by its extremes."""
 
@@ -69,19 +72,22 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
 
         if name is None and data.present(self, CONTACT_FORCE, TIME):
             return draw(_overview(self))
-        (figure,) = chosen_figures(figures_of(self), [name])
+        of_bearing = name is None and data.present(self, BALL_LOAD)
+        (figure,) = chosen_figures(figures_of(self), [LOAD_ZONE if of_bearing else name])
         return draw(figure.laid_out(self))
 
     def _repr_html_(self) -> str:
         tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]
-        if data.stated(self, provenance.VERDICT) is None or not data.present(self, CONTACT_FORCE, TIME):
+        rolled = data.present(self, CONTACT_FORCE, TIME)
+        if data.stated(self, provenance.VERDICT) is None or not (rolled or data.present(self, BALL_LOAD)):
             return tree
         title, verdict = (
             escape(str(data.stated(self, each))) for each in (provenance.TITLE, provenance.VERDICT)
         )
+        drawn = f"{_picture(self)}\n{_numbers(self)}" if rolled else ""
         return (
-            f"<div><p><strong>{title}.</strong> {verdict}</p>\n{_warnings(self)}\n{_picture(self)}\n"
-            f"{_numbers(self)}\n<details><summary>All data</summary>{tree}</details></div>"
+            f"<div><p><strong>{title}.</strong> {verdict}</p>\n{_warnings(self)}\n{drawn}\n"
+            f"<details><summary>All data</summary>{tree}</details></div>"
         )
 
 

@@ -45,7 +45,7 @@ CHAPTERS = (
         "bearing",
         "How quiet it runs",
         bearing.QUIET,
-        (bearing.bands_table, bearing.alone_table, bearing.lines_table),
+        (bearing.bands_table, bearing.lines_table),
         bearing.bearing_answers,
     ),
     Chapter("load", "How it carries its load", bearing.LOADED, (bearing.ball_contacts_table,)),

@@ -1,7 +1,6 @@
 """A ball bearing on its page: how it carries its load, what moves, how quiet it is, which part is heard."""
 
 from dataclasses import replace
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from asperity.reporting.bearing_figures import COLOURS
 from asperity.reporting.chart import BLUE, INK, VERMILLION, Axis, Line, Mark, Numbers, Panel, Shape
 from asperity.reporting.figure import Figure, Lines, Of
 from asperity.reporting.headline import Answers, HeadlineNumber
-from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.schema import bearing, provenance
 from asperity.schema.rolling import TIME
 from asperity.schema.spectra import FREQUENCY
@@ -256,38 +255,26 @@ ENVELOPE = Figure(
 QUIET, LOADED = (DRAWING, SPECTRUM, ENVELOPE, ACCELERATION), (TURN,)
 
 
-def _in_bands(tree: DataTree, velocities: Numbers) -> dict[str, list[Cell]]:
-    """Columns of velocities (rows, bands), m/s."""
-    bands = zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True)
-    return {f"{band}, µm/s": number_cells(values, "{:.3g}") for band, values in bands}
-
-
 def bands_table(tree: DataTree) -> ReportTable | None:
-    """Velocities in the bands in which bearings are judged, by law and accelerometer."""
+    """Velocities in the bands in which bearings are judged, by law and sensor; of parts alone below."""
     if not data.present(tree, bearing.BAND_VELOCITY):
         return None
-    found = data.values(tree, bearing.BAND_VELOCITY)
-    rows = list(product(data.laws(tree, bearing.BAND_VELOCITY), data.values(tree, bearing.SENSOR)))
-    columns = {
-        "law": text_cells(law for law, _ in rows),
-        "at": text_cells((f"{np.degrees(at):.0f}°" for _, at in rows), "number"),
-    } | _in_bands(tree, found.reshape(-1, found.shape[-1]))
+    found, sensors = data.values(tree, bearing.BAND_VELOCITY), np.degrees(data.values(tree, bearing.SENSOR))
+    rows = [(law, f"at {at:.0f}°") for law in data.laws(tree, bearing.BAND_VELOCITY) for at in sensors]
+    velocities = found.reshape(len(rows), -1)
+    if data.present(tree, bearing.ALONE_VELOCITY):
+        alone = data.variable_of(tree, bearing.ALONE_VELOCITY)
+        rows += [(str(alone.attrs.get("law")), f"{name} alone") for name in alone["source"].values]
+        velocities = np.concatenate([velocities, alone.values])
+    columns = {"law": text_cells(law for law, _ in rows), "of": text_cells(what for _, what in rows)}
+    for band, values in zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True):
+        columns[f"{band}, µm/s"] = number_cells(values, "{:.3g}")
     note = (
-        "Rms radial velocity of the outer ring. ISO 15242-2 measures it at 1800 1/min of the inner ring, "
-        "under an axial load, with filters whose slopes this leaves out."
+        "Rms radial velocity of the outer ring; alone: at the first accelerometer, all other parts smooth. "
+        "ISO 15242-2 measures it at 1800 1/min of the inner ring under an axial load, with filters whose "
+        "slopes this leaves out."
     )
     return table("judged_bands", "Velocities in the bands of ISO 15242-2", columns, note)
-
-
-def alone_table(tree: DataTree) -> ReportTable | None:
-    """Velocities with the texture of each part alone."""
-    if not data.present(tree, bearing.ALONE_VELOCITY):
-        return None
-    found = data.variable_of(tree, bearing.ALONE_VELOCITY)
-    columns = {"with alone": text_cells(data.words(tree, bearing.SOURCE))} | _in_bands(tree, found.values)
-    law = found.attrs.get("law", "")
-    note = f"Runs by {law} with one part as it is and all others smooth, at the first accelerometer."
-    return table("alone", "Which part makes it so", columns, note)
 
 
 def lines_table(tree: DataTree) -> ReportTable | None:
