@@ -56,6 +56,7 @@ COMMANDS = {
     "surface": SURFACE,
     "bearing": ("bearing", "6205", "--radial", "100 N", "-o", "load.png"),
     "wheel": ("wheel", "straight-web", "--highest", "400 Hz", "-o", "modes.csv"),
+    "creep": ("creep", "small.toml", "--points", "2", "--table", "creep.csv"),
     "study": ("study", "small.toml", "--vary", "seed=1, 2", "-o", "st", "--workers", "1"),
     "compare": ("compare", "a", "a"),
     "report": ("report", "a", "--summary"),

@@ -198,6 +198,31 @@ def bearing(
     return show_bearing(bearing, signal, picture, options, **hints)
 
 
+@_begin("Creep force over creepage of what rolls in a case.", long_work=True)
+@click.argument("case", type=PATH)
+@click.option("--direction", type=click.Choice(["longitudinal", "lateral", "spin"]), default="longitudinal",
+              show_default=True, help="Creepage that grows; spin makes a lateral force.")  # fmt: skip
+@click.option("--friction", type=float, default=0.3, show_default=True, help="Coefficient of friction.")
+@click.option("--points", type=int, default=16, show_default=True, help="Points up to full slip.")
+@click.option("--table", type=PATH, help="Write the curve to a file, CSV.")
+@output("Draw the curve to a file, .svg, .pdf or .png.", "picture", "FILE")
+def creep(case: Path, picture: Path | None, **choices: Any) -> Document:
+    """Find the creep force of what rolls in a CASE under its working load, in steady rolling.
+
+    The smooth contact and the samples of the case, with Kalker's linear theory and FASTSIM beside them.
+
+    Examples
+    --------
+    # a table, smooth and rough
+    asperity creep case.toml
+    # the lateral force of an angle of attack, drawn and as CSV
+    asperity creep case.toml --direction lateral --friction 0.4 -o creep.svg --table creep.csv
+    """
+    from asperity.cli.creep import show_creep
+
+    return show_creep(case, picture=picture, **choices)
+
+
 # --- compute
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from asperity import arguments
-from asperity.arguments import Array, ArrayLike, Complex, finite_array, real, require
+from asperity.arguments import Array, ArrayLike, Complex, NDArray, real, require
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
@@ -210,18 +210,17 @@ class FrictionalHalfSpace:
         manner = _Manner(distance, before is None, before, start or before, speed, rtol)
         return self._find(normal, (*creepage, spin), force, manner)
 
-    def displacement(self, traction: ArrayLike, pressure: ArrayLike, ahead: float = 0.0) -> Array:
-        """Displacement (2, nx, ny) of the first body against the second, m, at places so far ahead, m.
+    def displacement(self, traction: Complex, pressure: Array, ahead: float = 0.0) -> Complex:
+        """Displacement (nx, ny) of the first body against the second, m, x + iy, at places so far ahead, m.
 
-        Under a traction (2, nx, ny) and, of unlike bodies that are coupled, a pressure (nx, ny), Pa.
+        Under a traction x + iy (nx, ny), Pa, and, of unlike bodies that are coupled, a pressure (nx, ny), Pa.
         """
         nx, ny = self.half_space.shape
-        p = finite_array("traction", traction, f"finite numbers (2, {nx}, {ny})", shape=(2, nx, ny))
         convolution = self._convolution(nx, ny, ahead, False)
         box = kernel.traction_box(nx, ny, convolution)
-        _fields(box.traction, box)[:] = p
+        _cells(box.traction, box)[:] = traction
         kernel.convolve_traction(convolution, box.traction, nx, ny, box.pitch, box.work, box.response)
-        return _fields(box.response, box) + self._of_pressure(np.asarray(pressure), ahead)
+        return np.asarray(_cells(box.response, box) + self._of_pressure(pressure, ahead))
 
     def _separations(self, ahead: float) -> tuple[Array, Array]:
         (nx, ny), (dx, dy) = self.half_space.shape, self.half_space.spacing
@@ -241,12 +240,12 @@ class FrictionalHalfSpace:
         spread = kernel.pressure_displacement(*self._separations(ahead), *self.half_space.spacing)
         return np.asarray(self.unlikeness / math.pi * spread)
 
-    def _of_pressure(self, pressure: Array, ahead: float, steady: bool = False) -> Array:
-        """Displacement (2, nx, ny) of unlike bodies by a pressure, m; in steady rolling less that ahead."""
+    def _of_pressure(self, pressure: Array, ahead: float, steady: bool = False) -> Complex | float:
+        """Displacement of unlike bodies by a pressure, m; in steady rolling less that ahead."""
         if not (self.coupled and self.unlikeness):
-            return np.zeros((2, *self.half_space.shape))
+            return 0.0
         spread = self._unlike() - self._unlike(ahead) if steady else self._unlike(ahead)
-        return -np.array([_convolved(part, pressure) for part in (spread.real, spread.imag)])
+        return -_convolved(spread, pressure)
 
     def _convolution(self, nx: int, ny: int, ahead: float, steady: bool) -> kernel.TractionConvolution:
         """Influence of tractions on a box so far ahead; in steady rolling here, less that."""
@@ -272,11 +271,8 @@ class FrictionalHalfSpace:
         require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
         real("rtol", manner.rtol, "a number between 0 and 1, as 1e-6", above=0.0, below=1.0)
         allowed = "two forces, N, or None where the motion is given"
-        wanted = {
-            i: real("force", f, allowed)
-            for i, f in enumerate(arguments.two("force", force, allowed))
-            if f is not None
-        }
+        asked = enumerate(arguments.two("force", force, allowed))
+        wanted = {i: real("force", f, allowed) for i, f in asked if f is not None}
         motion = tuple(real("creepage or shift", each, "a finite number") for each in motion)
         found = self._rounds(normal, motion, manner)
         if wanted:
@@ -348,9 +344,10 @@ class FrictionalHalfSpace:
         """Solve until bound and pressure are those of the solution."""
         space, before = self.half_space, manner.before
         velocity, slipped = np.zeros(space.shape), np.zeros(space.shape, dtype=bool)
-        past, counts = np.zeros((2, *space.shape)), np.zeros(2, dtype=int)
+        past, counts = np.zeros(space.shape, complex), np.zeros(2, dtype=int)
         if before is not None:
-            past = self.displacement(before.traction, before.normal.pressure, manner.ahead)
+            traction = before.traction[0] + 1j * before.traction[1]
+            past = self.displacement(traction, before.normal.pressure, manner.ahead)
         loaded = normal
         bound = self.friction.coefficient(velocity, slipped) * normal.pressure
         for _ in range(MAX_ROUNDS):
@@ -361,8 +358,8 @@ class FrictionalHalfSpace:
             velocity = 0.5 * (velocity + np.hypot(*found.slip) * manner.speed * slipping)
             slipped |= slipping
             if self.coupled and self.unlikeness:
-                spread, p = self._unlike(), found.traction
-                gap = normal.undeformed_gap + _convolved(spread.real, p[0]) + _convolved(spread.imag, p[1])
+                traction = found.traction[0] - 1j * found.traction[1]
+                gap = normal.undeformed_gap + _convolved(self._unlike(), traction).real
                 loaded = space.at_load(gap, normal.force, loaded.pressure, 1e-8)
             last, bound = bound, self.friction.coefficient(velocity, slipped) * loaded.pressure
             if np.abs(bound - last).max() <= ROUNDS_AGREE * last.max():
@@ -373,47 +370,47 @@ class FrictionalHalfSpace:
         return replace(found, iterations=int(counts[0]), convolutions=int(counts[1]))
 
     def _solve(
-        self, normal: Contact, bound: Array, past: Array, motion: tuple[float, ...], manner: _Manner
+        self, normal: Contact, bound: Array, past: Complex, motion: tuple[float, ...], manner: _Manner
     ) -> SlidingContact:
         """Solve at a bound, on the box of the contact."""
-        (x, y), (along, across, spin), own = cell_places(self.half_space), motion, self._own(manner)
-        rigid = manner.step * np.array(np.broadcast_arrays(along - spin * y, across + spin * x)) - past
-        rigid += self._of_pressure(normal.pressure, manner.ahead if manner.steady else 0.0, manner.steady)
-        carries, contact = bound > 0.0, normal.pressure > 0.0
+        (x, y), (xi, eta, spin), own = cell_places(self.half_space), motion, self._own(manner)
+        ahead = manner.ahead if manner.steady else 0.0
+        rigid = manner.step * (xi + 1j * eta + spin * (1j * x - y)) - past
+        rigid += self._of_pressure(normal.pressure, ahead, manner.steady)
+        contact = normal.pressure > 0.0
         box_of = contact if contact.any() else np.ones_like(contact)
         rows, columns = (np.flatnonzero(box_of.any(axis=axis)) for axis in (1, 0))
         inside = slice(*rows[[0, -1]] + [0, 1]), slice(*columns[[0, -1]] + [0, 1])
         nx, ny = bound[inside].shape
-        convolution = self._convolution(nx, ny, manner.ahead if manner.steady else 0.0, manner.steady)
+        convolution = self._convolution(nx, ny, ahead, manner.steady)
         box = kernel.traction_box(nx, ny, convolution)
-        _fields(box.bound, box)[:], _fields(box.rigid, box)[:] = bound[inside], rigid[:, *inside]
+        _cells(box.bound, box)[:], _cells(box.rigid, box)[:] = bound[inside], rigid[inside]
         if manner.start is not None:
-            _fields(box.traction, box)[:] = manner.start.traction[:, *inside]
-        largest = float(np.hypot(*rigid)[carries].max(initial=0.0))
+            start = manner.start.traction[:, *inside]
+            _cells(box.traction, box)[:] = start[0] + 1j * start[1]
+        largest = float(np.abs(rigid[bound > 0.0]).max(initial=0.0))
         carried, damping = (CARRIED, own) if manner.steady else (0.0, DAMPING * own)
         task = kernel.TractionTask(
             own, carried, damping, not manner.steady, manner.rtol * largest, MAX_ITERATIONS
         )
         iterations, convolutions, worst = kernel.solve_traction(convolution, self._taps, box, task)
         outcome = Outcome.CONVERGED if worst <= task.tolerance else Outcome.ITERATION_LIMIT
-        traction, slip, sticks = np.zeros_like(rigid), np.zeros_like(rigid), np.zeros_like(carries)
-        traction[:, *inside], slip[:, *inside] = (
-            _fields(box.traction, box),
-            _fields(box.slip, box) / manner.step,
-        )
-        sticks[inside] = (_fields(box.normal, box) == 0.0).all(axis=0)
+        fields = np.zeros((5, *contact.shape))
+        p, s = _cells(box.traction, box), _cells(box.slip, box) / manner.step
+        fields[:, *inside] = p.real, p.imag, s.real, s.imag, _cells(box.normal, box) == 0.0
+        sticks = (fields[4] > 0.0) & (bound > 0.0)
         return SlidingContact(
-            normal, traction, slip * contact, np.asarray(sticks & carries), bound, (along, across, spin),
-            manner.speed, iterations, convolutions, worst / largest if largest else 0.0, outcome,
+            normal, fields[:2], fields[2:4] * contact, sticks, bound, (xi, eta, spin), manner.speed,
+            iterations, convolutions, worst / largest if largest else 0.0, outcome,
         )  # fmt: skip
 
 
-def _fields(flat: Array, box: kernel.TractionBox) -> Array:
-    """View of the cells of a box in a field, (…, nx, ny)."""
-    return flat.reshape(-1, box.nx, box.pitch)[:, :, : box.ny]
+def _cells(flat: NDArray[Any], box: kernel.TractionBox) -> NDArray[Any]:
+    """View (nx, ny) of the cells of a box in a field."""
+    return flat.reshape(box.nx, box.pitch)[:, : box.ny]
 
 
-def _convolved(spread: Array, values: Array) -> Array:
+def _convolved(spread: Complex, values: NDArray[Any]) -> Complex:
     """Values (nx, ny) convolved with a kernel whose origin is in its middle."""
     from scipy.signal import fftconvolve
 

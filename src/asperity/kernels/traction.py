@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.box import REACH
-from asperity.kernels.fourier import factors, read_parts, roots, smooth_length, transform, write_parts
+from asperity.kernels.fourier import factors, roots, smooth_length, transform
 from asperity.kernels.influence import _clear, _edge_log, whole_vectors
-from asperity.kernels.lanes import lanes, load, store, transpose, width
+from asperity.kernels.lanes import lanes, transpose, width
 from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, compiled
 
 
@@ -115,14 +115,15 @@ def _multiply(c: TractionConvolution, rows: NDArray) -> None:
 def convolve_traction(
     c: TractionConvolution, field: NDArray, nx: int, ny: int, pitch: int, work: NDArray, out: NDArray
 ) -> None:
-    """Convolve a field of vectors (2, nx pitch) on a box; zero, and without meaning, in idle columns."""
+    """Convolve a complex field (nx pitch,) on a box; zero, and without meaning, in idle columns."""
     mx, my, n = len(c.roots_x) // 2, len(c.roots_y) // 2, lanes(work)
     size, line, wide = 2 * max(mx, my) * n, 2 * my * n, whole_vectors(ny, n)
     a, b, rows = work[:size], work[size : 2 * size], work[2 * size :]
     for first in range(0, wide, n):
         for i in range(nx):
-            at = i * pitch + first
-            write_parts(a, 2 * i * n, load(field[0], at), load(field[1], at))
+            for j in range(n):
+                value = field[i * pitch + first + j]
+                a[2 * i * n + j], a[(2 * i + 1) * n + j] = value.real, value.imag
         _clear(a, 2 * nx * n, 2 * mx * n)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for k in range(mx // n):
@@ -137,9 +138,8 @@ def convolve_traction(
                 transpose(rows, k * line + 2 * first * n + part, 2 * n, a, 2 * k * n * n + part, 2 * n)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for i in range(nx):
-            re, im = read_parts(x, 2 * i * n)
-            store(out[0], i * pitch + first, re)
-            store(out[1], i * pitch + first, -1.0 * im)
+            for j in range(n):
+                out[i * pitch + first + j] = complex(x[2 * i * n + j], -x[(2 * i + 1) * n + j])
 
 
 KEPT = 16
@@ -163,34 +163,32 @@ class TractionBox(NamedTuple):
     ny: int
     pitch: int
     bound: NDArray  # (size,), largest traction, Pa
-    rigid: NDArray  # (2, size), slip without traction, m
-    traction: NDArray  # (2, size), Pa
-    slip: NDArray  # (2, size), m
-    trial: NDArray  # (2, size), traction with slipping cells on the edge of their discs, Pa
-    response: NDArray  # (2, size), what a traction displaces, m
-    normal: NDArray  # (2, size), direction of the traction in slipping cells, else zeros
-    free: NDArray  # (3, size), xx, xy and yy of the projection on where a traction may go
     slope: NDArray  # (size,), slip over traction where that turns, and the damping, m/Pa
-    residual: NDArray  # (2, size), of the linear problem, m
-    change: NDArray  # (2, size), its solution, Pa
-    carried: NDArray  # (2, size and REACH rows on both sides)
-    steps: NDArray  # (KEPT, 2, size), Pa
-    responses: NDArray  # (KEPT, 2, size), m
+    kept: NDArray  # (size,), ``kept v + mirrored conj(v)`` is the part of v that is free to change
+    mirrored: NDArray  # (size,), and all from here on complex
+    rigid: NDArray  # (size,), slip without traction, m
+    traction: NDArray  # (size,), Pa
+    slip: NDArray  # (size,), m
+    trial: NDArray  # (size,), traction with slipping cells on the edge of their discs, Pa
+    response: NDArray  # (size,), what a traction displaces, m
+    normal: NDArray  # (size,), direction of the traction in slipping cells, else zero
+    residual: NDArray  # (size,), of the linear problem, m
+    change: NDArray  # (size,), its solution, Pa
+    carried: NDArray  # (size and REACH rows on both sides,)
+    steps: NDArray  # (KEPT, size), Pa
+    responses: NDArray  # (KEPT, size), m
     work: NDArray
 
 
 def traction_box(nx: int, ny: int, c: TractionConvolution) -> TractionBox:
     """Make a box without friction and traction."""
-    pitch = max(whole_vectors(ny, width(np.float64)), ny + REACH)
-    size, longest = nx * pitch, max(len(c.roots_x), len(c.roots_y))
-    work = np.zeros(c.spectra.shape[1] * 2 + 2 * longest * width(np.float64))
-    vectors = [np.zeros((2, size)) for _ in range(8)]
-    rigid, traction, slip, trial, response, normal, residual, change = vectors
-    return TractionBox(
-        nx, ny, pitch, np.zeros(size), rigid, traction, slip, trial, response, normal, np.zeros((3, size)),
-        np.zeros(size), residual, change, np.zeros((2, size + 2 * REACH * pitch)),
-        np.zeros((KEPT, 2, size)), np.zeros((KEPT, 2, size)), work,
-    )  # fmt: skip
+    n = width(np.float64)
+    pitch = max(whole_vectors(ny, n), ny + REACH)
+    size = nx * pitch
+    work = np.zeros(2 * c.spectra.shape[1] + 2 * n * max(len(c.roots_x), len(c.roots_y)))
+    real, vectors = np.zeros((3, size)), np.zeros((9, size), complex)
+    carried, searched = np.zeros(size + 2 * REACH * pitch, complex), np.zeros((2, KEPT, size), complex)
+    return TractionBox._make((nx, ny, pitch, *real, *vectors, carried, *searched, work))
 
 
 class TractionTask(NamedTuple):
@@ -207,17 +205,27 @@ class TractionTask(NamedTuple):
 @compiled(**INNER, **REASSOCIATE)
 def _product(left: NDArray, right: NDArray) -> float:
     total = 0.0
-    for axis in range(2):
-        for q in range(left.shape[1]):
-            total += left[axis, q] * right[axis, q]
+    for q in range(len(left)):
+        total += left[q].real * right[q].real + left[q].imag * right[q].imag
     return total
 
 
 @compiled(**INNER)
 def _add(target: NDArray, factor: float, field: NDArray) -> None:
-    for axis in range(2):
-        for q in range(target.shape[1]):
-            target[axis, q] += factor * field[axis, q]
+    for q in range(len(target)):
+        target[q] += factor * field[q]
+
+
+@compiled(**INNER)
+def _within(value: complex, bound: float) -> complex:
+    length = abs(value)
+    return value * (bound / length) if length > bound else value
+
+
+@compiled(**INNER)
+def _free(b: TractionBox, q: int, value: complex) -> complex:
+    """Part of a vector that may change in a cell: all where it sticks, along the edge where it slips."""
+    return b.kept[q] * value + b.mirrored[q] * value.conjugate()
 
 
 @compiled(**CALLED)
@@ -228,18 +236,16 @@ def _judge(b: TractionBox, diagonal: float) -> tuple[float, float]:
     """
     worst, total = 0.0, 0.0
     for q in range(len(b.bound)):
-        g, px, py, sx, sy = b.bound[q], b.traction[0, q], b.traction[1, q], b.slip[0, q], b.slip[1, q]
-        d = max(diagonal, np.hypot(sx, sy) / (ACROSS * g)) if g > 0.0 else diagonal
-        zx, zy = px - sx / d, py - sy / d
-        length = np.hypot(zx, zy)
-        slips, carries = length > g, 1.0 if g > 0.0 else 0.0
-        nx, ny = (carries * zx / length, carries * zy / length) if slips else (0.0, 0.0)
-        b.normal[0, q], b.normal[1, q] = nx, ny
-        b.free[0, q] = ny * ny if slips else carries
-        b.free[1, q] = -nx * ny
-        b.free[2, q] = nx * nx if slips else carries
-        b.trial[0, q], b.trial[1, q] = (g * nx, g * ny) if slips else (px, py)
-        missed = d * np.hypot(px - g * nx, py - g * ny) if slips else np.hypot(sx, sy)
+        g, p, s, n, d, missed = b.bound[q], b.traction[q], b.slip[q], 0.0j, diagonal, 0.0
+        b.kept[q], b.trial[q] = 0.0, p
+        if g > 0.0:
+            d = max(d, abs(s) / (ACROSS * g))
+            z = p - s / d
+            slips = abs(z) > g
+            n = z / abs(z) if slips else n
+            b.kept[q], b.trial[q] = 0.5 if slips else 1.0, g * n if slips else p
+            missed = d * abs(p - g * n) if slips else abs(s)
+        b.normal[q], b.mirrored[q] = n, -0.5 * n * n
         worst, total = max(worst, missed), total + missed**2
     return worst, np.sqrt(total)
 
@@ -248,50 +254,25 @@ def _judge(b: TractionBox, diagonal: float) -> tuple[float, float]:
 def _linearise(b: TractionBox, damping: float) -> None:
     """Set residual and slope at the trial traction, whose displacement is the response."""
     for q in range(len(b.bound)):
-        sx = b.rigid[0, q] + b.response[0, q] + damping * (b.trial[0, q] - b.traction[0, q])
-        sy = b.rigid[1, q] + b.response[1, q] + damping * (b.trial[1, q] - b.traction[1, q])
-        against = -(sx * b.normal[0, q] + sy * b.normal[1, q])
+        s = b.rigid[q] + b.response[q] + damping * (b.trial[q] - b.traction[q])
+        against = -(s * b.normal[q].conjugate()).real
         b.slope[q] = damping + (against / b.bound[q] if against > 0.0 else 0.0)
-        b.residual[0, q] = -(b.free[0, q] * sx + b.free[1, q] * sy)
-        b.residual[1, q] = -(b.free[1, q] * sx + b.free[2, q] * sy)
-        b.change[0, q] = b.change[1, q] = 0.0
+        b.residual[q], b.change[q] = -_free(b, q, s), 0.0
 
 
 @compiled(**CALLED)
-def _apply(c: TractionConvolution, b: TractionBox, step: NDArray, target: NDArray) -> None:
-    """Apply the linear operator to a step."""
-    convolve_traction(c, step, b.nx, b.ny, b.pitch, b.work, b.response)
-    for q in range(len(b.bound)):
-        u, v = b.response[0, q], b.response[1, q]
-        target[0, q] = b.free[0, q] * u + b.free[1, q] * v + b.slope[q] * step[0, q]
-        target[1, q] = b.free[1, q] * u + b.free[2, q] * v + b.slope[q] * step[1, q]
-
-
-@compiled(**CALLED, **REASSOCIATE)
 def _precondition_traction(b: TractionBox, taps: NDArray, task: TractionTask, target: NDArray) -> None:
     """Carry the residual on from the leading edge, as in the simplified theory, and apply the stencil."""
-    row, carried = b.pitch, b.carried
-    ahead = REACH * row
-    for i in range(b.nx - 1, -1, -1):
-        for q in range(i * row, (i + 1) * row):
-            share = 1.0 / (1.0 + LEANING * b.slope[q] / task.diagonal)
-            u = (b.residual[0, q] + task.carried * carried[0, ahead + q + row]) * share
-            v = (b.residual[1, q] + task.carried * carried[1, ahead + q + row]) * share
-            carried[0, ahead + q] = b.free[0, q] * u + b.free[1, q] * v
-            carried[1, ahead + q] = b.free[1, q] * u + b.free[2, q] * v
-    for axis in range(2):
-        m = carried[axis]
-        for q in range(len(b.bound)):
-            o = ahead + q
-            s = taps[0] * m[o] + taps[1] * (m[o - row] + m[o + row]) + taps[2] * (m[o - 1] + m[o + 1])
-            s += taps[3] * (m[o - row - 1] + m[o - row + 1] + m[o + row - 1] + m[o + row + 1])
-            target[axis, q] = (
-                s + taps[4] * (m[o - 2 * row] + m[o + 2 * row]) + taps[5] * (m[o - 2] + m[o + 2])
-            )
+    row, m = b.pitch, b.carried
+    for q in range(len(b.bound) - 1, -1, -1):
+        value = b.residual[q] + task.carried * m[(REACH + 1) * row + q]
+        m[REACH * row + q] = _free(b, q, value / (1.0 + LEANING * b.slope[q] / task.diagonal))
     for q in range(len(b.bound)):
-        u, v = target[0, q], target[1, q]
-        target[0, q] = b.free[0, q] * u + b.free[1, q] * v
-        target[1, q] = b.free[1, q] * u + b.free[2, q] * v
+        o = REACH * row + q
+        s = taps[0] * m[o] + taps[1] * (m[o - row] + m[o + row]) + taps[2] * (m[o - 1] + m[o + 1])
+        s += taps[3] * (m[o - row - 1] + m[o - row + 1] + m[o + row - 1] + m[o + row + 1])
+        s += taps[4] * (m[o - 2 * row] + m[o + 2 * row]) + taps[5] * (m[o - 2] + m[o + 2])
+        target[q] = _free(b, q, s)
 
 
 @compiled(**CALLED)
@@ -301,18 +282,18 @@ def _solve_linear(c: TractionConvolution, taps: NDArray, b: TractionBox, task: T
     for k in range(INNER_ITERATIONS):
         step, response = b.steps[k % KEPT], b.responses[k % KEPT]
         _precondition_traction(b, taps, task, step)
-        _apply(c, b, step, response)
+        convolve_traction(c, step, b.nx, b.ny, b.pitch, b.work, b.response)
+        for q in range(len(step)):
+            response[q] = _free(b, q, b.response[q]) + b.slope[q] * step[q]
         for other in range(max(0, k - KEPT + 1), k):
-            share = _product(response, b.responses[other % KEPT])
-            _add(response, -share, b.responses[other % KEPT])
-            _add(step, -share, b.steps[other % KEPT])
+            share = -_product(response, b.responses[other % KEPT])
+            _add(response, share, b.responses[other % KEPT])
+            _add(step, share, b.steps[other % KEPT])
         norm = np.sqrt(_product(response, response))
         if norm == 0.0:
             return k + 1
-        for axis in range(2):
-            for q in range(len(b.bound)):
-                step[axis, q] /= norm
-                response[axis, q] /= norm
+        for q in range(len(step)):
+            step[q], response[q] = step[q] / norm, response[q] / norm
         share = _product(b.residual, response)
         _add(b.change, share, step)
         _add(b.residual, -share, response)
@@ -325,32 +306,27 @@ def _solve_linear(c: TractionConvolution, taps: NDArray, b: TractionBox, task: T
 def _take(b: TractionBox) -> None:
     """Change the trial traction, along the edges of the discs where it slips, and project it on them."""
     for q in range(len(b.bound)):
-        g, nx, ny = b.bound[q], b.normal[0, q], b.normal[1, q]
-        px, py = b.trial[0, q] + b.change[0, q], b.trial[1, q] + b.change[1, q]
-        if nx != 0.0 or ny != 0.0:
-            turn = (nx * b.change[1, q] - ny * b.change[0, q]) / g
+        g, n, p = b.bound[q], b.normal[q], b.trial[q] + b.change[q]
+        if n != 0.0:
+            turn = (n.conjugate() * b.change[q]).imag / g
             turn = min(max(turn, -LONGEST_TURN), LONGEST_TURN)
-            cosine, sine = np.cos(turn), np.sin(turn)
-            px, py = g * (nx * cosine - ny * sine), g * (ny * cosine + nx * sine)
-        length = np.hypot(px, py)
-        share = g / length if length > g else 1.0
-        b.trial[0, q], b.trial[1, q] = share * px, share * py
+            p = g * n * complex(np.cos(turn), np.sin(turn))
+        b.trial[q] = _within(p, g)
 
 
 @compiled(**CALLED)
-def _slip(c: TractionConvolution, b: TractionBox, traction: NDArray) -> None:
-    """Set the response to the slip under a traction."""
-    convolve_traction(c, traction, b.nx, b.ny, b.pitch, b.work, b.response)
+def _twice_energy(c: TractionConvolution, b: TractionBox) -> float:
+    """Set the response to the slip under the trial traction; return twice its energy over a cell."""
+    convolve_traction(c, b.trial, b.nx, b.ny, b.pitch, b.work, b.response)
     _add(b.response, 1.0, b.rigid)
+    return _product(b.trial, b.response) + _product(b.trial, b.rigid)
 
 
 @compiled(**INNER)
-def _adopt(b: TractionBox) -> float:
-    """Adopt the trial traction with its slip, which is the response; return twice its energy over a cell."""
-    for axis in range(2):
-        for q in range(len(b.bound)):
-            b.traction[axis, q], b.slip[axis, q] = b.trial[axis, q], b.response[axis, q]
-    return _product(b.traction, b.slip) + _product(b.traction, b.rigid)
+def _adopt(b: TractionBox) -> None:
+    """Adopt the trial traction with its slip, which is the response."""
+    for q in range(len(b.bound)):
+        b.traction[q], b.slip[q] = b.trial[q], b.response[q]
 
 
 @compiled(**LOOP, nogil=True)
@@ -359,16 +335,15 @@ def solve_traction(
 ) -> tuple[int, int, float]:
     """Solve for tractions within the bound, opposite to the slip where they reach it, without slip elsewhere.
 
-    Starts from the traction of the box. Newton's iteration on ``p = P(p − s/d)`` with the projection P on the
-    discs, damped in proportion to what is left; with an energy, no step that raises it is taken. Returns the
-    iterations, the convolutions, and the largest slip that is against the law, m.
+    Starts from the traction of the box, cut to the bound. Newton's iteration on ``p = P(p − s/d)`` with the
+    projection P on the discs, damped in proportion to what is left; with an energy, no step that raises it is
+    taken. Returns the iterations, the convolutions, and the largest slip that is against the law, m.
     """
     damping, last, convolutions, iteration = task.damping, 0.0, 1, 0
-    for axis in range(2):
-        for q in range(len(b.bound)):
-            b.trial[axis, q] = b.traction[axis, q]
-    _slip(c, b, b.trial)
-    energy = _adopt(b)
+    for q in range(len(b.bound)):
+        b.trial[q] = _within(b.traction[q], b.bound[q])
+    energy = _twice_energy(c, b)
+    _adopt(b)
     worst, norm = _judge(b, task.diagonal)
     while worst > task.tolerance and iteration < task.max_iterations:
         iteration += 1
@@ -380,11 +355,11 @@ def solve_traction(
         _linearise(b, damping)
         convolutions += 2 + _solve_linear(c, taps, b, task)
         _take(b)
-        _slip(c, b, b.trial)
-        reached = _product(b.trial, b.response) + _product(b.trial, b.rigid)
+        reached = _twice_energy(c, b)
         if task.symmetric and reached > energy + ROUNDING * abs(energy):
             damping, last = max(RETREAT * damping, LEAST * task.damping), 0.0
             continue
-        energy = _adopt(b)
+        energy = reached
+        _adopt(b)
         worst, norm = _judge(b, task.diagonal)
     return iteration, convolutions, worst

@@ -1,0 +1,38 @@
+"""``asperity creep``: a curve of a case in words, as CSV, and drawn."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import call
+
+BALL = 'kind = "ball-on-beam"\n[surface]\n{}\n[ball]\nload = "20 N"\n[beam]\nloss_factor = 0.01\n'
+
+
+def test_a_rough_case_is_told_written_and_drawn():
+    Path("case.toml").write_text(BALL.format('rms = "60 nm"\nlongest = "0.1 mm"\nshortest = "20 um"'))
+    asked = ("creep", "case.toml", "--direction", "lateral", "--points", "3", "--friction", "0.2")
+    told = call(*asked, "-o", "creep.svg", "--table", "creep.csv").stdout
+    assert "samples)" in told
+    assert "friction 0.2, lateral" in told
+    names, *rows = Path("creep.csv").read_text().splitlines()
+    assert names == "creepage across,smooth,rough,its scatter,linear theory,FASTSIM,share that slips"
+    found = np.array([row.split(",") for row in rows], dtype=float)
+    assert found[:, 1] == pytest.approx(found[:, 5], abs=0.08)
+    assert found[-1, 1:3] == pytest.approx(1.0, abs=0.03)
+    assert found[:, 2] != pytest.approx(found[:, 1], abs=1e-6)
+    assert Path("creep.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--friction", "0"), "--friction: received 0"),
+        (("--points", "1"), "--points: received 1; allowed: a whole number from 2 to 1000"),
+        (("-o", "creep.doc"), "a name that ends in .svg, .pdf, .png"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused(words, told):
+    Path("case.toml").write_text(BALL.format("smooth = true"))
+    assert told in call("creep", "case.toml", *words, code=2).stderr

@@ -1,0 +1,83 @@
+"""Creep curves: FASTSIM in closed forms, the linear theory, and curves of smooth and rough contacts."""
+
+import math
+
+import numpy as np
+import pytest
+from test_coulomb import rough
+from test_friction import ellipse
+
+from asperity.contact.creep import RollingEllipse, creep_curve, kalker_coefficients
+from refusals import refusals
+
+WHEEL = RollingEllipse((6e-3, 4e-3), 80e9, 0.3)
+
+
+@pytest.mark.parametrize("motion", [((1e-7, 2e-7), 0.0), ((0.0, 0.0), 1e-5)])
+def test_fastsim_begins_as_the_linear_theory(motion):
+    """Of its own making: flexibilities are those that give the coefficients; strips miss half a per cent."""
+    linear, fast = WHEEL.linear_force(*motion), WHEEL.fastsim_force(*motion, 20e3)
+    assert fast == pytest.approx(linear, rel=0.01, abs=1e-6 * abs(linear[1]))
+    c11, c22, c23 = kalker_coefficients(1.5, 0.3)
+    (xi, eta), phi = motion
+    assert linear[0] == pytest.approx(-80e9 * 24e-6 * c11 * xi, rel=1e-12)
+    across = c22 * eta + c23 * math.sqrt(24e-6) * phi
+    assert linear[1] == pytest.approx(-80e9 * 24e-6 * across, rel=1e-12)
+
+
+def test_fastsim_ends_in_full_sliding_and_is_haines_and_ollertons_between():
+    """A strip slips behind the point where bound and traction meet, as long as traction is alone along."""
+    assert WHEEL.fastsim_force((0.05, 0.0), 0.0, 20e3) == pytest.approx((-20e3, 0.0), rel=2e-3)
+    assert WHEEL.fastsim_force((0.0, -0.05), 0.0, 20e3) == pytest.approx((0.0, 20e3), rel=2e-3)
+    xi, limit, (a, b) = 1.5e-3, 20e3, WHEEL.semi_axes
+    rise = xi * 3.0 * 80e9 * WHEEL.coefficients[0] / (8.0 * a)  # traction over the distance from the edge
+    node = np.linspace(-1.0, 1.0, 2001)
+    edge, p0 = a * np.sqrt(1.0 - node**2), 2.0 * limit / (math.pi * a * b)
+    stuck = np.clip(2.0 * edge - rise * a**2 / p0, 0.0, None)  # p0 (e² − x²)/a² = rise (e − x)
+    slipping = p0 / a**2 * (edge**2 * (2.0 * edge - stuck) - (edge**3 + (edge - stuck) ** 3) / 3.0)
+    force = np.trapezoid(0.5 * rise * stuck**2 + slipping, node) * b
+    assert WHEEL.fastsim_force((xi, 0.0), 0.0, limit)[0] == pytest.approx(-force, rel=3e-3)
+
+
+def test_a_curve_rises_from_the_linear_theory_to_full_sliding():
+    contact, rolling, a, b = ellipse(1.4, 0.3, 40)
+    for direction in ("longitudinal", "lateral"):
+        curve = creep_curve(rolling, [contact], (a, b), direction, count=8)
+        assert curve.slopes == pytest.approx(1.0, abs=0.08)
+        assert (np.diff(curve.force[0]) > -1e-5 * curve.limit).all()
+        assert (curve.force[0] < curve.linear * 1.05).all()
+        assert curve.force[0, -1] == pytest.approx(curve.limit, rel=2e-3)
+        assert np.abs(curve.force[0] - curve.fastsim).max() < 0.06 * curve.limit
+        assert curve.slip_share[0, -1] == 1.0
+
+
+def test_spin_drives_sideways_and_then_pivots():
+    contact, rolling, a, b = ellipse(1.4, 0.3, 24)
+    curve = creep_curve(rolling, [contact], (a, b), "spin", creepages=[1e-3, 0.02, 0.5])
+    assert curve.force[0, 0] == pytest.approx(curve.linear[0], rel=0.1)
+    assert curve.force[0, 1] > 3.0 * curve.force[0, 2] > 0.0
+
+
+def test_samples_follow_the_smooth_contact():
+    contact, rolling = rough()
+    smooth, _, a, b = ellipse(0.8, 0.3, (40, 28))
+    smooth = rolling.half_space.solve(smooth.undeformed_gap, load=smooth.force)
+    curve = creep_curve(rolling, [smooth, contact], (a, b), creepages=[1e-4, 5e-3, 0.04])
+    assert curve.force.shape == (2, 3)
+    alone = rolling.roll(contact, (1e-4, 0.0))
+    assert curve.force[1, 0] == pytest.approx(-alone.force[0], rel=1e-4)
+    assert curve.force[:, 2] == pytest.approx(curve.limit, rel=1e-2)
+
+
+def asked(ask):
+    contact, rolling, a, b = ellipse(1.0, 0.3, 24)
+    return ask(rolling, [contact], (a, b))
+
+
+test_what_is_no_curve_is_refused = refusals(
+    (lambda *of: creep_curve(*of, "sideways"), "direction of creep: received 'sideways'"),
+    (lambda *of: creep_curve(*of, creepages=[0.0, 0.1]), "creepages: received 0"),
+    (lambda *of: creep_curve(*of, creepages=[0.2, 0.1]), "creepages: received numbers that do not rise"),
+    (lambda *of: kalker_coefficients(30.0, 0.3), "ratio of the semi-axes: received 30"),
+    of=asked,
+)
