@@ -28,6 +28,7 @@ from asperity.surfaces.raceway import AroundTexture, closed_trace
 from asperity.units import written
 
 if TYPE_CHECKING:
+    from asperity.contact.hertz import Hertz
     from asperity.structures.ball_bearing import Kinematics
     from asperity.structures.bearing_statics import LoadedBearing
 
@@ -254,17 +255,17 @@ class BallBearingCase(AnyCase):
         return self.bearing.bearing.kinematics(self.speed, contact_angle=self.static.contact_angle)
 
     @property
-    def largest_loads(self) -> tuple[float, float]:
-        """Largest static load of a contact with the inner and the outer ring, N."""
-        return float(self.static.inner_load.max()), float(self.static.outer_load.max())
+    def contacts(self) -> tuple[tuple[Hertz, float], tuple[Hertz, float]]:
+        """Smooth contacts of a ball with the inner and the outer ring, and their largest static loads, N."""
+        of, found = self.bearing.bearing, self.static
+        loads = float(found.inner_load.max()), float(found.outer_load.max())
+        return (of.inner_contact, loads[0]), (of.outer_contact, loads[1])
 
     @property
     def ball_resonance(self) -> float:
         """Natural frequency, Hz, of the most loaded ball between both rings at rest."""
-        of = self.bearing.bearing
-        contacts = zip((of.inner_contact, of.outer_contact), self.largest_loads, strict=True)
-        stiffness = sum(each.tangent_stiffness(each.approach(load)) for each, load in contacts)
-        return math.sqrt(stiffness / of.ball_mass) / (2.0 * math.pi)
+        stiffness = sum(each.tangent_stiffness(each.approach(load)) for each, load in self.contacts)
+        return math.sqrt(stiffness / self.bearing.bearing.ball_mass) / (2.0 * math.pi)
 
     @property
     def highest_frequency(self) -> float:

@@ -11,7 +11,6 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BallBearingCase
-from asperity.contact.hertz import Hertz
 from asperity.errors import InputError, PhysicsWarning
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
@@ -54,19 +53,16 @@ class PreparedBearing:
 
 def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBearing:
     """Load the bearing at rest and lay out what is on its parts; refuse what cannot be."""
-    errors, made = list[InputError](), list[Raceway]()
-    of = case.bearing.bearing
-    around = [case.inner_raceway, case.outer_raceway] + [case.balls] * of.balls * (not case.has_smooth_balls)
+    errors, made, of = list[InputError](), list[Raceway](), case.bearing.bearing
+    parts = [("inner", case.inner_raceway, of.raceway_radii[0])]
+    parts += [("outer", case.outer_raceway, of.raceway_radii[1])]
+    parts += [("ball", case.balls, 0.5 * of.ball_diameter)] * of.balls * (not case.has_smooth_balls)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", PhysicsWarning)
         case.loaded()
-        for number, keys in enumerate(around):
-            name = (*RINGS, "ball")[min(number, 2)]
-            radius = (*of.raceway_radii, 0.5 * of.ball_diameter)[min(number, 2)]
+        for number, (name, keys, radius) in enumerate(parts):
+            contact, load = case.contacts[min(number, 1)]  # of balls those with the outer ring
             faults = case.fault.faults if case.fault.on == name and number < 3 else ()
-            contact, load = contact_of(
-                case, min(number, 1)
-            )  # balls are looked at as the outer ring feels them
             seed = SEEDS * case.seed + number
             try:
                 made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
@@ -88,7 +84,11 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
             solutions[f"scan of the {NAMES[name]}"] = int(rough) * STATES
     seconds = START_TIME + STEP_TIME * steps * found.bearing.balls * runs
     tones = ", ".join(f"{NAMES[part]} {turning.tone(part):.4g} Hz" for part in PARTS)
-    load, least, angle = max(case.largest_loads), found.touching.min(), np.degrees(found.contact_angle)
+    load, least, angle = (
+        max(load for _, load in case.contacts),
+        found.touching.min(),
+        np.degrees(found.contact_angle),
+    )
     rows = [
         ("heaviest load of a ball", f"{load:.4g} N, contact angle {angle:.3g}°"),
         ("balls that touch both rings", f"{least:.0f} or more of {found.bearing.balls}"),
@@ -99,12 +99,6 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
         ("not in it", LEFT_OUT),
     ]
     return rows, Work({}, solutions, steps, None, seconds + SOLUTION_TIME * sum(solutions.values()))
-
-
-def contact_of(case: BallBearingCase, ring: int) -> tuple[Hertz, float]:
-    """Smooth contact of a ball with the inner (0) or the outer ring, and its largest static load, N."""
-    of = case.bearing.bearing
-    return (of.inner_contact, of.outer_contact)[ring], case.largest_loads[ring]
 
 
 def bearing_rings(case: BallBearingCase) -> BearingRings:
@@ -139,10 +133,11 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
     """Run the bearing by each law, at the sampling rate of the case."""
     case, store = prepared.case, Store()
     keys: dict[str, Any] = {"damping": case.contact_damping, "hardness": case.bearing.bearing.hardness}
-    laws_of = []
-    for ring, surface in enumerate(prepared.raceways):
-        smooth, load = contact_of(case, ring)
-        laws_of.append(raceway_laws(case.laws, smooth, surface, load, cache=store, progress=progress, **keys))
+    laws_of = [
+        raceway_laws(case.laws, smooth, surface, load, cache=store, progress=progress, **keys)
+        for (smooth, load), surface in zip(case.contacts, prepared.raceways, strict=True)
+    ]
+    smooth, load = case.contacts[1]
     heights = [ball_heights(smooth, surface, load) for surface in prepared.balls]
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
     found = {}
