@@ -27,7 +27,15 @@ __all__ = [
     "law_keys", "names", "needs_of", "reference", "register", "spec_of", "unregister",
 ]  # fmt: skip
 
-BUILT_IN = ("areal", "shifted", "printed", "table", "direct", "hertz", "linear")
+BUILT_IN = (
+    "areal",
+    "shifted",
+    "printed",
+    "table",
+    "direct",
+    "hertz",
+    "linear",
+)
 """Modules of this package, each with its ``LAW``, in the order in which people read of them."""
 
 _specs: dict[str, LawSpec] = {}  # of laws and variants
