@@ -12,6 +12,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BallBearingCase
 from asperity.errors import InputError, PhysicsWarning
+from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios.preparing import START_TIME, Work, refuse
@@ -80,7 +81,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
     runs, solutions = len(case.laws) + textured + (textured > 0), {}
     for name, surface in zip(RINGS, prepared.raceways, strict=True):
         rough = np.count_nonzero((surface.heights + surface.faults).any(axis=1))
-        if "table" in case.laws and rough:
+        if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
             solutions[f"scan of the {NAMES[name]}"] = int(rough) * STATES
     seconds = START_TIME + STEP_TIME * steps * found.bearing.balls * runs
     tones = ", ".join(f"{NAMES[part]} {turning.tone(part):.4g} Hz" for part in PARTS)

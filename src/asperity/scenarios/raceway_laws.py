@@ -17,7 +17,7 @@ from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
 from asperity.errors import Grade, OutOfRangeWarning
 from asperity.kernels.along import OVERLAP
 from asperity.kernels.pointforce import Prepared
-from asperity.laws import Law
+from asperity.laws import Law, Need, spec_of
 from asperity.laws.areal import Areal
 from asperity.laws.direct import Direct
 from asperity.laws.hertz import HertzLaw
@@ -349,13 +349,13 @@ class OnRaceway:
 
     def law(self, name: str, damping: float) -> Law:
         """A law of `LAWS` by its name, with a contact damping, N s/m."""
-        if name == "direct":
+        if spec_of(name).solved_every_step:
             half, (dx, dy) = len(self.shape.body) // 2, self.surface.spacing
             whole = self._around(self.wavy + self.surface.faults, half + 1)
             given = whole, self.shape.body, (dx, dy), self.contact.modulus, -(half + 1) * dx, self.hardness
             return Direct(*given, rtol=rtol_for(self.accuracy), damping=damping)
         plane = self._texture(self.felt)
-        if name == "table":
+        if Need.SCAN in spec_of(name).needs:
             return Table(self.table, damping, plane)
         if name == "hertz":
             texture = self._texture(self.wavy[:, self.wavy.shape[1] // 2] + self.over_faults)
