@@ -84,7 +84,8 @@ def test_a_pit_of_the_inner_ring_has_side_bands_one_turn_beside_its_lines():
 
 def test_opposite_the_load_a_pit_is_hardly_heard(runs):
     opposite = BEARING | {"fault": BEARING["fault"] | {"angle": "180 deg"}}
-    loaded, free = (group(runs(case))["band_velocity"].values[0, 0, 2] for case in (BEARING, opposite))
+    both = runs(BEARING), asperity.run(opposite, brief=True)
+    loaded, free = (group(tree)["band_velocity"].values[0, 0, 2] for tree in both)
     assert free < 0.1 * loaded
 
 

@@ -21,6 +21,9 @@ PARTS = ("outer", "inner", "ball")
 STEEL = MATERIALS["steel"]
 _CONFORMITY = Number(above=0.5, at_most=1.0)
 _USUAL = "0.505 to 0.7: grooves lie between"
+_GAP, _LOADS = "-1 mm to 10 mm: bearings lie between", "0 N to 100 MN: bearings carry less"
+_ANGLE, _ANGLES = Quantity("rad", at_least=0), "0 deg to 80 deg: balls touch both grooves between"
+_PRESSURE, _HARD = Quantity("Pa", above=0), "1 MPa to 100 GPa: no solid is as soft, or as hard"
 
 
 @dataclass(frozen=True)
@@ -92,33 +95,15 @@ class BallBearing:
         _CONFORMITY, 0.52, "groove radius of the outer ring over ball diameter", _USUAL, default=CONFORMITY
     )
     clearance: float | None = parameter(
-        Quantity("m"),
-        "10 um",
-        "diametral clearance; below zero the balls are pressed",
-        "-1 mm to 10 mm: bearings lie between",
-        default=None,
+        Quantity("m"), "10 um", "diametral clearance; below zero the balls are pressed", _GAP, default=None
     )
     contact_angle: float | None = parameter(
-        Quantity("rad", at_least=0),
-        "15 deg",
-        "free contact angle, instead of the clearance",
-        "0 deg to 80 deg: balls touch both grooves between",
-        default=None,
+        _ANGLE, "15 deg", "free contact angle, instead of the clearance", _ANGLES, default=None
     )
     preload: float = parameter(
-        Quantity("N", at_least=0),
-        "0 N",
-        "constant axial force, as of a spring",
-        "0 N to 100 MN: bearings carry less",
-        default=0.0,
+        Quantity("N", at_least=0), "0 N", "constant axial force, as of a spring", _LOADS, default=0.0
     )
-    hardness: float = parameter(
-        Quantity("Pa", above=0),
-        "7 GPa",
-        "hardness of the rings",
-        "1 MPa to 100 GPa: no solid is as soft, or as hard",
-        default=HARDNESS,
-    )
+    hardness: float = parameter(_PRESSURE, "7 GPa", "hardness of the rings", _HARD, default=HARDNESS)
     material: Material = parameter(  # noqa: RUF009
         MaterialOrName(), "steel", "material of the rings", default=STEEL
     )
