@@ -40,6 +40,14 @@ def test_nothing_passes_above_what_the_path_knows_and_all_below():
     np.testing.assert_allclose(found, low, rtol=0.0, atol=1e-5)
 
 
+def test_what_leaves_the_record_at_its_end_does_not_come_back_at_its_beginning():
+    burst = np.exp(-(((TIME - 0.19) / 2e-3) ** 2))
+    late = np.r_[np.zeros(500), 1.0]  # 42 ms
+    assert abs(through_path(burst, RATE, late, 12_000.0)).max() < 1e-6
+    shifted = through_path(burst[::-1], RATE, late, 12_000.0)
+    assert TIME[shifted.argmax()] == pytest.approx(TIME[-1] - 0.19 + 500 / 12_000, abs=1 / RATE)
+
+
 def test_noise_has_its_level_is_white_and_differs_by_seed():
     signal = 3.0 + np.sin(2 * np.pi * 700.0 * TIME)
     for given, rms in (({"below": 20.0}, 0.1 * np.sqrt(0.5)), ({"rms": 0.3}, 0.3)):

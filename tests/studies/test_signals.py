@@ -104,6 +104,10 @@ def test_it_goes_on_where_it_was_and_computes_nothing_anew(monkeypatch):
     monkeypatch.setattr("asperity.running.run", fails)
     assert len(written()[1]) == len(contents) == 3
     assert gone.read_bytes() == contents[gone]
+    written(format="wav")
+    sounds = {path: path.stat().st_mtime_ns for path in Path("set").glob("*.wav")}
+    written(format="wav")
+    assert all(path.stat().st_mtime_ns == sounds[path] for path in sounds)
     assert [
         row["variant"] for row in written(sweep={"variant": {"outer pit": SWEEP["variant"]["outer pit"]}})[1]
     ] == [AS_IT_IS, "outer pit"]
