@@ -209,6 +209,21 @@ def test_an_outer_ring_that_bends_has_the_frequencies_of_its_section():
     assert found == pytest.approx(expected, rel=1e-6)
 
 
+def test_rings_stand_on_what_holds_them():
+    held = {"mass": "2 kg", "radial_stiffness": "50 MN/m", "axial_stiffness": "8 MN/m", "damping_ratio": 0.1}
+    rings = bearing_rings(as_case(BEARING | {"axial": "50 N", "shaft": held}))
+    expected = np.sqrt(np.array([50e6, 50e6, 8e6]) / 2.0) / (2.0 * np.pi)
+    assert rings.inner.natural_frequencies == pytest.approx(expected, rel=1e-12)
+    assert rings.inner.damping_ratios == pytest.approx([0.1, 0.1, 0.1])
+    assert not rings.outer.natural_frequencies.any()
+
+
+def test_damped_contacts_ring_less(runs):
+    damped = asperity.run(BEARING | {"contact_damping": "500 N s/m"}, brief=True)
+    high = [group(tree)["band_velocity"].values[0, 0, 2] for tree in (runs(BEARING), damped)]
+    assert high[1] < 0.7 * high[0]
+
+
 def test_balls_differ_and_one_alone_has_the_fault():
     waves = {"balls": {"waviness": "10 nm"}, "fault": BEARING["fault"] | {"on": "ball"}}
     prepared = prepare_bearing(as_case(BEARING | waves))
