@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.special import ellipk
 from test_friction import body, displaced, ellipse
 
 from asperity import Friction, FrictionalHalfSpace
@@ -98,7 +99,7 @@ def test_no_step_raises_the_energy(monkeypatch):
     energies = []
     for most in (*range(1, 12), 300):
         monkeypatch.setattr(tangential, "MAX_ITERATIONS", most)
-        found = solver.shift(contact, (4e-7, 2e-7))
+        found = solver.shift(contact, (5e-6, 2.5e-6))  # whose plain Newton steps would raise it
         energies.append(float((found.traction * (found.slip + rigid(solver, found))).sum()))
     assert (np.diff(energies) <= 1e-12 * abs(energies[-1])).all()
     assert found.iterations > 4
@@ -201,6 +202,27 @@ def test_unlike_bodies_settle_with_the_pressure():
     uncoupled = FrictionalHalfSpace(space, (SOFT, HARD), 0.4, coupled=False)
     with pytest.warns(OutOfRangeWarning, match=r"unlike, and that is neglected: .* about 44 %"):
         uncoupled.shift(contact, (1e-6, 0.0))
+
+
+def test_a_ball_that_is_pressed_on_an_unlike_body_sticks_as_spence_found():
+    """D. A. Spence, J. Elasticity 5 (1975) 297: (a/2c) ln((a + c)/(a − c)) = (µ/β) K'(c/a), weakly coupled.
+
+    Its contact grows like itself, so that the load grows by equal ratios from almost nothing.
+    """
+    soft, rigid_body, ratio = body(1e9, 0.45), body(1e15, 0.3), 0.6
+    beta = 0.5 * (1 - 0.9) / (1 - 0.45)
+    contact, solver, *_ = ellipse(1.0, 0.45, 31, ratio * beta, bodies=(soft, rigid_body))
+    state = None
+    for step in range(-40, 1):
+        loaded = solver.half_space.solve(contact.undeformed_gap, load=contact.force * 1.08**step)
+        state = solver.shift(loaded, before=state)
+    low, high = 0.01, 0.99
+    for _ in range(40):
+        c = 0.5 * (low + high)
+        left = math.log((1 + c) / (1 - c)) / (2 * c) / ellipk(1 - c * c)
+        low, high = (c, high) if left < ratio else (low, c)
+    assert math.sqrt(state.stick_area / state.normal.area) == pytest.approx(low, rel=0.03)
+    assert state.force == pytest.approx((0.0, 0.0), abs=1e-6 * state.limit)
 
 
 def test_forces_that_are_given_are_found():

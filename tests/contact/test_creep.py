@@ -7,6 +7,7 @@ import pytest
 from test_coulomb import rough
 from test_friction import ellipse
 
+from asperity import Friction
 from asperity.contact.creep import RollingEllipse, creep_curve, kalker_coefficients
 from refusals import refusals
 
@@ -67,6 +68,15 @@ def test_samples_follow_the_smooth_contact():
     alone = rolling.roll(contact, (1e-4, 0.0))
     assert curve.force[1, 0] == pytest.approx(-alone.force[0], rel=1e-4)
     assert curve.force[:, 2] == pytest.approx(curve.limit, rel=1e-2)
+
+
+def test_friction_that_falls_takes_the_speed():
+    contact, rolling, a, b = ellipse(1.0, 0.3, 24, Friction(0.02, 0.4, 0.05))
+    slow, fast = (
+        creep_curve(rolling, [contact], (a, b), creepages=[0.01, 0.05], speed=speed) for speed in (0.01, 20.0)
+    )
+    assert slow.force[0, 1] == pytest.approx(0.02 * contact.force, rel=0.02)
+    assert fast.force[0, 1] == pytest.approx(0.008 * contact.force, rel=0.02)
 
 
 def asked(ask):

@@ -126,7 +126,8 @@ KALKER = {  # J. J. Kalker (1990), table E3: c11, c22, c23, printed with three d
 
 @pytest.mark.parametrize(("shape", "printed"), KALKER.items())
 def test_small_creepages_give_kalkers_coefficients(shape, printed):
-    assert kalker_coefficients(*shape) == pytest.approx(printed, rel=0.01)
+    printing = 0.01 if shape[1] == 0.5 else 0.004
+    assert kalker_coefficients(*shape) == pytest.approx(printed, rel=printing)
 
 
 def test_a_ball_that_is_shifted_is_cattaneos_and_mindlins():

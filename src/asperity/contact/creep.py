@@ -167,6 +167,7 @@ def creep_curve(
     direction: str = "longitudinal",
     creepages: ArrayLike | None = None,
     count: int = 16,
+    speed: float = 1.0,
     progress: Progress | None = None,
 ) -> CreepCurve:
     """Creep force over creepage of contacts under one load, with the linear theory and FASTSIM beside it.
@@ -185,6 +186,8 @@ def creep_curve(
         Above zero and rising, those of spin times √(ab); by default `count` up to full slip.
     count : int
         How many, where none are given.
+    speed : float
+        Rolling speed, m/s, for friction that falls with the slip velocity.
     progress : callable, optional
         ``progress(done, total, message)``.
 
@@ -218,7 +221,7 @@ def creep_curve(
         for j, (along, across, spin) in enumerate(points):
             with warnings.catch_warnings():  # that spin makes a contact pivot is what its curve shows
                 warnings.filterwarnings("ignore", "A spin of", OutOfRangeWarning)
-                last = rolling.roll(contact, (along, across), spin, start=last)
+                last = rolling.roll(contact, (along, across), spin, start=last, speed=speed)
             force[i, j], share[i, j] = against(last.force), last.slip_area / contact.area
             if progress is not None:
                 progress(i * len(xi) + j + 1, force.size, "creep forces")

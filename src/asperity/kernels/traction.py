@@ -204,16 +204,17 @@ class TractionTask(NamedTuple):
 
 @compiled(**INNER, **REASSOCIATE)
 def _product(left: NDArray, right: NDArray) -> float:
-    total = 0.0
-    for q in range(len(left)):
-        total += left[q].real * right[q].real + left[q].imag * right[q].imag
+    p, q, total = left.view(np.float64), right.view(np.float64), 0.0  # parts in turn, for vectors
+    for i in range(len(p)):
+        total += p[i] * q[i]
     return total
 
 
-@compiled(**INNER)
+@compiled(**INNER, **REASSOCIATE)
 def _add(target: NDArray, factor: float, field: NDArray) -> None:
-    for q in range(len(target)):
-        target[q] += factor * field[q]
+    p, q = target.view(np.float64), field.view(np.float64)
+    for i in range(len(p)):
+        p[i] += factor * q[i]
 
 
 @compiled(**INNER)

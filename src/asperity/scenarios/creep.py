@@ -33,4 +33,6 @@ def creep_of(
     ]
     bodies = case.rolling.material, case.rolled_over.material
     rolling = FrictionalHalfSpace(space, bodies, friction)
-    return creep_curve(rolling, contacts, shape.semi_axes, direction, count=count, progress=progress)
+    return creep_curve(
+        rolling, contacts, shape.semi_axes, direction, count=count, speed=case.speed, progress=progress
+    )
