@@ -11,8 +11,8 @@ from small_cases import BEARING
 
 
 def test_a_bearing_is_checked_run_reported_drawn_and_heard():
-    smooth = {name: each for name, each in BEARING.items() if name != "fault"} | {"duration": "50 ms"}
-    Path("bearing.toml").write_text(as_case(smooth).to_toml())
+    case = BEARING | {"duration": "50 ms", "fault": BEARING["fault"] | {"on": "inner"}}
+    Path("bearing.toml").write_text(as_case(case).to_toml())
     plan = json.loads(call("check", "bearing.toml", "--json").stdout)
     told = {row["name"]: row["value"] for row in plan["plan"]}
     assert told["tones"].startswith("outer raceway 107.5 Hz, inner raceway 162.5 Hz")
@@ -21,6 +21,7 @@ def test_a_bearing_is_checked_run_reported_drawn_and_heard():
     assert (law["law"], len(law["band_velocity"])) == ("hertz", 3)
     page = Path("out/report.html").read_text().replace("\u00a0", " ")
     assert f"Radial velocity by hertz: {1e6 * law['band_velocity'][0]:.3g} µm/s in 50 to 300 Hz" in page
+    assert "Diamond: the fault of the inner raceway, where the record begins." in page
     call("report", "out", "--summary")
     call("figures", "out", "--format", "png", "load_zone", "envelope_spectrum")
     call("listen", "out")

@@ -135,6 +135,7 @@ def test_a_bearing_writes_and_draws_what_its_schema_says(runs):
     assert {fact.name for fact in facts} == set(tree["bearing"].attrs)
     shown = [part.name for chapter in CHAPTERS if chapter.name in OF_BEARINGS for part in chapter.figures]
     assert [part.name for part in figures_of(tree)] == shown
+    assert "Diamond: the fault of the outer raceway." in figures_of(tree)[0].said(tree)
 
 
 def test_names_stand_once():

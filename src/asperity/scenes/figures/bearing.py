@@ -87,7 +87,7 @@ def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
 def _drawing_words(tree: DataTree) -> str:
     part, parts = data.case_words(tree, "fault.on"), data.words(tree, bearing.PART)
     moves = part in parts and data.values(tree, bearing.MODULATION)[parts.index(part)] > 0.0
-    turns = ", where the record begins" * moves
+    turns = ", where the record begins" if moves else ""
     fault = f" Diamond: the fault of the {NAMES[part]}{turns}." if part in NAMES else ""
     return (
         "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
