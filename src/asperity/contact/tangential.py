@@ -15,6 +15,7 @@ from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
+from asperity.kernels.fourier import smooth_length
 from asperity.kernels.projected_cg import inverse_stencil
 from asperity.reference.materials import Material
 
@@ -248,7 +249,12 @@ class FrictionalHalfSpace:
         return -_convolved(spread, pressure)
 
     def _convolution(self, nx: int, ny: int, ahead: float, steady: bool) -> kernel.TractionConvolution:
-        """Influence of tractions on a box so far ahead; in steady rolling here, less that."""
+        """Influence of tractions on a box so far ahead; in steady rolling here, less that.
+
+        On as many cells as transforms of the same length hold, so that few boxes need one of their own.
+        """
+        lengths = (smooth_length(2 * n - 1) for n in (nx, ny))
+        nx, ny = (min(m // 2, n) for m, n in zip(lengths, self.half_space.shape, strict=True))
         key = (nx, ny, ahead, steady)
         if key not in self._prepared:
             middle, kernels = self.half_space.shape, list(self._of_traction(ahead))
