@@ -161,6 +161,7 @@ def test_a_resonance_struck_at_a_tone_is_found_in_the_band_it_rings_in(case):
     found = heard_group(case, {"hertz": run_of(signal)})
     assert found[schema.LINES_FOUND] == [[0.0, 1.0, 0.0]]
     assert found[schema.ENVELOPE_LOW] <= 5600.0 <= found[schema.ENVELOPE_HIGH]
+    assert heard_group(case, {"hertz": run_of(1e-6 * signal)})[schema.LINES_FOUND] == [[0.0, 0.0, 0.0]]
     given = case.with_(envelope_band=["5 kHz", "7 kHz"])
     chosen = heard_group(given, {"hertz": run_of(signal)})
     assert (chosen[schema.ENVELOPE_LOW], chosen[schema.ENVELOPE_HIGH]) == (5000.0, 7000.0)

@@ -36,6 +36,8 @@ REACH = 1.2
 """How far the envelope spectrum is kept, beyond the highest harmonic of a tone."""
 RESOLVED = 0.003
 """Share by which a line may lie beside the tone of pure rolling, beyond the slip of the cage."""
+SILENT = 1e-5
+"""Amplitude of a line, m/s², that no accelerometer feels: what is left of rounding and of the start."""
 FAINT = 0.1
 """Share of the clearest line of a part below which others are not told apart from what modulates it."""
 CHEAPEST = ("areal", "hertz", "table")
@@ -194,8 +196,8 @@ def _of_lines(found: dict[str, LineFamily], what: str) -> list[Array]:
 
 def _stand_out(found: dict[str, LineFamily]) -> list[float]:
     """Whether the lines of each part stand out, from what is around them and beside those of other parts."""
-    clearest = max(float(each.amplitude[0]) for each in found.values())
-    return [float(found[part].found and found[part].amplitude[0] >= FAINT * clearest) for part in PARTS]
+    least = max(SILENT, FAINT * max(float(each.amplitude[0]) for each in found.values()))
+    return [float(found[part].found and found[part].amplitude[0] >= least) for part in PARTS]
 
 
 def _verdict(heard: Values, deciding: Sequence[str]) -> str:
