@@ -14,6 +14,7 @@ from scipy.io import wavfile
 import asperity
 from asperity.case.cases import as_case, parse_case
 from asperity.case.toml import toml_text
+from asperity.reporting.study_figures import key_chart
 from asperity.sensing import through_path
 from asperity.studies.axes import AS_IT_IS
 from asperity.studies.signals import SignalSet
@@ -143,6 +144,16 @@ def test_the_command_line_writes_them():
     assert "rms radial velocity in a band" in Path("out/study.html").read_text().replace("\u00a0", " ")
     refused = call("study", "study.toml", "--noise", "20 dB", code=2).stderr
     assert "--noise: received signals of no study; allowed: it goes with --signals" in refused
+
+
+def test_a_figure_of_several_keys_says_which_part_it_shows_the_largest():
+    table = written()[0].expand_dims(speed=[25.0, 30.0]).assign_attrs(sweep='{"speed": 0, "variant": 0}')
+    table["speed"].attrs |= {"units": "Hz", "long_name": "speed"}
+    (panel,) = key_chart(table, None, "variant", {}, ["line_amplitude"]).panels
+    largest = table["line_amplitude"].max(["speed", "variant", "law"]).idxmax("part")
+    assert panel.title.endswith(f", {largest.item()}")
+    shown = table["line_amplitude"].sel(part=largest, speed=30.0, law="hertz")
+    np.testing.assert_allclose(panel.marks[1].y, shown)
 
 
 test_what_is_no_set_of_signals_is_refused = refusals(

@@ -197,6 +197,9 @@ def _panel(mean: xarray.Dataset, scatter: xarray.Dataset | None, name: str, key:
         and not _others(mean, key)
     )
     title = f"{what}, {_main(mean)}" if law_unsaid else what
+    others = _others(mean, key)
+    told = [f", {at}" for dim, at in lines[0][0].items() if others and dim not in (LAW.name, *others)]
+    title += "".join(told)
     return Panel(_key_axis(mean[key]), Axis(unit), tuple(marks), title, height=2.55)
 
 
@@ -206,13 +209,13 @@ def _lines(
     """Places that a line of a quantity goes through, and how it looks: laws, or values of other keys.
 
     Of what is told apart by other words, as what radiates, a line for each of them, or where other keys are
-    swept the last of them, which is the whole.
+    swept the largest of them.
     """
     held, others = table[name], _others(table, key)
     law = {LAW.name: _main(table)} if LAW.name in held.dims else {}
     own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
     if others:
-        here = law | {dim: table[dim].values[-1] for dim in own}
+        here = law | {dim: _largest(held.sel(law), dim) for dim in own}
         found = list(product(*(range(table.sizes[dim]) for dim in others)))[:MOST_LINES]
         for place, look in zip(found, sequence_styles(len(found)), strict=True):
             at = {dim: table[dim].values[n] for dim, n in zip(others, place, strict=True)}
@@ -227,6 +230,12 @@ def _lines(
             yield {LAW.name: each}, {**looks.get(each, {}), "label": each}
     else:
         yield {}, {"colour": INK, "label": ""}
+
+
+def _largest(held: xarray.DataArray, dim: str) -> Any:
+    """Place along a dimension of the largest value, of levels that are summed their total."""
+    most = held.max([other for other in held.dims if other != dim]).values
+    return held[dim].values[::-1][np.nan_to_num(most, nan=-np.inf)[::-1].argmax()]
 
 
 def _along(found: xarray.DataArray, key: str, place: Mapping[str, Any]) -> Numbers:

@@ -100,7 +100,7 @@ def _line(name: str, units: str, meaning: str) -> Entry:
 
 
 LINE_FREQUENCY = _line("frequency", "Hz", "frequency of the line found next to it, first sensor")
-LINE_AMPLITUDE = _line("amplitude", "m/s2", "amplitude of the line of the envelope next to it")
+LINE_AMPLITUDE = _line("amplitude", "m/s2", "amplitude of the line of the envelope next to the tone")
 LINE_SIDE_BANDS = _line("side_bands", "m/s2", "larger amplitude one modulation beside it")
 LINES_FOUND = _bearing("lines_found(law, part)", "1", "whether its lines stand out, 1 or 0")
 
