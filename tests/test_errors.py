@@ -46,9 +46,11 @@ def test_outcomes_that_failed_give_advice(outcome):
 
 
 def read_by_people(text):
-    """Texts in a module that are no docstrings, and no names that stand alone."""
+    """Texts in a module that are no docstrings, no types, and no names that stand alone."""
     silent = set()
     for node in ast.walk(ast.parse(text)):
+        types = getattr(node, "annotation", None), getattr(node, "returns", None)
+        silent |= {id(part) for of in types if of is not None for part in ast.walk(of)}
         if isinstance(node, ast.Expr):
             silent.add(id(node.value))
         words = node.value if isinstance(node, ast.Constant) and id(node) not in silent else None

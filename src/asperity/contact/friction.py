@@ -34,6 +34,14 @@ class Friction:
     -----
     The exponential is that of O. Polach, Wear 258 (2005) 992, here at each cell. Where the coefficient falls
     at once, a cell that has slipped in a solution keeps the lower one in it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import Friction
+    >>> falling = Friction(0.4, kinetic=0.5, velocity=1.0)
+    >>> falling.coefficient(np.array([0.0, 1.0]), np.array([False, True])).round(3).tolist()
+    [0.4, 0.274]
     """
 
     static: float | ArrayLike
@@ -79,6 +87,18 @@ class SlidingContact:
         Largest slip against Coulomb's law, over the largest rigid slip.
     outcome : Outcome
         How the solution ended.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import FrictionalHalfSpace, HalfSpace, material
+    >>> steel, x = material("steel"), 0.4e-3 * (np.arange(32) - 15.5)
+    >>> wheel = np.add.outer(x**2, x**2) / (2 * 0.4)
+    >>> space = HalfSpace(wheel.shape, 0.4e-3, 0.5 * 210e9 / (1 - 0.3**2))
+    >>> braked = FrictionalHalfSpace(space, (steel, steel), 0.3)
+    >>> found = braked.roll(space.solve(wheel, load=50e3), creepage=(0.05, 0.0))  # locked, nearly
+    >>> f"{found.force[0]:.0f} N", found.stick_area
+    ('-15000 N', 0.0)
     """
 
     normal: Contact = field(repr=False)

@@ -86,7 +86,7 @@ class FrictionalHalfSpace:
     >>> rolling = FrictionalHalfSpace(space, (steel, steel), 0.3)
     >>> found = rolling.roll(space.solve(wheel, load=50e3), creepage=(0.001, 0.0))
     >>> found.converged, f"{-found.force[0] / found.limit:.2f}"
-    (True, '0.58')
+    (True, '0.50')
     """
 
     def __init__(
