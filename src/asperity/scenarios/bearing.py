@@ -95,7 +95,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
         ("balls that touch both rings", f"{least:.0f} or more of {found.bearing.balls}"),
         ("tones", f"{tones}; cage {turning.cage:.4g} Hz"),
         ("time", f"{steps} steps of {case.step * 1e6:.4g} µs, {case.settling:g} s of them before the record"),
-        ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} with the textures of parts alone"),
+        ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} by areal with parts alone"),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
         ("not in it", LEFT_OUT),
     ]

@@ -21,7 +21,7 @@ from asperity.diagnostics import (
     explained_lines,
     impulsive_band,
 )
-from asperity.errors import Finding, Grade, percent, warn_of_findings
+from asperity.errors import Finding, Grade, PhysicsWarning, percent, warn_of_findings
 from asperity.progress import Progress
 from asperity.rolling.bearing import RolledBearing
 from asperity.scenarios.bearing import LEFT_OUT, NAMES, ON, RINGS, PreparedBearing, prepare_bearing, rolled
@@ -40,7 +40,8 @@ SILENT = 1e-5
 """Amplitude of a line, m/s², that no accelerometer feels: what is left of rounding and of the start."""
 FAINT = 0.1
 """Share of the clearest line of a part below which others are not told apart from what modulates it."""
-CHEAPEST = ("areal", "hertz", "table")
+BY_PARTS = "areal"
+"""The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
 RESIDUAL = 1e-3
 """What the energy balance may leave open, relative to the throughput."""
 SOURCES = (
@@ -218,18 +219,19 @@ def _verdict(heard: Values, deciding: Sequence[str]) -> str:
 
 
 def alone(prepared: PreparedBearing, progress: Progress) -> Values:
-    """Velocities with what is on each part alone, and on none, by a cheap law that sees whole contacts."""
+    """Velocities with what is on each part alone, and on none, by `BY_PARTS`."""
     case = prepared.case
     textured = [key for key in ON if getattr(case, key).given()]
     if not textured:
         return {}
-    law = min(case.laws, key=CHEAPEST.index)
     names, found = ["perfect surfaces", *(ON[key] for key in textured)], list[Array]()
     for kept in (None, *textured):
-        others = case.with_(laws=[law], **{key: None for key in textured if key != kept})
-        (run,) = rolled(prepare_bearing(others), progress).values()
+        others = case.with_(laws=[BY_PARTS], **{key: None for key in textured if key != kept})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
+            (run,) = rolled(prepare_bearing(others), progress).values()
         found.append(band_velocities(run.acceleration[0], case.sampling_rate, quantity="acceleration"))
-    held = bearing.ALONE_VELOCITY.variable(np.array(found), law=law)
+    held = bearing.ALONE_VELOCITY.variable(np.array(found), law=BY_PARTS)
     return {bearing.SOURCE: names, bearing.ALONE_VELOCITY: held}
 
 
