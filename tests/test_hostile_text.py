@@ -184,7 +184,8 @@ HOSTILE = [
 
 
 @pytest.mark.parametrize(
-    "kind", ["ball-on-beam", "wheel-on-rail", pytest.param("bodies", marks=pytest.mark.long)]
+    "kind",
+    ["ball-on-beam", *(pytest.param(kind, marks=pytest.mark.long) for kind in ("wheel-on-rail", "bodies"))],
 )
 def test_any_value_of_any_key_is_right_or_a_clear_error(kind):
     """In a case, and swept by a study."""

@@ -166,6 +166,7 @@ def ends_with_seed_2(key, case):
     return member.compute_member(key, case)
 
 
+@pytest.mark.long
 def test_a_member_that_ends_its_process_fails_alone(monkeypatch):
     monkeypatch.setattr(running, "compute_member", ends_with_seed_2)
     table = asperity.study("ball.toml", {"seed": [1, 2, 3]}, workers=2)
