@@ -17,6 +17,6 @@ GROUNDS: dict[str, float] = {
 }
 """Flow resistivity, Pa s/m²: the classes C (turf, loose soil) to G (asphalt, concrete) of `CITATION`.
 
-Of ballast none is printed: it has that of the hardest class, D, of those that CNOSSOS-EU counts as wholly
-absorbing, G = 1 (Directive (EU) 2015/996, table 2.5.a), as it counts rail tracks on ballast (2.5.6).
+Of ballast none is printed. That of its shoulder is chosen here: the hardest class, D, of those that
+CNOSSOS-EU (Directive (EU) 2015/996, 2.5) counts as wholly absorbing, as it counts rail tracks on ballast.
 """
