@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from scipy.special import ellipk
+from scipy.optimize import brentq
+from scipy.special import ellipk, hyp2f1
 from test_friction import body, displaced, ellipse
 
 from asperity import Friction, FrictionalHalfSpace
@@ -204,25 +205,95 @@ def test_unlike_bodies_settle_with_the_pressure():
         uncoupled.shift(contact, (1e-6, 0.0))
 
 
-def test_a_ball_that_is_pressed_on_an_unlike_body_sticks_as_spence_found():
-    """D. A. Spence, J. Elasticity 5 (1975) 297: (a/2c) ln((a + c)/(a − c)) = (µ/β) K'(c/a), weakly coupled.
+def pressed_punch(beta, friction, n):
+    """Stick radius, share of friction that is used, and gain in stiffness of a rigid punch of unit radius.
 
-    Its contact grows like itself, so that the load grows by equal ratios from almost nothing.
+    On n rings, each of even pressure and of radial traction that grows with the radius, by integrals of
+    Weber and Schafheitlin. The traction goes over into the friction µ p at the stick radius.
     """
-    soft, rigid_body, ratio = body(1e9, 0.45), body(1e15, 0.3), 0.6
-    beta = 0.5 * (1 - 0.9) / (1 - 0.45)
-    contact, solver, *_ = ellipse(1.0, 0.45, 31, ratio * beta, bodies=(soft, rigid_body))
-    state = None
-    for step in range(-40, 1):
-        loaded = solver.half_space.solve(contact.undeformed_gap, load=contact.force * 1.08**step)
-        state = solver.shift(loaded, before=state)
-    low, high = 0.01, 0.99
-    for _ in range(40):
-        c = 0.5 * (low + high)
-        left = math.log((1 + c) / (1 - c)) / (2 * c) / ellipk(1 - c * c)
-        low, high = (c, high) if left < ratio else (low, c)
-    assert math.sqrt(state.stick_area / state.normal.area) == pytest.approx(low, rel=0.03)
-    assert state.force == pytest.approx((0.0, 0.0), abs=1e-6 * state.limit)
+
+    def solved(c):
+        angle = np.linspace(0.0, 0.5 * math.pi, n // 2 + 1)
+        edge = np.concatenate([c * np.sin(angle), 0.5 * (1 + c) - 0.5 * (1 - c) * np.cos(2 * angle[1:])])
+        r, b = 0.5 * (edge[1:] + edge[:-1])[:, None], np.maximum(edge, 1e-9)
+        inner, outer = np.minimum(r / b, 1.0) ** 2, np.minimum(b / r, 1.0) ** 2
+        press = np.where(r < b, b * hyp2f1(0.5, -0.5, 1, inner), b**2 / (2 * r) * hyp2f1(0.5, 0.5, 2, outer))
+        rub = np.where(
+            r < b,
+            0.5 * b * r * hyp2f1(1.5, -0.5, 2, inner),
+            b**4 / (8 * r**2) * hyp2f1(1.5, 0.5, 3, outer),
+        )
+        area = 0.5 * np.diff(edge**2)
+        drawn = np.diff(0.5 * np.minimum(edge, r) ** 2, axis=1) / r  # what lies inside a place
+        lifted = np.diff(0.5 * np.maximum(edge, r) ** 2, axis=1)  # traction outside of it, over its radius
+        stick = np.arange(n) < n // 2
+        slide = np.diag(np.where(stick, 0.0, friction / r[:, 0]))
+        down, out = np.diff(press, axis=1), np.diff(rub, axis=1)
+        left = np.block(
+            [
+                [down - beta * lifted @ slide, -beta * lifted[:, stick]],
+                [(out @ slide - beta * drawn)[stick], out[np.ix_(stick, stick)]],
+            ]
+        )
+        found = np.linalg.solve(left, np.concatenate([np.ones(n), np.zeros(n // 2)]))
+        p, q = found[:n], friction * found[:n]
+        q[stick] = found[n:] * r[stick, 0]
+        return p, q, area
+
+    def jump(c):
+        p, q, _ = solved(c)
+        return q[n // 2 - 1] - friction * p[n // 2 - 1]
+
+    c = brentq(jump, 0.05, 0.99, xtol=1e-6)
+    p, q, area = solved(c)
+    return c, q @ area / (friction * p @ area), p @ area * math.pi / 2
+
+
+def test_the_stick_radius_of_a_punch_is_spences_where_the_coupling_is_weak():
+    """D. A. Spence, J. Elasticity 5 (1975) 297: (a/2c) ln((a + c)/(a − c)) = (µ/β) K'(c/a), for β → 0."""
+    c = pressed_punch(0.01, 0.006, 60)[0]
+    assert math.log((1 + c) / (1 - c)) / (2 * c) == pytest.approx(0.6 * ellipk(1 - c * c), rel=2e-3)
+
+
+@pytest.mark.parametrize(("nu", "ratio"), [(0.0, 0.6), (0.3, 0.9)])
+def flat_punch(n, nu, friction):
+    """A rigid punch on n cells, pressed in one step, by how much friction stiffens it, and the ball's."""
+    contact, solver, *_ = ellipse(1.0, nu, n, friction, bodies=(body(1e9, nu), body(1e15, 0.3)))
+    x = (np.arange(n) - 0.5 * (n - 1)) / (0.48 * n)
+    gap = np.where(np.add.outer(x**2, x**2) < 1.0, 0.0, 1.0)
+    flat = solver.half_space.solve(gap, load=contact.force)
+    punch = solver.shift(flat)
+    return punch, flat.approach / punch.normal.approach, contact, solver
+
+
+@pytest.mark.parametrize(("nu", "ratio"), [(0.0, 0.6), (0.3, 0.9)])
+def test_what_is_pressed_on_an_unlike_body_sticks_as_an_axisymmetric_solution(nu, ratio):
+    """Strongly coupled, a punch in one step, and a ball, that grows like itself, by equal ratios of load.
+
+    In both the stick radius is the same share of the contact (Spence), and so is the friction that is used.
+    """
+    beta = 0.5 * (1 - 2 * nu) / (1 - nu)
+    radius, share, gain = pressed_punch(beta, ratio * beta, 60)
+    errors = []
+    for n in (16, 32):
+        punch, stiffer, contact, solver = flat_punch(n, nu, ratio * beta)
+        assert stiffer == pytest.approx(gain, rel=1e-3)
+        ball = None
+        for step in range(-18, 1):
+            loaded = solver.half_space.solve(contact.undeformed_gap, load=contact.force * 1.2**step)
+            ball = solver.shift(loaded, before=ball)
+        for found in (punch, ball):
+            assert math.sqrt(found.stick_area / found.normal.area) == pytest.approx(radius, abs=1.2 / n)
+            assert found.force == pytest.approx((0.0, 0.0), abs=1e-6 * found.limit)
+            errors.append(np.hypot(*found.traction).sum() / found.bound.sum() - share)
+    assert abs(errors[2]) < min(1.5e-3, 0.5 * abs(errors[0]))
+    assert abs(errors[3]) < min(7e-3, 0.6 * abs(errors[1]))
+
+
+def test_a_punch_that_does_not_slip_is_mossakovskiis():
+    """Stiffer than without friction by artanh(β)/β, that is ln 3 where it does not yield across at all."""
+    errors = [flat_punch(n, 0.0, 40.0)[1] / math.log(3.0) - 1.0 for n in (16, 32)]
+    assert abs(errors[1]) < min(2e-3, 0.6 * abs(errors[0]))
 
 
 def test_forces_that_are_given_are_found():
