@@ -24,6 +24,7 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
 PAGE = Path(__file__).parents[2] / "CONFORMANCE.md"
 ROOMS = {
     "contacts": "Contact",
+    "frictions": "Friction",
     "reductions": "Contact filters, laws and rolling",
     "bodies": "Beams, balls and wheels",
     "together": "Several contacts at once",

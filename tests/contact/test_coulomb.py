@@ -26,10 +26,12 @@ def rough(nu=0.3, friction=0.3, bodies=None, shape=(40, 28)):
     return space.solve(smooth.undeformed_gap - heights.heights, load=smooth.force), solver
 
 
-def rigid(solver, found, by=1.0):
+def rigid(solver, found, by=None):
+    """Over a shift, or rolled by a distance, whose spin is that a sixth of the distance ahead."""
     space, (xi, eta, spin) = solver.half_space, found.creepage
     x, y = (d * (np.arange(n) - 0.5 * (n - 1)) for n, d in zip(space.shape, space.spacing, strict=True))
-    return by * np.array(np.broadcast_arrays(xi - spin * y[None], eta + spin * x[:, None]))
+    across = eta + spin * (x[:, None] + (by or 0.0) / 6)
+    return (by or 1.0) * np.array(np.broadcast_arrays(xi - spin * y[None], across))
 
 
 def check_coulomb(found, slip, largest):

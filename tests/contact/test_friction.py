@@ -84,37 +84,6 @@ def test_the_convolution_is_a_sum_over_cells():
         )
 
 
-def test_the_creep_curve_printed_by_contact():
-    """CONTACT, example tractcurv: see the conformance data; 48 × 44 cells, G = 82 GPa, ν = 0.28, µ = 0.33."""
-    modulus, load = 82e9 / 0.72, 106.7e3
-    smooth = Hertz(modulus, 0.625, 1.7767208179193736)  # A1 = 0.0008/mm; the other radius gives a/b = 0.5
-    a, b = smooth.semi_axes(smooth.approach(load))
-    assert a / b == pytest.approx(0.5, rel=1e-9)
-    x, y = places(48, 2.2 * a / 48), places(44, 2.2 * b / 44)
-    space = HalfSpace((48, 44), (2.2 * a / 48, 2.2 * b / 44), modulus)
-    gap = x[:, None] ** 2 / 1.25 + y**2 / (2 * smooth.radius_y)
-    solver, contact, last = (
-        FrictionalHalfSpace(space, (body(82e9, 0.28),) * 2, 0.33),
-        space.solve(gap, load=load),
-        None,
-    )
-    assert contact.approach == pytest.approx(76.51e-6, rel=1e-4)
-    printed = [
-        (0.001, 0.007015),
-        (0.08, 0.4742),
-        (0.16, 0.7831),
-        (0.24, 0.9467),
-        (0.32, 0.9976),
-        (0.6, 0.9997),
-    ]
-    for percent, force in printed:
-        last = solver.roll(contact, (0.01 * percent, 0.0), start=last)
-        assert last.converged
-        assert last.convolutions < 120
-        assert -last.force[0] / (0.33 * load) == pytest.approx(force, rel=2e-4)
-        assert abs(last.force[1]) < 1e-5 * load
-
-
 KALKER = {  # J. J. Kalker (1990), table E3: c11, c22, c23, printed with three digits
     (0.5, 0.25): (3.62, 3.01, 0.929),
     (1.0, 0.25): (4.12, 3.67, 1.47),

@@ -28,6 +28,8 @@ ROUNDS_AGREE, FORCES_AGREE = 1e-4, 1e-6
 """Change of the bound, and error of a force that is given, over the largest there is."""
 LARGE_CREEPAGE = 0.05
 """Above this strains are no longer small."""
+SPIN_AHEAD = 1.0 / 6.0
+"""Share of the rolled distance by which spin is counted ahead of a cell, as the program CONTACT does."""
 PIVOTING = 0.99
 """Share of slip from which on spin may say more than creepage."""
 Forces = tuple[float | None, float | None]
@@ -282,7 +284,8 @@ class FrictionalHalfSpace:
         motion = tuple(real("creepage or shift", each, "a finite number") for each in motion)
         found = self._rounds(normal, motion, manner)
         if wanted:
-            found = self._under_force(found, np.array(list(wanted)), np.array(list(wanted.values())), manner)
+            index, target = np.array(list(wanted)), np.array(list(wanted.values()))
+            found = self._under_force(normal, found, index, target, manner)
         if not found.converged:
             words = f"friction at {found.creepage} did not converge: {found.outcome.value}"
             warnings.warn(words, UnconvergedWarning, stacklevel=3)
@@ -316,10 +319,10 @@ class FrictionalHalfSpace:
             warnings.warn(OutOfRangeWarning(each), stacklevel=4)
 
     def _under_force(
-        self, found: SlidingContact, index: Array, target: Array, manner: _Manner
+        self, normal: Contact, found: SlidingContact, index: Array, target: Array, manner: _Manner
     ) -> SlidingContact:
         """Find a motion by Broyden's iteration on −ln(1 − |F|/limit), which is about linear in creepage."""
-        normal, size = found.normal, float(np.linalg.norm(target))
+        size = float(np.linalg.norm(target))
         remedy = "Press more, or ask for less."
         require(
             size < found.limit, "force", f"{size:.6g} N", f"less than {found.limit:.6g} N of friction", remedy
@@ -331,12 +334,20 @@ class FrictionalHalfSpace:
 
         motion = np.array(found.creepage)
         softness = self._own(manner) / (manner.step * normal.area)
-        jacobian_inverse = -softness * np.eye(len(index))
+        jacobian_inverse, low, high, longest = -softness * np.eye(len(index)), -math.inf, math.inf, math.inf
         missing = stretched(np.array(found.force)[index]) - stretched(target)
         for _ in range(MAX_ROUNDS):
             if np.abs(np.array(found.force)[index] - target).max() <= FORCES_AGREE * found.limit:
                 return found
             change = -jacobian_inverse @ missing
+            if len(index) == 1:  # a force falls with its creepage: stay between both sides
+                at = float(motion[index[0]])
+                low, high = (at, high) if missing[0] > 0.0 else (low, at)
+                middle = 0.5 * (low + high)
+                if math.isfinite(middle) and not low < at + change[0] < high:
+                    change[0] = middle - at
+                change = math.copysign(min(abs(change[0]), longest), missing[0]) * np.ones(1)
+                longest = 4.0 * abs(change[0])
             motion[index] += change
             found = self._rounds(normal, tuple(motion.tolist()), manner._replace(start=found))
             after = stretched(np.array(found.force)[index]) - stretched(target)
@@ -381,7 +392,8 @@ class FrictionalHalfSpace:
         """Solve at a bound, on the box of the contact."""
         (x, y), (xi, eta, spin), own = cell_places(self.half_space), motion, self._own(manner)
         ahead = manner.ahead if manner.steady else 0.0
-        rigid = manner.step * (xi + 1j * eta + spin * (1j * x - y)) - past
+        turning = spin * (1j * (x + SPIN_AHEAD * manner.ahead) - y)
+        rigid = manner.step * (xi + 1j * eta + turning) - past
         rigid += self._of_pressure(normal.pressure, ahead, manner.steady)
         contact = normal.pressure > 0.0
         box_of = contact if contact.any() else np.ones_like(contact)
