@@ -1,15 +1,18 @@
 """The case of a ball bearing: what follows from its keys, what is refused, what it reads."""
 
 import math
+from copy import deepcopy
 
 import numpy as np
 import pytest
 
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
+from asperity.studies.definition import study_of
 
 CASE = {"kind": "ball-bearing", "bearing": {"name": "6205"}, "axial": "100 N"}
 TIGHT = {"name": "6205", "clearance": "-4 um"}
+PIT = {"on": "outer", "length": "0.18 mm", "depth": "0.1 mm"}
 REFUSED = (
     ({"axial": "0 N"}, r"radial: received none; allowed: a radial or axial load"),
     (
@@ -46,6 +49,12 @@ REFUSED = (
     ({"inner_raceway": {"waves": [3]}}, r"inner_raceway\.waves: received 1 waves and 0 amplitudes"),
     ({"fault": {"length": "0.2 mm"}}, r'fault\.on: received nothing; allowed: "outer", "inner", "ball"'),
     ({"fault": {"on": "outer"}}, r"fault\.length of a fault, a pit: received nothing"),
+    ({"fault": PIT | {"on": "ball", "ball": 10}}, r"fault\.ball: received 10; allowed: 1 to 9"),
+    ({"fault": PIT | {"ball": 2}}, r'fault\.ball: received 2; allowed: only together with on = "ball"'),
+    ({"fault": [{}, PIT]}, r"fault\.on: received nothing; .* Or remove the section"),
+    ({"fault": [PIT, {"on": "inner"}]}, r"fault\[2\]\.length of a fault, a pit: received nothing"),
+    ({"fault": PIT, "fault[3]": PIT}, r"fault\[3\]: received one without fault\[2\]"),
+    ({"shaft": [{}, {}]}, r"shaft\[2\]: received an unknown key"),
 )
 
 
@@ -61,6 +70,29 @@ def test_the_commented_case_is_a_case_of_smooth_parts():
     assert case.fault.faults == ()
     assert parse_case(case.to_toml()) == case
     assert case.with_(fault={"on": "ball", "length": 1e-4, "depth": 1e-5}).has_smooth_balls is False
+
+
+def test_several_faults_are_a_list_whose_sections_have_numbers(tmp_path):
+    on_ball = PIT | {"on": "ball", "ball": 3}
+    case = as_case(CASE | {"fault": [PIT, on_ball, PIT | {"on": "inner"}]})
+    assert case.to_toml().count("[[fault]]") == 3
+    assert parse_case(case.to_toml()) == case == deepcopy(case)
+    assert [each.on for each in case.faults.values()] == ["outer", "ball", "inner"]
+    assert {"fault.length", "fault[2].ball", "fault[3].on"} <= {each["key"] for each in case.parameters()}
+    deeper = case.with_(**{"fault[3].depth": "0.2 mm"})
+    assert [each.depth for each in deeper.faults.values()] == pytest.approx([1e-4, 1e-4, 2e-4])
+    assert list(case.with_(**{"fault[3]": None}).faults) == ["fault", "fault[2]"]
+    assert case.with_(fault=[on_ball]) == as_case(CASE | {"fault": on_ball})  # one is as it always was
+    assert "[fault]" in case.with_(fault=[PIT]).to_toml()
+    assert case.with_(fault=None) == as_case(CASE)
+    (tmp_path / "case.toml").write_text(case.to_toml())
+    members = study_of(tmp_path / "case.toml", {"fault[2].ball": [1, 9], "fault[4].on": ["outer"]}).members
+    with pytest.raises(CaseError, match=r"fault\[4\]\.length of a fault, a pit"):
+        members()
+    third = {"fault[4].on": "outer", "fault[4].length": "1 mm", "fault[4].depth": "10 um"}
+    found = study_of(tmp_path / "case.toml", {"fault[2].ball": [1, 9], "variant": {"one more": third}})
+    told = [(member.case.faults["fault[2]"].ball, len(member.case.faults)) for member in found.members()]
+    assert told == [(1, 3), (1, 4), (9, 3), (9, 4)]
 
 
 def test_the_time_step_divides_a_sample_and_resolves_a_ball_between_the_rings():

@@ -13,6 +13,7 @@ from asperity.errors import OutOfRangeWarning
 from asperity.reference.materials import MATERIALS
 from asperity.scenarios.bearing import bearing_rings, cage_slip, prepare_bearing, thinned
 from asperity.scenes.bearing import heard_group
+from asperity.scenes.figures.bearing import DRAWING
 from asperity.schema import bearing as schema
 from small_cases import BEARING
 
@@ -235,6 +236,38 @@ def test_balls_differ_and_one_alone_has_the_fault():
     lines = [surface.line for surface in prepared.balls]
     assert not np.allclose(lines[0], lines[1], atol=1e-9)
     assert not prepared.raceways[0].faults.any()
+
+
+def test_several_faults_lie_where_they_are_and_each_is_heard():
+    pit = BEARING["fault"]
+    others = {"on": "inner"}, {"on": "ball", "ball": 4}, {"angle": "90 deg"}
+    case = as_case(BEARING | {"fault": [pit, *(pit | each for each in others)], "duration": "0.5 s"})
+    prepared = prepare_bearing(case)
+    inner, outer = (np.flatnonzero(each.faults.any(axis=1)) / len(each.faults) for each in prepared.raceways)
+    assert np.unique(np.round(8 * outer) / 8 % 1.0).tolist() == [0.0, 0.25]
+    assert np.unique(np.round(8 * inner) / 8 % 1.0).tolist() == [0.0]
+    assert [bool(surface.faults.any()) for surface in prepared.balls] == [
+        number == 4 for number in range(1, 10)
+    ]
+    tree = asperity.run(case, brief=True)
+    assert group(tree)["lines_found"].values[0, :2].tolist() == [1.0, 1.0]
+    marks = {
+        mark.label: mark
+        for mark in DRAWING.laid_out(tree).panels[0].marks
+        if getattr(mark, "marker", "") == "D"
+    }
+    raceway = 0.5 * (PITCH + D) * 1e3
+    assert marks["faults of the outer raceway"].x == pytest.approx([0.0, raceway], abs=0.01)
+    angle, ball = 2.0 * np.pi * 3 / BALLS, marks["fault of the balls"]  # where it touches the outer ring
+    at = np.array([ball.x, ball.y]) - raceway * np.array([[np.sin(angle)], [-np.cos(angle)]])
+    assert np.hypot(*at) == pytest.approx(0.0, abs=0.02)
+
+
+def test_faults_that_overlap_are_told():
+    deeper = [BEARING["fault"], BEARING["fault"] | {"length": "0.1 mm"}]
+    prepared = prepare_bearing(as_case(BEARING | {"fault": deeper}))
+    assert "their heights add up" in str(prepared.caught[0].message)
+    assert prepared.raceways[1].faults.min() == pytest.approx(-0.2e-3)
 
 
 def test_pressures_that_dent_are_warned_of():

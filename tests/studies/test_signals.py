@@ -146,6 +146,20 @@ def test_the_command_line_writes_them():
     assert "--noise: received signals of no study; allowed: it goes with --signals" in refused
 
 
+def test_labels_tell_every_fault_and_none_where_there_is_none():
+    second = {
+        "fault[2].on": "ball",
+        "fault[2].ball": 7,
+        "fault[2].length": 2.0**-12,
+        "fault[2].depth": "9 um",
+    }
+    _, (_, one, two) = written(sweep={"variant": OUTER | {"two": OUTER["outer pit"] | second}})
+    names = ["on", "ball", "length [m]", "angle [rad]"]
+    assert [two[f"fault.{name}"] for name in names[:2]] == ["outer", "0"]
+    assert [two[f"fault[2].{name}"] for name in names] == ["ball", "7", "0.000244140625", "0.0"]
+    assert [one[f"fault[2].{name}"] for name in names] == ["none", "0", "0.0", ""]
+
+
 def test_a_figure_of_several_keys_says_which_part_it_shows_the_largest():
     table = written()[0].expand_dims(speed=[25.0, 30.0]).assign_attrs(sweep='{"speed": 0, "variant": 0}')
     table["speed"].attrs |= {"units": "Hz", "long_name": "speed"}

@@ -49,7 +49,8 @@ class AnyCase(Section):
         **changes
             Keys with their new values, in SI or as text with a unit; None takes a key out. A key of a section
             is written ``**{"contact.spacing": 4e-6}``, or in a mapping of keys of the section, of which the
-            others stay: ``contact={"spacing": "4 um"}``.
+            others stay: ``contact={"spacing": "4 um"}``. A list of sections replaces all of them, as
+            ``fault=[{…}, {…}]``; the second is ``fault[2]``.
 
         Returns
         -------
@@ -118,10 +119,11 @@ class ReadyCase(Protocol):
 def _change(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
     """Put keys into the dicts of a case; None takes them out."""
     for name, value in changes.items():
-        if value is None:
-            data.pop(name, None)
-        elif isinstance(value, Mapping) and isinstance(inner := data.get(name, {}), dict):
+        if isinstance(value, Mapping) and isinstance(inner := data.get(name, {}), dict):
             data[name] = inner = dict(inner)
             _change(inner, value)
-        else:
+            continue
+        for each in [each for each in data if each == name or each.startswith(f"{name}[")]:
+            del data[each]
+        if value is not None:
             data[name] = value

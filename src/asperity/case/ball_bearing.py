@@ -46,6 +46,7 @@ _RATE, _MASS = Quantity("Hz", above=0), Quantity("kg", above=0)
 _DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
 _BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("rad"), least=1)
 _RATIO, _SLIPS = Number(at_least=0, at_most=0.99), ListOf(Number(at_least=0, at_most=0.2), least=2)
+_COUNT = Number(at_least=1, whole=True)
 _LENGTH, _RINGS = Quantity("m", above=0), "0.1 mm to 1 m: rings lie between"
 
 
@@ -121,15 +122,23 @@ class AroundKeys(Section, parameters=_AROUND | {"trace": replace(_AROUND["trace"
 
 
 class FaultKeys(Section, parameters=_FAULT | {"shape": replace(_FAULT["shape"], default="pit")}):
-    """One fault of a raceway or of the first ball, or several alike around it."""
+    """One fault of a raceway or of a ball, or several alike around it."""
 
     on: str | None = optional(Choice(PARTS), "outer", "part that has it", "no fault")
+    ball: int = key(
+        _COUNT, 1, "ball that has it, by number", "1 to 500: balls are fewer", goes_with="on=ball"
+    )
 
     @property
     def faults(self) -> tuple[Fault, ...]:
         """The fault, if there is one."""
         given = _values(self)
+        del given["ball"]
         return (Fault(**given),) if given.pop("on", None) else ()
+
+    def lies_on(self, part: str, ball: int) -> bool:
+        """Whether a raceway has it, or the ball of a number."""
+        return self.on == part and (part != "ball" or self.ball == ball)
 
     def problems(self) -> Iterator[InputError]:
         """All that a fault of its shape has, and a part that has it."""
@@ -222,7 +231,9 @@ class BallBearingCase(AnyCase):
     inner_raceway: AroundKeys = section(AroundKeys, "what is on the inner raceway all around")
     outer_raceway: AroundKeys = section(AroundKeys, "what is on the outer raceway all around")
     balls: AroundKeys = section(AroundKeys, "what is on each ball all around")
-    fault: FaultKeys = section(FaultKeys, "a fault of a raceway, or of the first ball")
+    fault: FaultKeys = section(
+        FaultKeys, "a fault of a raceway or of a ball; of several each below [[fault]]", repeated=True
+    )
 
     # --- what follows from the keys
 
@@ -245,9 +256,15 @@ class BallBearingCase(AnyCase):
         return self.bearing.bearing.loaded(self.radial, self.axial, speed=speed)
 
     @property
+    def faults(self) -> dict[str, FaultKeys]:
+        """All faults by the names of their sections, ``fault``, ``fault[2]`` …; none where there are none."""
+        sections = {name: getattr(self, name) for name in self.section_names if name.startswith("fault")}
+        return {name: each for name, each in sections.items() if each.on or len(sections) > 1}
+
+    @property
     def has_smooth_balls(self) -> bool:
         """Whether nothing is on any ball."""
-        return self.fault.on != "ball" and not self.balls.given()
+        return not (self.balls.given() or any(each.on == "ball" for each in self.faults.values()))
 
     @property
     def kinematics(self) -> Kinematics:
@@ -300,6 +317,12 @@ class BallBearingCase(AnyCase):
             received = f"{60.0 * self.speed:.5g} 1/min, which lifts balls off the inner ring"
             allowed = f"less than {60.0 * leaving:.5g} 1/min, or a larger axial load or bearing.preload"
             yield InputError("speed", received, allowed)
+        balls = self.bearing.bearing.balls
+        for name, fault in self.faults.items():
+            if fault.on is None:
+                yield InputError(f"{name}.on", "nothing", Choice(PARTS).allowed, "Or remove the section.")
+            if fault.ball > balls:
+                yield InputError(f"{name}.ball", f"{fault.ball}", f"1 to {balls}, as many balls as there are")
         for law in sorted(set(self.laws)):
             if self.laws.count(law) > 1:
                 yield InputError("laws", f'"{law}" more than once', "each law once")

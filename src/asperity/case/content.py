@@ -27,8 +27,8 @@ class Keyed:
 
     @property
     def section_names(self) -> tuple[str, ...]:
-        """Sections that matter."""
-        return tuple(self.inner)
+        """Sections that matter; what is repeated with numbers, as ``fault[2]``."""
+        return (*self.inner, *(name for name in vars(self) if name.endswith("]")))
 
 
 @runtime_checkable

@@ -62,6 +62,9 @@ def entries(model: type[Section], title: str = "") -> Iterator[CaseKey]:
 def entry_of(model: type[Section], dotted: str) -> CaseKey:
     """Find a key of a kind of case by its name with its section, as ``"contact.spacing"``."""
     by_name = {entry.dotted: entry for entry in entries(model)}
+    title, _, name = dotted.rpartition(".")
+    if (inner := model.section_at(title)) and name in inner.model.keys:
+        return CaseKey(dotted, inner.model.keys[name])
     if dotted in by_name:
         return by_name[dotted]
     homes = [name for name, entry in by_name.items() if entry.name == dotted]
@@ -79,8 +82,9 @@ def parameters(case: Section, shown: Mapping[str, Sequence[str]]) -> list[dict[s
         For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
         ``note`` (what the key is).
     """
-    listed = []
-    for entry in entries(type(case)):
+    listed, more = [], [name for name in case.section_names if name not in type(case).sections()]
+    further = [each for name in more for each in entries(type(getattr(case, name)), name)]
+    for entry in (*entries(type(case)), *further):
         section: Section = getattr(case, entry.section) if entry.section else case
         if (entry.section and entry.section not in case.section_names) or not section.is_active(entry.name):
             continue

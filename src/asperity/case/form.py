@@ -1,6 +1,7 @@
 """A section of a case: keys with their defaults, read into a frozen object in SI, with all errors at once."""
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cache
@@ -12,17 +13,35 @@ from asperity.case.content import Keyed, content, described_value, holds_memory
 from asperity.errors import CaseError, InputError
 from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, outside
 
+_NUMBER = re.compile(r"\[([2-9]|[1-9]\d{1,3})\]$")
+
 
 class Inner(NamedTuple):
     """A section inside another one."""
 
     model: "type[Section]"
     meaning: str
+    repeated: bool = False  # whether it may come several times
 
 
-def section(model: "type[Section]", meaning: str, **defaults: Any) -> Any:
-    """Declare a section inside another one, and other defaults that its keys have there, as in TOML."""
-    return Inner(model.with_defaults(**defaults) if defaults else model, meaning)
+def section(model: "type[Section]", meaning: str, *, repeated: bool = False, **defaults: Any) -> Any:
+    """Declare a section inside another one, and other defaults that its keys have there, as in TOML.
+
+    One that may be repeated, as ``[[fault]]``, has the names ``fault``, ``fault[2]``, ``fault[3]`` …
+    """
+    return Inner(model.with_defaults(**defaults) if defaults else model, meaning, repeated)
+
+
+def numbered(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Keys and values with lists of sections one by one, by their names with numbers."""
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        of_sections = isinstance(value, list | tuple) and value
+        if of_sections and all(isinstance(each, Mapping | Section) for each in value):
+            found |= {f"{name}[{n}]" if n > 1 else name: each for n, each in enumerate(value, 1)}
+        else:
+            found[name] = value
+    return found
 
 
 class Section(Keyed):
@@ -57,6 +76,12 @@ class Section(Keyed):
         """Sections inside it, by name."""
         return cls.inner
 
+    @classmethod
+    def section_at(cls, name: str) -> Inner | None:
+        """The section of a name, which may be numbered where it may be repeated; None where there is none."""
+        inner = cls.sections().get(plain := _NUMBER.sub("", name))
+        return inner if inner and (plain == name or inner.repeated) else None
+
     def __init__(self, **given: Any) -> None:
         if errors := self._fill(given, FROM_PYTHON, type(self)):
             raise CaseError(type(self).__name__, list(map(_told, errors)))
@@ -81,7 +106,7 @@ class Section(Keyed):
         """Read all keys as a section of a whole, or the whole itself; return what is wrong with them."""
         errors, held = list[InputError](), self.__dict__
         try:
-            given = self.prepared(given)
+            given = self.prepared(numbered(given))
         except Problems as problems:
             return problems.errors
         held["given_names"] = frozenset(name for name, value in given.items() if value is not None)
@@ -93,7 +118,8 @@ class Section(Keyed):
                 errors.append(error.about(name))
             except Problems as problems:
                 errors += [_below(name, error) for error in problems.errors]
-        for name, inner in self.sections().items():
+        several = {name: inner for name in given if (inner := self.section_at(name))}
+        for name, inner in {**self.sections(), **several}.items():
             value = given.get(name)
             value = value.given() if isinstance(value, Section) else value
             made = held[name] = inner.model.__new__(inner.model)
@@ -101,7 +127,10 @@ class Section(Keyed):
                 errors += [_below(name, each) for each in made._fill(value or {}, origin, whole, name)]
             else:
                 errors.append(InputError(name, shown(value), f"a section [{name}]"))
-        unknown = [name for name in given if name not in {*self.keys, *self.sections()}]
+            if (number := _NUMBER.search(name)) and (before := int(number[1]) - 1) > 1:
+                gap = name.replace(number[0], f"[{before}]")
+                errors += [] if gap in given else [InputError(name, f"one without {gap}", "one by one")]
+        unknown = [name for name in given if name not in {*self.keys, *self.sections(), *several}]
         errors += [_unknown(name, type(self), whole, title) for name in unknown]
         return errors or self._inconsistent()
 
@@ -205,7 +234,7 @@ def _restored(model: type[Section], state: Mapping[str, Any]) -> Section:
     """Make a section of its state, as it was."""
     made = model.__new__(model)
     for name, each in state.items():
-        inner = model.sections().get(name)
+        inner = model.section_at(name)
         made.__dict__[name] = each if inner is None else _restored(inner.model, each)
     return made
 

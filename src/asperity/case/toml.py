@@ -91,8 +91,10 @@ def toml_text(data: Mapping[str, Any]) -> str:
     """Write keys and values as TOML that reads as the same; those at the top come before the sections."""
     sections = {name: value for name, value in data.items() if isinstance(value, Mapping)}
     lines = _lines({name: value for name, value in data.items() if name not in sections})
+    repeated = {name.partition("[")[0] for name in sections if name.endswith("]")}
     for name, section in sections.items():
-        lines += ["", f"[{_name(name)}]", *_lines(section)]
+        plain = name.partition("[")[0]
+        lines += ["", f"[[{plain}]]" if plain in repeated else f"[{_name(name)}]", *_lines(section)]
     return "\n".join(lines).lstrip() + "\n"
 
 

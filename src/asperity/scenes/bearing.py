@@ -225,6 +225,8 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
     if not textured:
         return {}
     names, found = ["perfect surfaces", *(ON[key] for key in textured)], list[Array]()
+    if len(case.faults) > 1:
+        names[-1] = "the faults"
     for kept in (None, *textured):
         others = case.with_(laws=[BY_PARTS], **{key: None for key in textured if key != kept})
         with warnings.catch_warnings():

@@ -18,6 +18,7 @@ from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_
 from asperity.case.chosen_lengths import shared_lengths
 from asperity.case.content import case_key, content, file_digest
 from asperity.case.describing import entry_of
+from asperity.case.form import numbered
 from asperity.case.scene import Case
 from asperity.case.toml import toml_text
 from asperity.errors import CaseError, InputError
@@ -279,7 +280,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
 
 def _with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Keys of a case with other values for some of them."""
-    changed = dict(data)
+    changed = numbered(data)
     for dotted, value in values.items():
         section, _, name = dotted.rpartition(".")
         if not section:

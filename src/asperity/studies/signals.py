@@ -32,7 +32,10 @@ LABELS = "labels.csv"
 UNIT = "m/s2"
 ALWAYS = ("speed", "radial", "axial", "seed")
 """Keys that label every signal, beside those that are swept and what the fault is."""
-FAULT = ("shape", "length", "width", "depth", "angle")
+FAULT: dict[str, Any] = {
+    "on": "none", "shape": "none", "length": 0.0, "width": 0.0, "depth": 0.0, "angle": np.nan, "ball": 0
+}  # fmt: skip
+"""What labels a fault, with what stands where there is none."""
 FULL = 32_767
 """Number of a WAV file, of 16 bits, that stands for full scale."""
 MOST_LEVEL = 200.0  # dB
@@ -176,16 +179,21 @@ class SignalSet:
         """Write the table of labels, the members in the order of the study."""
         rows = [labels[index] for index in sorted(labels)]
         if rows:
-            write_csv(self.labels_file, list(rows[0]), [list(row.values()) for row in rows])
+            longest = max(rows, key=len)  # of those with most faults
+            names = list(longest)
+            told = [[row.get(name, _absent(name)) for name in names] for row in rows]
+            write_csv(self.labels_file, names, told)
 
 
 def _labels(member: Member, case: BallBearingCase) -> dict[str, Any]:
     """What is told of the signal of a member, in SI, units behind the names."""
-    fault = next(iter(case.fault.faults), None)
-    found: dict[str, Any] = {"fault.on": case.fault.on if fault else "none"}
-    for name in FAULT:
-        missing = "none" if name == "shape" else np.nan if name == "angle" else 0.0
-        found[_titled(f"fault.{name}")] = getattr(fault, name) if fault else missing
+    found: dict[str, Any] = {}
+    for section, keys in (case.faults or {"fault": case.fault}).items():
+        own = {"on": keys.on, "ball": keys.ball if keys.on == "ball" else 0}
+        (fault,) = keys.faults or (None,)
+        for name, missing in FAULT.items():
+            given = own[name] if name in own else getattr(fault, name, missing)
+            found[_titled(f"{section}.{name}")] = given if fault else missing
     for name in dict.fromkeys((*ALWAYS, *member.values)):
         section, _, key = name.rpartition(".")
         if name == VARIANT:
@@ -198,6 +206,11 @@ def _labels(member: Member, case: BallBearingCase) -> dict[str, Any]:
     found |= {f"{part}_tone [Hz]": turning.tone(part) for part in PARTS}
     found |= {"cage_tone [Hz]": turning.cage, "sampling_rate [Hz]": case.sampling_rate}
     return found | {"unit": UNIT, "law": case.laws[0]}
+
+
+def _absent(title: str) -> Any:
+    """What stands for the label of a fault that a bearing does not have."""
+    return FAULT.get(title.partition(".")[2].partition(" [")[0], np.nan)
 
 
 def _titled(dotted: str) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, require
+from asperity.errors import OutOfRangeWarning
 from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.heightmap import HeightMap
 
@@ -139,10 +140,11 @@ def map_of(source: HeightMap | Path) -> HeightMap:
 def lay(faults: tuple[Fault, ...], shape: tuple[int, int], spacing: tuple[float, float]) -> Array:
     """Heights (rows, lines), m, of faults on a surface that is closed along its rows, zero elsewhere.
 
-    Row 0 is at angle zero, the path along the middle of the lines. Where faults overlap, heights add up.
-    Refused are those that no contact on so many lines meets, and those longer than the circumference.
+    Row 0 is at angle zero, the path along the middle of the lines. Where faults overlap, heights add up,
+    and a warning says so. Refused are those that no contact on so many lines meets, and those longer than the
+    circumference.
     """
-    result, (rows, lines), (dx, dy) = np.zeros(shape), shape, spacing
+    result, (rows, lines), (dx, dy), overlap = np.zeros(shape), shape, spacing, False
     across, around = (np.arange(lines) - lines // 2) * dy, rows * dx
     for fault in faults:
         (length, width), name = fault.size, f"of the fault, a {fault.shape}"
@@ -159,5 +161,10 @@ def lay(faults: tuple[Fault, ...], shape: tuple[int, int], spacing: tuple[float,
             middle = (fault.angle / (2.0 * math.pi) + k / fault.count) * rows
             at = np.arange(round(middle) - reach, round(middle) + reach + 1)
             laid = fault.heights(((at - middle) * dx)[:, None], across - fault.offset)
+            overlap |= bool(np.any(result[np.mod(at, rows)] * laid))
             np.add.at(result, np.mod(at, rows), laid)
+    if overlap:
+        OutOfRangeWarning.warn(
+            "Faults overlap: where they do, their heights add up. Lay them apart, or as one map."
+        )
     return result

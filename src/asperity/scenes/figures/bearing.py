@@ -71,11 +71,15 @@ def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
         if share:
             bar = _at(rim + np.array([0.1, 0.1 + 1.3 * share]) * ball, place)
             marks.append(Line(*bar, colour=VERMILLION, width=2.2))
-    if (part := data.case_words(tree, "fault.on")) in NAMES:
-        where = data.case_quantity(tree, "fault.angle", "rad") or 0.0
+    for part, faults in _faults(tree).items():
+        where, balls = (np.array(each) for each in zip(*faults, strict=True))
         x, y = _at(raceways.get(part, 0.5 * ball), where)
-        middle = _at(0.5 * pitch * (part == "ball"), azimuth[0])
-        named = f"fault of the {NAMES[part]}", COLOURS[part]
+        middle = _at(0.0, 0.0)
+        if part == "ball":  # an angle of zero touches the outer ring; balls turn against the inner ring
+            place = azimuth[np.minimum(balls, len(azimuth)) - 1]
+            against = -1.0 if data.case_words(tree, "bearing.turning") == "outer" else 1.0
+            (x, y), middle = _at(0.5 * ball, place + against * where), _at(0.5 * pitch, place)
+        named = f"{'faults' if len(faults) > 1 else 'fault'} of the {NAMES[part]}", COLOURS[part]
         marks.append(Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
     sensors = _at(rim - 0.5 * RING * ball, data.values(tree, bearing.SENSOR))
     marks.append(Line(*sensors, "accelerometer", INK, width=0.0, marker="^"))
@@ -84,11 +88,23 @@ def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
     return [Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)]
 
 
+def _faults(tree: DataTree) -> dict[str, list[tuple[float, int]]]:
+    """Angles of the first fault of each section, rad, and numbers of their balls, by the part they are on."""
+    found: dict[str, list[tuple[float, int]]] = {}
+    name, count = "fault", 1
+    while (part := data.case_words(tree, f"{name}.on")) in NAMES:
+        angle = data.case_quantity(tree, f"{name}.angle", "rad") or 0.0
+        found.setdefault(part, []).append((angle, int(data.case_words(tree, f"{name}.ball") or 1)))
+        name, count = f"fault[{count + 1}]", count + 1
+    return found
+
+
 def _drawing_words(tree: DataTree) -> str:
-    part, parts = data.case_words(tree, "fault.on"), data.words(tree, bearing.PART)
-    moves = part in parts and data.values(tree, bearing.MODULATION)[parts.index(part)] > 0.0
-    turns = ", where the record begins" if moves else ""
-    fault = f" Diamond: the fault of the {NAMES[part]}{turns}." if part in NAMES else ""
+    parts, moved, fault = data.words(tree, bearing.PART), data.values(tree, bearing.MODULATION), ""
+    for part, faults in _faults(tree).items():
+        turns = ", where the record begins" if part in parts and moved[parts.index(part)] > 0.0 else ""
+        one, which = ("Diamond", "fault") if len(faults) == 1 else ("Diamonds", "faults")
+        fault += f" {one}: the {which} of the {NAMES[part]}{turns}."
     return (
         "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
         "below the load; balls are as dark, and bars as long, as their static load. The bearing turns "
