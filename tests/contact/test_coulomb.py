@@ -310,6 +310,12 @@ def test_forces_that_are_given_are_found():
     assert near.creepage[1] == 2e-4
     apart = solver.half_space.solve(contact.undeformed_gap, approach=-1e-6)
     assert solver.roll(apart, (1e-3, 0.0)).force == (0.0, 0.0)
+    assert solver.roll(apart, force=(0.0, None)).force == (0.0, 0.0)
+
+
+def on_fewer_cells():
+    contact, solver, *_ = ellipse(1.0, 0.3, 20)
+    return solver.shift(contact)
 
 
 test_what_has_no_meaning_is_refused = refusals(
@@ -328,6 +334,9 @@ test_what_has_no_meaning_is_refused = refusals(
     (lambda s, c: s.roll(c, rtol=1.0), "rtol: received 1"),
     (lambda s, c: s.roll(c, force=(31.0, None)), "force: received 31 N; allowed: less than 30 N of friction"),
     (lambda s, c: s.roll(c, force=(1.0,)), "force: received"),
+    (lambda s, c: s.roll(c, (0.0, 0.0, 0.1)), "creepage: received"),
+    (lambda s, c: s.shift(c, (1e-6,)), "shift: received"),
+    (lambda s, c: s.roll(c, before=on_fewer_cells()), "state before: received one on another grid"),
     (lambda s, c: ellipse(1.0, 0.3, 24)[1].roll(c), "contact: received one on another half-space"),
     of=lambda ask: ask(*ellipse(1.0, 0.3, 24)[1::-1]),
 )

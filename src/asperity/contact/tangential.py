@@ -158,6 +158,7 @@ class FrictionalHalfSpace:
         InputError
             For input that has no meaning, or a force that friction does not carry.
         """
+        shift = arguments.two("shift", shift, "two lengths, m")
         return self._find(normal, (*shift, rotation), force, _Manner(0.0, False, before, before, 0.0, rtol))
 
     def roll(
@@ -211,6 +212,7 @@ class FrictionalHalfSpace:
         distance = real("rolled distance", distance, allowed, above=0.0)
         speed = real("rolling speed", speed, "at least 0, m/s", at_least=0.0)
         manner = _Manner(distance, before is None, before, start or before, speed, rtol)
+        creepage = arguments.two("creepage", creepage, "two numbers, along and across")
         return self._find(normal, (*creepage, spin), force, manner)
 
     def displacement(self, traction: Complex, pressure: Array, ahead: float = 0.0) -> Complex:
@@ -277,6 +279,9 @@ class FrictionalHalfSpace:
     ) -> SlidingContact:
         """Check the input, find the components of the motion whose force is given, and look at the result."""
         require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
+        for state in (manner.before, manner.start):
+            fits = state is None or state.bound.shape == self.half_space.shape
+            require(fits, "state before", "one on another grid", f"one on {self.half_space.shape}")
         real("rtol", manner.rtol, "a number between 0 and 1, as 1e-6", above=0.0, below=1.0)
         allowed = "two forces, N, or None where the motion is given"
         asked = enumerate(arguments.two("force", force, allowed))
@@ -325,8 +330,15 @@ class FrictionalHalfSpace:
         size = float(np.linalg.norm(target))
         remedy = "Press more, or ask for less."
         require(
-            size < found.limit, "force", f"{size:.6g} N", f"less than {found.limit:.6g} N of friction", remedy
+            size < found.limit or size == 0.0,
+            "force",
+            f"{size:.6g} N",
+            f"less than {found.limit:.6g} N of friction",
+            remedy,
         )
+
+        if not found.limit:
+            return found
 
         def stretched(force: Array) -> Array:
             share = min(float(np.linalg.norm(force)) / found.limit, 1.0 - 1e-12)
