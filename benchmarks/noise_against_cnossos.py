@@ -27,8 +27,8 @@ from asperity.scenarios.scene import force_transfer
 from asperity.scenes.noise import rolling_sound_power
 from asperity.spectra import a_weighted_total, nominal
 from asperity.store import Store
+from asperity.structures.outline import WheelSection
 from asperity.structures.wheel_modes import BEYOND, wheel_modes
-from asperity.structures.wheel_section import WheelSection
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))
 from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length

@@ -80,7 +80,7 @@ def forces(folder: str, only: str) -> None:
     import asperity
 
     warnings.simplefilter("ignore")
-    rings = find_spec("asperity.structures.wheel_section") is not None  # earlier wheels are rigid
+    rings = find_spec("asperity.structures.outline") is not None  # earlier wheels are rigid
     for name, case in CASES.items():
         if only in name:
             if "modes" in case.get("wheel", {}):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import asperity
-from asperity.printable import printable
+from asperity.errors import printable
 from asperity.terminal import say, say_table
 
 SOURCE = Path(asperity.__file__).parent

@@ -23,7 +23,7 @@ _HOME = {
     "SupportedBeam": "structures.beam",
     "Track": "structures.track",
     "Wheel": "structures.wheel",
-    "WheelSection": "structures.wheel_section",
+    "WheelSection": "structures.outline",
     "compare": "scenes.report",
     "effects": "studies.effects",
     "laws": "laws",

@@ -1,12 +1,11 @@
-"""What can go wrong, and what to do about it: errors, physics warnings and solver outcomes."""
+"""What can go wrong, and what to do about it: errors, physics warnings, outcomes; and text fit to show."""
 
 import sys
+import unicodedata
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
-
-from asperity.printable import printable
 
 LONGEST = 1000
 """Characters of a name or value that a message repeats: more than the paths that people use."""
@@ -263,3 +262,26 @@ class Outcome(Enum):
     def ok(self) -> bool:
         """Whether the result can be used as it is."""
         return self in (Outcome.CONVERGED, Outcome.NO_CONTACT)
+
+
+_UNSEEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
+"""Classes of characters that are not seen but act: controls, directions of writing, half pairs, breaks."""
+
+
+def printable(text: str, *, lines: bool = False) -> str:
+    r"""Spell out the characters of a text by others that would act instead of being seen.
+
+    ``\x1b`` for an escape, ``\u202e`` for a change of direction, ``\xff`` for a byte of a file name that is
+    no UTF-8. `lines` says whether line ends and tabs may stay.
+    """
+    if text.isprintable():
+        return text
+    acting = {c for c in set(text) - set("\n\t" if lines else "") if unicodedata.category(c) in _UNSEEN}
+    return text.translate({ord(character): _spelled(character) for character in acting})
+
+
+def _spelled(character: str) -> str:
+    byte = ord(character) - 0xDC00  # how Python carries bytes that are no UTF-8
+    if 0x80 <= byte <= 0xFF:
+        return f"\\x{byte:02x}"
+    return character.encode("unicode_escape").decode("ascii")

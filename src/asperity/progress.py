@@ -10,7 +10,7 @@ from html import escape
 from importlib import import_module
 from typing import TextIO, TypeVar
 
-from asperity.printable import printable
+from asperity.errors import printable
 from asperity.terminal import manner, write
 
 NOTEBOOK_INTERVAL = 0.2  # s between drawings of a bar

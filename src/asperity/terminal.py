@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TextIO
 
-from asperity.errors import ComputationError
-from asperity.printable import printable
+from asperity.errors import ComputationError, printable
 
 _NOBODY_LISTENS = (errno.EPIPE, errno.EIO, errno.EBADF)
 """The reader of a pipe has ended, a terminal has gone, a stream is closed."""

@@ -9,9 +9,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from asperity.arguments import no_file
-from asperity.errors import InputError
+from asperity.errors import InputError, printable
 from asperity.files import amount, write_bytes
-from asperity.printable import printable
 
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _FORMULA = ("=", "+", "-", "@")

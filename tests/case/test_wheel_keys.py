@@ -7,7 +7,7 @@ from asperity.case.cases import as_case, load_case
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.errors import CaseError
 from asperity.reference.wheels import SECTIONS
-from asperity.structures.wheel_section import WheelSection
+from asperity.structures.outline import WheelSection
 from refusals import refusals
 
 TEXTURE = {"spectrum": "iso3095"}

@@ -7,7 +7,7 @@ import pytest
 
 from asperity.case.tables import read_mode_table
 from asperity.case.wheel_on_rail import WheelOnRail
-from asperity.structures.wheel_section import WheelSection
+from asperity.structures.outline import WheelSection
 from command_line import call
 
 LOW = ("--highest", "400 Hz")

@@ -12,9 +12,9 @@ from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.beam import Beam, Support, SupportedBeam
 from asperity.structures.body import Ball, carriage, chain
 from asperity.structures.outline import checked_outline, mesh_of
-from asperity.structures.revolved import natural_modes
 from asperity.structures.support import Relaxation
 from asperity.structures.wheel import Wheel
+from asperity.structures.wheel_modes import natural_modes
 
 STEEL = material("steel")
 EQUATION = "Euler–Bernoulli, frequency equation solved by mpmath"

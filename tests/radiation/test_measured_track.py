@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from asperity import Track
-from asperity.radiation.measured_track import HammerTest
 from asperity.radiation.track import squared_mobility
+from asperity.scenes.measured import HammerTest
 from asperity.structures.track import EN_15461_BAYS, decay_rate_of_responses
 
 BAND = 1000.0 * 10.0 ** (np.arange(-10, 8) / 10.0)  # 100 Hz to 5 kHz

@@ -9,8 +9,7 @@ from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.radiation.sideways import SideOfRail, squared_lateral_mobility
-from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND
+from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, SideOfRail, squared_lateral_mobility
 from asperity.structures.lateral_rail import LateralTrack, contact_shapes
 
 TRACK = LateralTrack(Track.named("nordborg-loss-factor", rail_loss_factor=0.05))

@@ -12,8 +12,8 @@ from asperity import Track
 from asperity.radiation import track as sound
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, RailSection, SleeperTop
 from asperity.scenarios.scene import BodyAtContact, force_transfer
-from asperity.structures.bays import Bays
 from asperity.structures.body import Body
+from asperity.structures.track_parameters import Bays
 from refusals import refusals
 
 UIC60 = Track.named("uic60")

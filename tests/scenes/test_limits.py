@@ -11,7 +11,7 @@ from asperity import WheelOnRail
 from asperity.errors import CaseError, InputError
 from asperity.reference.cnossos import rail_roughness
 from asperity.reference.tsi_noise import pass_by_limit
-from asperity.scenes.figures.limits import limit_sentence, limits_table
+from asperity.scenes.figures.measured import limit_sentence, limits_table
 from asperity.scenes.figures.noise import pass_by_answers
 from asperity.scenes.noise import pass_by_group, sources_of
 from asperity.schema import group

@@ -7,11 +7,11 @@ import pytest
 
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.errors import MeasuredTrackWarning
-from asperity.radiation.measured_track import HammerTest
 from asperity.running import prepare_case
 from asperity.scenes.figures.measured import MEASURED, measured_table
 from asperity.scenes.figures.noise import RADIATED, noise_answers, radiated_table
 from asperity.scenes.figures.track import TRACK
+from asperity.scenes.measured import HammerTest
 from asperity.scenes.plan import planned_rows
 from small_cases import HEARD
 

@@ -9,14 +9,14 @@ import pytest
 from asperity.case.bodies import Bodies
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.contact.hertz import stick_stiffness
-from asperity.radiation.sideways import SideOfRail, squared_lateral_mobility
+from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference.materials import MATERIALS
 from asperity.scenarios.preparing import prepare
 from asperity.scenarios.scene import scene_of
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
-from asperity.scenes.figures.limits import limits_table
+from asperity.scenes.figures.measured import limits_table
 from asperity.scenes.figures.noise import PASS_BY, RADIATED, noise_answers, pass_by_answers, radiated_table
 from asperity.scenes.figures.sideways import SIDEWAYS, sideways_table
 from asperity.scenes.noise import pass_by_group
@@ -24,8 +24,7 @@ from asperity.scenes.result import spectra_group
 from asperity.scenes.sideways import sideways_group
 from asperity.schema import group
 from asperity.spectra import HALF_BAND, band_energies, energy_sum
-from asperity.structures.lateral_contact import wheel_receptances
-from asperity.structures.lateral_rail import LateralTrack
+from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
 from asperity.structures.modal import modal_answers
 from asperity.surfaces.heightmap import Profile
 from small_cases import HEARD

@@ -7,8 +7,13 @@ from numpy.testing import assert_allclose
 from asperity import Track
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS
-from asperity.structures.lateral_contact import at_springs, lateral_force, vertical_change, wheel_receptances
-from asperity.structures.lateral_rail import LateralTrack
+from asperity.structures.lateral_rail import (
+    LateralTrack,
+    at_springs,
+    lateral_force,
+    vertical_change,
+    wheel_receptances,
+)
 from asperity.structures.wheel_modes import WheelModes, wheel_modes
 
 FREQUENCIES = np.array([90.0, 431.0, 1500.0, 2703.0])

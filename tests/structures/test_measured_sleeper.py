@@ -6,8 +6,7 @@ import pytest
 from asperity import Track
 from asperity.structures.causal_track import causal_track
 from asperity.structures.lateral_rail import LateralTrack
-from asperity.structures.measured_sleeper import measured_sleeper
-from asperity.structures.support import RigidMass
+from asperity.structures.support import RigidMass, measured_sleeper
 from asperity.structures.track_power import dissipated_power
 from refusals import refusals
 

@@ -11,7 +11,7 @@ from scipy.special import jv, jvp, yv, yvp
 
 from asperity.reference.materials import MATERIALS
 from asperity.structures.outline import checked_outline, mesh_of, volume_of
-from asperity.structures.revolved import matrices, natural_modes
+from asperity.structures.wheel_modes import matrices, natural_modes
 
 STEEL = MATERIALS["steel"]
 E, NU, RHO = STEEL.youngs_modulus, STEEL.poisson_ratio, STEEL.density

@@ -8,12 +8,12 @@ import pytest
 
 from asperity import Track
 from asperity.scenes.track import loss_factor_error
-from asperity.structures.bays import Bays
 from asperity.structures.causal_track import causal_track
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.support import BendingSleeper, RigidMass, Spring, TunedDamper
 from asperity.structures.track import decay_rate
+from asperity.structures.track_parameters import Bays
 from asperity.structures.wheel import Wheel
 from refusals import refusals
 from superposed import free_rail, superposed

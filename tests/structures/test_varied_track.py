@@ -7,10 +7,10 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.structures.bays import Bays
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import decay_rate, decay_rate_en15461
+from asperity.structures.track_parameters import Bays
 from refusals import refusals
 from superposed import free_rail, superposed, supports_by_hand
 

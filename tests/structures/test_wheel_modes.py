@@ -7,10 +7,9 @@ from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS
 from asperity.reference.wheels import SECTIONS
 from asperity.store import Store
-from asperity.structures.outline import checked_outline, mesh_of, volume_of
+from asperity.structures.outline import WheelSection, checked_outline, mesh_of, volume_of
 from asperity.structures.wheel import Wheel
 from asperity.structures.wheel_modes import DAMPING, SILENT, WheelModes, wheel_modes
-from asperity.structures.wheel_section import WheelSection
 from refusals import refusals
 
 STEEL, RADIUS = MATERIALS["steel"], 0.46

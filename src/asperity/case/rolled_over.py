@@ -32,11 +32,10 @@ from asperity.parameters import (
 )
 from asperity.reference.materials import Material
 from asperity.reference.tracks import TRACKS
-from asperity.structures.bays import MOST_BAYS, Bays
-from asperity.structures.measured_sleeper import MeasuredSleeper, measured_sleeper
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
+from asperity.structures.support import MeasuredSleeper, measured_sleeper
 from asperity.structures.track import Track
-from asperity.structures.track_parameters import LAYERS
+from asperity.structures.track_parameters import LAYERS, MOST_BAYS, Bays
 from asperity.surfaces.heightmap import Profile
 from asperity.units import written
 

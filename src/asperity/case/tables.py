@@ -15,13 +15,12 @@ import numpy as np
 
 from asperity.arguments import Array, NDArray, no_file, shown
 from asperity.case.content import name_of
-from asperity.case.headings import are_words, heading_of, unit_of
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.sandbox import Answer, sandboxed
 from asperity.spectra import energy_sum
-from asperity.structures import bays, measured_sleeper, stiffness_table
+from asperity.structures import stiffness_table, support, track_parameters
 from asperity.structures.outline import checked_outline
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
@@ -194,7 +193,7 @@ def read_seat_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex1
     """Read the receptance of a sleeper at its rail seat, as `read_receptance`, that makes no energy."""
     frequency, receptance = read_receptance(table)
     with fitted_to(table):
-        measured_sleeper.check_receptance(frequency, receptance)
+        support.check_receptance(frequency, receptance)
     return frequency, receptance
 
 
@@ -220,9 +219,12 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
 def read_bays(table: TableSource) -> Array:
     """Read the bays of a track one by one (n, 3): distance to the next sleeper, m, pad and ballast, N/m."""
     rows = read_table(table, BAYS)
-    if len(rows) > bays.MOST_BAYS:
+    if len(rows) > track_parameters.MOST_BAYS:
         raise InputError(
-            name_of(table), f"{len(rows)} bays", f"at most {bays.MOST_BAYS}", "They repeat by themselves."
+            name_of(table),
+            f"{len(rows)} bays",
+            f"at most {track_parameters.MOST_BAYS}",
+            "They repeat by themselves.",
         )
     for column, values in zip(BAYS, rows.T, strict=True):
         if (wrong := values <= 0.0).any():
@@ -405,3 +407,66 @@ def _laid_out(found: list[tuple[tuple[str, ...], Any]], file: Path) -> Array:
     if not (len(table) and np.isfinite(table).all()):
         raise InputError(file.name, "no lines, or numbers that are not finite", "a table of finite numbers")
     return table
+
+
+# --- headings
+
+
+_REFERENCE = re.compile(r" ?re[fl]?\.? ?(1 ?([uµμ]m|micron)|1e-6 ?m|20 ?[uµμ]Pa)$")
+_AFTER = re.compile(r"(?:.* in |[^/]*/)\s*(\S.*)")
+"""``level in dB``, ``wavelength / cm``."""
+_WITH_UNIT = re.compile(r"[^()\[\]]+[(\[][^()\[\]]*[)\]]")
+_NUMBER = re.compile(r"[-+.]?\d|nan|[-+]?inf", re.IGNORECASE)
+
+
+def are_words(cells: Sequence[str]) -> bool:
+    """Whether cells begin a line of words: neither with a number nor with what stands for one."""
+    return not _NUMBER.match(cells[0])
+
+
+def heading_of(lines: Sequence[list[str]], dimensions: Sequence[str]) -> list[str]:
+    """Title of each column, with its unit, from the lines of words above a table; none without such a line.
+
+    The last with a title for each column of a dimension, in SI. Units in a line of their own are those of the
+    titles above them.
+    """
+    fitting = [_titles(cells, len(dimensions)) for cells in lines]
+    fitting = [cells for cells in fitting if len(cells) == len(dimensions)]
+    if not fitting:
+        return []
+    *above, last = fitting
+    if any(unit_of(*each) for each in zip(last, dimensions, strict=True)):
+        bare = all(cell[:1] in "([" for cell in last)
+        return (
+            [f"{title} {unit}" for title, unit in zip(above[-1], last, strict=True)]
+            if bare and above
+            else last
+        )
+    if above and all(map(_is_unit, last, dimensions)):
+        return [f"{title} ({unit})" for title, unit in zip(above[-1], last, strict=True)]
+    return last
+
+
+def unit_of(title: str, dimension: str) -> str:
+    """Unit that a title names, in brackets, or of a dimension also behind "in" or a stroke; empty without."""
+    found = unit_in_brackets(title)
+    if not found and dimension and (behind := _AFTER.fullmatch(title)):
+        found = " ".join(behind[1].split())
+    if dimension.startswith("dB"):
+        found = re.sub(r"^dB ?A$", "dB(A)", _REFERENCE.sub("", found))
+    return found
+
+
+def _titles(cells: list[str], count: int) -> list[str]:
+    """Cells, or titles that each end with a bracket, where blanks stand between them."""
+    if len(cells) != count:
+        found = [each.strip() for each in _WITH_UNIT.findall(" ".join(cells))]
+        return found if len(found) == count else cells
+    return cells
+
+
+def _is_unit(text: str, dimension: str) -> bool:
+    try:
+        return not dimension or factor(unit_of(f"({text})", dimension), dimension) > 0.0
+    except InputError:
+        return False

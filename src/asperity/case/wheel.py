@@ -16,7 +16,7 @@ from asperity.parameters import Either, ListOf, Number, key, keys_of, optional
 from asperity.reference.materials import Material
 from asperity.reference.wheels import SECTIONS
 from asperity.store import Store
-from asperity.structures.outline import checked_outline, volume_of
+from asperity.structures.outline import WheelSection, checked_outline, volume_of
 from asperity.structures.wheel_modes import (
     BEYOND,
     DAMPING,
@@ -25,7 +25,6 @@ from asperity.structures.wheel_modes import (
     wheel_modes,
     with_running_circle,
 )
-from asperity.structures.wheel_section import WheelSection
 
 RIGID = "rigid"
 OTHERWISE = f'Give other dimensions, or section = "{RIGID}".'
@@ -127,7 +126,11 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
             return WheelModes.from_table(table) if table.shape[1] > len(tables.MODES) else None
         if not self.is_drawn:
             return None
-        found = _computed(self.outline.tobytes(), self.material, min(BEYOND * highest_frequency, HIGHEST))
+        found = _computed(
+            self.outline.tobytes(),
+            self.material,
+            min(BEYOND * highest_frequency, HIGHEST),
+        )
         return found.damped(self.modal_damping, self.added_damping, self.added_damping_from)
 
     def turning_modes(self, highest_frequency: float, speed: float) -> WheelModes | None:

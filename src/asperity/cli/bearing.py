@@ -6,22 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from asperity import diagnostics
 from asperity.arguments import Array, require
 from asperity.case.bearing import BearingKeys, read_bearing, read_signal
-from asperity.diagnostics import (
-    ISO_BANDS,
-    LineFamily,
-    amplitude_spectrum,
-    band_velocities,
-    envelope_spectrum,
-    explained_lines,
-    find_lines,
-    impulsive_band,
-)
 from asperity.errors import InputError
 from asperity.reference.bearings import PRINTED_BY
-from asperity.reporting.bearing_figures import envelope_chart, load_zone_chart
 from asperity.reporting.figure import write_chart
+from asperity.scenes.figures.bearing import envelope_chart, load_zone_chart
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.structures.bearing_statics import LoadedBearing
 from asperity.structures.body import GRAVITY
@@ -164,17 +155,19 @@ def _heard(
     given = None if rate is None else quantity(rate, "Hz")
     with spelled(on_command_line):
         values, sampled = read_signal(signal, given, array=array, column=column)
-    lines = find_lines(amplitude_spectrum(values, sampled), nominal, slip=most, harmonics=3)
+    lines = diagnostics.find_lines(
+        diagnostics.amplitude_spectrum(values, sampled), nominal, slip=most, harmonics=3
+    )
     speed = nominal * (1.0 + lines.deviation) if lines.found else nominal
     name, length = f"{signal.name}{f', {array}' if array else ''}", values.size / sampled
     origin = "by its lines" if lines.found else "as given: it has no clear lines"
     say(f"{name}: {values.size} samples, {length:.4g} s at {sampled:g} Hz; {60.0 * speed:.5g} 1/min {origin}")
     turning = keys.bearing.kinematics(speed, contact_angle=None if keys.axial else 0.0)
     within = _band(values, sampled, band, 5.0 * turning.ball_pass_inner)
-    spectrum = envelope_spectrum(values, sampled, within)
+    spectrum = diagnostics.envelope_spectrum(values, sampled, within)
     tones = {part: turning.tone(part) for part in PARTS}
     families = {part: (tone, turning.modulation(part)) for part, tone in tones.items()}
-    found = explained_lines(spectrum, families | {"turns": (speed, 0.0)}, slip=most)
+    found = diagnostics.explained_lines(spectrum, families | {"turns": (speed, 0.0)}, slip=most)
     faults = _faults(found)
     _say_lines(found, faults, speed, unit, within)
     there = [f"lines of the {NAMES[each]} at {found[each].frequency[0]:.1f} Hz" for each in faults]
@@ -194,13 +187,13 @@ def _heard(
 def _band(values: Array, rate: float, band: str | None, least: float) -> tuple[float, float] | None:
     """Band of the envelope, Hz: found, given as ``"2 kHz, 4 kHz"``, or none for ``"all"``."""
     if band is None:
-        return impulsive_band(values, rate, least)
+        return diagnostics.impulsive_band(values, rate, least)
     edges = [] if band == "all" else [quantity(part.strip(), "Hz") for part in band.split(",")]
     require(len(edges) in (0, 2), "--band", band, '"all", or two frequencies, as "2 kHz, 4 kHz"')
     return (edges[0], edges[1]) if edges else None
 
 
-def _faults(found: dict[str, LineFamily]) -> list[str]:
+def _faults(found: dict[str, diagnostics.LineFamily]) -> list[str]:
     """Parts whose lines are there, the clearest first; not those that are faint beside it."""
     there = [part for part in found if part in PARTS and found[part].found]
     most = max((found[part].amplitude[0] for part in there), default=0.0)
@@ -208,7 +201,7 @@ def _faults(found: dict[str, LineFamily]) -> list[str]:
 
 
 def _say_lines(
-    found: dict[str, LineFamily],
+    found: dict[str, diagnostics.LineFamily],
     faults: list[str],
     speed: float,
     unit: str | None,
@@ -248,10 +241,10 @@ def _say_velocities(values: Array, rate: float, unit: str) -> Array:
             size = factor(unit, "m/s^2")
         except InputError:
             size, kind = factor(unit, "m/s"), "velocity"
-    found = band_velocities(values * size, rate, quantity=kind)
+    found = diagnostics.band_velocities(values * size, rate, quantity=kind)
     told = [
         f"{low:g} to {high:g} Hz: " + ("beyond its sampling" if math.isnan(rms) else f"{1e6 * rms:.4g} µm/s")
-        for (low, high), rms in zip(ISO_BANDS, found, strict=True)
+        for (low, high), rms in zip(diagnostics.ISO_BANDS, found, strict=True)
     ]
     say(f"Rms velocity of this record in the bands of ISO 15242-2: {'; '.join(told)}")
     return found

@@ -16,8 +16,8 @@ import click
 
 from asperity import __version__, errors
 from asperity.case import PRESETS
+from asperity.errors import printable
 from asperity.interrupts import interruptible, was_interrupted
-from asperity.printable import printable
 from asperity.terminal import Manner, change_manner, manner, say, say_document, speaking, standard_streams
 
 FORMAT = 1

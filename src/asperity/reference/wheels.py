@@ -23,4 +23,4 @@ SECTIONS: dict[str, Dimensions] = {
         "hub_offset": 0.010, "web_bend": 0.045, "web_thickness": 0.024, "web_thickness_rim": 0.020,
     },
 }  # fmt: skip
-"""Dimensions in m, by the keywords of `asperity.structures.wheel_section.WheelSection`."""
+"""Dimensions in m, by the keywords of `asperity.structures.outline.WheelSection`."""

@@ -12,7 +12,7 @@ from markupsafe import Markup
 from xarray import DataTree
 
 from asperity import __version__
-from asperity.printable import printable
+from asperity.errors import printable
 from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Chart, Line, Numbers, colour_variables
 from asperity.reporting.figure import Chapter, Figure, Lines

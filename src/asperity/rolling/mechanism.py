@@ -16,18 +16,7 @@ from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
-from asperity.rolling import steps
-from asperity.rolling.assembly import (
-    RUNAWAY,
-    STEPPED_TOLERANCE,
-    TOLERANCE,
-    alternating,
-    at_zero,
-    equilibrium,
-    evaluated,
-    limits_of,
-    system_of,
-)
+from asperity.rolling import assembly, steps
 from asperity.rolling.ground import Ground, no_channels
 from asperity.rolling.roll import Ledger, ledger_of, warn_of_counts
 from asperity.rolling.stepper import Stepper, sizes_of, stacked
@@ -296,7 +285,7 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     at = replace(mechanism, edges=[_standing(edge, step) for edge in mechanism.edges])
     course = _OnEdges(at, 1.0, 0)
     ground, bodies = _ground(course, np.zeros((0, at.first_modes[-1]))), at.still()
-    system = system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, at.constant)
+    system = assembly.system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, at.constant)
     motion = _start(at, bodies, ground, system, course.at_start())[1]
     return motion.displacement[: at.first_modes[-1]]
 
@@ -333,10 +322,12 @@ def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: f
     mechanism, h, bodies = course.mechanism, course.time_step, course.mechanism.still()
     ground, prepared = _ground(course, sensors), course.at_start()
     loads = np.full(course.contacts, load)
-    system = system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
+    system = assembly.system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
     stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
-    own = alternating(system)
-    limits = limits_of(ground, system, bodies, ground.alternating + own, stiffness, highest_frequency)
+    own = assembly.alternating(system)
+    limits = assembly.limits_of(
+        ground, system, bodies, ground.alternating + own, stiffness, highest_frequency
+    )
     steps.warn_if_coarse(h, limits)
     values = [steps.largest_values(*each) for each in zip(prepared, stiffness.tolist(), strict=True)]
     stiffest, impacts, forces = np.array(values).T
@@ -346,7 +337,7 @@ def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: f
     if softer.any():
         system = system._replace(softening=softer)
         stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
-    laws, largest = [edge.law for edge in mechanism.edges], RUNAWAY * max(load, *forces)
+    laws, largest = [edge.law for edge in mechanism.edges], assembly.RUNAWAY * max(load, *forces)
     return Stepper(course, bodies, laws, course.whole, system, motion, largest, np.inf, displacements=True)
 
 
@@ -388,11 +379,15 @@ def _start(
     constant = np.pad(mechanism.constant, (0, shapes.shape[1] - len(mechanism.constant)))
     pressing = np.concatenate([-constant, *(body.pressing for body in bodies), np.zeros(n)])
     every = np.hstack([shapes, rows, np.diag(np.sqrt(system.softening))])
-    laws = [partial(evaluated, law) for law in prepared]
-    relative = TOLERANCE if all(isinstance(law, Prepared) for law in prepared) else STEPPED_TOLERANCE
+    laws = [partial(assembly.evaluated, law) for law in prepared]
+    relative = (
+        assembly.TOLERANCE
+        if all(isinstance(law, Prepared) for law in prepared)
+        else assembly.STEPPED_TOLERANCE
+    )
     given = matrix, pressing, every, np.zeros(n), system.loads
-    x, force, approach, stiffness = equilibrium(*given, laws, relative)
-    motion, count = at_zero(system), shapes.shape[1]
+    x, force, approach, stiffness = assembly.equilibrium(*given, laws, relative)
+    motion, count = assembly.at_zero(system), shapes.shape[1]
     motion.displacement[:] = x[:count]
     motion.push[:] = constant + force @ shapes
     first = count

@@ -10,15 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asperity import errors
 from asperity.arguments import Array, ArrayLike, NDArray
-from asperity.errors import (
-    ComputationError,
-    ExtrapolationWarning,
-    Grade,
-    Outcome,
-    UnconvergedWarning,
-    percent,
-)
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.spec import Law, SteppedLaw
@@ -76,7 +69,7 @@ class RolledBodies:
     energy: Ledger  # where the work of the loads went, in run-in and run
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
-    outcome: Outcome  # whether all steps converged
+    outcome: errors.Outcome  # whether all steps converged
 
 
 def roll_bodies(
@@ -179,7 +172,7 @@ def _rolled(stepper: Stepper, path: Path, energies: tuple[float, float, float]) 
         energy=ledger_of(stepper, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),
-        outcome=Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
+        outcome=errors.Outcome.STEPS_UNCONVERGED if counts[1] else errors.Outcome.CONVERGED,
     )
 
 
@@ -285,7 +278,7 @@ def refuse_missed_load(
     nothing touches says nothing, however short it is.
     """
     if not force[settled:].any():
-        raise ComputationError(
+        raise errors.ComputationError(
             f"{name}: nothing touches in all of the record: the contact force is 0 N, the load {load:.4g} N",
             "a longer record, and look for what throws the bodies apart, as springs that are too soft",
         )
@@ -296,7 +289,7 @@ def refuse_missed_load(
     error = np.sqrt(2.0) * float(np.std(np.cumsum(driven - missed))) / driven.size
     away = 0.5 * abs(missed) / mass * time**2
     if away > FAR * reach and (abs(missed) > ERRORS * error or missed > load):
-        raise ComputationError(
+        raise errors.ComputationError(
             f"{name}: the mean contact force of {load + missed:.4g} N misses the load of {load:.4g} N by "
             f"more than bounded motion can, whose standard error is {error:.2g} N: in {time:.3g} s that "
             f"drives what rolls {away:.2g} m away",
@@ -335,11 +328,11 @@ def warn_of_counts(
     """
     if counts[1]:
         share = float(counts[1]) / max(int(counts[0]), 1)
-        UnconvergedWarning.warn(
+        errors.UnconvergedWarning.warn(
             f"{', '.join(dict.fromkeys(names))}: {counts[1]} of {max(int(counts[0]), 1)} time steps "
-            f"({percent(share)}) missed the tolerance on the contact force: their force is uncertain; take a "
-            "smaller numerics.time_step",
-            Grade.of_share(share),
+            f"({errors.percent(share)}) missed the tolerance on the contact force: their force is uncertain; "
+            "take a smaller numerics.time_step",
+            errors.Grade.of_share(share),
         )
     of_law = dict.fromkeys(names, 0)
     for name, count in zip(names, beyond, strict=True):
@@ -347,9 +340,9 @@ def warn_of_counts(
     for name, count in of_law.items():
         steps = names.count(name) * recorded
         if count:
-            ExtrapolationWarning.warn(
+            errors.ExtrapolationWarning.warn(
                 f"{name}: the contact was closer than its largest computed state in {count} of {steps} time "
-                f"steps ({percent(count / steps)}): the force there is a continuation; let "
+                f"steps ({errors.percent(count / steps)}): the force there is a continuation; let "
                 "contact.approaches reach higher",
-                Grade.of_share(count / steps),
+                errors.Grade.of_share(count / steps),
             )

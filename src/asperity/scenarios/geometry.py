@@ -9,9 +9,9 @@ import numpy as np
 import scipy
 
 from asperity.arguments import Array, require
-from asperity.case.across import read_section
 from asperity.case.scene import Case
 from asperity.case.sections import ContactKeys
+from asperity.case.sideways import read_section
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for

@@ -11,9 +11,9 @@ from typing import cast
 import numpy as np
 
 from asperity.arguments import Array, require
-from asperity.case.across import complete
 from asperity.case.body import Rolling
 from asperity.case.content import name_of
+from asperity.case.sideways import complete
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning

@@ -16,21 +16,9 @@ from asperity.scenarios.textures import Textures
 from asperity.scenes.compute import Computed
 from asperity.schema import Values, contact, surface
 from asperity.spectra import psd
+from asperity.surfaces import statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.spectra import psd_1d
-from asperity.surfaces.statistics import (
-    BINS,
-    SIGNIFICANCE,
-    TILES,
-    Statistic,
-    StripSurvey,
-    areal_statistics,
-    homogeneity,
-    line_statistics,
-    more_than_chance,
-    profile_statistics,
-    survey_strip,
-)
 
 PATH_ROWS = 2000
 """Rows of a path, at most, that are kept to be looked at from above."""
@@ -53,7 +41,7 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
         if textures.areal and not brief and np.ptp(first.heights):
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always", ShortRecordWarning)
-                sample = areal_statistics(first)
+                sample = statistics.areal_statistics(first)
             rows += _rows(_without_bounds(sample, caught), "first sample")
     if textures.path is not None:
         piece = textures.surface.rows(recorded.start, min(recorded.stop, recorded.start + PATH_ROWS))
@@ -73,7 +61,7 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
         rows += _rows(path.statistics, "path" if beside else "middle line of the path")
         for body, lines in textures.lines.items():
             if len(lines) > 1:
-                means = [mean for mean, _, _ in line_statistics(lines)]
+                means = [mean for mean, _, _ in statistics.line_statistics(lines)]
                 rows += _rows(means, f"{len(lines)} lines of the {body}, mean")
     return laid_out | {
         surface.STATISTICS: rows,
@@ -83,28 +71,36 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
     }
 
 
-def _survey(textures: Textures, dx: float) -> StripSurvey:
+def _survey(textures: Textures, dx: float) -> statistics.StripSurvey:
     """Survey the recorded path, as a surface or, where nothing is known beside it, as a line."""
     recorded = textures.recorded
     segment = textures.maps[0].shape[0] if textures.maps else max(FEWEST_POINTS, len(textures.line) // 8)
     segment = min(segment, recorded.stop - recorded.start)
     if textures.path is None or not textures.areal:
         line = textures.followed[recorded]
-        found = profile_statistics(Profile(line, dx)) if np.ptp(line) else []
-        edges = np.linspace(line.min(), line.max() or 1e-12, BINS + 1) - line.mean()
-        density = np.histogram(line - line.mean(), edges, density=True)[0] if np.ptp(line) else np.zeros(BINS)
-        return StripSurvey(found, edges, density, *psd(textures.line[recorded], dx, segment=segment))
+        found = statistics.profile_statistics(Profile(line, dx)) if np.ptp(line) else []
+        edges = np.linspace(line.min(), line.max() or 1e-12, statistics.BINS + 1) - line.mean()
+        density = (
+            np.histogram(line - line.mean(), edges, density=True)[0]
+            if np.ptp(line)
+            else np.zeros(statistics.BINS)
+        )
+        return statistics.StripSurvey(
+            found, edges, density, *psd(textures.line[recorded], dx, segment=segment)
+        )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ShortRecordWarning)
-        path = survey_strip(textures.surface, segment, recorded.start, recorded.stop)
+        path = statistics.survey_strip(textures.surface, segment, recorded.start, recorded.stop)
         rough = path
         if textures.defects is not None:
-            rough = survey_strip(textures.path, segment, recorded.start, recorded.stop)
+            rough = statistics.survey_strip(textures.path, segment, recorded.start, recorded.stop)
     found = _without_bounds(path.statistics, caught)
     return replace(path, statistics=found, wavenumber=rough.wavenumber, spectrum=rough.spectrum)
 
 
-def _without_bounds(found: list[Statistic], caught: list[warnings.WarningMessage]) -> list[Statistic]:
+def _without_bounds(
+    found: list[statistics.Statistic], caught: list[warnings.WarningMessage]
+) -> list[statistics.Statistic]:
     """Leave out the texture ratio of what is narrower than its waves: it would be a bound."""
     short = any(issubclass(each.category, ShortRecordWarning) for each in caught)
     return [item for item in found if not (short and item.symbol == "Str")]
@@ -112,35 +108,36 @@ def _without_bounds(found: list[Statistic], caught: list[warnings.WarningMessage
 
 def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
     """Test measured maps for being the same everywhere; synthesised ones are."""
-    if any(min(m.shape) < 2 * max(TILES) or not np.ptp(m.heights) for m in maps):
+    if any(min(m.shape) < 2 * max(statistics.TILES) or not np.ptp(m.heights) for m in maps):
         return {}
-    found = [homogeneity(m) for m in maps]
+    found = [statistics.homogeneity(m) for m in maps]
     p_values = [f.p_value for f in found]
-    if more_than_chance(p_values):
+    if statistics.more_than_chance(p_values):
         failed = sum(not f.homogeneous for f in found)
-        worst = max(found, key=lambda f: f.variation / f.expected)
+        worst, (along, across) = max(found, key=lambda f: f.variation / f.expected), statistics.TILES
         InhomogeneousWarning.warn(
-            f"{failed} of {len(maps)} measured maps are not the same everywhere (p ≤ {SIGNIFICANCE:g}): the "
-            f"mean squares of {TILES[0]} × {TILES[1]} tiles vary by up to {100 * worst.variation:.0f} %, "
-            f"those of stationary textures by {100 * worst.expected:.0f} %. Samples of them do not stand for "
-            "the whole path: take more maps, crop them, or remove form and waviness."
+            f"{failed} of {len(maps)} measured maps are not the same everywhere "
+            f"(p ≤ {statistics.SIGNIFICANCE:g}): the mean squares of {along} × {across} tiles vary by up to "
+            f"{100 * worst.variation:.0f} %, those of stationary textures by {100 * worst.expected:.0f} %. "
+            "Samples of them do not stand for the whole path: take more maps, crop them, "
+            "or remove form and waviness."
         )
     return {
-        surface.HOMOGENEITY_P: surface.HOMOGENEITY_P.variable(p_values, significance=SIGNIFICANCE),
+        surface.HOMOGENEITY_P: surface.HOMOGENEITY_P.variable(p_values, significance=statistics.SIGNIFICANCE),
         surface.TILE_VARIATION: [f.variation for f in found],
         surface.TILE_VARIATION_EXPECTED: [f.expected for f in found],
         surface.TILE_RMS: np.stack([f.tile_rms for f in found]),
     }
 
 
-def _distribution(path: StripSurvey) -> Values:
+def _distribution(path: statistics.StripSurvey) -> Values:
     if not path.density.any():
         return {}
     middle = 0.5 * (path.edges[1:] + path.edges[:-1])
     return {surface.PATH_HEIGHT: middle, surface.PATH_HEIGHT_DENSITY: path.density}
 
 
-def _spectra(textures: Textures, path: StripSurvey) -> Values:
+def _spectra(textures: Textures, path: statistics.StripSurvey) -> Values:
     """Spectra of samples and path in the rolling direction, on the samples' wavenumbers."""
     wavenumber, laid_out = path.wavenumber, Values()
     if textures.maps:
@@ -151,7 +148,7 @@ def _spectra(textures: Textures, path: StripSurvey) -> Values:
     return laid_out | {surface.PSD_PATH: along, surface.SURFACE_WAVENUMBER: wavenumber[1:]}
 
 
-def _rows(statistics: list[Statistic], where: str) -> list[dict[str, Any]]:
+def _rows(found: list[statistics.Statistic], where: str) -> list[dict[str, Any]]:
     return [
         {
             "symbol": s.symbol,
@@ -161,7 +158,7 @@ def _rows(statistics: list[Statistic], where: str) -> list[dict[str, Any]]:
             "surface": where,
             "meaning": s.meaning,
         }
-        for s in statistics
+        for s in found
     ]
 
 

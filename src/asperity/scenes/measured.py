@@ -1,23 +1,140 @@
-"""What was measured on a track and beside it, beside what was computed; and where both disagree."""
+"""What a result is held against: what was measured on a track and beside it, and the limits of TSI Noise."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import xarray
 
-from asperity.arguments import Array
+from asperity.arguments import Array, ArrayLike, Complex, NDArray
 from asperity.case.measured import FALL, read_band_levels, read_decay_rates, read_mobility, read_passage
 from asperity.case.rolled_over import TrackKeys
 from asperity.case.sections import NoiseKeys
 from asperity.errors import ComputationError, Finding, Grade, MeasuredTrackWarning
 from asperity.radiation import pass_by
-from asperity.radiation.measured_track import HammerTest, in_bands
+from asperity.radiation.pass_by import Receiver
+from asperity.reference import cnossos, tracks, tsi_noise
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
-from asperity.schema import Attribute, Values
-from asperity.spectra import nominal_frequency
-from asperity.structures.track import Track
+from asperity.schema import Attribute, Values, spectra
+from asperity.spectra import HALF_BAND, nominal_frequency
+from asperity.structures.track import Track, decay_rate_en15461
+from asperity.surfaces.bands import likely_band
+
+LINES = 64
+"""Frequencies in a band: they resolve the resonance of a rail whose loss factor is 1 %."""
+
+
+@dataclass(frozen=True, eq=False)
+class HammerTest:
+    """Decay rates by EN 15461 and point mobility at mid-span of a track, in one-third octaves.
+
+    Parameters
+    ----------
+    frequency : ndarray (b, n)
+        Lines in each band, Hz.
+    decay_rate : ndarray (b,)
+        Vertical, dB/m; NaN in bands without one.
+    mobility : ndarray (b, n)
+        (m/s)/N, e^{+iωt}; NaN in bands without one.
+
+    Notes
+    -----
+    EN 15461 makes a decay rate of the sum over one side of the rail, Δ = 4.343/Σ(|A_n|²/|A_0|² Δx_n), where
+    4.343 = 10/ln 10. On both sides, then, ∫|v|² dx = |v_0|² · 2 · 4.343/Δ. At the force the rail moves by
+    v_0 = Y h/(α_W + α_C + α_R) of a texture h, α_R = Y/iω: on a softer rail the force is smaller.
+    """
+
+    frequency: Array
+    decay_rate: Array
+    mobility: Complex
+
+    @classmethod
+    def of_track(cls, track: Track, band: ArrayLike) -> "HammerTest":
+        """What the test would find on a computed track, in bands by their centres (b,), Hz.
+
+        Responses are summed over the band before they are compared: 1/Δ is a mean that is weighted with the
+        squared mobility.
+        """
+        centre = np.atleast_1d(np.asarray(band, dtype=float))
+        steps = (np.arange(LINES) + 0.5) / LINES
+        frequency = centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0)
+        half, lines = float(track.mid_spans[0]), frequency.ravel()
+        mobility = 2j * np.pi * frequency * track.receptance(lines, half, half).reshape(frequency.shape)
+        lengths = 1.0 / decay_rate_en15461(track, lines).reshape(frequency.shape)
+        rate = 1.0 / np.average(lengths, axis=1, weights=np.abs(mobility) ** 2)
+        return cls(frequency, rate, mobility)
+
+    def measured(
+        self, decay_rates: tuple[Array, Array] | None, mobility: tuple[Array, NDArray[np.inexact]] | None
+    ) -> "HammerTest":
+        """What was measured, in the bands of this test of the computed track.
+
+        Decay rates in one-third octaves by their centres, dB/m; mobility over frequencies that rise, Hz,
+        (m/s)/N: its phase is that of the computed track if magnitudes are given alone.
+        """
+        found = np.full(self.frequency.shape, np.nan + 0j)
+        rate = np.full(len(found), np.nan)
+        if decay_rates is not None:
+            rate = in_bands(self.centre, *decay_rates)
+        if mobility is not None:
+            at, given = mobility
+            held = (self.frequency[:, -1] > at[0]) & (self.frequency[:, 0] < at[-1])
+            found[held] = _interpolated(self.frequency[held], at, given)
+            if not np.iscomplexobj(given):
+                found *= np.exp(1j * np.angle(self.mobility))
+        return replace(self, decay_rate=rate, mobility=found)
+
+    @property
+    def centre(self) -> Array:
+        """Of the bands (b,), Hz."""
+        return np.sqrt(self.frequency[:, 0] * self.frequency[:, -1])
+
+    @property
+    def rms_mobility(self) -> Array:
+        """Root mean square over each band (b,), (m/s)/N."""
+        return np.sqrt(np.mean(np.abs(self.mobility) ** 2, axis=1))
+
+    def driven(self, other: Complex) -> Array:
+        """Mean square velocity at the contact per height of the texture (b,), (m/s)²/m².
+
+        Receptance of wheel and contact spring together, m/N, at the lines (b, n).
+        """
+        receptance = self.mobility / (2j * np.pi * self.frequency)
+        with np.errstate(invalid="ignore"):  # where none was measured
+            return np.asarray(np.mean(np.abs(self.mobility / (other + receptance)) ** 2, axis=1))
+
+    def longer(self, computed: "HammerTest") -> Array:
+        """Length of the rail that radiates over that computed (b,); one where no decay rate was measured."""
+        return np.nan_to_num(computed.decay_rate / self.decay_rate, nan=1.0)
+
+    def louder(self, computed: "HammerTest", other: Complex) -> Array:
+        """Mean square velocity at the contact over that computed (b,); one where no mobility was measured.
+
+        With the linear contact's force: the other receptance as in `driven`.
+        """
+        return np.nan_to_num(self.driven(other) / computed.driven(other), nan=1.0)
+
+
+def in_bands(band: Array, centres: Array, values: Array) -> Array:
+    """Values of one-third octaves in bands (b,), both by their centres; NaN in those without one."""
+    numbers, own = (np.rint(10.0 * np.log10(each)) for each in (band, centres))
+    found = np.full(len(band), np.nan)
+    _, at, of = np.intersect1d(numbers, own, return_indices=True)
+    found[at] = values[of]
+    return found
+
+
+def _interpolated(frequency: Array, at: Array, given: NDArray[np.inexact]) -> NDArray[np.inexact]:
+    """Numbers between those of a table, and beyond them as at its ends; magnitudes by their logarithms."""
+    if np.iscomplexobj(given):
+        return np.asarray(np.interp(frequency, at, given))
+    return np.exp(np.interp(np.log(frequency), np.log(at), np.log(given)))
+
+
+# --- beside what was computed
 
 FACTOR = 3.0
 """By which a decay rate or a mobility may be off that of the computed track before it is warned of."""
@@ -173,3 +290,95 @@ def findings_of_passage(laid_out: Mapping[Any, Any]) -> list[Finding]:
             "Check speed, noise.vehicle_length and noise.vehicles.",
         )
     ]
+
+
+# --- limits of TSI Noise
+
+Condition = dict[str, Any]
+
+
+def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Receiver], Array]) -> Values:
+    """Lay out L_pAeq,Tp (law, radiator), dB(A), normalised as TSI Noise asks, its limit and conditions.
+
+    Of a function that finds it at a receiver: at that of the case and, from 250 km/h on, the additional one.
+
+    Nothing of a case that does not say what type of vehicle passes.
+    """
+    vehicle, passage, receiver = case.noise.vehicle, case.passage, case.noise.receiver
+    if vehicle is None:
+        return {}
+    limit = tsi_noise.pass_by_limit(vehicle, passage.speed, len(passage.axles) / passage.length)
+    elsewhere = _of_receiver(receiver)
+    laid_out: Values = {
+        schema.VEHICLE: vehicle,
+        schema.NORMALISED_LEVEL: at(receiver) + limit.normalisation,
+        schema.REFERENCE_SPEED: limit.speed,
+        schema.REFERENCE_CONDITIONS: [
+            elsewhere,
+            _of_speed(passage.speed),
+            *_of_roughness(over_frequency),
+            _of_decay(over_frequency),
+        ],
+    }
+    if limit.level is not None and elsewhere["met"]:
+        laid_out[schema.TSI_LIMIT] = limit.level
+        if limit.above:
+            laid_out[schema.NORMALISED_LEVEL_ABOVE] = at(Receiver(*tsi_noise.ABOVE)) + limit.normalisation
+    return laid_out
+
+
+def _condition(name: str, here: str, asked: str, met: bool) -> Condition:
+    return {"condition": name, "here": here, "asked": asked, "met": met}
+
+
+def _of_receiver(receiver: Receiver) -> Condition:
+    asked, here = tsi_noise.RECEIVER, (receiver.distance, receiver.height)
+    told, wanted = ("{:g} m from the track, {:g} m high".format(*each) for each in (here, asked))
+    return _condition(
+        "receiver", told, f"{wanted} (TSI Noise)", bool(np.allclose(here, asked, rtol=0.0, atol=1e-9))
+    )
+
+
+def _of_speed(speed: float) -> Condition:
+    asked = f"80 km/h and the greatest, up to {3.6 * tsi_noise.GREATEST_SPEED:g} km/h (TSI Noise)"
+    return _condition(
+        "speed", f"{3.6 * speed:.4g} km/h", asked, speed <= tsi_noise.GREATEST_SPEED * (1 + 1e-9)
+    )
+
+
+def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
+    """Rail roughness against its limit, where it is known."""
+    if schema.ROUGHNESS_LEVEL.name not in over_frequency:
+        return []
+    levels = over_frequency[schema.ROUGHNESS_LEVEL.name]
+    of_rail = levels.sel(part="rail" if "rail" in levels["part"] else "combined").values
+    wavelength, limit = cnossos.rail_roughness("iso3095")
+    wavelength, limit = wavelength[likely_band(wavelength)], limit[likely_band(wavelength)]
+    apart = np.abs(np.log10(levels["surface_band"].values[:, None] / wavelength))
+    known = apart.min(axis=0) < 0.03
+    over = np.nan_to_num(of_rail[apart.argmin(axis=0)] - limit, nan=-np.inf)[known]
+    names, asked = [f"{1e3 * w:.3g} mm" for w in wavelength[known]], f"in {known.sum()} of {len(limit)} bands"
+    return [_banded("rail roughness", over, names, ("above", "dB"), f"at most the limit {asked}")]
+
+
+def _of_decay(over_frequency: xarray.Dataset) -> Condition:
+    """Vertical decay rate of the rail against its lower limit; in bands in which it was measured, that."""
+    band, rate = over_frequency[spectra.BAND.name].values, over_frequency[schema.BAND_DECAY_RATE.name].values
+    if schema.MEASURED_DECAY_RATE.name in over_frequency:
+        measured = over_frequency[schema.MEASURED_DECAY_RATE.name].values
+        rate = np.where(np.isfinite(measured), measured, rate)
+    limit = tracks.iso_3095_decay_rate(band)
+    known = np.isfinite(limit) & np.isfinite(rate)
+    names = [nominal_frequency(float(f)) for f in band[known]]
+    asked = f"at least the limit in {known.sum()} bands"
+    return _banded("decay rate", (limit - rate)[known], names, ("below", "dB/m"), asked)
+
+
+def _banded(name: str, beyond: Array, bands: list[str], words: tuple[str, str], asked: str) -> Condition:
+    """Condition in bands: by how much each is beyond its limit, to which side, and in what unit."""
+    outside, asked = int(np.sum(np.round(beyond, 1) > 0.0)), f"{asked} (EN ISO 3095:2013)"
+    if not outside:
+        return _condition(name, f"so in all {len(bands)} bands", asked, bool(bands))
+    (side, unit), worst = words, int(np.argmax(beyond))
+    here = f"{side} it in {outside} bands, by up to {beyond[worst]:.1f} {unit} at {bands[worst]}"
+    return _condition(name, here, asked, False)

@@ -18,7 +18,7 @@ from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
 from asperity.reference import cnossos, grounds, tsi_noise
 from asperity.scenarios.scene import force_transfer
-from asperity.scenes import compute, limits, measured, schema
+from asperity.scenes import compute, measured, schema
 from asperity.scenes.measured import measured_passage
 from asperity.schema import Entry, Values, spectra
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
@@ -441,7 +441,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = equivalent
         laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = transit_exposure
         laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
-        laid_out |= limits.held_to_limits(case, over_frequency, lambda at: heard(at)[4])
+        laid_out |= measured.held_to_limits(case, over_frequency, lambda at: heard(at)[4])
     main = laid_out[schema.PASS_BY_LEVEL][0, -1]
     return laid_out | measured_passage(case.noise, time[kept], main, passage.passed, band)
 

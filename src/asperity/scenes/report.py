@@ -10,9 +10,8 @@ import xarray
 from xarray import DataTree
 
 from asperity.arguments import file_path, shown
-from asperity.errors import InputError
+from asperity.errors import InputError, printable
 from asperity.files import together, write_bytes
-from asperity.printable import printable
 from asperity.reporting import contact_figures, headline, tables, texture_figures
 from asperity.reporting.comparison import ComparedRuns, NamedRun, compared
 from asperity.reporting.comparison_page import MOST_RUNS, comparison_page, table_rows
@@ -21,10 +20,8 @@ from asperity.reporting.page import drawable_figures, page
 from asperity.results import read_result
 from asperity.scenes.figures import (
     bearing,
-    contacts,
     effects,
     force,
-    limits,
     measured,
     motion,
     noise,
@@ -60,7 +57,7 @@ CHAPTERS = (
         "pass_by",
         "Pass-by",
         (noise.PASS_BY, measured.PASS_BY_BANDS),
-        (limits.limits_table, noise.pass_by_table, measured.passage_table),
+        (measured.limits_table, noise.pass_by_table, measured.passage_table),
         noise.pass_by_answers,
     ),
     Chapter(
@@ -73,7 +70,7 @@ CHAPTERS = (
     Chapter("acceleration", "Acceleration", motion.ACCELERATION, answers=motion.acceleration_answers),
     Chapter("motion", "Motion of the bodies", (motion.BODIES,)),
     Chapter("force", "Contact force", force.FORCE, (tables.loss_table,), headline.force_answers),
-    Chapter("contacts", "All contacts", contacts.CONTACTS, (contacts.contacts_table,)),
+    Chapter("contacts", "All contacts", force.CONTACTS, (force.contacts_table,)),
     Chapter("setup", "Scene", scene.SCENES),
     Chapter(
         "texture",

@@ -9,7 +9,7 @@ import xarray
 
 from asperity.arguments import Array, Complex
 from asperity.contact.hertz import stick_stiffness
-from asperity.radiation.sideways import SideOfRail, squared_lateral_mobility
+from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import schema
@@ -17,8 +17,7 @@ from asperity.scenes.compute import Computed
 from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
 from asperity.schema import Values
 from asperity.spectra import HALF_BAND, a_weighted_total, band_energies, energy_sum
-from asperity.structures.lateral_contact import at_springs, lateral_force, vertical_change, wheel_receptances
-from asperity.structures.lateral_rail import LateralTrack
+from asperity.structures import lateral_rail
 from asperity.structures.modal import modal_answers
 from asperity.structures.wheel_modes import WheelModes
 
@@ -48,7 +47,7 @@ class Sideways:
     computed: Computed
 
     @cached_property
-    def track(self) -> LateralTrack:
+    def track(self) -> lateral_rail.LateralTrack:
         """The track sideways, of equal bays."""
         keys, track = self.computed.case.track, self.computed.track.nominal.regular
         return self.computed.case.sideways.model(track, keys.rail_foot_width)
@@ -79,7 +78,7 @@ class Sideways:
     def wheel(self, frequency: Array) -> Complex:
         """Receptances of the wheel at the contact (2, 2, f), m/N."""
         scene, mass = self.computed.scene, self.computed.case.rolling.contact_mass
-        return wheel_receptances(scene.modes, mass, frequency, scene.place)
+        return lateral_rail.wheel_receptances(scene.modes, mass, frequency, scene.place)
 
     # --- as the mean over each line of the spectra, with every resonance of the wheel resolved
 
@@ -99,12 +98,12 @@ class Sideways:
         between = np.empty((*rails.shape[:3], len(fine)), complex)
         for index in np.ndindex(rails.shape[:3]):
             between[index] = np.interp(fine, self.lines, rails[index])
-        return np.stack([at_springs(wheel + each, *self.stiffness) for each in between])
+        return np.stack([lateral_rail.at_springs(wheel + each, *self.stiffness) for each in between])
 
     @cached_property
     def shares(self) -> Complex:
         """Lateral over vertical force at each place (n, k)."""
-        return np.stack([lateral_force(each) for each in self.fine_answers])
+        return np.stack([lateral_rail.lateral_force(each) for each in self.fine_answers])
 
     @cached_property
     def spread(self) -> Array:
@@ -214,7 +213,9 @@ def sideways_group(computed: Computed, over_frequency: xarray.Dataset) -> Values
     rail = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing)
     wheel, answers = found.wheel(frequency), np.moveaxis(found.fine_answers, 0, -2)
     free = 1.0 / answers[0, 0]  # vertical force per height of a contact that is free sideways
-    linear = [np.mean(np.abs(each) ** 2, axis=0) for each in (vertical_change(answers) * free, free)]
+    linear = [
+        np.mean(np.abs(each) ** 2, axis=0) for each in (lateral_rail.vertical_change(answers) * free, free)
+    ]
     coupling = np.subtract(*levels(line_means(np.stack(linear), *found.fine)))
     return {
         schema.SIDEWAYS_LAW: list(computed.runs),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray
 
+from asperity import spectra
 from asperity.arguments import Array, ArrayLike
 from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
@@ -14,13 +15,6 @@ from asperity.reference.tracks import iso_3095_decay_rate
 from asperity.scenarios.scene import AtContact, Scene, linear_force_psd
 from asperity.scenes import compute, noise, schema, validity
 from asperity.schema import Entry, Values
-from asperity.spectra import (
-    LEAST_PRODUCT,
-    averaging_time,
-    band_product,
-    nominal_frequency,
-    third_octave_bands,
-)
 from asperity.structures import rail_poles, stiffness_table, track_parameters, track_power
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
@@ -43,7 +37,7 @@ def track_spectra(computed: compute.Computed) -> Values:
     }
     laid_out |= _roughness(computed) | noise.noise(computed) | noise.radiation(computed)
     if schema.NOISE_BAND in laid_out:
-        time = averaging_time(len(computed.first.time), case.time_step, segment=computed.segment)
+        time = spectra.averaging_time(len(computed.first.time), case.time_step, segment=computed.segment)
         product = product_of_bands(schema.NOISE_BAND_TIME_PRODUCT, laid_out[schema.NOISE_BAND], time)
         laid_out[schema.NOISE_BAND_TIME_PRODUCT] = product
     return laid_out
@@ -55,7 +49,7 @@ def product_of_bands(entry: Entry, centres: Array, time: float) -> xarray.Variab
     Centres (b,), Hz or cycles per metre; averaging time, s, or length, m. The least product of a level that
     says something is in its attributes.
     """
-    return entry.variable(band_product(centres, time), least=LEAST_PRODUCT)
+    return entry.variable(spectra.band_product(centres, time), least=spectra.LEAST_PRODUCT)
 
 
 PLACES = 12
@@ -131,7 +125,7 @@ def _roughness(computed: compute.Computed) -> Values:
     lines = {**textures.parts, "combined": textures.line}
     bands = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
     wavelength = bands["combined"][0]
-    averaged = averaging_time(len(textures.line), spacing)
+    averaged = spectra.averaging_time(len(textures.line), spacing)
     product = product_of_bands(schema.SURFACE_BAND_LENGTH_PRODUCT, 1.0 / wavelength, averaged)
     return {
         schema.PART: list(bands),
@@ -278,7 +272,7 @@ def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest:
     each band of mean squares over a bay, the nominal one, and over the band, for a texture that is white in
     it.
     """
-    bands, low, high = third_octave_bands(LOWEST, highest)
+    bands, low, high = spectra.third_octave_bands(LOWEST, highest)
     steps = (np.arange(LINES) + 0.5) / LINES
     frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
     places = track.regular.places(POSITIONS)
@@ -324,12 +318,14 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
         damping = 1e-3 * stiffness * factors[layer] / (2.0 * np.pi * frequency)
         exact = f"{damping:.3g} kN s/m dissipate as much at {frequency:.3g} Hz"
         remedy = f"Give {layer}_damping, which is exact: {exact}."
-    if off := [nominal_frequency(error.bands[i]) for i in np.flatnonzero(np.abs(error.force) > DOUBTFUL)]:
+    if off := [
+        spectra.nominal_frequency(error.bands[i]) for i in np.flatnonzero(np.abs(error.force) > DOUBTFUL)
+    ]:
         meaning += f": read the one-third octaves of {', '.join(off)} with their error"
     return [
         Finding(
             "error of the contact force for constant loss factors, at most",
-            f"{validity.signed_level(level)} dB ({nominal_frequency(frequency)})",
+            f"{validity.signed_level(level)} dB ({spectra.nominal_frequency(frequency)})",
             f"up to {DOUBTFUL:g} dB",
             Grade.WARNING if off else None,
             f"{meaning}.",
@@ -377,7 +373,7 @@ def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str,
     if nominal.is_causal or track.relaxations is None:
         return
     off = [
-        f"{nominal_frequency(band)} {validity.signed_level(level)}"
+        f"{spectra.nominal_frequency(band)} {validity.signed_level(level)}"
         for band, level in zip(error.bands, error.force, strict=True)
         if abs(level) >= LEAST_SHOWN
     ]

@@ -13,9 +13,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from asperity.case.toml import LARGEST_CASE
-from asperity.errors import InputError
+from asperity.errors import InputError, printable
 from asperity.files import amount, require_space, write_bytes
-from asperity.printable import printable
 from asperity.text_files import read_text
 
 CASE, RESULT, REPORT, SOUNDS = "case.toml", "run.nc", "report.html", "sounds"

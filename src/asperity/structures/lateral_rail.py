@@ -9,10 +9,11 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.errors import InputError
 from asperity.parameters import Quantity, keys_of, parameter
-from asperity.structures.measured_sleeper import MeasuredSleeper
+from asperity.structures.modal import modal_answers
 from asperity.structures.periodic_rail import refuse_decay
-from asperity.structures.support import BendingSleeper, RigidMass, Spring
+from asperity.structures.support import BendingSleeper, MeasuredSleeper, RigidMass, Spring
 from asperity.structures.track import VANISHING_DAMPING, Track
+from asperity.structures.wheel_modes import WheelModes
 
 # UIC 60 as in the program rolland: E = 210 GPa, G = 80.769 GPa, A = 76.7 cm², I_z = 512.7 cm⁴, J = 221.2 cm⁴,
 # I_p = 3550 cm⁴, lateral κ = 0.538, centre of twist 33 mm below the centroid, foot 81 mm below it
@@ -363,3 +364,36 @@ def contact_shapes(rail: LateralRail, place: float) -> Array:
 def _angular(frequency: ArrayLike) -> Array:
     at = finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0)
     return 2.0 * np.pi * np.atleast_1d(at)
+
+
+def wheel_receptances(modes: WheelModes | None, mass: float, frequency: Array, place: float) -> Complex:
+    """Displacement of a wheel at its contact per force there, (2, 2, f), m/N, downwards and sideways.
+
+    A free mass, kg, in both directions, and modes, at a place, m from the running circle, positive towards
+    the field side; frequencies (f,), Hz, above zero. The wheel's rigid roll is left out.
+    """
+    rigid = np.multiply.outer(np.eye(2), -1.0 / (mass * (2.0 * np.pi * frequency) ** 2))
+    if modes is None:
+        return rigid.astype(complex)
+    shape = np.stack(modes.at(place))  # (2, p)
+    answers = modal_answers(frequency, modes.natural_frequencies, modes.damping_ratios)
+    return np.asarray(rigid + np.einsum("ap,bp,fp->abf", shape, shape, answers))
+
+
+def at_springs(receptances: Complex, normal: float, tangential: float) -> Complex:
+    """Both bodies' receptances (2, 2, f), and those of the springs of the contact, N/m: A, m/N."""
+    springs = np.diag([1.0 / normal, 1.0 / tangential])
+    return np.asarray(receptances + springs[..., None])
+
+
+def lateral_force(answer: Complex) -> Complex:
+    """Lateral force per vertical force (f,), T/F = −A_vl/A_ll: the lateral motion of both bodies agrees."""
+    return np.asarray(-answer[1, 0] / answer[1, 1])
+
+
+def vertical_change(answer: Complex) -> Complex:
+    """Vertical force over that of a contact that is free sideways (f,), 1/(1 − A_vl²/(A_vv A_ll)).
+
+    What the lateral force does to the vertical one, which a run in time leaves out.
+    """
+    return np.asarray(1.0 / (1.0 - answer[0, 1] * answer[1, 0] / (answer[0, 0] * answer[1, 1])))

@@ -10,10 +10,10 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, shown
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
-from asperity.structures import bays, periodic_rail, stiffness_table, track_parameters
+from asperity.structures import periodic_rail, stiffness_table, track_parameters
 from asperity.structures import support as chains
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
-from asperity.structures.rail import Rail
+from asperity.structures.periodic_rail import Rail
 
 _LOSSES = [(f"{layer}_damping", f"{layer}_loss_factor") for layer in track_parameters.LAYERS]
 _INSTEAD = [*_LOSSES, *((b, a) for a, b in _LOSSES), *(("pad_table", each) for each in _LOSSES[0])]
@@ -243,9 +243,9 @@ class Track(track_parameters.TrackParameters):
     @property
     def bay_tracks(self) -> list[Track]:
         """Tracks of equal bays, one for each bay of the cell, on such supports as it begins with."""
-        return [self.regular._scaled(each) for each in (self.bays or bays.Bays.equal()).shares]
+        return [self.regular._scaled(each) for each in (self.bays or track_parameters.Bays.equal()).shares]
 
-    def _scaled(self, share: bays.Share) -> Track:
+    def _scaled(self, share: track_parameters.Share) -> Track:
         """With pads and ballast scaled, their damping with them."""
         scaled = {f"{part}_{what}": factor for part, factor in share._asdict().items() for what in _SCALED}
         given = {key: factor * getattr(self, key) for key, factor in scaled.items() if getattr(self, key)}

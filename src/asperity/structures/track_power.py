@@ -8,8 +8,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, real
 from asperity.structures.cell_waves import CellWaves, cell_waves
-from asperity.structures.measured_sleeper import MeasuredSleeper
-from asperity.structures.support import Spring
+from asperity.structures.support import MeasuredSleeper, Spring
 from asperity.structures.track import Track
 
 FEWEST_NODES = 10  # of Gauss's rule between two points, beside two per radian of the shortest wave

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, real, real_array, require, two, two_lengths, whole
-from asperity.printable import printable
+from asperity.errors import printable
 from asperity.surfaces import cleaning, levelling
 from asperity.units import written
 

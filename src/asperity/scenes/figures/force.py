@@ -1,4 +1,4 @@
-"""Figures of the contact force: in time, in lines and in one-third octaves."""
+"""Figures of the contact force: in time, in lines and in one-third octaves, of one contact and of all."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -7,18 +7,25 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import data, panels
-from asperity.reporting.chart import INK, Axis, Boxes, Chart, Flags, Line, Numbers, Panel, decibels, envelope
+from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures import track
 from asperity.schema import rolling, spectra
 from asperity.schema.rolling import CONTACT_FORCE, TIME
+from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, CONTACT_FORCE_LEVEL, CONTACT_FORCE_PSD, FREQUENCY
+from asperity.spectra import energy_sum
 
 FORCES = Of(CONTACT_FORCE, "{law}")
 IN_FREQUENCY = "linear, frequency domain"
 """Name of the linear contact that is solved there."""
-REFERENCE_STYLE: dict[str, Any] = {"colour": INK, "dashes": (3.0, 3.0), "width": 1.0, "label": IN_FREQUENCY}
+REFERENCE_STYLE: dict[str, Any] = {
+    "colour": chart.INK,
+    "dashes": (3.0, 3.0),
+    "width": 1.0,
+    "label": IN_FREQUENCY,
+}
 REFERENCE_PSD, REFERENCE_LEVEL = (
     Of(entry, IN_FREQUENCY, optional=True)
     for entry in (schema.LINEAR_REFERENCE_PSD, schema.LINEAR_REFERENCE_LEVEL)
@@ -36,18 +43,18 @@ def _differences(tree: DataTree) -> Iterator[Series]:
             yield replace(series, name=f"{series.name} minus {law}")
 
 
-def _bands(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+def _bands(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
     """Levels in one-third octaves, and below them the differences to the linear laws."""
     found = lines.of(spectra.FORCE_LEVEL)
     levels = panels.styled(tree, lines.at, found, markers=True)
-    reference = [Line(lines.at, s.values, **REFERENCE_STYLE) for s in lines.of(REFERENCE_LEVEL.entry)]
+    reference = [chart.Line(lines.at, s.values, **REFERENCE_STYLE) for s in lines.of(REFERENCE_LEVEL.entry)]
     label, every = "contact force level / dB re 1 N", [*levels, *reference]
     yield panels.band_panel(tree, lines, label, every, of=levels, span=100.0, height=3.6)
     under = (*panels.shaded_bands(tree, labelled=False), panels.zero())
     for entry, law in data.differences(tree).items():
         less = panels.styled(tree, lines.at, lines.of(entry), markers=True, main=found[0].law)
         axis = panels.levels_axis(f"level − {law} / dB", [line.y for line in less], span=np.inf, step=5.0)
-        yield Panel(panels.band_axis(lines.at), axis, (*under, *less), height=2.4)
+        yield chart.Panel(panels.band_axis(lines.at), axis, (*under, *less), height=2.4)
 
 
 def _bands_caption(tree: DataTree) -> str:
@@ -90,11 +97,11 @@ WIDEST = 20.0
 """Widest stretch, Hz, over which lines are averaged for drawing: narrower than what the track imprints."""
 
 
-def _lines_per_point(frequency: Numbers) -> int:
+def _lines_per_point(frequency: chart.Numbers) -> int:
     return max(1, int(WIDEST / (frequency[1] - frequency[0]) + 1e-9)) if len(frequency) > 1 else 1
 
 
-def _linear_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+def _linear_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
     """Power spectral densities on a linear frequency axis, with the track's marks."""
     high = float(
         data.values(tree, spectra.BAND if data.present(tree, spectra.BAND) else spectra.FREQUENCY)[-1]
@@ -103,19 +110,22 @@ def _linear_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     kept = np.flatnonzero((lines.at > 0) & (lines.at <= high))
     kept = kept[: len(kept) // count * count]
 
-    def thinned(numbers: Numbers) -> Numbers:
+    def thinned(numbers: chart.Numbers) -> chart.Numbers:
         return np.asarray(numbers[kept].reshape(-1, count).mean(axis=1))
 
-    at, levels = thinned(lines.at), [replace(s, values=decibels(thinned(s.values))) for s in lines.lines]
+    at, levels = (
+        thinned(lines.at),
+        [replace(s, values=chart.decibels(thinned(s.values))) for s in lines.lines],
+    )
     laws = [s for s in levels if s.law]
     axis = panels.levels_axis("contact force PSD / dB re 1 N²/Hz", [s.values for s in laws])
     behind = (*panels.shaded_bands(tree), *track.sleeper_tones(tree, high), *track.split_rules(tree, high))
     drawn = [  # hundreds of lines side by side
         replace(line, width=1.5 if line.law == laws[0].law else 0.9) for line in panels.styled(tree, at, laws)
     ]
-    drawn += [Line(at, s.values, **REFERENCE_STYLE) for s in levels if not s.law]
-    frequency = Axis("frequency / Hz", 0.0, high, linked="frequency")
-    yield Panel(frequency, axis, (*behind, *drawn), height=4.6)
+    drawn += [chart.Line(at, s.values, **REFERENCE_STYLE) for s in levels if not s.law]
+    frequency = chart.Axis("frequency / Hz", 0.0, high, linked="frequency")
+    yield chart.Panel(frequency, axis, (*behind, *drawn), height=4.6)
 
 
 def _linear_spectrum_caption(tree: DataTree) -> str:
@@ -157,18 +167,18 @@ AROUND_PEAK = 0.024
 """Length of the piece around the largest force, s."""
 
 
-def _main_force(tree: DataTree) -> Numbers:
+def _main_force(tree: DataTree) -> chart.Numbers:
     return data.of_law(tree, CONTACT_FORCE, data.laws(tree, CONTACT_FORCE)[0])
 
 
-def lost(tree: DataTree, law: str, force: Numbers) -> Flags:
+def lost(tree: DataTree, law: str, force: chart.Numbers) -> chart.Flags:
     """Where contact is lost, as `force` of `law` shows; nowhere if the contact pulls as well."""
     share = rolling.CONTACT_LOSS_SHARE
     never = law in data.laws(tree, share) and data.of_law(tree, share, law) == 0
     return np.zeros(len(force), dtype=bool) if never or data.law_entry(tree, law).may_pull else force <= 0
 
 
-def _main_flight(tree: DataTree) -> Flags:
+def _main_flight(tree: DataTree) -> chart.Flags:
     """Time steps at which the main law has lost contact."""
     return lost(tree, data.laws(tree, CONTACT_FORCE)[0], _main_force(tree))
 
@@ -196,7 +206,7 @@ def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
     return _around(int(np.nanargmax(_main_force(tree))), steps, len(time))
 
 
-def _forces(tree: DataTree, lines: Lines, **look: Any) -> list[Panel]:
+def _forces(tree: DataTree, lines: Lines, **look: Any) -> list[chart.Panel]:
     """Contact force of all laws over a piece of the run, and below it, where there is any, the loss of it."""
     axis, unit = panels.time_axis(tree, lines.at)
     size, symbol = data.force_unit(float(np.nanmax(np.abs(data.values(tree, CONTACT_FORCE)))))
@@ -207,21 +217,21 @@ def _forces(tree: DataTree, lines: Lines, **look: Any) -> list[Panel]:
     ]
     bars = [_bars(tree, s, lines.at / unit, row) for row, s in enumerate(lines.lines)]
     shades = [panels.shade(bars[0].left, bars[0].right, law=bars[0].law)] if bars[0].left.size else []
-    force = Axis(f"contact force / {symbol}", low, high)
-    above = Panel(axis, force, (*shades, panels.zero(), *drawn), height=3.3)
+    force = chart.Axis(f"contact force / {symbol}", low, high)
+    above = chart.Panel(axis, force, (*shades, panels.zero(), *drawn), height=3.3)
     shown = tuple(bar for bar in bars if bar.left.size)
     if not shown:
         return [above]
     rows = panels.words_axis([s.law for s in lines.lines], "no contact", margin=0.6, down=True)
-    return [above, Panel(axis, rows, shown, height=0.6 + 0.16 * len(bars))]
+    return [above, chart.Panel(axis, rows, shown, height=0.6 + 0.16 * len(bars))]
 
 
-def _bars(tree: DataTree, series: Series, time: Numbers, row: int) -> Boxes:
+def _bars(tree: DataTree, series: Series, time: chart.Numbers, row: int) -> chart.Boxes:
     """Stretches without contact in a row, half a time step longer at either end than from first to last."""
     first, last = panels.stretches(lost(tree, series.law, series.values)).T
     half, middle = 0.5 * (time[1] - time[0]), np.full(first.shape, float(row))
     ends = (time[first] - half, time[last] + half, middle - 0.35, middle + 0.35)
-    return Boxes(*ends, colour=data.law_entry(tree, series.law).colour, law=series.law)
+    return chart.Boxes(*ends, colour=data.law_entry(tree, series.law).colour, law=series.law)
 
 
 def _forces_words(tree: DataTree, lines: Lines) -> str:
@@ -241,16 +251,18 @@ def _whole(tree: DataTree) -> Lines:
 def _extremes(tree: DataTree) -> Iterable[Series]:
     """Lowest and highest contact force of each law in each stretch of the run."""
     for series in FORCES(tree):
-        for name, numbers in zip(("lowest", "highest"), envelope(series.values, COLUMNS)[1:], strict=True):
+        for name, numbers in zip(
+            ("lowest", "highest"), chart.envelope(series.values, COLUMNS)[1:], strict=True
+        ):
             yield Series(f"{series.name} {name}", series.units, numbers)
 
 
 def _starts(tree: DataTree) -> Iterable[Series]:
     time = data.values(tree, TIME)
-    yield Series("time", TIME.units, time[envelope(time, COLUMNS)[0]])
+    yield Series("time", TIME.units, time[chart.envelope(time, COLUMNS)[0]])
 
 
-def _whole_run(tree: DataTree, _: Lines) -> Chart:
+def _whole_run(tree: DataTree, _: Lines) -> chart.Chart:
     """Contact force of all laws over the whole run, every time step."""
     whole, unit = _whole(tree), panels.time_axis(tree, data.values(tree, TIME))[1]
     peak = int(np.nanargmax(whole.lines[0].values))
@@ -264,7 +276,7 @@ def _whole_run(tree: DataTree, _: Lines) -> Chart:
         for name, steps in found.items()
         if steps
     }
-    return Chart(tuple(_forces(tree, whole, width=0.9)), places)
+    return chart.Chart(tuple(_forces(tree, whole, width=0.9)), places)
 
 
 def _whole_caption(tree: DataTree) -> str:
@@ -321,3 +333,117 @@ FORCE_ENVELOPE = Figure(
 )
 FORCE = (FORCE_ENVELOPE, FORCE_PIECE, FORCE_PEAK, FORCE_SPECTRUM, LINEAR_SPECTRUM, FORCE_BANDS)
 """Of a track the force around its largest value, and marks of it in the spectrum."""
+
+
+# --- of each of several contacts
+
+MOST_LINES = 6
+"""Contacts that are drawn one by one."""
+MEAN = "energy mean"
+
+
+def _names(tree: DataTree) -> list[str]:
+    offsets = data.values(tree, rolling.OFFSET)
+    return [f"contact {number}, {offset:.4g} m" for number, offset in enumerate(offsets, 1)]
+
+
+_LEVELS = Of(CONTACT_FORCE_LEVEL, "{contact}", called={"contact": _names})
+
+
+def _mean(tree: DataTree) -> Iterator[Series]:
+    """Energy mean of the levels of all contacts."""
+    level = np.stack([np.nan_to_num(series.values, nan=-np.inf) for series in _LEVELS(tree)])
+    mean = energy_sum(level, axis=0) - 10.0 * np.log10(len(level))
+    yield Series(MEAN, CONTACT_FORCE_LEVEL.units, mean, None, f"{MEAN} of all", look=(chart.INK, (), 2.0))
+
+
+def _levels(tree: DataTree, lines: Lines) -> list[chart.Panel]:
+    """One-third-octave levels of the force of each contact, all or some from the first to the last."""
+    every = lines.of(CONTACT_FORCE_LEVEL)
+    shown = sorted({round(x) for x in np.linspace(0, len(every) - 1, min(len(every), MOST_LINES))})
+    levels = panels.styled(tree, lines.at, [every[n] for n in shown], marker="o")
+    levels += panels.styled(tree, lines.at, [series for series in lines.lines if series.name == MEAN])
+    label = "contact force level / dB re 1 N"
+    return [panels.band_panel(tree, lines, label, levels, span=100.0, height=4.2)]
+
+
+def _levels_caption(tree: DataTree) -> str:
+    main, count = data.laws(tree, CONTACT_FORCE_LEVEL)[0], len(data.values(tree, rolling.CONTACT))
+    some = "" if count <= MOST_LINES else f" {MOST_LINES} of {count} contacts are drawn; the file has all."
+    what = f"Force of each contact by the main law, {main}, per one-third octave."
+    return f"{what}{some}{panels.shaded_words(tree)}"
+
+
+def _powers(tree: DataTree) -> Iterator[Series]:
+    """Sum of the powers of all contact forces."""
+    every = np.stack([s.values for s in Of(CONTACT_FORCE_PSD, "{contact}")(tree)])
+    name = "sum of their powers"
+    yield Series(name, schema.SUM_PSD.units, every.sum(axis=0), None, name, look=(chart.MUTED, (4, 2)))
+
+
+def tone_rules(tree: DataTree) -> list[chart.Mark]:
+    """Multiples of the frequency at which contacts pass a place, while they stand apart."""
+    if not data.present(tree, schema.PASSING_FREQUENCY):
+        return []
+    low, high = panels.frequency_range(tree)
+    tones = data.values(tree, schema.PASSING_FREQUENCY)
+    return [chart.Rules(tones[(tones > low) & (tones < high)][:10], dashes=(1, 2), width=0.6)]
+
+
+def tones_words(tree: DataTree) -> str:
+    """Say what dotted lines are; a blank comes first."""
+    if not data.present(tree, schema.PASSING_FREQUENCY):
+        return ""
+    first = float(data.values(tree, schema.PASSING_FREQUENCY)[0])
+    return f" Dotted: k v/L, multiples of the {first:.4g} Hz at which contacts pass a place; ten are drawn."
+
+
+def contacts_table(tree: DataTree) -> ReportTable | None:
+    """Where the contacts are, what they carry, and how long they are lost."""
+    if not data.present(tree, rolling.OFFSET, rolling.STATIC_LOAD, rolling.CONTACT_LOSS_SHARE):
+        return None
+    main = data.laws(tree, rolling.CONTACT_LOSS_SHARE)[0]
+    lost = next(Of(rolling.CONTACT_LOSS_SHARE)(tree)).values
+    columns = {
+        "contact": text_cells(range(1, len(lost) + 1)),
+        "ahead of the position of the run": number_cells(
+            data.values(tree, rolling.OFFSET), lambda offset: data.engineering(offset, "m", 4)
+        ),
+        "static force": number_cells(data.values(tree, rolling.STATIC_LOAD), "N"),
+        f"out of contact, {main}": number_cells(100.0 * lost, "{:.3g} %"),
+    }
+    for lateral in Of(schema.LATERAL_CONTACT_SPREAD)(tree):
+        columns[f"lateral force, rms, {main}"] = number_cells(lateral.values, "N")
+    return table("where_contacts_are", "Contacts", columns, "Static forces as on a rigid plane.")
+
+
+def _several(tree: DataTree) -> bool:
+    return len(data.values(tree, rolling.CONTACT)) > 1
+
+
+CONTACTS = (
+    Figure(
+        "contact_levels",
+        "Force of each contact",
+        Of(BAND, "band centre"),
+        (panels.products(BAND_TIME_PRODUCT), _LEVELS, _mean),
+        _levels,
+        _levels_caption,
+        (rolling.CONTACT, rolling.OFFSET),
+        worth=_several,
+    ),
+    Figure(
+        "force_sum",
+        "Contacts together",
+        Of(FREQUENCY),
+        (Of(schema.SUM_PSD, "sum of all contact forces", look=(chart.INK,)), _powers),
+        panels.draw_spectrum("force PSD / dB re 1 N²/Hz", 1.0, tone_rules, slice(None, None, -1)),
+        lambda tree: (
+            f"Where the sum of all forces lies below the sum of their powers, contacts cancel; above it, "
+            f"they act together. Main law, {data.laws(tree, schema.SUM_PSD)[0]}; {panels.DRAWN}."
+            f"{tones_words(tree)}{panels.shaded_words(tree)}"
+        ),
+        (CONTACT_FORCE_PSD, rolling.CONTACT),
+        worth=_several,
+    ),
+)

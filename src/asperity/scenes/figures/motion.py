@@ -12,7 +12,7 @@ from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
-from asperity.scenes.figures import contacts, force, track
+from asperity.scenes.figures import force, track
 from asperity.schema import rolling
 from asperity.schema.spectra import BAND, FREQUENCY
 from asperity.spectra import a_weighting, energy_sum
@@ -64,7 +64,7 @@ def _bodies_caption(tree: DataTree) -> str:
     main = data.laws(tree, schema.BODY_ACCELERATION_PSD)[0]
     return (
         f"Acceleration of the bodies by the main law, {main}; {panels.DRAWN}.{some}"
-        f"{contacts.tones_words(tree)}{panels.shaded_words(tree)}"
+        f"{force.tones_words(tree)}{panels.shaded_words(tree)}"
     )
 
 
@@ -73,7 +73,7 @@ BODIES = Figure(
     "Acceleration of the bodies",
     Of(FREQUENCY),
     (Of(schema.BODY_ACCELERATION_PSD, "{degree}"),),
-    panels.draw_spectrum(*_SPECTRUM, contacts.tone_rules, slice(-MOST_LINES, None)),
+    panels.draw_spectrum(*_SPECTRUM, force.tone_rules, slice(-MOST_LINES, None)),
     _bodies_caption,
 )
 

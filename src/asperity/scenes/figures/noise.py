@@ -16,8 +16,7 @@ from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
-from asperity.scenes.figures.limits import limit_sentence
-from asperity.scenes.figures.measured import compared_numbers, moved_words
+from asperity.scenes.figures.measured import compared_numbers, limit_sentence, moved_words
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
