@@ -6,10 +6,12 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOME = {
+    "ArchardWear": "contact.wear",
     "Ball": "structures.body",
     "BallBearing": "structures.ball_bearing",
     "Beam": "structures.beam",
     "Contact": "contact.halfspace",
+    "EnergyWear": "contact.wear",
     "Friction": "contact.friction",
     "FrictionalHalfSpace": "contact.tangential",
     "HalfSpace": "contact.halfspace",
@@ -38,8 +40,10 @@ _HOME = {
     "run": "running",
     "save": "results",
     "study": "studies.running",
+    "wear_depth": "contact.wear",
     "wheel_modes": "structures.wheel_modes",
     "what_helps": "studies.effects",
+    "worn": "contact.wear",
 }
 """Module of each public name; the cases of each kind come beside them."""
 
