@@ -1,7 +1,6 @@
 """A run again with each setting made finer: what that changes, in a group of its result and a sentence."""
 
 import json
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
@@ -24,7 +23,7 @@ from asperity.scenes.plan import own_settings
 from asperity.scenes.result import computed_result
 from asperity.scenes.validity import compared_bands
 from asperity.schema import Entry, Values, contact, convergence, group, provenance, rolling, spectra
-from asperity.spectra import band_levels, nominal_frequency, psd
+from asperity.spectra import band_levels, level_of, nominal_frequency, psd
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 
@@ -66,8 +65,8 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
         The result with the group convergence, and one more sentence in its verdict. Levels of each
         computation are kept in the store: interrupted, the work goes on where it was.
     """
-    with warnings.catch_warnings(), one_thread_in_linear_algebra():
-        warnings.simplefilter("ignore", PhysicsWarning)  # those of the case itself were told
+    # those of the case itself were told
+    with PhysicsWarning.ignored(), one_thread_in_linear_algebra():
         states = result[contact.APPROACH.group].to_dataset()[contact.APPROACH.name].values
         settings = settings_for(prepared, states)
         each = (_compared(prepared, result, setting, _named(setting, progress)) for setting in settings)
@@ -94,8 +93,7 @@ def unchangeable(prepared: PreparedCase, states: np.ndarray) -> dict[str, str]:
     States of the case (k,), m.
     """
     found: dict[str, str] = {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)
+    with PhysicsWarning.ignored():
         for setting in settings_for(prepared, states):
             if setting.name != convergence.PATH_LENGTH:
                 taken = _first_way(setting, lambda way: changed_case(prepared, way))
@@ -193,8 +191,7 @@ def levels_of(tree: DataTree) -> xarray.Dataset:
     motion = np.full(force.shape, np.nan)
     if recorded is not None:
         power = 10.0 ** (held[recorded.name].values / 10.0)
-        with np.errstate(divide="ignore"):
-            motion = 10.0 * np.log10(power.mean(axis=tuple(range(1, power.ndim - 1))))
+        motion = level_of(power.mean(axis=tuple(range(1, power.ndim - 1))))
     stiffness = tree[contact.WORKING_STIFFNESS.group].attrs[contact.WORKING_STIFFNESS.name]
     return _laid_out(held[spectra.BAND.name].values, force, motion, stiffness)
 

@@ -142,6 +142,16 @@ class PhysicsWarning(UserWarning):
             frame, level = frame.f_back, level + 1
         warnings.warn(cls(message, grade), stacklevel=level)
 
+    @classmethod
+    def ignored(cls) -> "warnings.catch_warnings[None]":
+        """Leave those of this class unsaid within a ``with`` statement."""
+        return warnings.catch_warnings(action="ignore", category=cls)
+
+    @classmethod
+    def caught(cls) -> "warnings.catch_warnings[list[warnings.WarningMessage]]":
+        """Collect those of this class within a ``with`` statement, instead of saying them."""
+        return warnings.catch_warnings(record=True, action="always", category=cls)
+
 
 @dataclass(frozen=True)
 class Finding:

@@ -78,11 +78,10 @@ def run(
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
     try:
         with (
-            warnings.catch_warnings(record=True) as caught,
+            PhysicsWarning.caught() as caught,
             one_thread_in_linear_algebra(),
             shown_progress(progress) as told,
         ):
-            warnings.simplefilter("always", PhysicsWarning)
             prepared = loaded if isinstance(loaded, ReadyCase) else prepare_case(loaded)
             caught += prepared.caught
             result: DataTree = _named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)

@@ -250,8 +250,7 @@ def band_levels(
     require(covered, "frequency", f"{lines.size} lines", "enough lines to cover a band")
     centres, edges_low, edges_high = third_octave_bands(first, max(first, last))
     energies = np.maximum(band_energies(lines, psd, edges_low, edges_high), 0.0)
-    with np.errstate(divide="ignore"):
-        return centres, 10.0 * np.log10(energies / reference**2)
+    return centres, level_of(energies / reference**2)
 
 
 def _covered_centres(lines: Array, step: float) -> tuple[float, float]:
@@ -263,10 +262,15 @@ def _covered_centres(lines: Array, step: float) -> tuple[float, float]:
     return float(10.0 ** (first / 10.0)), float(10.0 ** (last / 10.0))
 
 
+def level_of(energies: ArrayLike) -> Array:
+    """Levels of energies over that of their reference, dB; minus infinity where there is none."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(10.0 * np.log10(energies))
+
+
 def energy_sum(levels: ArrayLike, axis: int = -1) -> Array:
     """Level of the sum of the energies of levels with one reference, dB: 10 lg Σ 10^(L/10)."""
-    with np.errstate(divide="ignore"):
-        return 10.0 * np.log10(np.sum(10.0 ** (np.asarray(levels, dtype=np.float64) / 10.0), axis=axis))
+    return level_of(np.sum(10.0 ** (np.asarray(levels, dtype=np.float64) / 10.0), axis=axis))
 
 
 def a_weighting(frequency: ArrayLike) -> Array:

@@ -105,8 +105,7 @@ def read_signal(
 def _of_wav(file: Path) -> tuple[float, NDArray[Any]]:
     from scipy.io import wavfile
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of pieces that it does not know
+    with warnings.catch_warnings(action="ignore"):  # of pieces that it does not know
         rate, values = wavfile.read(file)
     if values.dtype.kind == "u":
         values = values.astype(float) - 128.0

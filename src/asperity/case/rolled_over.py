@@ -437,8 +437,7 @@ class StructureKeys(RolledOver):
     @cached_property
     def _made(self) -> tuple[ModalStructure, list[Warning], Array | None]:
         """Modes, what was warned of, and the frequencies of receptances, Hz, rising; None of modes."""
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", PhysicsWarning)
+        with PhysicsWarning.caught() as caught:
             modes, lines = self._fitted() if self.file is None else (self._read(), None)
         return modes, [each.message for each in caught if isinstance(each.message, Warning)], lines
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -141,8 +140,7 @@ def _measured(case: Case) -> Rows:
     from asperity.surfaces.measured_lines import lines_of
 
     rows = []
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)  # said before
+    with PhysicsWarning.ignored():  # said before
         if case.surface.file is not None:
             rows.append(("measured map", described(list(read_maps(case.surface)))))
         for name in case.section_names:

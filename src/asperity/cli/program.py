@@ -182,7 +182,6 @@ def _warnings_in_lines() -> Iterator[dict[str, None]]:
             printed[str(message)] = None
             say(f"Warning: {message}", err=True)
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("always")
+    with warnings.catch_warnings(action="always"):
         warnings.showwarning = show
         yield printed

@@ -2,7 +2,6 @@
 
 import itertools
 import os
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,7 @@ from asperity.running import run
 from asperity.scenarios.preparing import prepare
 from asperity.scenes.plan import Measure, line_frequencies, measures_of
 from asperity.scenes.result import computed_result
-from asperity.spectra import band_energies
+from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 
@@ -75,14 +74,13 @@ class Optimised:
         tree = self.result_after if after else self.result_before
         frequency = line_frequencies(tree)
         density = self.measure.density(tree, law)
-        return float(10.0 * np.log10(density.sum() * (frequency[1] - frequency[0])))
+        return float(level_of(density.sum() * (frequency[1] - frequency[0])))
 
     def band_levels(self, tree: "Result", law: str) -> Array:
         """Level of the quantity (b,), dB, while each changed band is passed, of one of the results."""
         density = self.measure.density(tree, law)
         edges = self.after.edges(self.case.speed)
-        with np.errstate(divide="ignore"):
-            return np.asarray(10.0 * np.log10(band_energies(line_frequencies(tree), density, *edges)))
+        return level_of(band_energies(line_frequencies(tree), density, *edges))
 
     @property
     def changes(self) -> dict[str, float]:
@@ -217,8 +215,8 @@ def _rolled(assignment: Assignment, measure: Measure, bands: Bands, progress: Pr
     case = with_texture(assignment.case, bands).with_(laws=laws)
 
     def rolled() -> dict[str, Array]:
-        with warnings.catch_warnings(), one_thread_in_linear_algebra():
-            warnings.simplefilter("ignore", PhysicsWarning)  # those of the texture found are told
+        # those of the texture found are told
+        with PhysicsWarning.ignored(), one_thread_in_linear_algebra():
             tree = computed_result(prepare(case), progress, [])
         return {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
 

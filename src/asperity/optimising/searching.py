@@ -176,8 +176,7 @@ def _best_lay(roll: Roll, trial: Trial, lay: tuple[float, float], told: Callable
     low, high = np.log(lay)
     for end in (low, high):
         louder(end)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # of the last of few trials
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # of the last of few trials
         minimize_scalar(
             louder, bounds=(low, high), method="bounded",
             options={"maxiter": LAY_TRIALS, "xatol": LAY_PRECISION},

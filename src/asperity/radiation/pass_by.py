@@ -16,6 +16,7 @@ from scipy.special import exp1
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real
 from asperity.errors import ComputationError, InputError
 from asperity.radiation.track import IMPEDANCE
+from asperity.spectra import level_of
 
 if TYPE_CHECKING:
     from asperity.radiation.sound_path import SoundPath
@@ -290,8 +291,7 @@ def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) 
 
 def pressure_level(squared: ArrayLike) -> Array:
     """Level of a squared sound pressure, Pa², in dB re 20 µPa."""
-    with np.errstate(divide="ignore"):
-        return np.asarray(10.0 * np.log10(np.asarray(squared, dtype=float) / REFERENCE_PRESSURE**2))
+    return level_of(np.asarray(squared, dtype=float) / REFERENCE_PRESSURE**2)
 
 
 def _measured(time: Array, whole: Array, passed: tuple[float, float]) -> tuple[float, float]:

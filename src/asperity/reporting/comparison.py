@@ -15,7 +15,7 @@ from asperity.reporting import data
 from asperity.reporting.chart import Numbers
 from asperity.results import variable
 from asperity.schema import Attribute, Entry, contact, provenance, rolling, spectra
-from asperity.spectra import a_weighted_total
+from asperity.spectra import a_weighted_total, level_of
 
 POINTS_PER_DECADE = 40
 """Wavenumbers at which filters are compared."""
@@ -205,9 +205,8 @@ def _pieces(tree: DataTree, entry: Entry) -> Iterator[tuple[str, str, DataArray]
             yield f"{entry.name}_{word}", f"{entry.long_name}, {word}", found.sel({dim: word})
         return
     if others:
-        with np.errstate(divide="ignore"):
-            mean = (10.0 ** (found / 10.0)).mean(others).transpose("law", "place")
-            found = mean.copy(data=10.0 * np.log10(mean.values))
+        mean = (10.0 ** (found / 10.0)).mean(others).transpose("law", "place")
+        found = mean.copy(data=level_of(mean.values))
     yield entry.name, entry.long_name + (", energy mean of the places" if others else ""), found
 
 

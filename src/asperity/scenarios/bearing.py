@@ -58,8 +58,7 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
     parts = [("inner", case.inner_raceway, of.raceway_radii[0])]
     parts += [("outer", case.outer_raceway, of.raceway_radii[1])]
     parts += [("ball", case.balls, 0.5 * of.ball_diameter)] * of.balls * (not case.has_smooth_balls)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", PhysicsWarning)
+    with PhysicsWarning.caught() as caught:
         case.loaded()
         for number, (name, keys, radius) in enumerate(parts):
             contact, load = case.contacts[min(number, 1)]  # of balls those with the outer ring

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
@@ -33,8 +32,7 @@ PATIENCE = 300.0  # s that it is waited for
 
 def compile_kernels(progress: Progress) -> None:
     """Call every kernel once on next to nothing: it is compiled now, or loaded from disk."""
-    with warnings.catch_warnings(), _contact_compiled_beside() as other:
-        warnings.simplefilter("ignore", PhysicsWarning)
+    with PhysicsWarning.ignored(), _contact_compiled_beside() as other:
         progress(0, 2, COMPILED)
         roll_once()
         progress(1, 2, COMPILED)

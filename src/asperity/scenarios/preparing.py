@@ -75,8 +75,7 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
     """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
     begin, spent = time.perf_counter(), time.process_time()
     made, errors = list[Any](), list[InputError]()
-    with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
-        warnings.simplefilter("always", PhysicsWarning)
+    with PhysicsWarning.caught() as caught, one_thread_in_linear_algebra():
         whole = (partial(make, case) for make in (scene_of, geometry_of, textures_of))
         for make in (*whole, thread_count, find_device):
             try:
@@ -224,8 +223,7 @@ class ContactTrial:
 
 def try_contacts(case: Case, shape: Geometry, textures: Textures, progress: Progress) -> ContactTrial:
     """Press some samples of a case, and compute the loading curve of the first."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)
+    with PhysicsWarning.ignored():
         progress(0, 2, "trying contacts")
         samples = reducing.samples_of(case, shape, textures.maps, shape.class_axes)
         half_space = shape.half_space(case.contact.hardness)

@@ -1,7 +1,6 @@
 """Textures of one body along a path: maps and lines read from files, and strips from band levels."""
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -314,9 +313,8 @@ def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Pr
 
     A line that goes round keeps its slope: it has none, but what noise gives it.
     """
-    with warnings.catch_warnings():
-        # ends are trimmed and gaps refused below
-        warnings.simplefilter("ignore", MissingPointsWarning)
+    # ends are trimmed and gaps refused below
+    with MissingPointsWarning.ignored():
         measured = read_lines(section, name)
     raw = (measured,) if isinstance(measured, Profile) else measured_lines.lines_of(measured)
     fill, *rest = (step in section.processing for step in ("fill", "spikes", "curvature"))

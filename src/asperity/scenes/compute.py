@@ -2,7 +2,6 @@
 
 import json
 import time
-import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -73,8 +72,8 @@ class Computed:
     @property
     def laws(self) -> dict[str, Law]:
         """Its laws by name, in the order of the case, built again: each holds all the path in every state."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", PhysicsWarning)  # of that was warned when they were rolled
+        # of that was warned when they were rolled
+        with PhysicsWarning.ignored():
             return {name: self.materials.build(name) for name in self.runs}
 
     @property

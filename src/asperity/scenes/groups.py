@@ -39,8 +39,7 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
         laid_out[surface.X], laid_out[surface.Y] = (np.arange(n) * dx for n in first.shape)
         laid_out[surface.SAMPLE_HEIGHTS] = first.heights
         if textures.areal and not brief and np.ptp(first.heights):
-            with warnings.catch_warnings(record=True) as caught:
-                warnings.simplefilter("always", ShortRecordWarning)
+            with ShortRecordWarning.caught() as caught:
                 sample = statistics.areal_statistics(first)
             rows += _rows(_without_bounds(sample, caught), "first sample")
     if textures.path is not None:
@@ -88,8 +87,7 @@ def _survey(textures: Textures, dx: float) -> statistics.StripSurvey:
         return statistics.StripSurvey(
             found, edges, density, *psd(textures.line[recorded], dx, segment=segment)
         )
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", ShortRecordWarning)
+    with ShortRecordWarning.caught() as caught:
         path = statistics.survey_strip(textures.surface, segment, recorded.start, recorded.stop)
         rough = path
         if textures.defects is not None:

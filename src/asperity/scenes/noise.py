@@ -21,7 +21,7 @@ from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, measured, schema
 from asperity.scenes.measured import measured_passage
 from asperity.schema import Entry, Values, spectra
-from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
+from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum, level_of
 from asperity.structures.track import Track, decay_rate
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
@@ -273,8 +273,7 @@ def radiation(computed: compute.Computed) -> Values:
         whole = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
         if silent != "computed":
             whole[:, 2] = np.nan
-        with np.errstate(divide="ignore"):
-            level = 10.0 * np.log10(wheels * whole / PICOWATT)
+        level = level_of(wheels * whole / PICOWATT)
         said = {"wheel": silent}
         if not power[:, 1].any():
             of_wheel = () if silent == "computed" else (schema.SILENT,)
@@ -317,14 +316,12 @@ def mode_by_mode(case: Any, power: Array, band: Array) -> Values:
     mode = np.append(0, np.repeat(number[1:], np.where(diameters[1:] > 0.0, 2, 1)))
     weighted = power @ 10.0 ** (a_weighting(band) / 10.0)
     summed = np.stack([weighted[:, mode == each].sum(axis=1) for each in number], axis=1)
-    with np.errstate(divide="ignore"):
-        level = 10.0 * np.log10(summed / PICOWATT)
     return {
         schema.WHEEL_MODE: number,
         schema.WHEEL_MODE_FREQUENCY: frequency,
         schema.WHEEL_MODE_DAMPING: damping,
         schema.WHEEL_MODE_DIAMETERS: diameters.astype(int),
-        schema.WHEEL_MODE_POWER_LEVEL_A: level,
+        schema.WHEEL_MODE_POWER_LEVEL_A: level_of(summed / PICOWATT),
     }
 
 

@@ -1,7 +1,6 @@
 """Are samples and path one population, is one stiffness enough, does the direction matter? Answers in dB."""
 
 import math
-import warnings
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -14,6 +13,7 @@ from asperity.laws import spec_of
 from asperity.reduction.stiffness import samples_of_maps
 from asperity.scenarios.reducing import Reduction
 from asperity.scenes.compute import Computed
+from asperity.spectra import level_of
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, texture_direction
 
@@ -160,8 +160,7 @@ def levels_along(line: Array, patch: float) -> Array | None:
         return None
     length = len(slope) // (parts * PIECES)
     pieces = slope[: parts * PIECES * length].reshape(parts, PIECES, length)
-    with np.errstate(divide="ignore"):
-        levels = 10.0 * np.log10(np.mean(pieces**2, axis=-1))
+    levels = level_of(np.mean(pieces**2, axis=-1))
     return levels if np.isfinite(levels).all() else None
 
 
@@ -191,8 +190,7 @@ def _direction(computed: Computed) -> Iterator[Finding]:
         return
     difference, (longest, shortest) = spectra
     first = computed.textures.maps[0]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ShortRecordWarning)  # a bound is good enough
+    with ShortRecordWarning.ignored():  # a bound is good enough
         lags = autocorrelation_lengths(first)
     numbers = f"{difference:+.1f} dB from {1e6 * longest:.3g} to {1e6 * shortest:.3g} µm".replace("-", "−")
     value = f"{numbers}; Str {lags[0] / lags[1]:.2f}"

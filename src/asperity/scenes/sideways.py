@@ -16,7 +16,7 @@ from asperity.scenes import schema
 from asperity.scenes.compute import Computed
 from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
 from asperity.schema import Values
-from asperity.spectra import HALF_BAND, a_weighted_total, band_energies, energy_sum
+from asperity.spectra import HALF_BAND, a_weighted_total, band_energies, energy_sum, level_of
 from asperity.structures import lateral_rail
 from asperity.structures.modal import modal_answers
 from asperity.structures.wheel_modes import WheelModes
@@ -198,8 +198,7 @@ def sideways_group(computed: Computed, over_frequency: xarray.Dataset) -> Values
         whole = np.zeros((*density.shape[:-1], len(computed.frequency)))
         whole[..., computed.shown] = density
         energies = band_energies(computed.frequency, whole, band / HALF_BAND, band * HALF_BAND)
-        with np.errstate(divide="ignore"):
-            return np.asarray(10.0 * np.log10(np.maximum(energies, 0.0)))
+        return level_of(np.maximum(energies, 0.0))
 
     powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
     power = levels(2.0 * case.axles / contacts / PICOWATT * np.stack(powers, axis=1))

@@ -107,8 +107,8 @@ def prepare_to_press() -> Told:
 def examined(path: str) -> Told:
     """Say what is in an uploaded file, or what a case has to say of it; an `InputError` if none reads it."""
     try:
-        with spelled(in_case("surface", _HINTS)), warnings.catch_warnings():
-            warnings.simplefilter("ignore", errors.MissingPointsWarning)  # said below
+        # said below
+        with spelled(in_case("surface", _HINTS)), errors.MissingPointsWarning.ignored():
             first = read_surface(path, index=0)
     except errors.InputError as error:
         if "in [surface]" not in error.remedy:
@@ -208,8 +208,8 @@ def _roll(folder: Path, progress: Progress) -> None:
     from asperity.results import save
     from asperity.running import prepare_case, run
 
-    with alone_in(folder), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # those on the physics stand in the result
+    # those on the physics stand in the result
+    with alone_in(folder), warnings.catch_warnings(action="ignore"):
         progress(0, 1, "preparing")
         tree = run(prepare_case(load_case(folder / stored_runs.CASE), "the case"), progress=progress)
         progress(0, 1, "writing")

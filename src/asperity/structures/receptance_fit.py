@@ -1,7 +1,6 @@
 """Fitted modes that can be rolled over: smooth shapes, and an even stiffness of modes above the band."""
 
 import math
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -186,8 +185,8 @@ def fit_structure(
     modal_fit.warn_of_wide_lines(f, natural, ratios)
     fine, modes = with_stiffness_above(f, at, number, given - rigid, (natural, ratios, shapes))
     error = _judged(f, given[:, number], rigid[:, number], (*modes[:2], modes[2][::FINER][number]))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", CoarseSamplingWarning)  # what is above the band has no wavelength
+    # what is above the band has no wavelength
+    with CoarseSamplingWarning.ignored():
         structure = ModalStructure(fine, *modes, fit_error=error)
         if mass is None:
             return structure

@@ -4,7 +4,6 @@ Later editions of the standard have not been compared.
 """
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -191,8 +190,7 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
     full = full_lines(lines)
     if not full or 4.0 * full[0].spacing > LIKELY_WAVELENGTHS[1] or full[0].size < LIKELY_WAVELENGTHS[0]:
         return None
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)  # of a spacing beyond 1 mm
+    with PhysicsWarning.ignored():  # of a spacing beyond 1 mm
         processed = [process(line)[0] for line in full]
     (wavelength, before), (_, after) = map(_levels, (full, processed))
     nominal, limits = rail_roughness("iso3095")

@@ -46,21 +46,20 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     The other hints stand for a unit or a size that the file does not state. SurfaceTopography gives maps with
     the file's x as the first axis, which is kept.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # remarks of the package about itself
-        with _opener(path)(path) as reader:
-            channels = {channel.name: channel for channel in reader.channels}
-            name = reader.default_channel.name if hints.array is None else hints.array
-            allowed = f"one of: {listed(list(channels))}"
-            require(name in channels, f"array in {path.name}", shown(name), allowed, "Choose a channel.")
-            points, sized = channels[name].nb_grid_pts, channels[name].physical_sizes is not None
-            few, allowed = (
-                np.prod(points, dtype=float) <= guards.MAX_POINTS,
-                f"at most {guards.MAX_POINTS} points",
-            )
-            require(few, path.name, f"{points} points", allowed, "Crop or split the measurement.")
-            sizes = {} if sized or hints.pixel is None else {"physical_sizes": (1.0,) * len(points)}
-            return _surfaces(channels[name].topography(**sizes), hints, f"{path.name}:{name}")
+    # remarks of the package about itself
+    with warnings.catch_warnings(action="ignore"), _opener(path)(path) as reader:
+        channels = {channel.name: channel for channel in reader.channels}
+        name = reader.default_channel.name if hints.array is None else hints.array
+        allowed = f"one of: {listed(list(channels))}"
+        require(name in channels, f"array in {path.name}", shown(name), allowed, "Choose a channel.")
+        points, sized = channels[name].nb_grid_pts, channels[name].physical_sizes is not None
+        few, allowed = (
+            np.prod(points, dtype=float) <= guards.MAX_POINTS,
+            f"at most {guards.MAX_POINTS} points",
+        )
+        require(few, path.name, f"{points} points", allowed, "Crop or split the measurement.")
+        sizes = {} if sized or hints.pixel is None else {"physical_sizes": (1.0,) * len(points)}
+        return _surfaces(channels[name].topography(**sizes), hints, f"{path.name}:{name}")
 
 
 def _opener(path: Path) -> Any:
