@@ -191,7 +191,7 @@ def _check_numbers(law: Any, endless: tuple[str, ...]) -> None:
 
 
 def _check_law(law: object) -> None:
-    allowed = "an object with removal(rubbing), as EnergyWear()"
+    allowed = "an object with removal(rubbing), as asperity.EnergyWear()"
     require(hasattr(law, "removal"), "law of wear", type(law).__name__, allowed)
 
 
