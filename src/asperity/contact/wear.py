@@ -11,7 +11,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real, require, two, whole
 from asperity.contact.friction import SlidingContact, cell_places
 from asperity.contact.scan import Counts, check_settings, check_window, heights_on, total, warn_of_flaws
-from asperity.contact.tangential import FrictionalHalfSpace
+from asperity.contact.tangential import SPIN_AHEAD, FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning, UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress
@@ -54,7 +54,7 @@ def rubbing(rolling: FrictionalHalfSpace, contact: SlidingContact, before: Slidi
     moved = rolling.displacement(now, contact.normal.pressure) - rolling.displacement(
         past, before.normal.pressure, dx
     )
-    slip = xi + 1j * eta + spin * (1j * x - y) + moved / dx
+    slip = xi + 1j * eta + spin * (1j * (x + SPIN_AHEAD * dx) - y) + moved / dx
     traction, pressure = now.copy(), contact.normal.pressure.copy()
     traction[:-1] += past[1:]
     pressure[:-1] += before.normal.pressure[1:]
