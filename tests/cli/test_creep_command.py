@@ -10,8 +10,14 @@ from command_line import call
 BALL = 'kind = "ball-on-beam"\n[surface]\n{}\n[ball]\nload = "20 N"\n[beam]\nloss_factor = 0.01\n'
 
 
+@pytest.fixture(autouse=True)
+def coarse():
+    rough = BALL.format('rms = "60 nm"\nlongest = "0.1 mm"\nshortest = "32 um"')
+    window = '[contact]\nspacing = "12 um"\nwindow = "0.5 mm"\nsamples = 2\n'
+    Path("case.toml").write_text(rough + window)
+
+
 def test_a_rough_case_is_told_written_and_drawn():
-    Path("case.toml").write_text(BALL.format('rms = "60 nm"\nlongest = "0.1 mm"\nshortest = "20 um"'))
     asked = ("creep", "case.toml", "--direction", "lateral", "--points", "3", "--friction", "0.2")
     told = call(*asked, "-o", "creep.svg", "--table", "creep.csv").stdout
     assert "samples)" in told
@@ -25,12 +31,27 @@ def test_a_rough_case_is_told_written_and_drawn():
     assert Path("creep.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
 
 
+def test_states_of_a_rough_case_are_told_written_and_drawn():
+    asked = ("creep", "case.toml", "--states", "--points", "2")
+    assert (
+        "under the same load, 2 samples" in call(*asked, "-o", "states.svg", "--table", "states.csv").stdout
+    )
+    table = np.genfromtxt("states.csv", delimiter=",", names=True)
+    assert table.dtype.names[:4] == ("approach_m", "load_N", "rough_real_area_m2", "smooth_real_area_m2")
+    stiffness, normal = table["rough_stiffness_across_Nm"], table["rough_normal_stiffness_Nm"]
+    assert stiffness == pytest.approx(1.4 / 1.7 * normal, rel=0.01)
+    light, heavy = table["ratio_of_longitudinal_creep_1"]
+    assert light < heavy == pytest.approx(1.0, abs=0.03)
+    assert Path("states.svg").stat().st_size > 1000
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
         (("--friction", "0"), "--friction: received 0"),
         (("--points", "1"), "--points: received 1; allowed: a whole number from 2 to 1000"),
         (("-o", "creep.doc"), "a name that ends in .svg, .pdf, .png"),
+        (("--states",), "surface: received smooth bodies; allowed: a rough surface"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused(words, told):

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from test_coulomb import rough
 from test_friction import ellipse
 
 from asperity import Friction
-from asperity.contact.creep import RollingEllipse, creep_curve, kalker_coefficients
+from asperity.contact.creep import RolledSample, RollingEllipse, creep_curve, kalker_coefficients
+from asperity.errors import InputError
+from asperity.surfaces.synthesis import self_affine
 from refusals import refusals
 
 WHEEL = RollingEllipse((6e-3, 4e-3), 80e9, 0.3)
@@ -43,7 +44,7 @@ def test_fastsim_ends_in_full_sliding_and_is_haines_and_ollertons_between():
 def test_a_curve_rises_from_the_linear_theory_to_full_sliding():
     contact, rolling, a, b = ellipse(1.4, 0.3, 40)
     for direction in ("longitudinal", "lateral"):
-        curve = creep_curve(rolling, [contact], (a, b), direction, count=8)
+        curve = creep_curve(rolling, contact, (a, b), direction, count=8)
         assert curve.slopes == pytest.approx(1.0, abs=0.08)
         assert (np.diff(curve.force[0]) > -1e-5 * curve.limit).all()
         assert (curve.force[0] < curve.linear * 1.05).all()
@@ -54,26 +55,76 @@ def test_a_curve_rises_from_the_linear_theory_to_full_sliding():
 
 def test_spin_drives_sideways_and_then_pivots():
     contact, rolling, a, b = ellipse(1.4, 0.3, 24)
-    curve = creep_curve(rolling, [contact], (a, b), "spin", creepages=[1e-3, 0.02, 0.5])
+    curve = creep_curve(rolling, contact, (a, b), "spin", creepages=[1e-3, 0.02, 0.5])
     assert curve.force[0, 0] == pytest.approx(curve.linear[0], rel=0.1)
     assert curve.force[0, 1] > 3.0 * curve.force[0, 2] > 0.0
 
 
+def long_sample(rows, ny, spacing, rms):
+    longest = 8 * max(spacing)
+    return self_affine(
+        (rows, ny), spacing, rms=rms, hurst=0.8, longest=longest, shortest=longest / 3, seed=2
+    ).heights
+
+
+def test_grooves_along_the_rolling_direction_stand_still_in_the_contact():
+    """As they look the same wherever they are, they roll steadily: the one pattern that does."""
+    smooth, rolling, *_ = ellipse(0.8, 0.3, (25, 27))
+    grooves = np.tile(long_sample(25, 27, rolling.half_space.spacing, 0.2 * smooth.approach)[12], (140, 1))
+    sample = RolledSample.along(smooth, grooves)
+    assert sample.distance == pytest.approx(4.0 * rolling.half_space.spacing[0])
+    first, last = sample.contacts[0], sample.contacts[-1]
+    assert last.pressure == pytest.approx(first.pressure, abs=1e-4 * first.pressure.max())
+    for motion, axis in (((1e-3, 0.0, 0.0), 0), ((0.0, 2e-3, 0.1), 1)):
+        still, steady = (
+            rolling.roll(each, motion[:2], motion[2], distance=sample.distance) for each in (first, smooth)
+        )
+        force, slips = sample.over_smooth(rolling, motion, axis)
+        assert force == pytest.approx(still.force[axis] / steady.force[axis], rel=1e-3)
+        assert slips == pytest.approx(still.slip_area / first.area, abs=0.02)
+
+
+def test_an_asperity_that_rolls_through_is_sheared_as_in_a_shift():
+    """A spike that carries all of the load sticks: its force grows with the distance, wherever it is."""
+    smooth, rolling, *_ = ellipse(1.0, 0.3, 25, friction=1e6)
+    spike = np.zeros((100, 25))
+    spike[50, 12] = 1e3 * smooth.approach
+    sample = RolledSample.along(smooth, spike)
+    touching = [each for each in sample.contacts if np.count_nonzero(each.pressure) == 1]
+    assert len(touching) > 3
+    shift = rolling.shift(touching[0], (1e-9, 0.0)).force[0] / 1e-9
+    state, found = rolling.shift(touching[0]), []
+    for contact in touching[1:]:
+        state = rolling.roll(contact, (1e-6, 0.0), before=state, distance=sample.distance)
+        found.append(state.force[0])
+    steps = 1e-6 * sample.distance * np.arange(1, len(touching))
+    assert found == pytest.approx(shift * steps, rel=1e-4)
+
+
 def test_samples_follow_the_smooth_contact():
-    contact, rolling = rough()
-    smooth, _, a, b = ellipse(0.8, 0.3, (40, 28))
-    smooth = rolling.half_space.solve(smooth.undeformed_gap, load=smooth.force)
-    curve = creep_curve(rolling, [smooth, contact], (a, b), creepages=[1e-4, 5e-3, 0.04])
-    assert curve.force.shape == (2, 3)
-    alone = rolling.roll(contact, (1e-4, 0.0))
-    assert curve.force[1, 0] == pytest.approx(-alone.force[0], rel=1e-4)
-    assert curve.force[:, 2] == pytest.approx(curve.limit, rel=1e-2)
+    """Their force begins with what a run comes to that starts from rest, and ends in full sliding."""
+    smooth, rolling, a, b = ellipse(0.8, 0.3, (25, 27))
+    heights = long_sample(260, 27, rolling.half_space.spacing, 0.15 * smooth.approach)
+    xi, curve = (1e-4, 0.0), creep_curve(rolling, smooth, (a, b), creepages=[1e-4, 0.04], samples=[heights])
+    begins = curve.force[1, 0] / curve.force[0, 0]
+    assert curve.force[:, 1] == pytest.approx(curve.limit, rel=1e-2)
+    assert curve.slip_share[:, 1] == pytest.approx(1.0, abs=1e-3)
+    distance, state, forces = 4.0 * rolling.half_space.spacing[0], None, []
+    steady = rolling.roll(smooth, xi, distance=distance).force[0]
+    for row in range(7, 168, 4):  # the sample is rolled over from 67 on, and counts from 115 on
+        contact = rolling.half_space.solve(smooth.undeformed_gap - heights[row : row + 25], load=smooth.force)
+        state = rolling.roll(contact, xi, before=state or rolling.shift(contact), distance=distance)
+        forces.append(state.force[0] / steady)
+    assert np.mean(forces[27:]) == pytest.approx(begins, abs=0.03 * (1.0 - begins))
+    assert rolling.roll(contact, xi, distance=distance).force[0] / steady < 0.9 * begins
+    with pytest.raises(InputError, match="sample to roll over: received 80 rows; allowed: at least"):
+        creep_curve(rolling, smooth, (a, b), samples=[heights[:80]])
 
 
 def test_friction_that_falls_takes_the_speed():
     contact, rolling, a, b = ellipse(1.0, 0.3, 24, Friction(0.02, 0.4, 0.05))
     slow, fast = (
-        creep_curve(rolling, [contact], (a, b), creepages=[0.01, 0.05], speed=speed) for speed in (0.01, 20.0)
+        creep_curve(rolling, contact, (a, b), creepages=[0.01, 0.05], speed=speed) for speed in (0.01, 20.0)
     )
     assert slow.force[0, 1] == pytest.approx(0.02 * contact.force, rel=0.02)
     assert fast.force[0, 1] == pytest.approx(0.008 * contact.force, rel=0.02)
@@ -81,7 +132,7 @@ def test_friction_that_falls_takes_the_speed():
 
 def asked(ask):
     contact, rolling, a, b = ellipse(1.0, 0.3, 24)
-    return ask(rolling, [contact], (a, b))
+    return ask(rolling, contact, (a, b))
 
 
 test_what_is_no_curve_is_refused = refusals(

@@ -203,9 +203,12 @@ def bearing(
 @click.option("--direction", type=click.Choice(["longitudinal", "lateral", "spin"]), default="longitudinal",
               show_default=True, help="Creepage that grows; spin makes a lateral force.")  # fmt: skip
 @click.option("--friction", type=float, default=0.3, show_default=True, help="Coefficient of friction.")
-@click.option("--points", type=int, default=16, show_default=True, help="Points up to full slip.")
-@click.option("--table", type=PATH, help="Write the curve to a file, CSV.")
-@output("Draw the curve to a file, .svg, .pdf or .png.", "picture", "FILE")
+@click.option("--points", type=int, help="Points up to full slip, or states. [default: 16; 6 states]")
+@click.option(
+    "--states", is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."
+)
+@click.option("--table", type=PATH, help="Write it to a file, CSV.")
+@output("Draw it to a file, .svg, .pdf or .png.", "picture", "FILE")
 def creep(case: Path, picture: Path | None, **choices: Any) -> Document:
     """Find the creep force of what rolls in a CASE under its working load, in steady rolling.
 
@@ -217,6 +220,8 @@ def creep(case: Path, picture: Path | None, **choices: Any) -> Document:
     asperity creep case.toml
     # the lateral force of an angle of attack, drawn and as CSV
     asperity creep case.toml --direction lateral --friction 0.4 -o creep.svg --table creep.csv
+    # what roughness does to tangential stiffness and creep, at which load
+    asperity creep case.toml --states --points 6 -o states.svg
     """
     from asperity.cli.creep import show_creep
 

@@ -1,5 +1,6 @@
-"""``asperity creep``: creep force over creepage of what rolls in a case, in words, as CSV, and drawn."""
+"""``asperity creep``: creep of what rolls in a case, over creepage or over states, told, as CSV and drawn."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,53 +13,105 @@ from asperity.contact.creep import CreepCurve
 from asperity.contact.friction import Friction
 from asperity.errors import InputError
 from asperity.progress import progress_bar
-from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Axis, Chart, Line, Mark, Panel
+from asperity.reduction.traction import TractionStates
+from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Area, Axis, Chart, Line, Mark, Panel
 from asperity.reporting.figure import FORMATS, write_chart, write_columns
-from asperity.scenarios.creep import creep_of
+from asperity.scenarios.creep import creep_of, states_of
 from asperity.scenarios.preparing import PreparedCase
 from asperity.terminal import say, say_table
 
 NAMES = {"longitudinal": "creepage along", "lateral": "creepage across", "spin": "spin × √(ab)"}
+STIFFNESSES = ("normal stiffness", "stiffness along", "stiffness across", "real area")
+CREEPS = ("longitudinal creep", "lateral creep", "spin creep")
 MOST_POINTS = 1000
 
 
 def show_creep(
-    source: Path, direction: str, friction: float, points: int, picture: Path | None, table: Path | None
+    source: Path,
+    direction: str,
+    friction: float,
+    points: int | None,
+    picture: Path | None,
+    table: Path | None,
+    states: bool,
 ) -> dict[str, Any]:
-    """Print a creep curve of a case under its working load, draw and write it; return its numbers."""
+    """Print a creep curve, or state functions, of a case, draw and write them; return their numbers."""
     if picture is not None:
         ends = picture.suffix.lower().lstrip(".") in FORMATS
         require(ends, "picture", f"'{picture}'", f"a name that ends in .{', .'.join(FORMATS)}")
     law = Friction(real("--friction", friction, "a coefficient above 0", above=0.0))
     allowed = f"a whole number from 2 to {MOST_POINTS}"
-    whole("--points", points, allowed, at_least=2, at_most=MOST_POINTS)
+    count = (6 if states else 16) if points is None else points
+    whole("--points", count, allowed, at_least=2, at_most=MOST_POINTS)
     case = load_case(source)
     prepared = prepared_case(case, str(source))
     if not isinstance(prepared, PreparedCase):
         raise InputError("case", f"one of kind {case.kind}", "a kind whose bodies roll over a surface")
     with progress_bar() as progress:
-        curve = creep_of(prepared, law, direction, points, progress)
-    shape = prepared.shape
-    columns = _columns(curve)
-    title = f"{source}: {shape.load:.4g} N, friction {friction:g}, {direction}"
-    rows = [[f"{value:.4g}" for value in row] for row in zip(*columns.values(), strict=True)]
-    say_table(f"{title}: creep force over friction", [*columns], rows, width=120)
-    files, (smooth, *rough) = dict[str, Path](), curve.slopes
-    words = f"At the smallest {NAMES[direction]} the smooth contact has {smooth:.4f} of Kalker's linear force"
-    if rough:
-        words += f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {len(rough)} samples)"
-    say(f"{words}.")
+        if states:
+            found = _told_states(states_of(prepared, count, progress), str(source))
+        else:
+            found = _told_curve(creep_of(prepared, law, direction, count, progress), prepared, str(source))
+    title, columns, chart, numbers = found
+    files = dict[str, Path]()
     if table is not None:
         files["table"] = write_columns(columns, table)
         say(f"Table: {table.resolve()}")
     if picture is not None:
-        files["picture"] = write_chart(_chart(curve), title, picture)
+        files["picture"] = write_chart(chart, title, picture)
         say(f"Picture: {picture.resolve()}")
-    return {
-        "load": shape.load, "semi_axes": shape.semi_axes, "limit": curve.limit, "direction": direction,
+    return numbers | {"files": files}
+
+
+Told = tuple[str, dict[str, Any], Chart, dict[str, Any]]
+"""Title, columns of the table, chart, and numbers for programs."""
+
+
+def _told_curve(curve: CreepCurve, prepared: PreparedCase, source: str) -> Told:
+    shape, columns, (smooth, *rough) = prepared.shape, _columns(curve), curve.slopes
+    title = f"{source}: {shape.load:.4g} N, friction {curve.limit / shape.load:.4g}, {curve.direction}"
+    _say_columns(f"{title}: creep force over friction", columns)
+    at, linear = f"At the smallest {NAMES[curve.direction]}", "of Kalker's linear force"
+    words = f"{at} the smooth contact has {smooth:.4f} {linear}"
+    if rough:
+        words += f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {len(rough)} samples)"
+    say(f"{words}.")
+    numbers = {
+        "load": shape.load, "semi_axes": shape.semi_axes, "limit": curve.limit, "direction": curve.direction,
         "creepage": curve.creepage, "smooth": curve.force[0], "rough": curve.force[1:],
-        "slip_share": curve.slip_share, "linear": curve.linear, "fastsim": curve.fastsim, "files": files,
+        "slip_share": curve.slip_share, "linear": curve.linear, "fastsim": curve.fastsim,
     }  # fmt: skip
+    return title, columns, _chart(curve), numbers
+
+
+def _told_states(states: TractionStates, source: str) -> Told:
+    """Rough over smooth under the same load in words, the functions themselves as columns."""
+    load, change, panels = states.load.mean(axis=0), states.change, list[Panel]()
+    title = f"{source}: rough contact over smooth under the same load, {len(states.load)} samples"
+    told = {name: [f"{m:.3f} ± {s:.2g}" for m, s in zip(*each, strict=True)] for name, each in change.items()}
+    _say_columns(title, {"approach / µm": 1e6 * states.approaches, "load / N": load} | told)
+    columns = {"approach [m]": states.approaches, "load [N]": load}
+    numbers = {"approach": states.approaches, "load": states.load}
+    for name, (unit, values) in states.quantities.items():
+        rough, smooth = values.mean(axis=1)
+        columns |= {f"rough {name} [{unit}]": rough, f"smooth {name} [{unit}]": smooth}
+        columns |= {f"ratio of {name} [1]": change[name][0], f"scatter of {name} [1]": change[name][1]}
+        numbers[name.replace(" ", "_")] = values
+    for group in (STIFFNESSES, CREEPS):
+        marks: list[Mark] = []
+        for name, colour in zip(group, (BLUE, VERMILLION, GREEN, MUTED), strict=False):
+            mean, scatter = change[name]
+            marks.append(Area(load, mean - scatter, mean + scatter, "", colour, 0.2))
+            marks.append(Line(load, mean, name, colour))
+        axes = Axis("load / N", log=True), Axis("rough over smooth")
+        panels.append(Panel(*axes, tuple(marks), beside=bool(panels)))
+    return title, columns, Chart(tuple(panels)), numbers
+
+
+def _say_columns(title: str, columns: Mapping[str, Any]) -> None:
+    rows = zip(*columns.values(), strict=True)
+    cells = [[each if isinstance(each, str) else f"{each:.4g}" for each in row] for row in rows]
+    say_table(title, [*columns], cells, width=120)
 
 
 def _columns(curve: CreepCurve) -> dict[str, Any]:

@@ -1,19 +1,22 @@
-"""Creep forces of a contact that rolls steadily: Kalker's coefficients, FASTSIM, and curves over creepage."""
+"""Creep forces of a contact that rolls: Kalker's coefficients, FASTSIM, samples, curves over creepage."""
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array, one_of, real
+from asperity.arguments import Array, ArrayLike, finite_array, one_of, real, require
 from asperity.contact.friction import SlidingContact, cell_places
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning
-from asperity.progress import Progress
+from asperity.progress import Progress, counted
 from asperity.reference.materials import Material
+from asperity.threads import in_order
 
 DIRECTIONS = {"longitudinal": (1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0), "spin": (0.0, 0.0, 1.0)}
 """Creepages that a curve may grow along; spin is counted in the inverse of the mean semi-axis √(ab)."""
@@ -25,6 +28,11 @@ SMALL = 1e-3
 """Creepage for the coefficients, which are of a linear theory."""
 FULL_SLIP = 4.0
 """Creepage at which a curve ends, in those at which the linear theory gives all that friction carries."""
+LENGTHS, LEAST_LENGTHS, UNCOUNTED, STEPS = 4, 3, 2, 8
+"""Lengths of the contact that a sample is rolled over, the fewest, and the first that do not count: the start
+fades by a factor of four in each. At most so many steps in one: the ratio of forces hardly needs them."""
+ROLLED_RTOL = 1e-3
+"""Of a step over a sample: it moves the mean force by 2e-4."""
 
 
 @lru_cache
@@ -129,6 +137,78 @@ class RollingEllipse:
 
 
 @dataclass(frozen=True, eq=False)
+class RolledSample:
+    """A rough surface that moves through a contact with the material, as asperities do where bodies roll.
+
+    Attributes
+    ----------
+    smooth : Contact
+        Without roughness, under the load.
+    contacts : list of Contact
+        Under the same load, one after the other.
+    stride : int
+        Rows between them.
+    uncounted : int
+        Those from which the force does not count: they start from the smooth contact.
+    """
+
+    smooth: Contact
+    contacts: list[Contact]
+    stride: int
+    uncounted: int
+
+    @classmethod
+    def along(cls, smooth: Contact, heights: Array) -> "RolledSample":
+        """Press the body of a smooth contact on places along a sample of heights (rows, ny), m.
+
+        Raises
+        ------
+        InputError
+            If the sample has no room for it.
+        """
+        space, body = smooth.half_space, smooth.undeformed_gap
+        rows, spare = len(body), len(heights) - len(body)
+        length = contact_rows(smooth)
+        allowed = f"at least {rows + LEAST_LENGTHS * length} rows, the window and {LEAST_LENGTHS} contacts"
+        require(spare >= LEAST_LENGTHS * length, "sample to roll over", f"{len(heights)} rows", allowed)
+        stride = math.ceil(length / STEPS)
+        steps, contacts, start = min(LENGTHS * length, spare) // stride, list[Contact](), None
+        first = (spare - steps * stride) // 2
+        for row in range(first, first + steps * stride + 1, stride):
+            contacts.append(space.solve(body - heights[row : row + rows], load=smooth.force, start=start))
+            start = np.roll(contacts[-1].pressure, -stride, axis=0)
+        return cls(smooth, contacts, stride, UNCOUNTED * length // stride)
+
+    @property
+    def distance(self) -> float:
+        """Between them, m."""
+        return self.stride * self.smooth.half_space.spacing[0]
+
+    def over_smooth(
+        self, rolling: FrictionalHalfSpace, motion: ArrayLike, axis: int, speed: float = 1.0
+    ) -> tuple[float, float]:
+        """Mean creep force along an axis over that of the smooth contact, and the share that slips.
+
+        In transient rolling with a motion (ξ, η, φ), in which each asperity comes in without traction.
+        """
+        xi, eta, spin = np.asarray(motion, dtype=float).tolist()
+        along: dict[str, Any] = {"distance": self.distance, "speed": speed, "rtol": ROLLED_RTOL}
+        state = rolling.roll(self.smooth, (xi, eta), spin, **along)
+        steady, found = state.force[axis], []
+        for contact in self.contacts:
+            start = replace(state, traction=np.roll(state.traction, -self.stride, axis=1))
+            state = rolling.roll(contact, (xi, eta), spin, before=state, start=start, **along)
+            found.append((state.force[axis] / steady, state.slip_area / contact.area))
+        force, share = np.mean(found[self.uncounted :], axis=0).tolist()
+        return force, share
+
+
+def contact_rows(contact: Contact) -> int:
+    """Rows of the grid in which there is contact."""
+    return int(np.count_nonzero(contact.pressure.any(axis=1)))
+
+
+@dataclass(frozen=True, eq=False)
 class CreepCurve:
     """Creep force over a creepage, against it, N.
 
@@ -162,11 +242,12 @@ class CreepCurve:
 
 def creep_curve(
     rolling: FrictionalHalfSpace,
-    contacts: list[Contact],
+    smooth: Contact,
     semi_axes: tuple[float, float],
     direction: str = "longitudinal",
     creepages: ArrayLike | None = None,
     count: int = 16,
+    samples: Sequence[Array] = (),
     speed: float = 1.0,
     progress: Progress | None = None,
 ) -> CreepCurve:
@@ -176,8 +257,8 @@ def creep_curve(
     ----------
     rolling : FrictionalHalfSpace
         Bodies and friction.
-    contacts : list of Contact
-        The smooth one first, then rough samples.
+    smooth : Contact
+        Without roughness, under the load.
     semi_axes : (float, float)
         Of the smooth contact, along and across, m.
     direction : str
@@ -186,6 +267,9 @@ def creep_curve(
         Above zero and rising, those of spin times √(ab); by default `count` up to full slip.
     count : int
         How many, where none are given.
+    samples : sequence of ndarray (rows, ny)
+        Heights of rough samples, m, peaks positive, on the grid, that are rolled over: rows of the window
+        and of four contacts, at least of three.
     speed : float
         Rolling speed, m/s, for friction that falls with the slip velocity.
     progress : callable, optional
@@ -199,7 +283,12 @@ def creep_curve(
     Raises
     ------
     InputError
-        For another direction, or creepages that do not rise from above zero.
+        For another direction, creepages that do not rise from above zero, or samples that are too short.
+
+    Notes
+    -----
+    Force and slip of a sample are means along it: its asperities come in at the leading edge and move through
+    the contact. A pattern that stood still in the contact would let each asperity begin anew.
     """
     unit = np.array(DIRECTIONS[one_of("direction of creep", direction, DIRECTIONS)])
     ellipse = RollingEllipse(semi_axes, rolling.shear_modulus, rolling.poisson_ratio)
@@ -210,20 +299,25 @@ def creep_curve(
         return -force[axis]
 
     stuck = against(ellipse.linear_force((unit[0], unit[1]), unit[2]))
-    full = rolling.roll(contacts[0]).limit
+    full = rolling.roll(smooth).limit
     if creepages is None:
         creepages = FULL_SLIP * full / stuck * (np.arange(1, count + 1) / count) ** 1.5
     xi = finite_array("creepages", creepages, "rising numbers above 0", shape=(None,), rising=True, above=0.0)
     points = [(at * unit[0], at * unit[1], at * unit[2]) for at in xi]
-    force, share = np.zeros((len(contacts), len(xi))), np.zeros((len(contacts), len(xi)))
-    for i, contact in enumerate(contacts):
+    force, share = np.zeros((1 + len(samples), len(xi))), np.zeros((1 + len(samples), len(xi)))
+
+    def rolled(sample: Array) -> Array:
+        along = RolledSample.along(smooth, sample)
+        return np.array([along.over_smooth(rolling, motion, axis, speed) for motion in points]).T
+
+    with warnings.catch_warnings():  # that spin makes a contact pivot is what its curve shows
+        warnings.filterwarnings("ignore", "A spin of", OutOfRangeWarning)
         last: SlidingContact | None = None
-        for j, (along, across, spin) in enumerate(points):
-            with warnings.catch_warnings():  # that spin makes a contact pivot is what its curve shows
-                warnings.filterwarnings("ignore", "A spin of", OutOfRangeWarning)
-                last = rolling.roll(contact, (along, across), spin, start=last, speed=speed)
-            force[i, j], share[i, j] = against(last.force), last.slip_area / contact.area
-            if progress is not None:
-                progress(i * len(xi) + j + 1, force.size, "creep forces")
+        for j, motion in enumerate(points):
+            last = rolling.roll(smooth, motion[:2], motion[2], start=last, speed=speed)
+            force[0, j], share[0, j] = against(last.force), last.slip_area / smooth.area
+        found = counted(in_order(rolled, samples), len(samples), "creep forces of rough samples", progress)
+        for i, (over_smooth, slips) in enumerate(found, 1):
+            force[i], share[i] = over_smooth * force[0], slips
     fast = [against(ellipse.fastsim_force(each[:2], each[2], full)) for each in points]
     return CreepCurve(direction, xi, full, force, share, stuck * xi, np.array(fast))

@@ -1,15 +1,24 @@
-"""Creep forces of a case: its bodies under the working load, smooth and with its own roughness."""
+"""Friction of a case: its bodies smooth and with its roughness, under the working load and over states."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from asperity.arguments import Array
 from asperity.contact.creep import CreepCurve, creep_curve
 from asperity.contact.friction import Friction
 from asperity.contact.tangential import FrictionalHalfSpace
+from asperity.errors import InputError
 from asperity.progress import Progress
+from asperity.reduction.stiffness import weighted_mean
+from asperity.reduction.texture import punch_weights
+from asperity.reduction.traction import TractionStates, middle_of, traction_states
+from asperity.reference.materials import Material
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.reducing import samples_of
+from asperity.scenarios.reducing import LIGHTEST_STATE
+
+LEAST_CELLS = 4.0
+"""Cells in the shorter semi-axis of the smooth contact in the lowest state."""
 
 
 def creep_of(
@@ -24,15 +33,40 @@ def creep_of(
     The smooth contact comes first, then the samples that the case is reduced by. The traction acts on what
     rolls.
     """
-    case, shape, maps = prepared.case, prepared.shape, prepared.textures.maps
+    case, shape, bodies = prepared.case, prepared.shape, _bodies(prepared)
     space = shape.half_space(case.contact.hardness)
-    samples = samples_of(case, shape, maps, shape.class_axes) if maps else []
-    contacts = [
-        space.solve(shape.body - heights, load=shape.load, rtol=case.numerics.rtol)
-        for heights in (np.zeros_like(shape.body), *samples)
-    ]
-    bodies = case.rolling.material, case.rolled_over.material
-    rolling = FrictionalHalfSpace(space, bodies, friction)
+    smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
     return creep_curve(
-        rolling, contacts, shape.semi_axes, direction, count=count, speed=case.speed, progress=progress
-    )
+        FrictionalHalfSpace(space, bodies, friction), smooth, shape.semi_axes, direction, count=count,
+        samples=_samples(prepared), speed=case.speed, progress=progress,
+    )  # fmt: skip
+
+
+def states_of(prepared: PreparedCase, count: int, progress: Progress | None = None) -> TractionStates:
+    """State functions of tangential contact of a rough case, at `count` approaches.
+
+    From where all samples carry a light load, and the smooth contact has some cells, to where one carries
+    the largest that the window holds.
+    """
+    case, shape, samples = prepared.case, prepared.shape, _samples(prepared)
+    if not samples:
+        raise InputError("surface", "smooth bodies", "a rough surface", "Give it a file, rms or a spectrum.")
+    space = shape.half_space(case.contact.hardness)
+    resolved = (LEAST_CELLS * max(shape.spacing) / min(shape.axes(1.0))) ** 3
+    loads = max(LIGHTEST_STATE * shape.class_load, resolved), shape.largest_force
+    gaps = [shape.body - middle_of(sample, len(shape.body)) for sample in samples]
+    low, high = np.array([[space.solve(gap, load=load).approach for load in loads] for gap in gaps]).T
+    approaches = low.max() + (high.min() - low.max()) * np.linspace(0.0, 1.0, count) ** 2
+    return traction_states(space, _bodies(prepared), shape.body, samples, approaches, progress)
+
+
+def _bodies(prepared: PreparedCase) -> tuple[Material, Material]:
+    return prepared.case.rolling.material, prepared.case.rolled_over.material
+
+
+def _samples(prepared: PreparedCase) -> list[Array]:
+    """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m."""
+    shape = prepared.shape
+    weights, nx = punch_weights(shape.spacing, shape.class_axes), len(shape.body)
+    rough = [strip.heights for strip in prepared.textures.strips if strip.heights.any()]
+    return [heights - weighted_mean(middle_of(heights, nx), weights) for heights in rough]
