@@ -13,8 +13,8 @@ import pytest
 import xarray as xr
 
 from asperity.arguments import listed, shown
+from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class, load_case, parse_case
-from asperity.case.describing import entries
 from asperity.case.tables import LEVELS, read_levels, read_table
 from asperity.case.toml import read_toml
 from asperity.errors import CaseError, ComputationError, InputError

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -570,14 +571,15 @@ def keys_of(model: Any, otherwise: str) -> dict[str, Key]:
 
 
 def checked_parameters(model: Any) -> None:
-    """Take all parameters that a frozen dataclass declares as their kinds do; None stays None."""
+    """Take all parameters that a frozen dataclass declares as their kinds do; None stays if it is usual."""
     for name, key in keys_of(type(model), "").items():
-        if (value := getattr(model, name)) is not None:
+        if (value := getattr(model, name)) is not None or getattr(type(model), name, 0.0) is not None:
             try:
                 object.__setattr__(model, name, key.kind(value))
             except (InputError, Problems) as error:
                 first = error.errors[0] if isinstance(error, Problems) else error
-                raise first.about(f"{name} of the {type(model).__name__}") from None
+                of = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(model).__name__).lower()
+                raise first.about(f"{name} of the {of}") from None
 
 
 def limits_in(within: str) -> Within | None:

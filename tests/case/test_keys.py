@@ -10,8 +10,8 @@ import pytest
 
 import asperity
 from asperity.case import PRESETS
+from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class
-from asperity.case.describing import entries
 from asperity.errors import CaseError
 from asperity.parameters import ListOf, Number, Quantity
 from asperity.units import quantity

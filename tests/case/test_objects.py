@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 import asperity
 from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail, laws
+from asperity.case.any_case import entries
 from asperity.case.cases import parse_case
-from asperity.case.describing import entries
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Choice, Flag, MaterialOrName, Number, Quantity, key
 from asperity.scenarios.records import read_maps, spectrum_levels

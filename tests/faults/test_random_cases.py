@@ -9,8 +9,8 @@ import pytest
 from program import LONG
 
 import asperity
+from asperity.case.any_case import entries
 from asperity.case.cases import case_class, case_of
-from asperity.case.describing import entries
 from asperity.errors import AsperityError
 from asperity.parameters import Choice, Number, Quantity
 from asperity.schema import UNKNOWN

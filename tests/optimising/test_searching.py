@@ -7,8 +7,16 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from asperity.errors import ComputationError
-from asperity.optimising.allocation import Limits, Response, energy_of, quietest, rms_of, roughest
-from asperity.optimising.searching import Trial, search
+from asperity.optimising.allocation import (
+    Limits,
+    Response,
+    Trial,
+    energy_of,
+    quietest,
+    rms_of,
+    roughest,
+    search,
+)
 
 BANDS = 8
 WEIGHT = 10.0 ** np.linspace(-2.0, 2.0, BANDS)

@@ -2,8 +2,8 @@
 
 import pytest
 
+from asperity.case.any_case import entries
 from asperity.case.cases import case_class, case_of, parse_case, template
-from asperity.case.describing import entries
 from asperity.case.toml import read_toml
 from asperity.errors import InputError
 from asperity.parameters import Origin

@@ -194,9 +194,9 @@ def test_rigid_supports_hold_the_rail_and_softer_pads_let_its_head_move():
 
 
 test_bad_questions_are_refused = refusals(
-    (lambda: LateralRail(bending_stiffness=0.0), "bending stiffness of the rail sideways: received 0"),
-    (lambda: LateralRail(torsional_stiffness=math.nan), "torsional stiffness of the rail sideways"),
-    (lambda: LateralRail(rotary_inertia=-1.0), "rotary inertia of the rail sideways: received -1"),
+    (lambda: LateralRail(bending_stiffness=0.0), "bending_stiffness of the lateral rail: received 0"),
+    (lambda: LateralRail(torsional_stiffness=math.nan), "torsional_stiffness of the lateral rail"),
+    (lambda: LateralRail(rotary_inertia=-1.0), "rotary_inertia of the lateral rail: received -1"),
     (lambda: LateralTrack(UIC60, pad_stiffness=0.0), r"lateral pad stiffness \(N/m\): received 0"),
     (lambda: LateralTrack(UIC60, foot_width=-0.1), "width of the rail's foot"),
     (lambda: LateralTrack(UIC60).decay_rate(0.0), r"frequency \(Hz\): received 0.0; allowed: finite pos"),

@@ -1,14 +1,231 @@
 """The case of any kind: its keys in and out of TOML, other values for some; and what computes it."""
 
+import json
+import re
 import warnings
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, runtime_checkable
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
 
-from asperity.case.content import described_value
-from asperity.case.describing import in_toml, parameters, refused
+from asperity.arguments import nearest
+from asperity.case.content import content, described_value, holds_memory
 from asperity.case.form import Section
 from asperity.case.toml import toml_text
-from asperity.parameters import Text, key
+from asperity.errors import InputError
+from asperity.parameters import GIVEN, Key, Number, Origin, Problems, Quantity, Text, key, name_of_numbers
+from asperity.reference.materials import MATERIALS, Material
+from asperity.units import written
+
+_UNIT = re.compile(r"\d\.? ([^\"',\]]+)")  # in an example, as "25 mm" or ["0.2 m", "0.4 m"]
+_COLUMN = 32  # where comments of a commented case start, if the value leaves room
+
+
+class CaseKey(NamedTuple):
+    """One key of a case."""
+
+    dotted: str  # name with its section, as "contact.spacing"
+    key: Key
+
+    @property
+    def section(self) -> str:
+        """Name of the section that it stands in; empty at the top."""
+        return self.dotted.rpartition(".")[0]
+
+    @property
+    def name(self) -> str:
+        """Its name in the section."""
+        return self.dotted.rpartition(".")[2]
+
+    @property
+    def unit(self) -> str | None:
+        """SI unit where values are single numbers; None of any other key."""
+        kind = self.key.kind
+        return kind.dimension if isinstance(kind, Quantity) else "1" if isinstance(kind, Number) else None
+
+    def read(self, value: object, origin: Origin) -> Any:
+        """A value of the key in SI; an `InputError` says what is wrong with it."""
+        try:
+            return self.key.kind(value, origin)
+        except Problems as problems:
+            error = problems.errors[0]
+        except InputError as wrong:
+            error = wrong
+        raise error.about(self.dotted)
+
+
+def entries(model: type[Section], title: str = "") -> Iterator[CaseKey]:
+    """List all keys of a kind of case, those of its sections after those at the top."""
+    for name, own in model.keys.items():
+        yield CaseKey(f"{title}.{name}".lstrip("."), own)
+    for name, inner in model.sections().items():
+        yield from entries(inner.model, name)
+
+
+def entry_of(model: type[Section], dotted: str) -> CaseKey:
+    """Find a key of a kind of case by its name with its section, as ``"contact.spacing"``."""
+    by_name = {entry.dotted: entry for entry in entries(model)}
+    title, _, name = dotted.rpartition(".")
+    if (inner := model.section_at(title)) and name in inner.model.keys:
+        return CaseKey(dotted, inner.model.keys[name])
+    if dotted in by_name:
+        return by_name[dotted]
+    homes = [name for name, entry in by_name.items() if entry.name == dotted]
+    remedy = f'Write it with its section, "{homes[0]}".' if homes else nearest(dotted, list(by_name))
+    allowed = f'a key of a {model.keys["kind"].default} case, with its section, as "contact.spacing"'
+    raise InputError(dotted, "an unknown key", allowed, remedy)
+
+
+def parameters(case: Section, shown: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
+    """List the keys that matter in a case, of some sections those at their defaults that are `shown` alone.
+
+    Returns
+    -------
+    list of dict
+        For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
+        ``note`` (what the key is).
+    """
+    listed, more = [], [name for name in case.section_names if name not in type(case).sections()]
+    further = [each for name in more for each in entries(type(getattr(case, name)), name)]
+    for entry in (*entries(type(case)), *further):
+        section: Section = getattr(case, entry.section) if entry.section else case
+        if (entry.section and entry.section not in case.section_names) or not section.is_active(entry.name):
+            continue
+        value, usual = getattr(section, entry.name), section.default_of(entry.name)
+        default = entry.key.otherwise if usual is None else in_words(usual, entry.key)
+        same = value is None or content(value) == content(usual)
+        beside = same and entry.name not in shown.get(entry.section, (entry.name,))
+        if not beside and (text := default if value is None else in_words(value, entry.key)):
+            listed.append(
+                {
+                    "key": entry.dotted,
+                    "value": text,
+                    "default": default,
+                    "is_default": same,
+                    "note": entry.key.meaning,
+                }
+            )
+    return listed
+
+
+def in_words(value: object, key: Key) -> str:
+    """Write a value of a key for people, in the unit of its default or its example: ``"300 MN/m"``."""
+    if holds_memory(value):
+        return described_value(value)
+    if isinstance(value, tuple):
+        return ", ".join(in_words(item, key) for item in value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, Path):
+        return value.name
+    if isinstance(value, Material):
+        return words_of_material(_material(value, exactly=False))
+    return _quantity(value, key, exactly=False) if isinstance(value, float) else str(value)
+
+
+def words_of_material(value: str | dict[str, Any]) -> str:
+    """Write a material for people: its name, or its numbers."""
+    numbers = {} if isinstance(value, str) else {k: v for k, v in value.items() if k != "citation"}
+    return ", ".join(f"{name} {item}" for name, item in numbers.items()) or str(value)
+
+
+def in_toml(section: Section, in_memory: Callable[[str, Any], Any], title: str = "") -> dict[str, Any]:
+    """Keys that are not at their defaults as they would stand in a case file, to the last bit.
+
+    `in_memory` says what stands for the surface or table that a dotted key has instead of a file.
+    """
+    keys: dict[str, Any] = {}
+    for name, value in section.given().items():
+        if name in section.section_names:
+            keys[name] = in_toml(getattr(section, name), in_memory, f"{name}.")
+        elif holds_memory(value):
+            keys[name] = in_memory(f"{title}{name}", value)
+        else:
+            keys[name] = value_in_toml(value, section.keys[name])
+    return keys
+
+
+def value_in_toml(value: Any, key: Key) -> Any:
+    """Write a value of a key as it would stand in a case file."""
+    if isinstance(value, tuple):
+        return [value_in_toml(item, key) for item in value]
+    if isinstance(value, Material):
+        return _material(value, exactly=True)
+    if isinstance(value, Path):
+        return str(value)
+    return _quantity(value, key, exactly=True) if isinstance(value, float) else value
+
+
+def refused(dotted: str, value: object) -> NoReturn:
+    """Refuse to write a case of something that stands in memory."""
+    remedy = 'Save it first, as np.save("map.npy", heights), and name the file in the case.'
+    raise InputError(dotted, described_value(value), "a file, where a case shall be written", remedy)
+
+
+def _quantity(value: float, key: Key, *, exactly: bool) -> Any:
+    """Write a number with its unit, if it has one."""
+    if not isinstance(key.one, Quantity):
+        return value if exactly else str(value)
+    unit = _UNIT.search(str(key.written_example))
+    return written(value, key.one.dimension, unit[1] if unit else key.one.dimension, exactly=exactly)
+
+
+def _material(value: Material, *, exactly: bool) -> str | dict[str, Any]:
+    """Write a material: the name of a known one, or its numbers."""
+    if MATERIALS.get(value.name) == value:
+        return value.name
+    named = {} if value.name == name_of_numbers(value.youngs_modulus) else {"name": value.name}
+    return {
+        **named,
+        "youngs_modulus": written(value.youngs_modulus, "Pa", "GPa", exactly=exactly),
+        "poisson_ratio": value.poisson_ratio,
+        "density": written(value.density, "kg/m^3", "kg/m^3", exactly=exactly),
+        **({} if value.citation == GIVEN else {"citation": value.citation}),
+    }
+
+
+def commented(
+    model: type[Section], written_out: Mapping[str, str], shown: Mapping[str, Sequence[str]] | None = None
+) -> str:
+    """Write a case in TOML: one line for each key with its value, meaning, what is allowed and default.
+
+    Keys without a fixed default are commented out, but for those that are `written_out`; of some sections
+    those that are `shown` alone are written.
+    """
+    lines: list[str] = []
+    title = ""
+    for entry in entries(model):
+        if entry.name not in (shown or {}).get(entry.section, (entry.name,)):
+            continue
+        if entry.section != title:
+            title = entry.section
+            lines += ["", f"[{title}]{'':{_COLUMN - len(title) - 2}}# {model.sections()[title].meaning}"]
+        lines.append(_commented_line(entry, written_out))
+    return "\n".join(lines) + "\n"
+
+
+def _commented_line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
+    key, value = entry.key, written_out.get(entry.dotted)
+    default = f"default: {key.otherwise}" if key.otherwise else "no default"
+    if key.default is not None:
+        usual = _as_toml(key.default)
+        default = "default" if value in (None, usual) else f"default: {usual}"
+        value = usual if value is None else value
+    lonely = key.goes_with and f"{entry.section}.{key.goes_with}" not in written_out
+    if key.goes_with:
+        default += f"; goes with {key.goes_with}"
+    code = f"{entry.name} = {_as_toml(key.example) if value is None else value}"
+    if value is None or lonely:
+        code = f"# {code}"
+    return f"{code:{_COLUMN - 2}}  # {key.meaning} ({allowed_in(key)}; {default})"
+
+
+def allowed_in(key: Key) -> str:
+    """What may stand behind a key, in words, without an example."""
+    return key.kind.allowed.split(", with its unit")[0]
+
+
+def _as_toml(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
 
 
 class AnyCase(Section):

@@ -10,8 +10,7 @@ from typing import Any
 
 from asperity.arguments import file_path, nearest, shown
 from asperity.case import PRESETS
-from asperity.case.any_case import AnyCase
-from asperity.case.describing import commented, in_toml
+from asperity.case.any_case import AnyCase, commented, in_toml
 from asperity.case.scene import Case
 from asperity.case.toml import plain_data, read_definition, read_toml, refuse_vast
 from asperity.errors import CaseError, InputError

@@ -214,7 +214,7 @@ class Section(Keyed):
         }
 
     def __repr__(self) -> str:
-        from asperity.case.describing import in_toml
+        from asperity.case.any_case import in_toml
 
         keys = in_toml(self, in_memory=lambda _, value: f"<{described_value(value)}>")
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in keys.items())})"

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from asperity import files
+from asperity.case.any_case import in_toml
 from asperity.case.content import content, file_digest
-from asperity.case.describing import in_toml
 from asperity.case.toml import read_definition, toml_text
 from asperity.errors import InputError
 from asperity.laws import spec_of

@@ -104,8 +104,8 @@ def completed_sweep(context: click.Context, option: click.Parameter, begun: str)
 
 def _keys(case: Path | None) -> Mapping[str, Collection[str]]:
     """Keys of the kind of a case, of all kinds where that cannot be told, with the words they take."""
+    from asperity.case.any_case import entries
     from asperity.case.cases import case_class
-    from asperity.case.describing import entries
     from asperity.case.toml import read_toml
     from asperity.errors import InputError
 

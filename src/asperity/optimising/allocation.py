@@ -1,11 +1,12 @@
-"""How much roughness each band of wavelengths may bear, where each adds to the response in proportion."""
+"""How much roughness each band of wavelengths may bear: by what each adds to the response, and by trials."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog, minimize
+from scipy.optimize import linprog, minimize, minimize_scalar
 
 from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
@@ -194,3 +195,178 @@ def _searched(
     )
     message = "" if found.success else str(found.message)
     return np.clip(levels(found.x), limits.lowest, limits.highest), message
+
+
+MOST_ROUNDS = 12
+SETTLED_LEVEL = 0.05
+"""Change of the response that no longer counts, dB."""
+HALVINGS = 3
+"""How often a step that makes it louder is halved, at most."""
+LAY_TRIALS = 8
+LAY_PRECISION = 0.05
+"""Of the logarithm of the lay."""
+SMALLEST_SHARE = 0.1
+"""Of a weight that one round leaves at least: one record says no more."""
+RELAXATION = 0.7
+"""How far weights follow a trial where a limit is kept: responses steeper than in proportion would swing."""
+LEAST_MOVE = 0.02
+"""Change of a band's roughness, relative, below which it says nothing of its weight."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A texture that was rolled over."""
+
+    levels: Array  # (b,), of the bands that may be changed, dB re 1 µm
+    lateral: float | None
+    energies: Array  # (b,), of the response while each is passed
+    rest: float  # energy of the response outside of them
+
+    @property
+    def level(self) -> float:
+        """Level of the response, dB."""
+        return float(10.0 * np.log10(self.energies.sum() + self.rest))
+
+
+Roll = Callable[[Array, float | None], Trial]
+"""Rolls over a texture of levels (b,) and a lay."""
+
+
+def search(
+    roll: Roll,
+    start: Trial,
+    limits: Limits,
+    limit: float | None,
+    lay: tuple[float, float] | None,
+    told: Callable[[str], None],
+) -> tuple[list[Trial], bool]:
+    """Search the best texture; trials that it went on from, the best last, and whether the search settled.
+
+    Parameters
+    ----------
+    roll : callable
+        What rolls.
+    start : Trial
+        The texture of the case.
+    limits : Limits
+        What the texture may be.
+    limit : float or None
+        Level of the response that is kept at the least price; without one, the response is made small.
+    lay : (float, float) or None
+        Between which the lay is chosen.
+    told : callable
+        Is told of each trial.
+
+    Notes
+    -----
+    Each round takes the response for a sum over bands, each in proportion to its roughness, and finds the
+    best levels for it. Where a limit is kept, the proportions follow those of each trial; where the response
+    is made small, they are the slopes between the last two. A response that is such a sum takes two rounds.
+    """
+    trials, settled = _rounds(roll, [start], limits, limit, told)
+    if lay is not None:
+        trials.append(_best_lay(roll, trials[-1], lay, told))
+        trials, settled = _rounds(roll, trials, limits, limit, told)
+    return trials, settled
+
+
+def _rounds(
+    roll: Roll, trials: list[Trial], limits: Limits, limit: float | None, told: Callable[[str], None]
+) -> tuple[list[Trial], bool]:
+    """Search at the lay of the last trial."""
+
+    def rolled(levels: Array) -> Trial:
+        trial = roll(levels, trials[-1].lateral)
+        told(f"{trial.level:.2f} dB, rms {1e6 * rms_of(levels):.3g} µm")
+        return trial
+
+    if limit is None:
+        return _quieter(rolled, trials, limits)
+    return _up_to(rolled, trials, limits, limit)
+
+
+def _up_to(
+    rolled: Callable[[Array], Trial], trials: list[Trial], limits: Limits, limit: float
+) -> tuple[list[Trial], bool]:
+    """Find the cheapest levels that keep a limit."""
+    response, before = _in_proportion(trials[-1]), len(trials)
+    for _ in range(MOST_ROUNDS):
+        last = trials[-1]
+        trial = rolled(roughest(response, limits, limit, last.levels))
+        trials, found = [*trials, trial], _in_proportion(trial)
+        weights = response.weights ** (1.0 - RELAXATION) * found.weights**RELAXATION
+        response = Response(weights, found.floor)
+        still = np.abs(trial.levels - last.levels).max() < SETTLED_LEVEL
+        if abs(trial.level - limit) < SETTLED_LEVEL or (still and trial.level < limit):
+            return trials, True
+    return [*trials, min(trials[before:], key=lambda each: abs(each.level - limit))], False
+
+
+def _quieter(
+    rolled: Callable[[Array], Trial], trials: list[Trial], limits: Limits
+) -> tuple[list[Trial], bool]:
+    """Find the levels with the least response; the texture of the case may lie outside of the limits."""
+    first = trials[-1]
+    response = _in_proportion(first)
+    best = rolled(quietest(response, limits, first.levels))
+    trials, response = [*trials, best], _by_slopes(response, first, best)
+    for _ in range(MOST_ROUNDS):
+        wanted = quietest(response, limits, best.levels)
+        if response.level(wanted) > best.level - SETTLED_LEVEL:
+            return trials, True
+        trial = rolled(wanted)
+        for _ in range(HALVINGS):
+            if trial.level < best.level:
+                break
+            trial = rolled(_between(trial.levels, best.levels))
+        trials, response = [*trials, trial], _by_slopes(response, best, trial)
+        if trial.level > best.level - SETTLED_LEVEL:
+            return [*trials, min(best, trial, key=lambda each: each.level)], True
+        best = trial
+    return trials, False
+
+
+def _between(first: Array, second: Array) -> Array:
+    """Half way in energies: limits that both keep are kept there, as they are convex in them."""
+    return np.asarray(10.0 * np.log10(0.5 * (energy_of(first) + energy_of(second))))
+
+
+def _in_proportion(trial: Trial) -> Response:
+    return Response(trial.energies / energy_of(trial.levels), trial.rest)
+
+
+def _by_slopes(response: Response, last: Trial, trial: Trial) -> Response:
+    """Take each band's slope between two trials; what that leaves of the energy is the floor.
+
+    A band whose energy comes from elsewhere, from other bands or another body, is not worth lowering.
+    """
+    before, after = energy_of(last.levels), energy_of(trial.levels)
+    moved = np.abs(after - before) > LEAST_MOVE * np.maximum(before, after)
+    slope = np.divide(
+        trial.energies - last.energies, after - before, out=response.weights.copy(), where=moved
+    )
+    largest = trial.energies / after  # no band adds more than all it has
+    weights = np.clip(slope, np.minimum(SMALLEST_SHARE * response.weights, largest), largest)
+    return Response(weights, trial.rest + float(np.sum(trial.energies - weights * after)))
+
+
+def _best_lay(roll: Roll, trial: Trial, lay: tuple[float, float], told: Callable[[str], None]) -> Trial:
+    """Choose the lay that makes the least of a texture's response."""
+    rolled = [trial]
+
+    def louder(logarithm: float) -> float:
+        lateral = float(np.exp(logarithm))
+        rolled.append(roll(trial.levels, lateral))
+        told(f"{rolled[-1].level:.2f} dB, lay {lateral:.3g}")
+        return rolled[-1].level
+
+    low, high = np.log(lay)
+    for end in (low, high):
+        louder(end)
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # of the last of few trials
+        minimize_scalar(
+            louder, bounds=(low, high), method="bounded",
+            options={"maxiter": LAY_TRIALS, "xatol": LAY_PRECISION},
+        )  # fmt: skip
+    allowed = rolled if trial.lateral is not None and lay[0] <= trial.lateral <= lay[1] else rolled[1:]
+    return min(allowed, key=lambda each: each.level)

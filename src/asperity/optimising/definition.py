@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from asperity.arguments import Array, NDArray
-from asperity.case import cases, describing, form, scene
+from asperity.case import any_case, cases, form, scene
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
 from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
@@ -257,4 +257,4 @@ def assignment_of(
 
 def assignment_template() -> str:
     """A commented assignment."""
-    return _HEAD + describing.commented(Aim, {"rms_at_least": '"0.5 um"'})
+    return _HEAD + any_case.commented(Aim, {"rms_at_least": '"0.5 um"'})

@@ -12,9 +12,8 @@ from asperity.arguments import Array, shown
 from asperity.case.content import case_key
 from asperity.case.scene import Case
 from asperity.errors import InputError, PhysicsWarning
-from asperity.optimising.allocation import Limits, rms_of
+from asperity.optimising.allocation import Limits, Trial, rms_of, search
 from asperity.optimising.definition import Assignment, Bands, assignment_of, bands_of, with_texture
-from asperity.optimising.searching import Trial, search
 from asperity.progress import Progress, shown_progress
 from asperity.running import run
 from asperity.scenarios.preparing import prepare

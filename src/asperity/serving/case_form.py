@@ -13,8 +13,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from asperity import __version__
 from asperity.arguments import shown
 from asperity.case import PRESETS
+from asperity.case.any_case import CaseKey, allowed_in, entries, entry_of
 from asperity.case.cases import case_class
-from asperity.case.describing import CaseKey, allowed_in, entries, entry_of
 from asperity.case.scene import Case
 from asperity.case.toml import toml_value
 from asperity.errors import InputError

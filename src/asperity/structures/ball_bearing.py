@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
-from asperity.arguments import ArrayLike, not_negative, one_of, positive, real, require, whole
+from asperity.arguments import ArrayLike, not_negative, one_of, real, require, whole
 from asperity.contact.hertz import Hertz, in_groove
-from asperity.parameters import Choice, MaterialOrName, Number, Quantity, parameter
+from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
 from asperity.reference.bearings import BEARINGS, CLEARANCE, CONFORMITY, HARDNESS, STATIC_PRESSURE
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
 
@@ -115,14 +115,7 @@ class BallBearing:
     )
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "balls", whole("balls", self.balls, "a whole number, 3 or more", at_least=3))
-        for name in ("ball_diameter", "pitch_diameter", "hardness"):
-            positive(f"{name} of a bearing", getattr(self, name))
-        for name in ("inner_conformity", "outer_conformity"):
-            remedy = "It is the radius of the groove over the diameter of the ball, as 0.52."
-            real(name, getattr(self, name), "above 0.5, at most 1", above=0.5, at_most=1.0, remedy=remedy)
-        not_negative("preload (N)", self.preload)
-        one_of("turning", self.turning, ("inner", "outer"))
+        checked_parameters(self)
         self._check_fit()
 
     def _check_fit(self) -> None:
@@ -140,7 +133,7 @@ class BallBearing:
             return
         most = 0.5 * self.groove_distance
         remedy = "Is the unit right? Or give larger conformities."
-        clearance = real("clearance (m)", self.radial_clearance, "a finite number")
+        clearance = self.radial_clearance
         allowed = f"less than {most * 1e6:.4g} µm, where the balls touch at 41 deg"
         require(clearance < most, "clearance", f"{clearance * 1e6:.4g} µm", allowed, remedy)
         if clearance < 0.0:

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
-from asperity.errors import InputError
-from asperity.parameters import Quantity, keys_of, parameter
+from asperity.parameters import Quantity, checked_parameters, parameter
 from asperity.structures.modal import modal_answers
 from asperity.structures.periodic_rail import refuse_decay
 from asperity.structures.support import BendingSleeper, MeasuredSleeper, RigidMass, Spring
@@ -79,11 +78,7 @@ class LateralRail:
     )
 
     def __post_init__(self) -> None:
-        for name, key in keys_of(type(self), "").items():
-            try:
-                key.kind(getattr(self, name))
-            except InputError as error:
-                raise error.about(f"{name.replace('_', ' ')} of the rail sideways") from None
+        checked_parameters(self)
 
     @property
     def height(self) -> float:

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import NDArray, require, shown
-from asperity.case.any_case import AnyCase
+from asperity.case.any_case import AnyCase, CaseKey, entry_of, value_in_toml
 from asperity.case.content import content, described_value, holds_memory
-from asperity.case.describing import CaseKey, entry_of, value_in_toml
 from asperity.case.form import Section
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin, Text, key, keys_of

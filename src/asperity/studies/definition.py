@@ -13,11 +13,10 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import require, shown
-from asperity.case.any_case import AnyCase
+from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
 from asperity.case.chosen_lengths import shared_lengths
 from asperity.case.content import case_key, content, file_digest
-from asperity.case.describing import entry_of
 from asperity.case.form import numbered
 from asperity.case.scene import Case
 from asperity.case.toml import toml_text

@@ -13,9 +13,9 @@ import xarray
 
 from asperity import files
 from asperity.arguments import Array, file_path, one_of, require, shown
+from asperity.case.any_case import entry_of
 from asperity.case.ball_bearing import BallBearingCase
 from asperity.case.bearing import read_signal
-from asperity.case.describing import entry_of
 from asperity.errors import InputError
 from asperity.results import save, variable
 from asperity.sensing import through_path, with_noise
