@@ -5,7 +5,14 @@ from numpy.testing import assert_allclose
 from asperity import BallBearing, HalfSpace
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.laws.layout import force
-from asperity.scenarios.raceway_laws import FOLLOWED, OnRaceway, ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.raceway_laws import (
+    FOLLOWED,
+    OnRaceway,
+    ball_heights,
+    raceway_laws,
+    raceway_on,
+    raceway_with_balls,
+)  # fmt: skip
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway
 
@@ -206,3 +213,34 @@ def test_direct_solves_what_the_table_holds():
     approach = APPROACH - on.felt[rows.round().astype(int) % on.rows]
     table, direct = (force(on.law(name, 0.0), places, approach) for name in ("table", "direct"))
     assert_allclose(table, direct, rtol=1e-3)
+
+
+def test_direct_over_a_pit_stays_between_its_rows():
+    """Splines would swing beyond the edges, by more than the contact is deep."""
+    surface = raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(PIT,))
+    table, direct = (laws_on(surface, name)[name] for name in ("table", "direct"))
+    places = np.pi * MM + np.array([-0.13, -0.09, -0.03, 0.0, 0.05]) * MM
+    places = surface.spacing[0] * (np.round(places / surface.spacing[0])[:, None] + [0.0, 0.3, 0.5, 0.8])
+    found, exact = (force(law, places.ravel(), APPROACH) for law in (direct, table))
+    assert_allclose(found, exact, rtol=0.012)  # half a cell more or less of the pit
+    assert_allclose(found[::4], exact[::4], rtol=1e-3)
+
+
+@pytest.mark.parametrize("forwards", [True, False])
+def test_direct_sees_the_pits_of_ball_and_raceway_where_they_are(forwards):
+    """One deeper pit where both meet, two where the ball has turned on; on other cells and a finer grid."""
+    surface, away, radius, beta = raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(PIT,)), 0.05 * MM, 0.7 * MM, 5.0
+    pit = Fault("pit", angle=beta, length=0.18 * MM, depth=0.28 * MM)
+    ball = raceway_on(CONTACT, 0.8 * LOAD, radius, faults=(pit,))
+    assert ball.spacing != surface.spacing
+    (law,) = raceway_with_balls(CONTACT, surface, [ball], LOAD, forwards=forwards)
+    sign = 1.0 if forwards else -1.0
+    spots = beta - sign * np.array([away, -away]) / radius + 2 * np.pi * np.array([0, 7])
+    on = law.prepare(np.column_stack([[np.pi * MM - away] * 2, spots]))
+    for step, places in enumerate(([away, away], [away, -away])):
+
+        def both(x, y, places=places):
+            return -0.28 * MM * sum(np.hypot(x - at, y) < 0.09 * MM for at in places)
+
+        assert_allclose(on.evaluate(step, APPROACH)[0], solved(both, APPROACH), rtol=8e-3)
+        on.accept(step)

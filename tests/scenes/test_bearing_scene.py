@@ -9,12 +9,14 @@ import pytest
 
 import asperity
 from asperity.case.cases import as_case
-from asperity.errors import OutOfRangeWarning
+from asperity.errors import OutOfRangeWarning, percent
 from asperity.reference.materials import MATERIALS
-from asperity.scenarios.bearing import bearing_rings, cage_slip, prepare_bearing, thinned
-from asperity.scenes.bearing import heard_group
+from asperity.scenarios.bearing import PreparedBearing, bearing_rings, cage_slip, prepare_bearing, thinned
+from asperity.scenarios.raceway_laws import raceway_with_balls
+from asperity.scenes.bearing import bearing_result, heard_group
 from asperity.scenes.figures.bearing import DRAWING
 from asperity.schema import bearing as schema
+from asperity.surfaces.raceway import Raceway
 from small_cases import BEARING
 
 D, PITCH, BALLS, TURNS = 7.94e-3, 39.04e-3, 9, 30.0
@@ -268,6 +270,49 @@ def test_faults_that_overlap_are_told():
     prepared = prepare_bearing(as_case(BEARING | {"fault": deeper}))
     assert "their heights add up" in str(prepared.caught[0].message)
     assert prepared.raceways[1].faults.min() == pytest.approx(-0.2e-3)
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.TruncatedContactWarning")  # of few cells
+def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
+    """On coarse cells: a ball's waves under the contact, and their heights beside a smooth ball."""
+    of = {"balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"}
+    case = as_case(
+        {"kind": "ball-bearing", "bearing": of, "axial": "60 N", "speed": "120000 1/min", "settling": "0 s",
+         "laws": ["areal", "direct"], "duration": "2.1 ms", "centrifugal": False, "time_step": "3 us",
+         "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
+    )  # fmt: skip
+    bearing, surfaces, directions = case.bearing.bearing, [], []
+    radii = (*bearing.raceway_radii, *[0.5 * bearing.ball_diameter] * 3)
+    for number, radius in enumerate(radii):
+        contact, load = case.contacts[min(number, 1)]
+        axes = contact.semi_axes(contact.approach(load))
+        rows, lines = round(2 * np.pi * radius / axes[0] * 3) + 7 * number, 17
+        wave = 0.2e-6 * np.cos(2 * 2 * np.pi * np.arange(rows) / rows + number) * (number > 1)
+        spacing = 2 * np.pi * radius / rows, axes[1] / 2.5
+        surfaces.append(Raceway(np.zeros((rows, lines)), spacing, wave))
+
+    def seen(*given, forwards, **keys):
+        directions.append(forwards)
+        return raceway_with_balls(*given, forwards=forwards, **keys)
+
+    monkeypatch.setattr("asperity.scenarios.bearing.raceway_with_balls", seen)
+    prepared = PreparedBearing(case, tuple(surfaces[:2]), tuple(surfaces[2:]), ())
+    tree = bearing_result(prepared, lambda *_: None, [], brief=True)
+    force = tree["rolling/outer_force"].values
+    within = slice(20, -20)  # of the filter
+    assert force[1, :, within].std(axis=1).min() > 0.03 * force[1].mean()
+    varying = force[..., within] - force[..., within].mean(axis=-1, keepdims=True)
+    assert np.std(varying[0] - varying[1]) < 0.05 * np.std(varying[1])
+    off = []
+    for ring in ("inner", "outer"):
+        found, solved = tree[f"rolling/{ring}_force"].values
+        off.append(percent(np.sqrt(np.mean((found - solved) ** 2) / solved.var(axis=1).mean())))
+    *_, check = json.loads(tree["contact"].attrs["validity"])
+    assert check["quantity"].startswith("areal from direct")
+    assert check["value"].split(", ")[:2] == off
+    # balls run forwards on the ring that stands still
+    assert directions == [False, True]
+    assert np.ptp(tree["rolling/ball_azimuth"].values[0]) > np.pi
 
 
 def test_pressures_that_dent_are_warned_of():

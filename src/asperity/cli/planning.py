@@ -77,6 +77,7 @@ def planned(prepared: ReadyCase, *, converge: bool = False) -> dict[str, Any]:
 
         assert isinstance(prepared, PreparedBearing)
         rows, work = expected(prepared)
+        rows.append(_work(work))
     return {
         "plan": [{"name": name, "value": value} for name, value in rows],
         "work": {
@@ -121,8 +122,11 @@ def plan(prepared: PreparedCase, work: Work) -> Rows:
     rows += [(f"contact solutions, {name}", f"at most {count}") for name, count in work.solutions.items()]
     if scan := work.scans.get("path"):
         rows.append(("scan of the path", described_scan(scan)))
-    coarse = duration(float(f"{work.seconds:.1g}"))
-    return [*rows, ("work", f"about {coarse}, less what the cache holds")]
+    return [*rows, _work(work)]
+
+
+def _work(work: Work) -> tuple[str, str]:
+    return "work", f"about {duration(float(f'{work.seconds:.1g}'))}, less what the cache holds"
 
 
 def _law_choice(prepared: PreparedCase) -> LawChoice | None:

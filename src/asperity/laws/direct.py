@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -41,6 +43,13 @@ class Direct:
         Tolerance of each solution, as in `HalfSpace.solve`.
     damping : float
         c, N s/m.
+    faults : ndarray, shape (rows, ny), optional
+        Further heights that have edges, m: straight between rows, and where they differ by more than `drop`,
+        m, those of the nearer row.
+    drop : float
+        That.
+    remedies : tuple of str
+        What is made smaller if solutions miss their tolerance, and what to do if the window cuts them off.
 
     Raises
     ------
@@ -57,6 +66,9 @@ class Direct:
     rtol: float = 1e-6
     damping: float = 0.0
     name: str = "direct"
+    faults: Array | None = None
+    drop: float = 0.0
+    remedies: tuple[str, str] = "numerics.rtol", 'contact.window = "{:.3g} mm" holds them.'
 
     def __post_init__(self) -> None:
         not_negative("contact damping (N s/m)", self.damping)
@@ -64,6 +76,13 @@ class Direct:
         received = f"a body of {self.body.shape} cells on a path of {self.heights.shape}"
         allowed = "a body as wide as the path, not longer, with an odd number of rows"
         require(wide == ny and nx % 2 == 1 and rows >= nx, "direct contact", received, allowed)
+
+    @cached_property
+    def between_rows(self) -> BSpline:
+        """Quintic splines along the rows of the texture, over their numbers."""
+        from scipy.interpolate import make_interp_spline
+
+        return make_interp_spline(np.arange(len(self.heights)), self.heights, k=5)
 
     def prepare(self, positions: ArrayLike) -> DirectOnPath:
         """Lay the law out on positions (n,) of the contact, m."""
@@ -116,9 +135,9 @@ class DirectOnPath:
     def __init__(self, law: Direct, contact: ContactInPlace, offsets: Array) -> None:
         self.law, self.contact, self.offsets = law, contact, offsets
         self.counts, self.overlap = np.zeros(4, dtype=np.int64), 0.0
+        self.other: DirectOnPath | None = None  # what rolls on it, where that is rough, too
         self._step, self._heights = -1, np.zeros(0)
         self._tried = False  # whether there is a solution of this step
-        self._spline: BSpline | None = None
         self._last: Accepted | None = None
         self._before: Accepted | None = None
 
@@ -131,7 +150,7 @@ class DirectOnPath:
     def settle(self, step: int, approach: float, compliance: float) -> float:
         """Elastic force, N, of bodies that yield to it by a compliance, m/N; approach without force, m."""
         if self._step != step:
-            self._step, self._heights, self._tried = step, self._rows_at(float(self.offsets[step])), False
+            self._step, self._heights, self._tried = step, self._under(step), False
         if self._tried:
             self.contact.start_again()
         else:
@@ -173,20 +192,33 @@ class DirectOnPath:
         from asperity.contact.scan import Counts, warn_of_flaws, window_for
 
         window = window_for(self.law.body, self.law.spacing, self.overlap)
-        remedy = f'contact.window = "{window * 1e3:.3g} mm" holds them.'
-        warn_of_flaws(Counts(*self.counts.tolist()), "the direct law", "numerics.rtol", remedy)
+        tolerance, remedy = self.law.remedies
+        counts = Counts(*self.counts.tolist())
+        warn_of_flaws(counts, "the direct law", tolerance, remedy.format(window * 1e3))
+
+    def _under(self, step: int) -> Array:
+        """Heights in the window at a step, of both surfaces if there are two."""
+        own = self._rows_at(float(self.offsets[step]))
+        return own if self.other is None else own + self.other._under(step)
 
     def _rows_at(self, offset: float) -> Array:
         """Rows of the texture from an offset on; between rows by quintic splines, which keep short waves."""
         first, count = round(offset), self.law.body.shape[0]
-        if abs(offset - first) < 1e-6:
-            return self.law.heights[first : first + count]
-        if self._spline is None:
-            from scipy.interpolate import make_interp_spline
+        whole = abs(offset - first) < 1e-6
+        rows = self.law.heights[first : first + count] if whole else self._between(offset)
+        faults = self.law.faults
+        if faults is None or not faults[first - 1 : first + count + 1].any():
+            return rows
+        nearer = faults[first : first + count]
+        if whole:
+            return rows + nearer
+        low, share = math.floor(offset), offset % 1.0
+        before, after = faults[low : low + count], faults[low + 1 : low + 1 + count]
+        straight = before + share * (after - before)
+        return np.asarray(rows + np.where(np.abs(after - before) > self.law.drop, nearer, straight))
 
-            rows = np.arange(len(self.law.heights))
-            self._spline = make_interp_spline(rows, self.law.heights, k=5)
-        return np.asarray(self._spline(offset + np.arange(count)))
+    def _between(self, offset: float) -> Array:
+        return np.asarray(self.law.between_rows(offset + np.arange(self.law.body.shape[0])))
 
     def _start(self, step: int) -> None:
         """Let a step start from the accepted pressures."""

@@ -79,8 +79,8 @@ class RolledBearing:
 def roll_bearing(
     bearing: BallBearing,
     rings: BearingRings,
-    inner_law: Law,
-    outer_law: Law,
+    inner_law: Law | Sequence[Law],
+    outer_law: Law | Sequence[Law],
     *,
     speed: float,
     radial: float = 0.0,
@@ -109,9 +109,10 @@ def roll_bearing(
         Its geometry and speeds.
     rings : BearingRings
         At least one of them must be held, radially, and axially where contacts carry an axial load.
-    inner_law, outer_law : Law
+    inner_law, outer_law : Law, or sequence of Law
         Of the contact with each raceway, known for positions from 0 to the circumference 2πR,
-        ``bearing.raceway_radii``; damping is theirs.
+        ``bearing.raceway_radii``; damping is theirs. Those of a sequence, one for each ball, are laid out on
+        positions (n, 2): that one, and the angle of the spot of the ball that touches, rad.
     speed : float
         Of the ring that turns, turns per second.
     radial, axial : float
@@ -235,6 +236,11 @@ class _Turning:
         """Angle of the spot of a ball that touches a ring; the spots are opposite."""
         return lambda first, stop: self._spin * self._time(first, stop) + (0.0 if ring else math.pi)
 
+    def on_both(self, ball: int, ring: int) -> Along:
+        """The same beside the angle of the spot that touches (n, 2)."""
+        both = self.on_raceway(ball, ring), self.spot(ring)
+        return lambda first, stop: np.column_stack([each(first, stop) for each in both])
+
     def usual_load(self, radial: float, axial: float) -> float:
         """Contact force by which tolerances are measured, N: that of the ball that carries most, about."""
         sine, overlap = math.sin(self.contact_angle), max(-self.bearing.apart(self.contact_angle), 0.0)
@@ -245,7 +251,7 @@ class _Turning:
 def _mechanism(
     bearing: BallBearing,
     rings: BearingRings,
-    laws: tuple[Law, Law],
+    laws: tuple[Law | Sequence[Law], Law | Sequence[Law]],
     turning: _Turning,
     centrifugal: float,
     ball_heights: Sequence[ArrayLike],
@@ -269,7 +275,10 @@ def _mechanism(
                 sides.append(Side(bending[ring], turning.azimuth(j, ring), sign))
             apart = 0.0 if ring else bearing.apart(turning.contact_angle)
             heights = _heights(wave, turning.spot(ring), -apart)
-            edges.append(Edge(laws[ring], turning.on_raceway(j, ring), tuple(sides), heights))
+            law, along = laws[ring], turning.on_raceway(j, ring)
+            if isinstance(law, Sequence):
+                law, along = law[j], turning.on_both(j, ring)
+            edges.append(Edge(law, along, tuple(sides), heights))
     return Mechanism(rings.structures, [ball] * bearing.balls, edges)
 
 

@@ -14,7 +14,7 @@ from asperity.arguments import Array, NDArray, positive, require
 from asperity.errors import Outcome
 from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
-from asperity.laws.spec import Law, SteppedLaw
+from asperity.laws.spec import Law, SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.rolling import assembly, steps
 from asperity.rolling.ground import Ground, no_channels
@@ -44,7 +44,7 @@ class Edge:
     """A contact of a body with structures, or of structures with each other."""
 
     law: Law
-    positions: Along  # where the law is laid out, m
+    positions: Along  # where the law is laid out, m; of one that takes several, a column for each
     sides: tuple[Side, ...] = ()
     heights: Along | None = None  # what is there beside the law's texture, m, positive out of the material
 
@@ -137,7 +137,7 @@ class _OnEdges:
 
     def place(self, contact: int, step: int) -> float:
         """Position of a contact at a step, m."""
-        return float(self.mechanism.edges[contact].positions(step, step + 1)[0])
+        return float(self.mechanism.edges[contact].positions(step, step + 1).flat[0])
 
     def shapes_into(self, first: int, shapes: Array, slopes: Array) -> None:
         """Write mode shapes under the contacts and their rates (steps, n, s), from a step on."""
@@ -175,7 +175,7 @@ def _laid(edge: Edge, first: int, stop: int) -> Prepared | SteppedLaw:
     heights = edge.heights(first, stop)
     if isinstance(prepared, Prepared):
         return prepared._replace(planes=prepared.planes - heights)
-    return RaisedLaw(prepared, heights)
+    return RaisedSettlingLaw(prepared, heights) if settles(prepared) else RaisedLaw(prepared, heights)
 
 
 def _looked_up(edge: Edge, first: int, stop: int) -> Prepared:
@@ -210,6 +210,17 @@ class RaisedLaw(SteppedLaw):
     def warn_of_flaws(self) -> None:
         """Warn of what went wrong."""
         self.law.warn_of_flaws()
+
+
+@dataclass(frozen=True, eq=False)
+class RaisedSettlingLaw(RaisedLaw):
+    """The same of one that finds its force together with what the bodies yield to it."""
+
+    law: SettlingLaw
+
+    def settle(self, step: int, approach: float, compliance: float) -> float:
+        """Force, N, as of the law itself where bodies are closer by the height."""
+        return self.law.settle(step, approach + float(self.heights[step]), compliance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -294,7 +305,7 @@ def _standing(edge: Edge, step: int) -> Edge:
     """An edge that stays where it is at a step."""
 
     def stay(along: Along) -> Along:
-        return lambda first, stop: np.repeat(along(step, step + 1), stop - first)
+        return lambda first, stop: np.repeat(along(step, step + 1), stop - first, axis=0)
 
     sides = tuple(replace(side, places=stay(side.places)) for side in edge.sides)
     heights = None if edge.heights is None else stay(edge.heights)

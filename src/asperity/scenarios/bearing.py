@@ -12,11 +12,11 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BallBearingCase
 from asperity.errors import InputError, PhysicsWarning
-from asperity.laws import Need, spec_of
+from asperity.laws import Law, Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios.preparing import START_TIME, Work, refuse
-from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on, raceway_with_balls
 from asperity.scenarios.reducing import STATES
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS
@@ -83,6 +83,8 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
         rough = np.count_nonzero((surface.heights + surface.faults).any(axis=1))
         if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
             solutions[f"scan of the {NAMES[name]}"] = int(rough) * STATES
+    for law in (law for law in case.laws if spec_of(law).solved_every_step):
+        solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
     seconds = START_TIME + STEP_TIME * steps * found.bearing.balls * runs
     tones = ", ".join(f"{NAMES[part]} {turning.tone(part):.4g} Hz" for part in PARTS)
     load, least, angle = (
@@ -134,17 +136,26 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
     """Run the bearing by each law, at the sampling rate of the case."""
     case, store = prepared.case, Store()
     keys: dict[str, Any] = {"damping": case.contact_damping, "hardness": case.bearing.bearing.hardness}
+    contacts = list(zip(RINGS, case.contacts, prepared.raceways, strict=True))
     laws_of = [
         raceway_laws(case.laws, smooth, surface, load, cache=store, progress=progress, **keys)
-        for (smooth, load), surface in zip(case.contacts, prepared.raceways, strict=True)
+        for _, (smooth, load), surface in contacts
     ]
     smooth, load = case.contacts[1]
-    heights = [ball_heights(smooth, surface, load) for surface in prepared.balls]
+    averaged = [ball_heights(smooth, surface, load) for surface in prepared.balls]
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
     found = {}
     for name in case.laws:
+        laws: list[Law | list[Law]] = [built[name] for built in laws_of]
+        heights = averaged
+        if prepared.balls and spec_of(name).solved_every_step:
+            turning, heights = case.bearing.bearing.turning, []
+            laws = [
+                raceway_with_balls(smooth, surface, prepared.balls, load, forwards=ring != turning, **keys)
+                for ring, (smooth, load), surface in contacts
+            ]
         run = roll_bearing(
-            case.bearing.bearing, bearing_rings(case), *(built[name] for built in laws_of),
+            case.bearing.bearing, bearing_rings(case), *laws,
             speed=case.speed, radial=case.radial, axial=case.axial, duration=case.duration,
             time_step=case.step, settling=case.settling, slip=cage_slip(case), ball_heights=heights,
             centrifugal=case.centrifugal, sensors=sensors, highest_frequency=case.highest_frequency,

@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from scipy import fft
@@ -19,7 +19,7 @@ from asperity.kernels.along import OVERLAP
 from asperity.kernels.pointforce import Prepared
 from asperity.laws import Law, Need, spec_of
 from asperity.laws.areal import Areal
-from asperity.laws.direct import Direct
+from asperity.laws.direct import Direct, DirectOnPath
 from asperity.laws.hertz import HertzLaw
 from asperity.laws.spec import SteppedLaw
 from asperity.laws.table import Table
@@ -51,6 +51,10 @@ OTHER_LOADS = (0.25, 4.0)
 """Loads at which it is told how far laws are off over a fault, over that which they are made for."""
 FAULT_OFF = 0.1
 """Share of the force from which that is more than a note."""
+REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows hold eight times as much."
+"""For contacts solved in every step on raceways."""
+FRINGE = 16
+"""Rows of a ball beyond either end of its circle, from which splines close it."""
 SAMPLES = 8
 """Places of a rough raceway whose mean is the force curve of `areal`."""
 
@@ -140,6 +144,45 @@ class Closed:
 
 
 @dataclass(frozen=True, eq=False)
+class OnBoth:
+    """`direct` on a raceway with the surface of the ball that rolls on it.
+
+    Parameters
+    ----------
+    raceway : Closed
+        `direct` of the raceway.
+    ball : Direct
+        The surface of the ball on the same cells, from zero to its circumference at least.
+    radius : float
+        Of the circle of the ball that rolls, m; negative where the contact runs against the positions on the
+        raceway, with the surface in the other order.
+    """
+
+    raceway: Closed
+    ball: Direct
+    radius: float
+
+    @property
+    def name(self) -> str:
+        """Name of the law."""
+        return self.raceway.name
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+        return self.raceway.damping
+
+    def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
+        """Lay the law out on positions (n, 2): on the raceway, m, and the angle of the ball's spot, rad."""
+        places, spots = np.asarray(positions, dtype=float).T
+        found = self.raceway.prepare(places)
+        assert isinstance(found, DirectOnPath)
+        around = 2.0 * math.pi * abs(self.radius)
+        found.other = self.ball.prepare(np.mod(self.radius * spots, around))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
 class OnRaceway:
     """A ball on a raceway: what its contact feels, its forces all around, and laws made of them.
 
@@ -159,6 +202,8 @@ class OnRaceway:
         Keeps what was scanned.
     progress : Progress, optional
         Told how far the scan is.
+    balls : sequence of Raceway
+        Surfaces over whose faults the window reaches, too.
     """
 
     contact: Hertz
@@ -168,6 +213,7 @@ class OnRaceway:
     accuracy: float = FORCE_ACCURACY
     cache: Cache | None = None
     progress: Progress | None = None
+    balls: Sequence[Raceway] = ()
 
     @cached_property
     def axes(self) -> tuple[float, float]:
@@ -192,15 +238,20 @@ class OnRaceway:
         Over a fault the ball may touch where it sinks to, or behind a bump.
         """
         (dx, dy), contact, faults = self.surface.spacing, self.contact, self.surface.faults
-        sound = np.flatnonzero(~faults.any(axis=1))
-        longest = dx * np.diff(np.append(sound, sound[:1] + self.rows)).max(initial=1)
-        sinks = min(-float(faults.min()), longest**2 / (8.0 * contact.radius_x))
-        reach = math.sqrt(2.0 * contact.radius_x * max(sinks, float(faults.max())))
+        reach = max(self._reach(each) for each in (self.surface, *self.balls))
         half, lines = math.ceil((HALF_WINDOW * self.axes[0] + reach) / dx), faults.shape[1]
         x, y = (np.arange(2 * half + 1) - half) * dx, (np.arange(lines) - lines // 2) * dy
         body = np.add.outer(x**2 / (2.0 * contact.radius_x), y**2 / (2.0 * contact.radius_y))
         largest = HIGHEST_FORCE * self.load
         return Geometry(body, (dx, dy), contact.modulus, contact, self.load, largest)
+
+    def _reach(self, surface: Raceway) -> float:
+        """How far before and behind the middle a ball may touch over the faults of a surface, m."""
+        faults, radius = surface.faults, self.contact.radius_x
+        sound = np.flatnonzero(~faults.any(axis=1))
+        longest = surface.spacing[0] * np.diff(np.append(sound, sound[:1] + len(faults))).max(initial=1)
+        sinks = min(-float(faults.min()), longest**2 / (8.0 * radius))
+        return math.sqrt(2.0 * radius * max(sinks, float(faults.max())))
 
     @cached_property
     def space(self) -> HalfSpace:
@@ -347,13 +398,39 @@ class OnRaceway:
         grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
         OutOfRangeWarning.warn(message, grade)
 
+    def _direct(self, heights: Array, faults: Array, dx: float, damping: float) -> Direct:
+        """`direct` of closed heights and faults (rows, lines), m, dx apart along."""
+        half, dy = len(self.shape.body) // 2, self.surface.spacing[1]
+        closed, edges = (self._around(each, half + 1) for each in (heights, faults))
+        given = closed, self.shape.body, (dx, dy), self.contact.modulus, -(half + 1) * dx, self.hardness
+        drop = float(self.contact.approach(self.load))
+        whole = Direct(*given, rtol=rtol_for(self.accuracy), damping=damping, remedies=REMEDIES)
+        return replace(whole, faults=edges, drop=drop) if edges.any() else whole
+
+    def with_ball(self, raceway: Closed, ball: Raceway, *, forwards: bool) -> OnBoth:
+        """`direct` of this raceway with a ball, whose spots come up as positions rise, or against them."""
+        from scipy.ndimage import map_coordinates
+
+        (dx, dy), lines, (rows, wide) = self.surface.spacing, self.shape.body.shape[1], ball.heights.shape
+        count = round(ball.circumference / dx)  # the same cells, but for what closes the circle
+        along = np.arange(count) * (rows / count) + FRINGE
+        across = (np.arange(lines) - lines // 2) * (dy / ball.spacing[1]) + wide // 2
+        at = np.meshgrid(along, across, indexing="ij")
+
+        def on_cells(values: Array, order: Literal[1, 3]) -> Array:
+            found = np.asarray(map_coordinates(self._around(values, FRINGE), at, order=order, mode="nearest"))
+            return found if forwards else np.roll(found[::-1], 1, axis=0)
+
+        waves, faults = on_cells(ball.heights + ball.line[:, None], 3), on_cells(ball.faults, 1)
+        radius = ball.circumference / (2.0 * math.pi) * (1.0 if forwards else -1.0)
+        return OnBoth(
+            raceway, self._direct(waves, faults, ball.circumference / count, raceway.damping), radius
+        )
+
     def law(self, name: str, damping: float) -> Law:
         """A law of `LAWS` by its name, with a contact damping, N s/m."""
         if spec_of(name).solved_every_step:
-            half, (dx, dy) = len(self.shape.body) // 2, self.surface.spacing
-            whole = self._around(self.wavy + self.surface.faults, half + 1)
-            given = whole, self.shape.body, (dx, dy), self.contact.modulus, -(half + 1) * dx, self.hardness
-            return Direct(*given, rtol=rtol_for(self.accuracy), damping=damping)
+            return self._direct(self.wavy, self.surface.faults, self.surface.spacing[0], damping)
         plane = self._texture(self.felt)
         if Need.SCAN in spec_of(name).needs:
             return Table(self.table, damping, plane)
@@ -419,6 +496,38 @@ def raceway_laws(
     if surface.faults.any() and set(chosen) & {"areal", "hertz"}:
         on.warn_of_faults()
     return {name: Closed(on.law(name, damping), surface.circumference) for name in chosen}
+
+
+def raceway_with_balls(
+    contact: Hertz,
+    surface: Raceway,
+    balls: Sequence[Raceway],
+    load: float,
+    *,
+    forwards: bool,
+    damping: float = 0.0,
+    hardness: float | None = None,
+    accuracy: float = FORCE_ACCURACY,
+) -> list[Law]:
+    """`direct` of each ball with a surface of its own, as `asperity.rolling.bearing.roll_bearing` takes it.
+
+    Parameters
+    ----------
+    contact, surface, load, damping, hardness, accuracy
+        As in `raceway_laws`.
+    balls : sequence of Raceway
+        Surface of each ball, on any cells; it is laid on those of the raceway.
+    forwards : bool
+        Whether the balls roll towards higher positions on the raceway.
+
+    Returns
+    -------
+    list of Law
+        On positions (n, 2): on the raceway, m, and the angle of the spot of the ball that touches, rad.
+    """
+    on = OnRaceway(contact, surface, load, hardness, accuracy, balls=balls)
+    raceway = Closed(on.law("direct", damping), surface.circumference)
+    return [on.with_ball(raceway, ball, forwards=forwards) for ball in balls]
 
 
 def ball_heights(contact: Hertz, surface: Raceway, load: float) -> Array:

@@ -268,6 +268,22 @@ def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator
             f"up to {RESIDUAL:g}", Grade.WARNING if left > RESIDUAL else None,
             "The time step is coarse for what moves.", "Take a smaller time_step."
         )  # fmt: skip
+    yield from _missed(runs)
+
+
+def _missed(runs: dict[str, RolledBearing]) -> Iterator[Finding]:
+    """How far every law is from one that solves each contact in each step, where that was rolled."""
+    for exact in (name for name in runs if laws.spec_of(name).solved_every_step):
+        for name in (name for name in runs if name != exact):
+            off = []
+            for what in ("inner_force", "outer_force", "acceleration"):
+                found, solved = getattr(runs[name], what), getattr(runs[exact], what)
+                varied = np.mean(solved.var(axis=1))
+                off.append(percent(float(np.sqrt(np.mean((found - solved) ** 2) / varied))))
+            yield Finding(
+                f"{name} from {exact}: forces on the inner and the outer ring, acceleration", ", ".join(off),
+                f"rms, of how those of {exact} vary", None, "How far the law is from solved contacts.", ""
+            )  # fmt: skip
 
 
 def _numerics(case: BallBearingCase) -> Iterator[tuple[str, str]]:
