@@ -5,41 +5,30 @@ import math
 import numpy as np
 import pytest
 
-from asperity import (
-    ArchardWear,
-    EnergyWear,
-    FrictionalHalfSpace,
-    HalfSpace,
-    HeightMap,
-    Hertz,
-    Material,
-    wear_depth,
-    worn,
-)
-from asperity.contact.wear import Rubbing, rubbing
+from asperity import ArchardWear, EnergyWear, FrictionalHalfSpace, HalfSpace, HeightMap, Hertz, Material
+from asperity.contact.wear import Rubbing, rubbing, wear_depth, worn
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.store import Store
 from asperity.surfaces.synthesis import self_affine
 
-SHEAR, LOAD, RADII, SIDE = 80e9, 60e3, (0.4, 0.4), 16e-3
+SHEAR, LOAD, SIDE = 80e9, 60e3, 16e-3
 LINEAR = EnergyWear(plateau=math.inf, onset=math.inf)
 VOLUME = LINEAR.mild / LINEAR.density  # m³/J
 
 
-def wheel(n, friction, radii=RADII, nu=0.0, side=SIDE):
-    """Its shape on n² cells, and two like bodies."""
+def wheel(n, friction, radii=(0.4, 0.4), nu=0.0, side=SIDE, across=1.0):
+    """Its shape on n² cells, so much wider than long, and two like bodies."""
     x = side / n * (np.arange(n) - 0.5 * (n - 1))
     body = Material("body", 2.0 * SHEAR * (1.0 + nu), nu, 7850.0)
-    space = HalfSpace((n, n), side / n, SHEAR / (1.0 - nu))
-    gap = x[:, None] ** 2 / (2 * radii[0]) + x**2 / (2 * radii[1])
+    space = HalfSpace((n, n), (side / n, across * side / n), SHEAR / (1.0 - nu))
+    gap = x[:, None] ** 2 / (2 * radii[0]) + (across * x) ** 2 / (2 * radii[1])
     return gap, FrictionalHalfSpace(space, (body, body), friction)
 
 
-def rough(rows, n=24, rms=1e-6, seed=3):
+def rough(rows, n=24, rms=1e-6):
     d = SIDE / n
-    return self_affine(
-        (rows, n), (d, d), rms=rms, hurst=0.8, longest=8 * d, shortest=3 * d, seed=seed
-    ).heights
+    waves = {"longest": 8 * d, "shortest": 3 * d}
+    return self_affine((rows, n), (d, d), rms=rms, hurst=0.8, seed=3, **waves).heights
 
 
 def test_full_sliding_wears_as_its_closed_form_across():
@@ -48,14 +37,18 @@ def test_full_sliding_wears_as_its_closed_form_across():
     smooth, errors = Hertz(SHEAR, *radii), []
     b = smooth.semi_axes(smooth.approach(load))[1]
     for n in (12, 24, 48):
-        gap, rolling = wheel(n, mu, radii, side=18e-3)
+        gap, rolling = wheel(n, mu, radii, side=18e-3, across=0.8)
         found = rolling.roll(rolling.half_space.solve(gap, load=load), (xi, 0.0))
-        y = 18e-3 / n * (np.arange(n) - 0.5 * (n - 1))
+        y = 0.8 * 18e-3 / n * (np.arange(n) - 0.5 * (n - 1))
         peak = VOLUME * mu * xi * 0.75 * load / b
         expected = peak * np.maximum(1.0 - (y / b) ** 2, 0.0)
-        errors.append(np.abs(wear_depth(rolling, found, LINEAR) - expected).sum() / expected.sum())
+        depth = wear_depth(rolling, found, LINEAR)
+        errors.append(np.abs(depth - expected).sum() / expected.sum())
     assert errors[2] < 2e-3
     assert errors[2] < 0.5 * errors[1] < 0.25 * errors[0]
+    archard = ArchardWear(2e9, 1e-4, 1e-4, 1e-4)  # p s/H is friction work over µ H where all slips
+    assert wear_depth(rolling, found, archard) == pytest.approx(1e-4 / (mu * 2e9) / VOLUME * depth, rel=1e-6)
+    assert not rubbing(rolling, found, found).sliding[:, 0].any()
 
 
 def test_small_creepage_wears_as_kalkers_force_and_only_where_it_slips():
@@ -63,7 +56,7 @@ def test_small_creepage_wears_as_kalkers_force_and_only_where_it_slips():
     gap, rolling = wheel(48, 3.0, nu=0.25)
     contact = rolling.half_space.solve(gap, load=LOAD)
     found = rolling.roll(contact, (1e-4, 0.0))
-    a = (0.75 * LOAD * RADII[0] / rolling.half_space.modulus) ** (1 / 3)
+    a = (0.75 * LOAD * 0.4 / rolling.half_space.modulus) ** (1 / 3)
     volume = wear_depth(rolling, found, LINEAR).sum() * SIDE / 48
     assert volume == pytest.approx(VOLUME * SHEAR * a**2 * 4.12 * 1e-4**2, rel=0.02)
     assert found.stick_area > 0.9 * contact.area
@@ -90,13 +83,12 @@ def test_the_work_is_that_of_the_forces_and_of_what_is_stored(n):
         states.append(rolling.roll(contact, (xi, eta), spin, before=before))
         if before is not None:
             done += rubbing(rolling, states[-1], before).work.sum() * space.cell_area * dx
-    # the moment of what was there before counts at where it is now, a cell back
-    turned = [(s.moment * spin, s.moment * spin - dx * spin * s.force[1]) for s in states]
-    pushed = [-(s.force[0] * xi + s.force[1] * (eta + spin * dx / 6)) for s in states]
-    given = sum(0.5 * dx * (pushed[i] + pushed[i + 1] - turned[i + 1][0] - turned[i][1]) for i in range(7))
-    scale = abs(given)
-    assert done == pytest.approx(given + stored(states[0]) - stored(states[-1]), abs=1e-9 * scale)
-    assert abs(stored(states[-1]) - stored(states[0])) > 1e-3 * scale
+    ends = [-(s.force[0] * xi + s.force[1] * (eta + spin * dx / 6) + s.moment * spin) for s in states]
+    # what was there before has moved back by a cell, and with it the arm of its moment
+    back = [dx * spin * s.force[1] for s in states[:-1]]
+    given = 0.5 * dx * (sum(ends[1:]) + sum(ends[:-1]) + sum(back))
+    assert done == pytest.approx(given + stored(states[0]) - stored(states[-1]), abs=1e-9 * given)
+    assert abs(stored(states[-1]) - stored(states[0])) > 1e-3 * given
 
 
 @pytest.mark.parametrize("cells", [48, 24, 16])
@@ -104,7 +96,7 @@ def test_wear_of_a_varying_load_is_that_of_a_flat_punch(cells):
     """In full sliding a little more load is carried evenly along: the wave of wear is sin(ka)/(ka) of its."""
     gap, rolling = wheel(24, 0.01)
     dx, k = SIDE / 24, 2.0 * math.pi / (cells * SIDE / 24)
-    rail, a = np.zeros((48 + cells, 24)), (0.75 * LOAD * RADII[0] / SHEAR) ** (1 / 3)
+    rail, a = np.zeros((48 + cells, 24)), (0.75 * LOAD * 0.4 / SHEAR) ** (1 / 3)
     middle = dx * (np.arange(25 + cells) + 11.5)
     after = worn(rolling, rail, gap, LOAD * (1.0 + 0.02 * np.cos(k * middle)), LINEAR, (0.05, 0.0))
     x, line = dx * np.arange(24, 24 + cells), after.depth[24 : 24 + cells].sum(axis=1)
@@ -112,40 +104,45 @@ def test_wear_of_a_varying_load_is_that_of_a_flat_punch(cells):
     assert wave == pytest.approx(math.sin(k * a) / (k * a), abs=5e-3)
 
 
-@pytest.fixture(scope="module")
-def passed():
-    """A rough surface after many passes, in all regimes."""
+def test_what_is_removed_is_what_is_missing():
+    """After many passes in all regimes."""
     gap, rolling = wheel(24, 0.3, nu=0.3)
     law, surface = EnergyWear(plateau=5e-3, onset=1e6), HeightMap(rough(60), (SIDE / 24,) * 2, "made")
-    return surface, worn(rolling, surface, gap, LOAD, law, (2e-3, 0.0), 0.05, passes=40, step=20e-9), law
-
-
-def test_what_is_removed_is_what_is_missing(passed):
-    surface, after, _ = passed
+    after = worn(rolling, surface, gap, LOAD, law, (2e-3, 0.0), 0.05, passes=30, step=20e-9)
     missing = (surface.heights - after.surface.heights).sum() * (SIDE / 24) ** 2
     assert after.removed == pytest.approx(missing, rel=1e-9, abs=0.0)
-    assert after.removed == pytest.approx(after.depth.sum() * (SIDE / 24) ** 2, rel=1e-12, abs=0.0)
-    assert after.passes.sum() == 40
-    assert 3 < len(after.passes) < 40
-    assert after.surface.source == "made; worn by 40 passes"
+    assert after.passes.sum() == 30
+    assert 3 < len(after.passes) < 30
+    assert after.surface.source == "made; worn by 30 passes"
     assert min(after.shares.values()) > 0.05
-    assert sum(after.shares.values()) == pytest.approx(1.0)
     assert after.surface.heights[24:36, 8:16].std() < surface.heights[24:36, 8:16].std()
 
 
-@pytest.mark.parametrize("xi", [2e-4, 2e-3])
-def test_mild_wear_is_in_proportion_to_the_work(xi):
+def test_mild_wear_is_in_proportion_to_the_work_and_steps_are_small_against_the_roughness():
     gap, rolling = wheel(24, 0.3, nu=0.3)
-    after = worn(rolling, rough(36), gap, LOAD, LINEAR, (xi, 0.0), passes=1000)
+    job = (rolling, rough(28, rms=0.1e-6), gap, LOAD, LINEAR, (1e-3, 0.0), 0.0, 30)
+    after, same = worn(*job), worn(*job, step=0.1 * job[1].std())
     assert after.removed == pytest.approx(VOLUME * after.work.sum(), rel=1e-9, abs=0.0)
+    assert after.passes.tolist() == same.passes.tolist() != [30]
+
+
+def test_a_closed_surface_has_no_beginning():
+    gap, rolling = wheel(24, 0.3, nu=0.3)
+    one, other = (
+        worn(rolling, np.roll(rough(30), by, axis=0), gap, LOAD, LINEAR, (1e-3, 0.0), closed=True).depth
+        for by in (0, 11)
+    )
+    assert np.abs(np.roll(one, 11, axis=0) - other).max() < 2e-3 * one.max()
 
 
 def test_a_smooth_surface_is_worn_by_each_pass_as_by_steady_rolling():
     gap, rolling = wheel(24, 0.3, nu=0.3)
-    steady = rolling.roll(rolling.half_space.solve(gap, load=LOAD, rtol=1e-9), (2e-3, 0.0), rtol=1e-9)
-    after = worn(rolling, np.zeros((50, 24)), gap, LOAD, LINEAR, (2e-3, 0.0), rtol=1e-9)
-    expected = wear_depth(rolling, steady, LINEAR)
-    assert np.abs(after.depth[23:27] - expected).max() < 1e-5 * expected.max()
+    steady = rolling.roll(rolling.half_space.solve(gap, load=LOAD), (2e-3, 0.0))
+    after, expected = (
+        worn(rolling, np.zeros((50, 24)), gap, LOAD, LINEAR, (2e-3, 0.0)),
+        wear_depth(rolling, steady, LINEAR),
+    )
+    assert np.abs(after.depth[23:27] - expected).max() < 1e-4 * expected.max()
 
 
 def test_a_groove_takes_what_full_sliding_takes_whatever_its_shape():
@@ -154,7 +151,6 @@ def test_a_groove_takes_what_full_sliding_takes_whatever_its_shape():
     after = worn(rolling, np.zeros((17, 16)), gap, LOAD, LINEAR, (0.02, 0.0), passes=6000, closed=True)
     distance = 17 * 20e-3 / 16
     assert after.removed == pytest.approx(VOLUME * 0.1 * LOAD * 0.02 * distance * 6000, rel=2e-3, abs=0.0)
-    assert len(after.passes) > 9
     once = rolling.roll(rolling.half_space.solve(gap, load=LOAD), (0.02, 0.0))
     first, last = (each / each.max() for each in (wear_depth(rolling, once, LINEAR), after.depth[16]))
     assert (last >= first - 1e-9).all()
@@ -173,22 +169,22 @@ def test_what_stands_out_is_worn_where_it_stands():
 def test_a_part_that_was_kept_is_not_rolled_again(tmp_path):
     gap, rolling = wheel(16, 0.3, nu=0.3)
     job = (rolling, rough(24, 16), gap, LOAD, EnergyWear(), (3e-3, 0.0))
-    whole = worn(*job, passes=3, step=12e-9)
+    whole, how = worn(*job, passes=3, step=12e-9), {"passes": 3, "step": 12e-9, "cache": Store(tmp_path)}
 
     def stop(done, total, message):
         if message == "wear, pass 3 of 3":
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        worn(*job, passes=3, step=12e-9, cache=Store(tmp_path), progress=stop)
+        worn(*job, **how, progress=stop)
     again = []
-    how = {"cache": Store(tmp_path), "progress": lambda *said: again.append(said)}
-    resumed = worn(*job, passes=3, step=12e-9, **how)
+    resumed = worn(*job, **how, progress=lambda *said: again.append(said))
     assert whole.passes.tolist() == resumed.passes.tolist() == [2, 1]
     assert {message for *_, message in again} == {"wear, pass 3 of 3"}
     assert again[-1][:2] == (9, 9)
     assert np.array_equal(resumed.depth, whole.depth)
-    assert np.array_equal(resumed.volume, whole.volume)
+    other = worn(*job[:4], EnergyWear(density=8000.0), (3e-3, 0.0), **how)
+    assert other.removed == pytest.approx(whole.removed * 7850.0 / 8000.0, rel=1e-3, abs=0.0)
 
 
 @pytest.mark.parametrize(
@@ -227,7 +223,6 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
     ("call", "keywords", "message"),
     [
         (EnergyWear, {"mild": 0.0}, "mild of EnergyWear: received 0.0"),
-        (EnergyWear, {"density": math.inf}, "density of EnergyWear: received inf"),
         (EnergyWear, {"plateau": math.nan}, "plateau of EnergyWear: received nan"),
         (EnergyWear, {"onset": 1e6}, r"onset: received 1e\+06 Pa; allowed: at least the 1.038e\+07 Pa of"),
         (ArchardWear, {"hardness": -1.0}, "hardness of ArchardWear: received -1.0"),
@@ -239,13 +234,11 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
         (wear, {"load": 0.0}, "load: received 0.0; allowed: a force above 0"),
         (wear, {"load": [LOAD] * 3}, r"load: received an array of shape \(3,\).*one for each of 2 positions"),
         (wear, {"passes": 0}, "passes: received 0; allowed: a whole number of at least 1"),
-        (wear, {"passes": 1.5}, "passes: received 1.5"),
         (wear, {"speed": 0.0}, "rolling speed: received 0.0"),
         (wear, {"step": 0.0}, "step: received 0.0"),
         (wear, {"rtol": 1.0}, "rtol: received 1.0"),
         (wear, {"creepage": 0.01}, "creepage: received 0.01; allowed: two numbers"),
         (wear, {"spin": "1"}, "creepage: received '1'"),
-        (wear, {"progress": 3}, "progress: received 3"),
     ],
 )  # fmt: skip
 def test_what_has_no_meaning_is_refused(call, keywords, message):
@@ -254,9 +247,7 @@ def test_what_has_no_meaning_is_refused(call, keywords, message):
 
 
 def test_a_pass_that_removes_much_is_told():
-    with pytest.warns(
-        OutOfRangeWarning, match=r"a single pass removes 1.86 nm, more than the 1 nm after which"
-    ):
+    with pytest.warns(OutOfRangeWarning, match=r"a single pass removes 1.86 nm, more than the 1 nm after"):
         wear(creepage=(2e-3, 0.0), step=1e-9)
 
 

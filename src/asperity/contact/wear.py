@@ -448,25 +448,28 @@ def _pass(
     tell, distance, (along, across, spin) = progress or (lambda *_: None), space.spacing[0], job.motion
     depth, volume, work, start = np.zeros(heights.shape), np.zeros(len(REGIMES)), 0.0, None
     before: SlidingContact | None = None
-    for first, load in enumerate(job.load):
+    positions = len(job.load)
+    lead_in = rows if positions == len(heights) else 0  # a closed surface has been rolled over before
+    for first in range(-lead_in, positions):
         refuse_to_go_on()
-        tell(first, len(job.load), message)
+        tell(max(first, 0), positions, message)
         under = np.arange(first, first + rows) % len(heights)
-        contact = space.at_load(job.body - heights[under], float(load), start, job.rtol)
+        contact = space.at_load(job.body - heights[under], float(job.load[first]), start, job.rtol)
         with warnings.catch_warnings():  # those that did not converge are counted
             warnings.simplefilter("ignore", UnconvergedWarning)
             roll = partial(job.bodies.roll, contact, (along, across), spin, speed=job.speed, rtol=job.rtol)
             before = before or roll()
             after = roll(before=before)
-        rubs = rubbing(job.bodies, after, before)
+        start = np.zeros_like(contact.pressure)
+        start[:-1] = contact.pressure[1:]
+        rubs, before = rubbing(job.bodies, after, before), after
+        if first < 0:
+            continue
         rate, regime = job.law.removal(rubs)
-        before = after
         depth[under] += distance * rate
         volume += distance * space.cell_area * np.bincount(regime.ravel(), rate.ravel(), len(REGIMES))
         work += distance * space.cell_area * float(rubs.work.sum())
-        start = np.zeros_like(contact.pressure)
-        start[:-1] = contact.pressure[1:]
         flawed, cut_off = not (contact.converged and after.converged), contact.edge_share > TRUNCATED
         counts.append(Counts(1, contact.iterations, int(flawed), int(cut_off)))
-    tell(len(job.load), len(job.load), message)
+    tell(positions, positions, message)
     return depth, volume, work, total(counts)
