@@ -8,6 +8,9 @@ import pytest
 
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
+from asperity.scenarios.bearing import bearing_rings
+from asperity.structures.modal import ModalStructure
+from asperity.structures.ring import Ring
 from asperity.studies.definition import study_of
 
 CASE = {"kind": "ball-bearing", "bearing": {"name": "6205"}, "axial": "100 N"}
@@ -132,6 +135,68 @@ def trace(path, turned=360.0, drift=0.0):
     rows = "\n".join(f"{a},{d}" for a, d in zip(angle, deviation, strict=True))
     path.write_text(f"angle (deg),deviation (um)\n{rows}\n")
     return path
+
+
+RING = Ring.bending(0.06, 25e-3, 300.0, 0.3, most_lobes=3, damping_ratio=0.01)
+
+
+def table_of_modes(path, until=360, last=1.0, lowest=None, angle="angle (deg)"):
+    """Lobes cos nψ and sin nψ of a ring, in kHz, degrees and with their modal masses."""
+    psi = np.arange(0.0, until + 1.0, 5.0)
+    shapes = np.cos(np.outer(np.radians(psi), RING.lobes) - RING.phases)
+    shapes[-1] *= last
+    frequency = RING.frequencies / 1e3
+    frequency[0] = frequency[0] if lowest is None else lowest
+    head = (
+        ["frequency (kHz)", *frequency],
+        ["damping ratio", *RING.damping],
+        ["modal mass (kg)", *RING.radial**-2.0],
+    )
+    rows = [*head, [angle, *"abcd"], *np.column_stack([psi, shapes])]
+    path.write_text("\n".join(",".join(map(str, row)) for row in rows))
+    return str(path)
+
+
+def test_rings_bend_in_the_modes_of_a_file(tmp_path):
+    """As the ring does whose modes they are, in closed form."""
+    file = table_of_modes(tmp_path / "around.csv")
+    case = as_case(CASE | {"housing": {"modes": file}, "shaft": {"modes": file}})
+    assert parse_case(case.to_toml()) == case
+    rings, psi = bearing_rings(case), np.linspace(-1.0, 9.0, 40)
+    assert bearing_rings(as_case(CASE)).inner_bending is None
+    angle = case.static.contact_angle
+    for found in (rings.inner_bending, rings.outer_bending):
+        assert found.natural_frequencies == pytest.approx(RING.frequencies, rel=1e-12)
+        assert found.damping_ratios == pytest.approx(RING.damping)
+        expected = math.cos(angle) / math.cos(0.3) * RING.shapes(psi)[0]
+        assert found.shapes(psi)[0] == pytest.approx(expected, abs=2e-4 * np.abs(expected).max())
+    angles = np.linspace(0.0, 2.0 * np.pi, 73)
+    held = ModalStructure(angles, RING.frequencies, RING.damping, RING.shapes(angles)[0] / math.cos(0.3))
+    assert as_case(CASE | {"housing": {"modes": held}}).housing.bending(0.0).extent == (-math.inf, math.inf)
+
+
+@pytest.mark.parametrize(("how", "message"), [
+    ({"until": 355}, r"0 to 6\.19592 \(angles of modes \(rad\)\); allowed: 0 to 2π"),
+    ({"last": 0.9}, r"apart \(modes around a circle\); .* Repeat the first row"),
+    ({"lowest": 0.0}, r"one of 0 Hz; allowed: modes that bend"),
+    ({"angle": "position (mm)"}, r"angle \(rad\) and mode shapes"),
+    ({"angle": "angle"}, r"no unit of the angle"),
+])  # fmt: skip
+def test_modes_that_do_not_go_around_are_refused(how, message, tmp_path):
+    file = table_of_modes(tmp_path / "around.csv", **how)
+    with pytest.raises(CaseError, match=rf"housing\.modes: received .*{message}"):
+        as_case(CASE | {"housing": {"modes": file}})
+    both = {"modes": table_of_modes(tmp_path / "whole.csv"), "lobes": 3, "width": "9 mm", "thickness": "3 mm"}
+    with pytest.raises(CaseError, match=r"housing: received both lobes and modes"):
+        as_case(CASE | {"housing": both})
+
+
+@pytest.mark.parametrize("content", [b"\x00\x89HDF", b"frequency (Hz), nan\n", b""])
+def test_files_that_hold_no_modes_are_refused(content, tmp_path):
+    for name in ("around.csv", "around.nc", "around.uff"):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(CaseError, match=r"shaft\.modes: received"):
+            as_case(CASE | {"shaft": {"modes": str(tmp_path / name)}})
 
 
 def test_a_roundness_trace_is_read_with_its_units(tmp_path):

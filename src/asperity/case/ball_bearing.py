@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, require
 from asperity.case.any_case import AnyCase
 from asperity.case.bearing import LOAD, LOADS, BearingGeometry
 from asperity.case.body import DAMPING
+from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section, section
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.surface import INDEX
 from asperity.case.tables import Column, TableFile, TableSource, read_table
 from asperity.errors import InputError, PhysicsWarning
-from asperity.parameters import Choice, Flag, Key, ListOf, Number, Quantity, key, keys_of, optional
+from asperity.parameters import Choice, File, Flag, Key, ListOf, Number, Quantity, key, keys_of, optional
 from asperity.structures.ball_bearing import PARTS
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, closed_trace
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from asperity.contact.hertz import Hertz
     from asperity.structures.ball_bearing import Kinematics
     from asperity.structures.bearing_statics import LoadedBearing
+    from asperity.structures.modal import ModalStructure
+    from asperity.structures.ring import Around
 
 LAWS = ("table", "areal", "hertz", "direct")
 """Laws of a bearing; `direct` for a few turns at most."""
@@ -60,10 +63,43 @@ class ShaftKeys(Section):
     radial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it radially; 0 for none", _STIFF)
     axial_stiffness: float = key(_STIFFNESS, "100 MN/m", "spring that holds it axially; 0 for none", _STIFF)
     damping_ratio: float = key(_RATIO, 0.02, "damping ratio on these springs, and of its lobes")
+    modes: Path | ModalStructure | None = optional(
+        File(held=(Numbers,), content="a table of modes over the angle"),
+        "around.csv",
+        "modes in which the ring bends, with what holds it: radially, once around",
+        "it is rigid, but for its lobes",
+    )
+
+    def bending(self, contact_angle: float) -> Around | None:
+        """The ring by its modes, where it has any."""
+        from asperity.structures.modal import ModalStructure
+        from asperity.structures.modal_files import read_modal_structure
+        from asperity.structures.ring import Around
+
+        found = self.modes
+        if found is None:
+            return None
+        if isinstance(found, Path):
+            found = read_modal_structure(found, around=True)
+        known = isinstance(found, ModalStructure)
+        require(known, "modes", name_of(found), "a file, or a ModalStructure over angles in rad")
+        remedy = "Leave out rigid modes, which mass and springs make."
+        require(found.frequencies.all(), "modes", "one of 0 Hz", "modes that bend", remedy)
+        return Around(found, contact_angle)
+
+    def problems(self) -> Iterator[InputError]:
+        """Modes that can be read, and close."""
+        try:
+            self.bending(0.0)
+        except InputError as error:
+            about = "" if error.what == "modes" else f" ({error.what})"
+            yield error.about("modes", f"{error.received}{about}")
 
 
 class HousingKeys(ShaftKeys):
-    """The same of the outer ring, which may bend."""
+    """The same of the outer ring, which may bend by its section."""
+
+    ALTERNATIVES = (("lobes", "modes"),)
 
     lobes: int | None = optional(
         Number(at_least=2, at_most=20, whole=True), 4, "most lobes in which the ring bends", "it is rigid"

@@ -105,7 +105,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
 
 
 def bearing_rings(case: BallBearingCase) -> BearingRings:
-    """Both rings with what they carry, on what holds them; the outer one bends if the case says so."""
+    """Both rings with what they carry, on what holds them; they bend if the case says so."""
     angle, outer, of = case.static.contact_angle, case.housing, case.bearing.bearing
     inner, held = (
         Ring.rigid(
@@ -115,12 +115,13 @@ def bearing_rings(case: BallBearingCase) -> BearingRings:
         for keys in (case.shaft, outer)
     )  # fmt: skip
     if outer.lobes is None:
-        return BearingRings(inner, held)
+        return BearingRings(inner, held, case.shaft.bending(angle), outer.bending(angle))
     radius = of.raceway_radii[1] + 0.5 * outer.thickness
     mass = of.material.density * 2.0 * np.pi * radius * outer.width * outer.thickness
     stiffness = of.material.youngs_modulus * outer.width * outer.thickness**3 / 12.0
     lobes: dict[str, Any] = {"most_lobes": outer.lobes, "damping_ratio": outer.damping_ratio}
-    return BearingRings(inner, held, outer_bending=Ring.bending(mass, radius, stiffness, angle, **lobes))
+    bending = Ring.bending(mass, radius, stiffness, angle, **lobes)
+    return BearingRings(inner, held, case.shaft.bending(angle), bending)
 
 
 def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:

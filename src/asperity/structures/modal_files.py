@@ -185,6 +185,7 @@ def read_modal_structure(
     force_unit: str | None = None,
     damping: float | None = None,
     nodes: Sequence[int] | None = None,
+    around: bool = False,
 ) -> ModalStructure:
     """Read a structure from a file of its modes.
 
@@ -212,6 +213,9 @@ def read_modal_structure(
         Damping ratio of all modes, where the file states none.
     nodes : sequence of int, optional
         Numbers of the nodes on the path; all that have mode shapes if not given.
+    around : bool
+        Whether positions are angles, rad: the heading of a table is then ``angle (deg)``, and no universal
+        file is read.
 
     Returns
     -------
@@ -242,15 +246,15 @@ def read_modal_structure(
     given: dict[str, Any] = {"along": along, "force": force, "damping": damping, "nodes": numbers}
     given |= {"length_unit": length_unit, "force_unit": force_unit}
     kind = file.suffix.lower()
-    if kind in (".uff", ".unv", ".univ"):
+    if kind in (".uff", ".unv", ".univ") and not around:
         return _read_from(file, "universal", modes_of_universal, given)
     for name, value in given.items():
         if value is not None:
             allowed = "nothing: it is for universal files (.uff, .unv)"
             raise InputError(name, shown(value), allowed, f"{file.name} states it, in SI or with its units.")
     if kind in (".nc", ".nc4"):
-        return _read_from(file, "netCDF-4", modes_of_netcdf)
-    return _structure(_table_of_modes(file), file.name)
+        return _read_from(file, "netCDF-4", modes_of_netcdf, "rad" if around else "m")
+    return _structure(_table_of_modes(file, *(("angle", "rad") if around else ("position", "m"))), file.name)
 
 
 def _read_from(file: Path, kind: str, serve: Callable[..., Answer], *more: Any) -> ModalStructure:
@@ -268,31 +272,32 @@ def _structure(found: dict[str, Any], source: str) -> ModalStructure:
         raise error.about(f"{error.what} in {source}") from None
 
 
-def _table_of_modes(file: Path) -> dict[str, Array]:
-    """Read a text table, see `read_modal_structure`."""
+def _table_of_modes(file: Path, place: str, dimension: str) -> dict[str, Array]:
+    """Read a text table, see `read_modal_structure`, whose places have a name and a unit."""
+    table_of = _TABLE.replace("position (m)", f"{place} ({dimension})")
     found: dict[str, Array] = {}
     rows: list[list[float]] = []
     unit, residual = math.nan, math.nan
-    for number, cells in lines_of_cells(read_text(file, file.name, _TABLE, largest=LARGEST_FILE)):
+    for number, cells in lines_of_cells(read_text(file, file.name, table_of, largest=LARGEST_FILE)):
         values = [_cell(cell) for cell in cells]
         words = next((i for i, value in enumerate(values) if not math.isnan(value)), len(cells))
         heading = " ".join(cells[:words])
         label = heading.lower()
         row = next((row for row in ROWS if label.startswith(row)), None)
         if row and not rows and words < len(cells) and np.isfinite(values[words:]).all():
-            name, dimension = ROWS[row]
-            found[name] = np.array(values[words:]) * _stated(heading, row, dimension, file)
-        elif label.startswith("position") and not rows:
-            unit = _stated(heading.partition("residual")[0], "position", "m", file)
+            name, own = ROWS[row]
+            found[name] = np.array(values[words:]) * _stated(heading, row, own, file)
+        elif label.startswith(place) and not rows:
+            unit = _stated(heading.partition("residual")[0], place, dimension, file)
             _, there, last = " ".join(cells).rpartition("residual flexibility")
             residual = _stated(last, "residual flexibility", "m/N", file) if there else math.nan
         elif words == 0 and np.isfinite(values).all() and len(values) == len((rows or [values])[0]):
             rows.append(values)
         else:
-            raise InputError(file.name, f"'{', '.join(cells)[:40]}' in line {number}", _TABLE)
+            raise InputError(file.name, f"'{', '.join(cells)[:40]}' in line {number}", table_of)
     missing = [row for row, (name, _) in ROWS.items() if name in NEEDED and name not in found]
     if missing or not rows:
-        raise InputError(file.name, f"no line of {missing[0] if missing else 'numbers'}", _TABLE)
+        raise InputError(file.name, f"no line of {missing[0] if missing else 'numbers'}", table_of)
     table, modes = np.array(rows), found["natural_frequencies"].size
     columns = 1 + modes + (not math.isnan(residual))
     if table.shape[1] != columns:
@@ -300,7 +305,7 @@ def _table_of_modes(file: Path) -> dict[str, Array]:
         allowed = f"{columns}: a position, a shape of each of {modes} modes{last}"
         raise InputError(file.name, f"lines of {table.shape[1]} numbers", allowed)
     if math.isnan(unit):
-        _stated("", "position", "m", file)
+        _stated("", place, dimension, file)
     if not math.isnan(residual):
         found["residual_flexibility"] = residual * table[:, -1]
         table = table[:, :-1]
@@ -323,8 +328,8 @@ def _cell(cell: str) -> float:
         return math.nan
 
 
-def modes_of_netcdf(path: str) -> Answer:
-    """Read the variables of a netCDF-4 file."""
+def modes_of_netcdf(path: str, places: str) -> Answer:
+    """Read the variables of a netCDF-4 file, whose positions have a unit as `places`."""
     import h5netcdf
 
     file = Path(path)
@@ -333,7 +338,8 @@ def modes_of_netcdf(path: str) -> Answer:
         if missing := [name for name in NEEDED if name not in present]:
             allowed = f"the variables {', '.join(NEEDED)}"
             raise InputError(file.name, f"no variable {missing[0]}", allowed)
-        arrays = [netcdf_numbers(opened.variables[name], name, *VARIABLES[name], file) for name in present]
+        known = VARIABLES | {"positions": (places, 1)}
+        arrays = [netcdf_numbers(opened.variables[name], name, *known[name], file) for name in present]
         modes = opened.variables["natural_frequencies"].dimensions
         shapes = present.index("mode_shapes")
         if opened.variables["mode_shapes"].dimensions[:1] == modes:
