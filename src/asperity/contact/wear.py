@@ -385,7 +385,7 @@ def worn(
     loads = np.broadcast_to(loads, positions).copy()
     space.checked_load(float(loads.max()))
     speed = positive("rolling speed", speed)
-    passes = whole("passes", passes, "a whole number of at least 1", at_least=1)
+    passes = whole("passes", passes, "a whole number from 1 to 1e12", at_least=1, at_most=1e12)
     rtol = real("rtol", rtol, "a number between 0 and 1, as 1e-6", above=0.0, below=1.0)
     if step is None:
         smooth = space.at_load(shape_of, float(loads.mean()), None, 1e-4)
@@ -424,8 +424,8 @@ def _passed(
     while (done := int(state["passes"].sum())) < job.passes:
         message = f"wear, pass {done + 1} of {job.passes}"
         depth, volume, work, counts = _pass(heights - state["depth"], job, progress, message)
-        deepest = float(depth.max())
-        alike = min(max(int(job.step / deepest), 1) if deepest > 0.0 else job.passes, job.passes - done)
+        deepest, left = max(float(depth.max()), np.finfo(float).tiny), job.passes - done
+        alike = max(int(min(job.step / deepest, left)), 1)
         state["depth"] = state["depth"] + alike * depth
         state["counts"] = state["counts"] + counts
         for name, value in (
