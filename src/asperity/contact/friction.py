@@ -148,7 +148,11 @@ class SlidingContact:
 
     @property
     def work(self) -> float:
-        """What friction turns into heat over a rolled distance, J/m; of a shift J. At least zero."""
+        """What friction turns into heat over a rolled distance, J/m; of a shift J. At least zero.
+
+        Traction after a step times slip in it, as the program CONTACT counts. With smaller cells it rises, of
+        first order, to what is put in: in steady rolling −(F_x ξ + F_y η + M φ), from `force` and `moment`.
+        """
         return -float((self.traction * self.slip).sum()) * self.normal.half_space.cell_area
 
     @property
