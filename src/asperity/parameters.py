@@ -34,6 +34,7 @@ _WORDS = {
     "kg m^2": ("a moment of inertia", "1500 kg m^2"),
     "dB": ("a level", "+0 dB"),
     "rad": ("an angle", "30 deg"),
+    "rad/m": ("an angle per length", "0.1 rad/m"),
 }
 
 LEAST, MOST = 1e-30, 1e30

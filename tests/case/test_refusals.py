@@ -144,6 +144,11 @@ wheel: [sideways] friction = 0.0 → sideways.friction: received 0.0; allowed: a
 wheel: [sideways] pad_roll_stiffness = "500 kN" → a rotational stiffness per rad greater than 0
 wheel: [sideways] bending_stiffness = "1 N m^2" → Rails lie between.
 wheel: [sideways] torsional_stiffness = "-1 N m^2" → greater than 0
+wheel: [creep] angle_of_attack = "200 mrad" → allowed: -100 mrad to 100 mrad. Creepages are small.
+wheel: [creep] lateral = 0.2 → creep.lateral: received 0.2; allowed: a number at least -0.1 and at most 0.1
+wheel: [creep] spin = "20 rad/m" → Wheels do not pivot.
+wheel: [creep] kinetic = 0.5 → only together with angle_of_attack or longitudinal or lateral or spin
+wheel: [creep] lateral = 0.01 | falling_velocity = "1 m/s" → allowed: kinetic below 1. As kinetic = 0.5.
 wheel: [track] rail_profile = "rail.csv" | rail_head_radius = "0.3 m" → both rail_head_radius and rail_profile
 wheel: [track] points = [] → track.points: received an empty list
 wheel: [track] points = ["60 m"] → received 60 m; allowed: positions that are passed, 0 m to 56 m
@@ -201,6 +206,7 @@ bodies: [beam] supports = ["0.3 m", "1.2 m"] → different positions on the beam
 bodies: [beam] supports = ["0.3 m"] | support = "free" → two supports or more
 bodies: [noise] axles = 2 → noise: received a [noise] of what is rolled over a beam: axles
 bodies: [sideways] friction = 0.2 → sideways: received a [sideways] of what is rolled over a beam: friction
+bodies: [creep] spin = "1 rad/m" → creep: received a [creep] of what is rolled over a beam: spin
 bodies: over = "track" | [sideways] contact_place = "40 mm" → received 40 mm; allowed: at most 36 mm off the
 ball: [sideways] friction = 0.2 → sideways: received an unknown key
 """

@@ -81,6 +81,7 @@ NOWHERE = (
     "pad is measured",
     "disc and tread vibrate",
     "bays differ",
+    "[creep] gives",
 )
 OTHERS = {
     "ball-on-beam": (*NOWHERE, "over a track", "of a wheel", "loss factors", "poles", "law linear", "train"),
@@ -162,7 +163,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
         for part in chapter.figures:
             elsewhere = any(on_track(e) for e in part.needs) if not track else chapter.name == "acceleration"
             elsewhere |= chapter.name == "contacts" and not several
-            elsewhere |= chapter.name in OF_BEARINGS
+            elsewhere |= chapter.name in (*OF_BEARINGS, "creep")  # of a wheel that is said to creep
             elsewhere |= part.name == "what_helps"  # where it is asked
             elsewhere |= part.name == ("force_piece" if track else "force_peak")
             elsewhere |= part.name in ("pass_by_bands", "bays")  # of what was measured, and where they differ

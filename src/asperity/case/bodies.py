@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from asperity.case.beam import BeamKeys
 from asperity.case.body import Rolling
+from asperity.case.creep import CreepKeys
 from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
@@ -54,6 +55,7 @@ class Bodies(Case):
     sideways: SidewaysKeys = section(
         SidewaysKeys, "where a rail is touched, and what moves sideways, by frequency"
     )
+    creep: CreepKeys = section(CreepKeys, "how wheels creep on a rail, and whether they squeal")
 
     @property
     def rolled_over(self) -> RolledOver:
@@ -78,7 +80,7 @@ class Bodies(Case):
             remedy = 'As file = "guide.csv".'
             yield InputError("structure.file", "nothing", "the file of its modes, or receptances", remedy)
             return
-        for name, verb in (("noise", "sounds"), ("sideways", "moves sideways")):
+        for name, verb in (("noise", "sounds"), ("sideways", "moves sideways"), ("creep", "creeps")):
             if self.over != "track" and (given := getattr(self, name).given()):
                 received = f"a [{name}] of what is rolled over a {self.over}: {', '.join(sorted(given))}"
                 remedy = f"Remove it: a track alone {verb} here."

@@ -21,6 +21,7 @@ from asperity.reference.materials import contact_modulus
 from asperity.units import written
 
 if TYPE_CHECKING:
+    from asperity.case.creep import CreepKeys
     from asperity.case.sideways import Meeting, SidewaysKeys
     from asperity.radiation.pass_by import Passage
 
@@ -99,12 +100,13 @@ class Case(AnyCase):
     )
     surface: Surface = section(Surface, "what is rolled over: a measured map, or synthesised roughness")
 
-    if TYPE_CHECKING:  # each preset declares these, the last three where a track may be rolled over
+    if TYPE_CHECKING:  # each preset declares these, the last four where a track may be rolled over
         contact: ContactKeys
         numerics: NumericsKeys
         track: TrackKeys
         noise: NoiseKeys
         sideways: "SidewaysKeys"
+        creep: "CreepKeys"
 
     @classmethod
     def sections(cls) -> Mapping[str, Inner]:

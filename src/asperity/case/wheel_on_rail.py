@@ -6,6 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from asperity.case.body import OF_SEVERAL, Rolling
+from asperity.case.creep import CreepKeys
 from asperity.case.form import section
 from asperity.case.rolled_over import TrackKeys
 from asperity.case.scene import Case, time_step_on_grid
@@ -79,6 +80,7 @@ class WheelOnRail(Case, defaults=DEFAULTS):
     numerics: NumericsKeys = section(NumericsKeys, "how finely time and the track are resolved")
     noise: NoiseKeys = section(NoiseKeys, "what radiates, and the labels of CNOSSOS-EU")
     sideways: SidewaysKeys = section(SidewaysKeys, "where they touch, and what moves sideways, by frequency")
+    creep: CreepKeys = section(CreepKeys, "how the wheel creeps, and whether it squeals")
 
     @property
     def title(self) -> str:

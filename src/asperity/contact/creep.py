@@ -191,16 +191,26 @@ class RolledSample:
 
         In transient rolling with a motion (ξ, η, φ), in which each asperity comes in without traction.
         """
+        steady, found = self.states(rolling, motion, speed)
+        shares = [
+            (each.force[axis] / steady.force[axis], each.slip_area / each.normal.area) for each in found
+        ]
+        force, share = np.mean(shares, axis=0).tolist()
+        return force, share
+
+    def states(
+        self, rolling: FrictionalHalfSpace, motion: ArrayLike, speed: float
+    ) -> tuple[SlidingContact, list[SlidingContact]]:
+        """The smooth contact in steady rolling, and those that count in transient rolling, in like steps."""
         xi, eta, spin = np.asarray(motion, dtype=float).tolist()
         along: dict[str, Any] = {"distance": self.distance, "speed": speed, "rtol": ROLLED_RTOL}
-        state = rolling.roll(self.smooth, (xi, eta), spin, **along)
-        steady, found = state.force[axis], []
+        steady = state = rolling.roll(self.smooth, (xi, eta), spin, **along)
+        found = []
         for contact in self.contacts:
             start = replace(state, traction=np.roll(state.traction, -self.stride, axis=1))
             state = rolling.roll(contact, (xi, eta), spin, before=state, start=start, **along)
-            found.append((state.force[axis] / steady, state.slip_area / contact.area))
-        force, share = np.mean(found[self.uncounted :], axis=0).tolist()
-        return force, share
+            found.append(state)
+        return steady, found[self.uncounted :]
 
 
 def contact_rows(contact: Contact) -> int:

@@ -5,17 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from asperity.arguments import Array
+from asperity.case.scene import Case
 from asperity.contact.creep import CreepCurve, creep_curve
 from asperity.contact.friction import Friction
+from asperity.contact.halfspace import Contact
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.reduction.stiffness import weighted_mean
 from asperity.reduction.texture import punch_weights
 from asperity.reduction.traction import TractionStates, middle_of, traction_states
-from asperity.reference.materials import Material
+from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import LIGHTEST_STATE
+from asperity.scenarios.textures import Textures
 
 LEAST_CELLS = 4.0
 """Cells in the shorter semi-axis of the smooth contact in the lowest state."""
@@ -33,12 +36,11 @@ def creep_of(
     The smooth contact comes first, then the samples that the case is reduced by. The traction acts on what
     rolls.
     """
-    case, shape, bodies = prepared.case, prepared.shape, _bodies(prepared)
-    space = shape.half_space(case.contact.hardness)
-    smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
+    case, shape = prepared.case, prepared.shape
+    rolling, smooth = smooth_with_friction(case, shape, friction)
     return creep_curve(
-        FrictionalHalfSpace(space, bodies, friction), smooth, shape.semi_axes, direction, count=count,
-        samples=_samples(prepared), speed=case.speed, progress=progress,
+        rolling, smooth, shape.semi_axes, direction, count=count,
+        samples=rough_strips(shape, prepared.textures), speed=case.speed, progress=progress,
     )  # fmt: skip
 
 
@@ -48,7 +50,11 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
     From where all samples carry a light load, and the smooth contact has some cells, to where one carries
     the largest that the window holds.
     """
-    case, shape, samples = prepared.case, prepared.shape, _samples(prepared)
+    case, shape = prepared.case, prepared.shape
+    samples, bodies = (
+        rough_strips(shape, prepared.textures),
+        (case.rolling.material, case.rolled_over.material),
+    )
     if not samples:
         raise InputError("surface", "smooth bodies", "a rough surface", "Give it a file, rms or a spectrum.")
     space = shape.half_space(case.contact.hardness)
@@ -57,16 +63,21 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
     gaps = [shape.body - middle_of(sample, len(shape.body)) for sample in samples]
     low, high = np.array([[space.solve(gap, load=load).approach for load in loads] for gap in gaps]).T
     approaches = low.max() + (high.min() - low.max()) * np.linspace(0.0, 1.0, count) ** 2
-    return traction_states(space, _bodies(prepared), shape.body, samples, approaches, progress)
+    return traction_states(space, bodies, shape.body, samples, approaches, progress)
 
 
-def _bodies(prepared: PreparedCase) -> tuple[Material, Material]:
-    return prepared.case.rolling.material, prepared.case.rolled_over.material
+def smooth_with_friction(
+    case: Case, shape: Geometry, friction: float | Friction
+) -> tuple[FrictionalHalfSpace, Contact]:
+    """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
+    space = shape.half_space(case.contact.hardness)
+    bodies = case.rolling.material, case.rolled_over.material
+    smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
+    return FrictionalHalfSpace(space, bodies, friction), smooth
 
 
-def _samples(prepared: PreparedCase) -> list[Array]:
+def rough_strips(shape: Geometry, textures: Textures) -> list[Array]:
     """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m."""
-    shape = prepared.shape
     weights, nx = punch_weights(shape.spacing, shape.class_axes), len(shape.body)
-    rough = [strip.heights for strip in prepared.textures.strips if strip.heights.any()]
+    rough = [strip.heights for strip in textures.strips if strip.heights.any()]
     return [heights - weighted_mean(middle_of(heights, nx), weights) for heights in rough]

@@ -20,7 +20,7 @@ from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenes import measured, noise, schema, sideways, track, validity
+from asperity.scenes import creep, measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
 from asperity.scenes.measured import findings_of_passage
@@ -73,9 +73,11 @@ def computed_result(
         beside = sideways.sideways_group(computed, in_bands)
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands, beside)
         found += findings_of_passage(own)
-        own |= beside
+        creeps = creep.creep_group(computed)
+        own |= beside | creeps
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))
         sources += sideways.SOURCES if beside else ()
+        sources += creep.SOURCES if creeps else ()
         noise.warn_of_silence(case)
     warn_of_findings(found)
     textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)

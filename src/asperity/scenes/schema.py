@@ -406,6 +406,50 @@ RAIL_CONTACT_PLACE = _side_fact("rail_contact_place", "m", _PLACE.format("rail h
 STICK_STIFFNESS = _side_fact("stick_stiffness", "N/m", "lateral stiffness of the contact in stick, Mindlin")
 SLIP_FORCE = _side_fact("slip_force", "N", "coefficient of friction times the static load")
 
+# --- creep and friction
+
+_CREEPS = "where [creep] gives a creepage of a wheel on a rail"
+_creep, _creep_fact = (
+    partial(Entry, "creep", condition=_CREEPS),
+    partial(Attribute, "creep", condition=_CREEPS),
+)
+_creeping = partial(_rolling, condition=_CREEPS)
+WAYS = "along", "to the field side"
+_WAY, _OF_WHEEL, _HEAT = (
+    "direction of a force on the wheel",
+    "friction force on the wheel",
+    "heat of friction",
+)
+ROLLING_WAY, CREEP_WAY = (each("way", "1", _WAY) for each in (_creeping, _creep))
+FRICTION_FORCE = _creeping("friction_force(law, contact, way, time)", "N", f"{_OF_WHEEL}, quasi-steady")
+FRICTION_POWER = _creeping("friction_power(law, contact, time)", "W", f"{_HEAT}, quasi-steady")
+FULL_SLIP_SHARE = _creeping("full_slip_share(law)", "1", "share of the time in full slip, of all contacts")
+MEAN_FRICTION_POWER = _creeping("mean_friction_power(law)", "W", f"{_HEAT}, mean over time and contacts")
+FRICTION_SAMPLE = _creep("sample", "1", "contact under the working load: 0 of smooth bodies, then samples")
+STICK_AREA, SLIP_AREA = (_creep(f"{w}_area(sample)", "m2", f"area that {w}s") for w in ("stick", "slip"))
+SAMPLE_FRICTION = _creep("friction_force(sample, way)", "N", _OF_WHEEL)
+SPIN_MOMENT = _creep("spin_moment(sample)", "N m", "moment of friction on the wheel about the normal")
+SAMPLE_HEAT = _creep("friction_power(sample)", "W", _HEAT)
+CREEP_X = _creep("x", "m", "place along the contact, from the middle of its window")
+CREEP_Y = _creep("y", "m", "place across it, to the field side")
+TRACTION = _creep("traction(x, y)", "Pa", "tangential traction of the first sample, or of smooth bodies")
+SLIP_VELOCITY = _creep("slip_velocity(x, y)", "m/s", "slip velocity of the first sample, or of smooth bodies")
+CREEPAGE = _creep_fact("creepage", "JSON", "of wheel on rail: along, to the field side, spin in rad/m")
+FULL_SLIP_SCALE = _creep_fact("full_slip_scale", "1", "part of the creepages from which on all slips")
+FULL_SLIP_LOAD = _creep_fact("full_slip_load", "N", "load up to which all slips; infinite if that is any")
+
+_SQUEALS = f"{_CREEPS}, and the axial modes of its wheel are known"
+_squeal = partial(_creep, condition=_SQUEALS, missing="this motion is damped too much to be found")
+SQUEAL_MODE = _squeal("squeal_mode", "1", "free motion of the wheel on the rail, one for each of its modes")
+SQUEAL_FREQUENCY = _squeal("squeal_frequency(squeal_mode)", "Hz", "frequency, as the contact feels it")
+GROWTH_RATE = _squeal("growth_rate(squeal_mode)", "1/s", "growth of the amplitude, negative in decay")
+SQUEAL_DIAMETERS = _squeal("squeal_diameters(squeal_mode)", "1", "nodal diameters of what rings most")
+AXIAL_SHARE = _squeal("axial_share(squeal_mode)", "1", "axial part of its squared motion at the contact")
+CREEP_DAMPING = _creep_fact(
+    "creep_damping", "N s/m", "−∂F_y/∂η/V; negative: friction falls", condition=_SQUEALS
+)
+LOAD_SLOPE = _creep_fact("friction_per_load", "1", "slope of the lateral force over load", condition=_SQUEALS)
+
 
 _TOTAL = {"radiator": "total"}
 KEPT: dict[Entry, dict[str, str]] = {

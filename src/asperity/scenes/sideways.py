@@ -69,14 +69,15 @@ class Sideways:
         materials = case.rolling.material, case.rolled_over.material
         return self.computed.stiffness, stick_stiffness(shape.semi_axes, materials)
 
-    def rail(self, frequency: Array, x: float) -> Complex:
-        """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m."""
-        found = self.track.at_contact(frequency, x, x, self.computed.scene.rail_place)
-        found[0, 0] += self.track.track.receptance(frequency, x, x)
+    def rail(self, frequency: Array | Complex, x: float) -> Complex:
+        """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m; Hz."""
+        omega = 2.0 * np.pi * frequency
+        found = self.track.answers(omega, x, x, self.computed.scene.rail_place)
+        found[0, 0] += self.track.track.waves(omega).receptance(x, x)
         return found
 
-    def wheel(self, frequency: Array) -> Complex:
-        """Receptances of the wheel at the contact (2, 2, f), m/N."""
+    def wheel(self, frequency: Array | Complex) -> Complex:
+        """Receptances of the wheel at the contact (2, 2, f), m/N; frequencies in Hz."""
         scene, mass = self.computed.scene, self.computed.case.rolling.contact_mass
         return lateral_rail.wheel_receptances(scene.modes, mass, frequency, scene.place)
 

@@ -333,7 +333,11 @@ class LateralTrack:
         from the middle, positive towards the field side; downwards, and towards the field side. A vertical
         force off the middle twists the rail.
         """
-        motion = self.waves(_angular(frequency)).receptance(x, x0)
+        return self.answers(_angular(frequency), x, x0, place)
+
+    def answers(self, omega: Array | Complex, x: float, x0: float, place: float) -> Complex:
+        """The same at angular frequencies (f,), rad/s, that may be complex."""
+        motion = self.waves(omega).receptance(x, x0)
         moved = contact_shapes(self.rail, place)
         return np.asarray(np.einsum("ma,abf,nb->mnf", moved, motion, moved))
 
@@ -361,11 +365,13 @@ def _angular(frequency: ArrayLike) -> Array:
     return 2.0 * np.pi * np.atleast_1d(at)
 
 
-def wheel_receptances(modes: WheelModes | None, mass: float, frequency: Array, place: float) -> Complex:
+def wheel_receptances(
+    modes: WheelModes | None, mass: float, frequency: Array | Complex, place: float
+) -> Complex:
     """Displacement of a wheel at its contact per force there, (2, 2, f), m/N, downwards and sideways.
 
     A free mass, kg, in both directions, and modes, at a place, m from the running circle, positive towards
-    the field side; frequencies (f,), Hz, above zero. The wheel's rigid roll is left out.
+    the field side; frequencies (f,), Hz, above zero, or complex. The wheel's rigid roll is left out.
     """
     rigid = np.multiply.outer(np.eye(2), -1.0 / (mass * (2.0 * np.pi * frequency) ** 2))
     if modes is None:

@@ -1,0 +1,98 @@
+"""How a wheel creeps on a rail: stick and slip, friction in time, and whether it squeals."""
+
+import numpy as np
+
+from asperity.arguments import Array, Complex
+from asperity.contact.creep import LEAST_LENGTHS, RolledSample, contact_rows
+from asperity.contact.friction import Friction, SlidingContact, cell_places
+from asperity.contact.quasi_steady import CreepingBodies, forces_of
+from asperity.scenarios.creep import rough_strips, smooth_with_friction
+from asperity.scenes import schema
+from asperity.scenes.compute import Computed
+from asperity.scenes.sideways import Sideways
+from asperity.schema import Values
+from asperity.structures.squeal import CreepingContact, poles_of, ringing_modes
+
+SOURCES = (
+    "J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990) (friction).",
+    "squeal: the loop of F. G. de Beer, M. H. A. Janssens and P. P. Kooijman, J. Sound Vib. 267 (2003) 497, "
+    "with a contact spring in line; O. Aberth, Math. Comput. 27 (1973) 339 (its roots).",
+)
+
+
+def creep_group(computed: Computed) -> Values:
+    """Lay out friction under the working load and in time, and the stability of the wheel on the rail."""
+    case, shape, speed = computed.case, computed.shape, computed.case.speed
+    if "creep" not in case.inner or not any(case.creep.creepage):
+        return {}
+    keys, creepage = case.creep, case.creep.creepage
+    friction = Friction(case.sideways.friction, keys.kinetic, keys.falling_velocity)
+    rolling, smooth = smooth_with_friction(case, shape, friction)
+    first = shown = rolling.roll(smooth, creepage[:2], creepage[2], speed=speed)
+    rows = [_facts(first)]
+    for strip in rough_strips(shape, computed.textures):
+        if len(strip) - len(shape.body) >= LEAST_LENGTHS * contact_rows(smooth):  # room to roll over it
+            steady, states = RolledSample.along(smooth, strip).states(rolling, creepage, speed)
+            missed = rows[0] - _facts(steady)  # by its long steps
+            rows.append(np.mean([_facts(each) for each in states], axis=0) + missed)
+            shown = states[-1] if shown is first else shown
+    force, (x, y) = computed.stacked("contact_force"), cell_places(rolling.half_space)
+    bodies = CreepingBodies(rolling, shape.body, creepage, speed, max(float(force.max()), shape.load))
+    followed, (stick, slip, *forces) = bodies.follow(force), np.transpose(rows)
+    power = bodies.power(followed)
+    return {
+        schema.ROLLING_WAY: schema.WAYS,
+        schema.FRICTION_FORCE: np.moveaxis(followed[:2], 0, 2),
+        schema.FRICTION_POWER: power,
+        schema.FULL_SLIP_SHARE: np.mean((force > 0.0) & (force <= bodies.full_slip_load), axis=(1, 2)),
+        schema.MEAN_FRICTION_POWER: power.mean(axis=(1, 2)),
+        schema.CREEP_WAY: schema.WAYS,
+        schema.FRICTION_SAMPLE: np.arange(len(rows)),
+        schema.STICK_AREA: np.maximum(stick, 0.0),
+        schema.SLIP_AREA: slip,
+        schema.SAMPLE_FRICTION: np.transpose(forces[:2]),
+        schema.SPIN_MOMENT: forces[2],
+        schema.SAMPLE_HEAT: bodies.power(np.array(forces)),
+        schema.CREEP_X: x[:, 0],
+        schema.CREEP_Y: y[0],
+        schema.TRACTION: np.hypot(*shown.traction),
+        schema.SLIP_VELOCITY: speed * np.hypot(*shown.slip),
+        schema.CREEPAGE: creepage,
+        schema.FULL_SLIP_SCALE: bodies.full_slip_scale(shape.load),
+        schema.FULL_SLIP_LOAD: bodies.full_slip_load,
+        **_squeal(computed, bodies),
+    }
+
+
+def _facts(found: SlidingContact) -> Array:
+    """Areas that stick and slip, forces and moment (5,)."""
+    return np.array((found.stick_area, found.slip_area, *forces_of(found)))
+
+
+def _squeal(computed: Computed, bodies: CreepingBodies) -> Values:
+    """Free motions of the wheel on the rail at mid-span, of a wheel whose axial modes are known."""
+    scene, side = computed.scene, Sideways(computed)
+    modes = scene.modes
+    if modes is None or not modes.axial.any():
+        return {}
+
+    def receptances(omega: Complex) -> Complex:
+        frequency, middle = omega / (2.0 * np.pi), 0.5 * side.track.track.sleeper_spacing
+        return side.wheel(frequency) + side.rail(frequency, middle)
+
+    over_creepage, over_load = bodies.slopes(computed.shape.load)
+    contact = CreepingContact(*side.stiffness, -over_creepage / bodies.speed, over_load)
+    omega = contact.roots(receptances, poles_of(modes))
+    which, known = np.arange(len(omega)), np.isfinite(omega)
+    forces = contact.force_ratio(receptances(omega[known]))
+    which[known] = ringing_modes(modes, scene.place, omega[known], forces)
+    radial, axial = (each[which] ** 2 for each in modes.at(scene.place))
+    return {
+        schema.SQUEAL_MODE: 1 + np.arange(len(omega)),
+        schema.SQUEAL_FREQUENCY: omega.real / (2.0 * np.pi),
+        schema.GROWTH_RATE: -omega.imag,
+        schema.SQUEAL_DIAMETERS: modes.nodal_diameters[which],
+        schema.AXIAL_SHARE: axial / (radial + axial),
+        schema.CREEP_DAMPING: contact.damping,
+        schema.LOAD_SLOPE: over_load,
+    }

@@ -1,0 +1,104 @@
+"""A wheel that creeps in a run: signs, friction in time, no trace without [creep], and who squeals."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.contact.hertz import stick_stiffness
+from asperity.reference.materials import MATERIALS
+from asperity.scenarios.preparing import prepare
+from asperity.scenes import schema
+from asperity.scenes.compute import compute
+from asperity.scenes.creep import creep_group
+from asperity.scenes.figures.creep import CREEP, creep_answers, friction_table
+from asperity.scenes.result import computed_result
+from asperity.schema import tree
+from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
+from small_cases import HEARD
+
+ATTACK, SPEED = 0.012, 20.0
+FALLING = {"angle_of_attack": ATTACK, "kinetic": 0.5, "falling_velocity": 0.3}
+KEYS = HEARD | {"speed": SPEED, "duration": "60 ms", "settling": "20 ms"}
+KEYS |= {"wheel": {"roughness": "disc", "section": "straight-web"}}
+KEYS |= {"numerics": {"highest_frequency": "2 kHz", "kernel": "scatter"}}
+KEYS |= {"contact": {"spacing": "1 mm", "samples": 2, "sample_length": "60 mm"}}
+
+
+@pytest.fixture(scope="module")
+def computed(cache_of_module):
+    return compute(prepare(WheelOnRail(**KEYS | {"creep": FALLING})), lambda *_: None)
+
+
+@pytest.fixture(scope="module")
+def creeping(computed):
+    """What is laid out of one run with other keys of [creep]."""
+    return lambda creep: creep_group(replace(computed, case=WheelOnRail(**KEYS | {"creep": creep})))
+
+
+@pytest.fixture(scope="module")
+def falling(creeping):
+    return creeping(FALLING)
+
+
+def answer(values):
+    return creep_answers(tree({entry: each for entry, each in values.items() if entry.group == "creep"})).more
+
+
+def test_a_wheel_that_heads_for_the_field_side_creeps_to_the_other_and_is_pushed_there(falling, creeping):
+    """η = −tan α, beside what the case says of η itself; friction acts against it."""
+    assert falling[schema.CREEPAGE] == (0.0, pytest.approx(-math.tan(ATTACK), rel=1e-12), 0.0)
+    assert np.all(np.array(falling[schema.SAMPLE_FRICTION])[:, 1] > 0.0)
+    both = creeping({"angle_of_attack": -ATTACK, "lateral": 0.002, "longitudinal": 0.001, "spin": 0.2})
+    assert both[schema.CREEPAGE] == (0.001, pytest.approx(math.tan(ATTACK) + 0.002), 0.2)
+    assert max(both[schema.SAMPLE_FRICTION][0]) < 0.0
+    assert creeping({}) == creeping({"angle_of_attack": 0.0}) == {}
+
+
+def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(computed, creeping):
+    """µ N to the field side, and its heat µ N V η, at every moment."""
+    found, force = creeping({"angle_of_attack": 0.03}), computed.stacked("contact_force")
+    assert np.ptp(force) > 0.1 * force.mean()
+    np.testing.assert_allclose(found[schema.FRICTION_FORCE][:, :, 1], 0.3 * force, rtol=2e-3)
+    np.testing.assert_allclose(found[schema.FRICTION_POWER], 0.3 * force * SPEED * math.tan(0.03), rtol=3e-3)
+    assert found[schema.MEAN_FRICTION_POWER] == pytest.approx(found[schema.FRICTION_POWER].mean(), rel=1e-12)
+    assert (*found[schema.FULL_SLIP_SHARE], *found[schema.STICK_AREA]) == (1.0, 0.0, 0.0, 0.0)
+    assert found[schema.SLIP_VELOCITY].max() < 1.5 * SPEED * 0.03
+    little = creeping({"lateral": 0.0035})
+    assert np.all(np.array([little[schema.STICK_AREA], little[schema.SLIP_AREA]]) > 0.0)
+    assert little[schema.FULL_SLIP_SCALE] > 1.0
+    assert little[schema.FULL_SLIP_SHARE] == np.mean(force <= little[schema.FULL_SLIP_LOAD])
+
+
+def test_axial_modes_squeal_by_falling_friction_and_move_by_themselves(computed, falling, creeping):
+    """No approach and no force is left over, on the rail at mid-span. Constant friction damps."""
+    growth, fastest = falling[schema.GROWTH_RATE], int(np.argmax(falling[schema.GROWTH_RATE]))
+    assert np.sum(growth > 1.0) >= 4
+    assert falling[schema.AXIAL_SHARE][growth > 1.0].min() > 0.9
+    omega = np.array([2.0 * np.pi * falling[schema.SQUEAL_FREQUENCY][fastest] - 1j * growth[fastest]])
+    both = wheel_receptances(computed.scene.modes, 600.0, omega / (2.0 * np.pi), 0.0)
+    both += LateralTrack(computed.track.nominal).answers(omega, 0.3, 0.3, 0.0)
+    (vv, vl), (_, ll) = both[..., 0]
+    vv += computed.track.nominal.waves(omega).receptance(0.3, 0.3)[0]
+    stick = stick_stiffness(computed.shape.semi_axes, (MATERIALS["steel"],) * 2)
+    slip, slope = 1j * omega[0] * falling[schema.CREEP_DAMPING], falling[schema.LOAD_SLOPE]
+    matrix = [[1.0 / computed.stiffness + vv, vl], [slope + slip * vl, 1.0 + slip * (ll + 1.0 / stick)]]
+    assert abs(np.linalg.det(matrix)) < 1e-6 * abs(matrix[0][0])
+    constant = creeping({"angle_of_attack": ATTACK})
+    assert constant[schema.GROWTH_RATE].max() < 0.0
+    assert "Squeal: no, all " in answer(constant)
+
+
+def test_the_page_says_whether_it_squeals_and_shows_where_it_slips(computed, falling, monkeypatch):
+    monkeypatch.setattr("asperity.scenes.result.compute", lambda *_: computed)
+    result = computed_result(prepare(computed.case), lambda *_: None, [], brief=True)
+    told, fastest = creep_answers(result).more, np.argmax(falling[schema.GROWTH_RATE])
+    assert f" axial n = {falling[schema.SQUEAL_DIAMETERS][fastest]} at " in told.partition("Squeal: yes, ")[2]
+    assert all(figure.laid_out(result).panels and figure.said(result) for figure in CREEP)
+    rows = [[cell.text for cell in row] for row in friction_table(result).rows]
+    assert [row[0] for row in rows] == ["smooth", "sample 1", "sample 2", "in time, linear"]
+    assert rows[3][1:3] == ["–", "100.0"]
+    rigid = replace(computed, scene=replace(computed.scene, modes=None))
+    assert "Whether it squeals is not known" in answer(creep_group(rigid))
