@@ -8,7 +8,7 @@ import pytest
 
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
-from asperity.scenarios.bearing import bearing_rings
+from asperity.scenarios.bearing import bearing_rings, expected, prepare_bearing
 from asperity.structures.modal import ModalStructure
 from asperity.structures.ring import Ring
 from asperity.studies.definition import study_of
@@ -199,6 +199,16 @@ def test_files_that_hold_no_modes_are_refused(content, tmp_path):
             as_case(CASE | {"shaft": {"modes": str(tmp_path / name)}})
 
 
+def test_a_plan_says_how_many_balls_speed_lifts_off_the_inner_ring():
+    """At rest those near the load; fast those alone that are pressed by more than the centrifugal force."""
+    case = as_case(CASE | {"axial": "0 N", "radial": "100 N", "speed": "60000 1/min"})
+    touching = (case.static.inner_load > 0.0).sum(axis=1)
+    rest = (case.with_(centrifugal=False).static.inner_load > 0.0).sum(axis=1).mean()
+    assert rest > touching.mean() + 0.3
+    told = dict(expected(prepare_bearing(case))[0])["balls that touch both rings"]
+    assert told == f"{touching.mean():.3g} of 9 on average, {touching.min()} or more; at rest {rest:.3g}"
+
+
 def test_a_roundness_trace_is_read_with_its_units(tmp_path):
     case = as_case(CASE | {"outer_raceway": {"trace": str(trace(tmp_path / "round.csv"))}})
     waves = np.abs(case.outer_raceway.texture().line(4096, 1))
@@ -226,15 +236,17 @@ def test_a_fault_off_the_raceway_is_refused_before_the_run(fault, message):
         prepare_case(as_case(CASE | {"fault": fault}))
 
 
-@pytest.mark.parametrize("what", ["optimisation", "what helps", "convergence"])
+@pytest.mark.parametrize("what", ["optimisation", "what helps", "convergence", "page"])
 def test_what_is_not_there_for_a_bearing_says_so(what):
     import asperity
     from asperity.optimising.definition import assignment_of
+    from asperity.serving.worker import read_case_file
 
     asked = {
         "optimisation": lambda: assignment_of(CASE, {}),
         "what helps": lambda: asperity.what_helps(CASE),
         "convergence": lambda: asperity.run(CASE, converge=True),
+        "page": lambda: read_case_file(as_case(CASE).to_toml(), "."),
     }[what]
     with pytest.raises(InputError, match=f"{what}: received a ball-bearing case, of which there is none"):
         asked()

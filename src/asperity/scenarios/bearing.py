@@ -87,14 +87,12 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
         solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
     seconds = START_TIME + STEP_TIME * steps * found.bearing.balls * runs
     tones = ", ".join(f"{NAMES[part]} {turning.tone(part):.4g} Hz" for part in PARTS)
-    load, least, angle = (
-        max(load for _, load in case.contacts),
-        found.touching.min(),
-        np.degrees(found.contact_angle),
-    )
+    load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
+    touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
+    held = f"{touching.mean():.3g} of {found.bearing.balls} on average, {touching.min():.0f} or more"
     rows = [
         ("heaviest load of a ball", f"{load:.4g} N, contact angle {angle:.3g}°"),
-        ("balls that touch both rings", f"{least:.0f} or more of {found.bearing.balls}"),
+        ("balls that touch both rings", f"{held}; at rest {at_rest.mean():.3g}"),
         ("tones", f"{tones}; cage {turning.cage:.4g} Hz"),
         ("time", f"{steps} steps of {case.step * 1e6:.4g} µs, {case.settling:g} s of them before the record"),
         ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} by areal with parts alone"),

@@ -197,7 +197,7 @@ def _descended(
     raise ComputationError(
         f"{what}: {np.linalg.norm(gradient, axis=-1).max() / scale:.1g} of the load is out of balance after "
         f"{MOST_STEPS} steps",
-        "another load or clearance",
+        "another load, clearance or speed",
     )
 
 
