@@ -109,13 +109,15 @@ def test_samples_follow_the_smooth_contact():
     begins = curve.force[1, 0] / curve.force[0, 0]
     assert curve.force[:, 1] == pytest.approx(curve.limit, rel=1e-2)
     assert curve.slip_share[:, 1] == pytest.approx(1.0, abs=1e-3)
-    distance, state, forces = 4.0 * rolling.half_space.spacing[0], None, []
+    distance, state, found = 4.0 * rolling.half_space.spacing[0], None, []
     steady = rolling.roll(smooth, xi, distance=distance).force[0]
     for row in range(7, 168, 4):  # the sample is rolled over from 67 on, and counts from 115 on
         contact = rolling.half_space.solve(smooth.undeformed_gap - heights[row : row + 25], load=smooth.force)
         state = rolling.roll(contact, xi, before=state or rolling.shift(contact), distance=distance)
-        forces.append(state.force[0] / steady)
-    assert np.mean(forces[27:]) == pytest.approx(begins, abs=0.03 * (1.0 - begins))
+        found.append((state.force[0] / steady, state.slip_area / contact.area))
+    force, slips = np.mean(found[27:], axis=0)
+    assert force == pytest.approx(begins, abs=0.03 * (1.0 - begins))
+    assert slips == pytest.approx(curve.slip_share[1, 0], abs=5e-4)
     assert rolling.roll(contact, xi, distance=distance).force[0] / steady < 0.9 * begins
     with pytest.raises(InputError, match="sample to roll over: received 80 rows; allowed: at least"):
         creep_curve(rolling, smooth, (a, b), samples=[heights[:80]])

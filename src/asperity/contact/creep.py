@@ -59,7 +59,7 @@ def kalker_coefficients(ratio: float, poisson: float) -> tuple[float, float, flo
     Examples
     --------
     >>> f"{kalker_coefficients(1.0, 0.25)[0]:.2f}"  # printed 4.12
-    '4.12'
+    '4.11'
     """
     real("ratio of the semi-axes", ratio, "a ratio from 0.05 to 20", at_least=0.05, at_most=20.0)
     body, found = Material("body", 2.0 * (1.0 + poisson), poisson, 1.0), []
