@@ -43,20 +43,37 @@ def assemble(
     ground = ground_of(over, path, sensors)
     system = system_of(ground, bodies, body_loads(bodies), path.time_step, path.speed)
     prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
-    rest, motion = start_at_rest(ground, bodies, system, prepared)
-    own = alternating(system)
-    limits = limits_of(ground, system, bodies, ground.alternating + own, rest.stiffness, highest_frequency)
-    steps.warn_if_coarse(path.time_step, limits)
-    values = [steps.largest_values(*each) for each in zip(prepared, rest.stiffness.tolist(), strict=True)]
-    stiffest, impacts, forces = np.array(values).T
-    damping, largest = np.array([law.damping for law in laws]), RUNAWAY * max(*rest.force, *forces)
-    least, thrown = ground.alternating + own, ground.thrown + own
-    softer = steps.softening(least, thrown, stiffest, impacts, damping, rest.stiffness, path.time_step)
-    if softer.any():
-        system = system._replace(softening=softer)
-        rest, motion = start_at_rest(ground, bodies, system, prepared)
+    damping = np.array([law.damping for law in laws])
+    given = ground, bodies, system, prepared
+    system, motion, largest = softened(start_at_rest, *given, damping, highest_frequency)
     course = OnPaths(over, path, prepared)
     return Stepper(course, bodies, laws, prepared, system, motion, largest, ground.softest), path
+
+
+def softened(
+    start: Callable[..., tuple[Array, Motion]],
+    ground: Ground,
+    bodies: Sequence[Body],
+    system: System,
+    prepared: Sequence[Prepared | SteppedLaw],
+    damping: Array,
+    highest_frequency: float | None,
+) -> tuple[System, Motion, float]:
+    """Constants with contacts soft enough for the time step, a start with them, and a force beyond reach, N.
+
+    `start` is `start_at_rest` or its like, with the damping of the contacts (n,), N s/m.
+    """
+    (stiffness, motion), own = start(ground, bodies, system, prepared), alternating(system)
+    least, thrown = ground.alternating + own, ground.thrown + own
+    limits = limits_of(ground, system, bodies, least, stiffness, highest_frequency)
+    steps.warn_if_coarse(system.time_step, limits)
+    values = [steps.largest_values(*each) for each in zip(prepared, stiffness.tolist(), strict=True)]
+    stiffest, impacts, forces = np.array(values).T
+    softer = steps.softening(least, thrown, stiffest, impacts, damping, stiffness, system.time_step)
+    if softer.any():
+        system = system._replace(softening=softer)
+        _, motion = start(ground, bodies, system, prepared)
+    return system, motion, RUNAWAY * max(*system.loads, *forces)
 
 
 def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
@@ -288,24 +305,34 @@ def evaluated(law: Prepared | SteppedLaw, approach: float) -> tuple[float, float
     return float(force[0]), float(stiffness[0])
 
 
+def shapes_at_contacts(ground: Ground, system: System) -> Array:
+    """Mode shapes of what is rolled over, and of the bodies (n, s + b f), at the contacts."""
+    n, f = system.shapes.shape
+    flexible = np.zeros((n, len(system.core_step), f))
+    flexible[np.arange(n), system.body] = system.shapes
+    return np.hstack([ground.shapes, flexible.reshape(n, -1)])
+
+
+def evaluations(prepared: Sequence[Prepared | SteppedLaw]) -> tuple[list[Evaluation], float]:
+    """Laws at the start, and to what the forces at rest are exact, relative to the loads."""
+    looked_up = all(isinstance(law, Prepared) for law in prepared)
+    return [partial(evaluated, law) for law in prepared], TOLERANCE if looked_up else STEPPED_TOLERANCE
+
+
 def start_at_rest(
     ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
-) -> tuple[Rest, Motion]:
-    """Bodies at rest at the start of their paths, and the state that goes on from there.
+) -> tuple[Array, Motion]:
+    """Stiffnesses of contacts at rest at the start of their paths (n,), N/m, and the state that goes on.
 
     Modes and contacts move as under constant loads that have long rolled. Displacements of modes are the
     static ones: what is left to ring is less by (k v/ω)² than that of a mode of wavenumber k. A force on a
     support has just come onto a structure at rest; so are modes that nothing holds.
     """
-    n, (s, f) = len(system.loads), (len(ground.natural), system.shapes.shape[1])
-    flexible = np.zeros((n, len(bodies), f))
-    flexible[np.arange(n), system.body] = system.shapes
-    shapes = np.hstack([ground.shapes, flexible.reshape(n, -1)])
+    n, s, shapes = len(system.loads), len(ground.natural), shapes_at_contacts(ground, system)
     held = system.stiffness > 0.0
     softness = np.divide(1.0, system.stiffness, out=np.zeros(len(held)), where=held)
     compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
-    laws = [partial(evaluated, law) for law in prepared]
-    relative = TOLERANCE if all(isinstance(law, Prepared) for law in prepared) else STEPPED_TOLERANCE
+    laws, relative = evaluations(prepared)
     force, displaced, rates = np.concatenate([body.static_loads for body in bodies]), np.zeros(n), np.zeros(n)
     motion = at_zero(system)
     for _ in range(LOADINGS if ground.memory else 1):
@@ -332,7 +359,7 @@ def start_at_rest(
         first += count
     motion.force[:] = motion.trial[:] = motion.elastic[:] = force
     motion.approach[:] = rest.approach
-    return rest, motion
+    return rest.stiffness, motion
 
 
 def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -297,7 +296,7 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     course = _OnEdges(at, 1.0, 0)
     ground, bodies = _ground(course, np.zeros((0, at.first_modes[-1]))), at.still()
     system = assembly.system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, at.constant)
-    motion = _start(at, bodies, ground, system, course.at_start())[1]
+    motion = _start(ground, bodies, system, course.at_start())[1]
     return motion.displacement[: at.first_modes[-1]]
 
 
@@ -334,21 +333,9 @@ def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: f
     ground, prepared = _ground(course, sensors), course.at_start()
     loads = np.full(course.contacts, load)
     system = assembly.system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
-    stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
-    own = assembly.alternating(system)
-    limits = assembly.limits_of(
-        ground, system, bodies, ground.alternating + own, stiffness, highest_frequency
-    )
-    steps.warn_if_coarse(h, limits)
-    values = [steps.largest_values(*each) for each in zip(prepared, stiffness.tolist(), strict=True)]
-    stiffest, impacts, forces = np.array(values).T
-    damping = np.array([edge.law.damping for edge in mechanism.edges])
-    least, thrown = ground.alternating + own, ground.thrown + own
-    softer = steps.softening(least, thrown, stiffest, impacts, damping, stiffness, h)
-    if softer.any():
-        system = system._replace(softening=softer)
-        stiffness, motion = _start(mechanism, bodies, ground, system, prepared)
-    laws, largest = [edge.law for edge in mechanism.edges], assembly.RUNAWAY * max(load, *forces)
+    laws = [edge.law for edge in mechanism.edges]
+    given, damping = (ground, bodies, system, prepared), np.array([law.damping for law in laws])
+    system, motion, largest = assembly.softened(_start, *given, damping, highest_frequency)
     return Stepper(course, bodies, laws, course.whole, system, motion, largest, np.inf, displacements=True)
 
 
@@ -372,30 +359,18 @@ def _ground(course: _OnEdges, sensors: Array) -> Ground:
 
 
 def _start(
-    mechanism: Mechanism,
-    bodies: Sequence[Body],
-    ground: Ground,
-    system: System,
-    prepared: Sequence[Prepared | SteppedLaw],
+    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
 ) -> tuple[Array, Motion]:
     """Stiffnesses of the contacts at rest (n,), N/m, and the state that goes on from there."""
-    (n, f), b = system.shapes.shape, len(bodies)
-    flexible = np.zeros((n, b, f))
-    flexible[np.arange(n), system.body] = system.shapes
-    shapes = np.hstack([ground.shapes, flexible.reshape(n, -1)])
+    n, shapes = len(system.loads), assembly.shapes_at_contacts(ground, system)
     rows = block_diag(*(body.contacts for body in bodies))
     answers = shapes.any(axis=0) | (system.stiffness > 0.0)  # others there is nothing to say of
     held = np.diag(np.where(answers, system.stiffness, 1.0))
     matrix = block_diag(held, *(body.stiffness for body in bodies), np.eye(n))
-    constant = np.pad(mechanism.constant, (0, shapes.shape[1] - len(mechanism.constant)))
+    constant = np.pad(system.constant, (0, shapes.shape[1] - len(system.constant)))
     pressing = np.concatenate([-constant, *(body.pressing for body in bodies), np.zeros(n)])
     every = np.hstack([shapes, rows, np.diag(np.sqrt(system.softening))])
-    laws = [partial(assembly.evaluated, law) for law in prepared]
-    relative = (
-        assembly.TOLERANCE
-        if all(isinstance(law, Prepared) for law in prepared)
-        else assembly.STEPPED_TOLERANCE
-    )
+    laws, relative = assembly.evaluations(prepared)
     given = matrix, pressing, every, np.zeros(n), system.loads
     x, force, approach, stiffness = assembly.equilibrium(*given, laws, relative)
     motion, count = assembly.at_zero(system), shapes.shape[1]
