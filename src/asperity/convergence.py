@@ -17,9 +17,8 @@ from asperity.progress import COMPILED, Progress, counted
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.preparing import PreparedCase, prepare
 from asperity.scenarios.refining import Setting, Way, restricted, shared_settings
+from asperity.scenes import compute, plan
 from asperity.scenes import schema as scene
-from asperity.scenes.compute import spectrum_segment
-from asperity.scenes.plan import own_settings
 from asperity.scenes.result import computed_result
 from asperity.scenes.validity import compared_bands
 from asperity.schema import Entry, Values, contact, convergence, group, provenance, rolling, spectra
@@ -84,7 +83,7 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
 def settings_for(prepared: PreparedCase, states: np.ndarray) -> list[Setting]:
     """All settings of a case; its states (k,), m."""
     first, last = shared_settings(prepared.case, prepared.textures, states)
-    return [*first, *own_settings(prepared.case), *last]
+    return [*first, *plan.own_settings(prepared.case), *last]
 
 
 def unchangeable(prepared: PreparedCase, states: np.ndarray) -> dict[str, str]:
@@ -219,7 +218,7 @@ def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset,
     """Levels of the force over all of a record and over its first half, from segments of one length."""
     force = tree[rolling.CONTACT_FORCE.group].to_dataset()[rolling.CONTACT_FORCE.name].values
     half = force.shape[-1] // 2
-    segment = min(spectrum_segment(force.shape[-1], step), half)
+    segment = min(compute.spectrum_segment(force.shape[-1], step), half)
 
     def levels(part: Array) -> xarray.Dataset:
         frequency, density = psd(part, step, segment=segment)

@@ -14,8 +14,7 @@ from asperity.arguments import ArrayLike, NDArray, file_path, no_file, shown
 from asperity.errors import InputError, reason
 from asperity.files import is_sealed, write_bytes
 from asperity.sandbox import Answer, sandboxed
-from asperity.schema import VERSION
-from asperity.schema.provenance import ASPERITY_VERSION, CASE, SCHEMA_VERSION
+from asperity.schema import VERSION, provenance
 
 if TYPE_CHECKING:
     import xarray
@@ -94,7 +93,7 @@ def read_result(path: str | os.PathLike[str]) -> xarray.DataTree:
     if no_file(path) == "a folder":
         path = path / "run.nc"
     tree = _decoded(path, _opened_apart(path))
-    if ASPERITY_VERSION.name not in tree.attrs or not set(GROUPS) <= set(tree.children):
+    if provenance.ASPERITY_VERSION.name not in tree.attrs or not set(GROUPS) <= set(tree.children):
         raise InputError(str(path), "a netCDF-4 file of another kind", _ALLOWED)
     _check_version(path, tree)
     return tree
@@ -138,11 +137,11 @@ def _decoded(path: Path, tree: xarray.DataTree) -> xarray.DataTree:
 
 def _check_version(path: Path, tree: xarray.DataTree) -> None:
     """Refuse a result whose names are those of another version: figures would vanish from its report."""
-    stated = tree.attrs.get(SCHEMA_VERSION.name)
+    stated = tree.attrs.get(provenance.SCHEMA_VERSION.name)
     found = int(stated) if isinstance(stated, Integral) else 0
     if found == VERSION:
         return
-    writer = f"asperity {shown(tree.attrs[ASPERITY_VERSION.name])}"
+    writer = f"asperity {shown(tree.attrs[provenance.ASPERITY_VERSION.name])}"
     received = f"a result of schema version {found}, written by {writer}"
     remedy = "Update asperity." if found > VERSION else f"Run its case again, or read it with {writer}."
     raise InputError(str(path), received, f"schema version {VERSION}", remedy)
@@ -185,6 +184,6 @@ def attributes_of(path: str | os.PathLike[str]) -> dict[str, Any]:
 def case_text(path: str | os.PathLike[str]) -> str:
     """Read the case, in TOML, that a ``run.nc`` belongs to, and nothing else of it."""
     found = attributes_of(path)
-    if CASE.name not in found:
+    if provenance.CASE.name not in found:
         raise InputError(str(path), "a file without a case", _ALLOWED)
-    return str(found[CASE.name])
+    return str(found[provenance.CASE.name])

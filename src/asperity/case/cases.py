@@ -9,10 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from asperity.arguments import file_path, nearest, shown
-from asperity.case import PRESETS
+from asperity.case import PRESETS, scene, toml
 from asperity.case.any_case import AnyCase, commented, in_toml
-from asperity.case.scene import Case
-from asperity.case.toml import plain_data, read_definition, read_toml, refuse_vast
 from asperity.errors import CaseError, InputError
 from asperity.laws import family_of, law_keys, spec_of
 from asperity.parameters import FROM_PYTHON, Origin
@@ -59,11 +57,11 @@ def keys_and_origin(case: object) -> tuple[dict[str, Any], Origin]:
     if isinstance(case, AnyCase):
         return {"kind": case.kind, **in_toml(case, lambda _, value: value)}, FROM_PYTHON
     if isinstance(case, Mapping):
-        return plain_data(case), FROM_PYTHON
+        return toml.plain_data(case), FROM_PYTHON
     allowed = "the path of a case file, its keys as a mapping, or a case object"
     path = file_path("case", case, allowed)
     remedy = f"Check the path, or write a case with 'asperity new {next(iter(PRESETS))} > case.toml'."
-    return read_toml(read_definition(path, "case", remedy), "case", path), Origin.file(path)
+    return toml.read_toml(toml.read_definition(path, "case", remedy), "case", path), Origin.file(path)
 
 
 def read_with_case(
@@ -74,7 +72,7 @@ def read_with_case(
     `what` the file is, and the remedy if it is missing, are for messages. Returns its other keys, and those
     of the case with their origin.
     """
-    data = read_toml(read_definition(path, what, remedy), what, path)
+    data = toml.read_toml(toml.read_definition(path, what, remedy), what, path)
     base = data.pop("case", None)
     if isinstance(base, dict):
         return data, base, Origin.file(path)
@@ -107,7 +105,7 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> AnyCase:
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    return case_of(read_toml(text, "case", source), Origin.file(source))
+    return case_of(toml.read_toml(text, "case", source), Origin.file(source))
 
 
 def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> AnyCase:
@@ -120,7 +118,7 @@ def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> AnyCase:
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    refuse_vast(data, origin.source)
+    toml.refuse_vast(data, origin.source)
     try:
         model = case_class(data.get("kind"))
     except InputError as error:
@@ -137,10 +135,10 @@ def case_class(kind: object) -> type[AnyCase]:
     return model
 
 
-def of_bodies(case: AnyCase, what: str) -> Case:
+def of_bodies(case: AnyCase, what: str) -> scene.Case:
     """A case of bodies that roll; an `InputError` says that another kind does not have what is asked."""
-    if not isinstance(case, Case):
-        held = (kind for kind in PRESETS if issubclass(case_class(kind), Case))
+    if not isinstance(case, scene.Case):
+        held = (kind for kind in PRESETS if issubclass(case_class(kind), scene.Case))
         allowed = f"a kind that has it: {', '.join(held)}"
         raise InputError(what, f"a {case.kind} case, of which there is none", allowed)
     return case

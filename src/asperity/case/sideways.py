@@ -17,8 +17,7 @@ from asperity.parameters import Choice, Number, Quantity, key, keys_of, optional
 from asperity.structures.lateral_rail import LateralRail, LateralTrack
 from asperity.structures.track import Track
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.readers import read_surface
-from asperity.surfaces.readers.hints import in_case, spelled
+from asperity.surfaces.readers import hints, read_surface
 
 if TYPE_CHECKING:
     from asperity.case.scene import Case
@@ -124,7 +123,7 @@ def read_section(measured: Path | Profile, key: str) -> Profile:
     InputError
         If the file does not hold one complete line.
     """
-    with spelled(in_case(key.partition(".")[0], {})):
+    with hints.spelled(hints.in_case(key.partition(".")[0], {})):
         section = read_surface(measured) if isinstance(measured, Path) else measured
     if not isinstance(section, Profile):
         raise InputError(key, "a map of heights", "one line across the path")

@@ -9,10 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from asperity.arguments import FORMS, Array, shown
-from asperity.case.content import holds_memory
+from asperity.case import content, tables, toml
 from asperity.case.form import Section
-from asperity.case.tables import TableFile, read_levels
-from asperity.case.toml import read_definition, read_toml, toml_text
 from asperity.errors import InputError
 from asperity.parameters import (
     Choice,
@@ -38,7 +36,7 @@ LENGTH = Quantity("m", above=0)
 POSITION = Quantity("m", at_least=0)
 ANGLE = Quantity("rad")
 INDEX = Number(at_least=0, at_most=10**9, whole=True)
-LEVELS = TableFile(read=read_levels, columns=(2,), content="a table of wavelengths and levels")
+LEVELS = tables.TableFile(read=tables.read_levels, columns=(2,), content="a table of wavelengths and levels")
 LEVEL = Quantity("dB")
 SPECTRA = ("iso3095", "cnossos-average")
 _POINTS = "0.1 nm to 10 mm: atoms are 0.1 nm apart, and contacts are smaller than 10 mm"
@@ -340,7 +338,7 @@ def surfaces_from(
 
 
 def _foreign(section: Section, name: str, keys: tuple[str, ...]) -> Iterator[InputError]:
-    if not holds_memory(getattr(section, name)):
+    if not content.holds_memory(getattr(section, name)):
         return
     for key_of_file in keys:
         if (value := getattr(section, key_of_file)) is not None:
@@ -414,10 +412,10 @@ def read_recipe(path: str | os.PathLike[str]) -> Recipe:
 def typed_recipe(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Keys and values of a recipe as they stand in its file."""
     remedy = "Check the path, or store one with 'asperity surface FILE --store recipe.toml'."
-    return read_toml(read_definition(path, "recipe", remedy), "recipe", path)
+    return toml.read_toml(toml.read_definition(path, "recipe", remedy), "recipe", path)
 
 
 def recipe_text(typed: dict[str, Any]) -> str:
     """Write keys and values as the text of a file that `read_recipe` reads."""
     head = '# How a measured surface is read and prepared: recipe = "…" in [surface] of a case\n'
-    return head + toml_text(typed)
+    return head + toml.toml_text(typed)

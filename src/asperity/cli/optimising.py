@@ -8,17 +8,14 @@ from typing import Any
 import numpy as np
 
 from asperity import files
-from asperity.case.any_case import in_toml
+from asperity.case import any_case, toml
 from asperity.case.content import content, file_digest
-from asperity.case.toml import read_definition, toml_text
 from asperity.errors import InputError
 from asperity.laws import spec_of
 from asperity.optimising.definition import load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
-from asperity.reporting.data import read_entries
-from asperity.reporting.page import PageFigure, figures_page
-from asperity.reporting.study_figures import TextureBands, optimised_chart
+from asperity.reporting import data, page, study_figures
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
@@ -55,8 +52,8 @@ def run_optimisation(
         bands = _bands(found)
         with files.together(directory, last=FILES["case"]) as new:
             _write(found, bands, new, report=report)
-            keys = in_toml(found.case, in_memory=lambda *_: FILES["texture"])
-            text = toml_text({"kind": found.case.kind, **keys})
+            keys = any_case.in_toml(found.case, in_memory=lambda *_: FILES["texture"])
+            text = toml.toml_text({"kind": found.case.kind, **keys})
             files.write_bytes(new / FILES["case"], f"{_mark(asked, text)}{text}".encode())
     say(found.sentence)
     say(f"Case:    {written['case'].resolve()}")
@@ -87,14 +84,14 @@ def _refuse_other(asked: str, case: Path) -> None:
         return
     mark, text = "", ""
     with suppress(InputError):
-        mark, _, text = read_definition(case, "case", "").partition("\n")
+        mark, _, text = toml.read_definition(case, "case", "").partition("\n")
     if f"{mark}\n" != _mark(asked, text):
         remedy = "Choose another folder with -o, or replace it with --overwrite."
         allowed = "a new folder, or that of the same optimisation"
         raise InputError(str(case.parent), f"a folder that holds another {case.name}", allowed, remedy)
 
 
-def _write(found: Optimised, bands: TextureBands, directory: Path, *, report: bool) -> None:
+def _write(found: Optimised, bands: study_figures.TextureBands, directory: Path, *, report: bool) -> None:
     """Write the texture found as tables and on a page, and the runs before and after it."""
     texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
     write_csv(directory / FILES["texture"], ["wavelength (m)", "level (dB re 1 um)"], texture)
@@ -113,11 +110,11 @@ def _write(found: Optimised, bands: TextureBands, directory: Path, *, report: bo
     files.write_bytes(directory / FILES["page"], _page(found, bands, report=report).encode())
 
 
-def _bands(found: Optimised) -> TextureBands:
+def _bands(found: Optimised) -> study_figures.TextureBands:
     """Numbers of the bands: of those that were changed."""
     changed, aim = found.after.changed, found.assignment.aim
     trees = {"before": found.result_before, "after": found.result_after}
-    return TextureBands(
+    return study_figures.TextureBands(
         found.after.changed_wavelength,
         {"before": found.before.levels[changed], "after": found.after.levels[changed]},
         found.limits.lowest,
@@ -130,7 +127,7 @@ def _bands(found: Optimised) -> TextureBands:
     )
 
 
-def _table(bands: TextureBands, units: str) -> tuple[list[str], list[list[float]]]:
+def _table(bands: study_figures.TextureBands, units: str) -> tuple[list[str], list[list[float]]]:
     columns = {
         "wavelength [m]": bands.wavelength,
         "frequency [Hz]": bands.frequency,
@@ -143,20 +140,20 @@ def _table(bands: TextureBands, units: str) -> tuple[list[str], list[list[float]
     return list(columns), np.stack(list(columns.values()), axis=1).tolist()
 
 
-def _page(found: Optimised, bands: TextureBands, *, report: bool) -> str:
-    laws = read_entries(spec_of(law).entry() for law in bands.heard)
+def _page(found: Optimised, bands: study_figures.TextureBands, *, report: bool) -> str:
+    laws = data.read_entries(spec_of(law).entry() for law in bands.heard)
     colours = {name: law.colour for name, law in laws.items()}
-    chart = optimised_chart(bands, found.measure.meaning, found.measure.units, colours)
+    chart = study_figures.optimised_chart(bands, found.measure.meaning, found.measure.units, colours)
     caption = (
         "Above, the texture before and after, and what it was allowed to be; below, what is heard of it."
     )
     titles, rows = _table(bands, found.measure.units)
     columns = dict(zip(titles, np.transpose(rows), strict=True))
     name = "Texture and response in bands"
-    figure = PageFigure("bands", name, caption, chart, FILES["table"], columns)
+    figure = page.PageFigure("bands", name, caption, chart, FILES["table"], columns)
     offered = {"texture (CSV)": "texture", "case": "case", "trials (CSV)": "trials"}
     links = {words: FILES[what] for words, what in offered.items()}
     if report:
         links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
     summary = f"{found.sentence[:1].upper()}{found.sentence[1:]}"
-    return figures_page("Optimised texture", summary, [figure], links)
+    return page.figures_page("Optimised texture", summary, [figure], links)

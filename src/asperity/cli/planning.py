@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from asperity.case import scene, surface
 from asperity.case.any_case import AnyCase, ReadyCase
-from asperity.case.scene import Case
-from asperity.case.surface import MeasuredLine
 from asperity.cli.running import described_scan, name_of_run, prepared_case
 from asperity.errors import Grade, PhysicsWarning
 from asperity.progress import duration, progress_bar
@@ -136,7 +135,7 @@ def _law_choice(prepared: PreparedCase) -> LawChoice | None:
     return law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)
 
 
-def _measured(case: Case) -> Rows:
+def _measured(case: scene.Case) -> Rows:
     """Say what is in the measured files."""
     from asperity.cli.surface import described
     from asperity.scenarios.records import read_lines, read_maps
@@ -149,7 +148,7 @@ def _measured(case: Case) -> Rows:
             rows.append(("measured map", described(list(read_maps(case.surface)))))
         for name in case.section_names:
             section = getattr(case, name)
-            if isinstance(section, MeasuredLine) and section.line is not None:
+            if isinstance(section, surface.MeasuredLine) and section.line is not None:
                 lines = read_lines(section, name)
                 words = described([lines])
                 if isinstance(lines, HeightMap):

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from asperity.files import amount, discard, left_overs, refuse_unwritable, together
+from asperity.reporting import data, sound
 from asperity.reporting.comparison_page import summary
-from asperity.reporting.data import signed
 from asperity.reporting.figure import chosen_figures, write_figures
-from asperity.reporting.sound import TABLE, listen
 from asperity.results import read_result
 from asperity.scenes.report import comparison_of, figures_of, write_comparison, write_page, write_summary
 from asperity.store import Store, is_private, kernel_folders
@@ -56,9 +55,9 @@ def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[st
 def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: bool) -> dict[str, Any]:
     """Write the sounds of a run, by default into ``sounds`` beside it."""
     target = _folder_beside(run, folder, "sounds")
-    files = listen(read_result(run), target, what=what, matched=matched)
+    files = sound.listen(read_result(run), target, what=what, matched=matched)
     scale = "all as loud as each other" if matched else "all on one scale"
-    say(f"Sounds: {target.absolute()}, {len(files)} files, {scale}; {TABLE} says which is which")
+    say(f"Sounds: {target.absolute()}, {len(files)} files, {scale}; {sound.TABLE} says which is which")
     return {"run": run.resolve(), "matched": matched, "files": {path.name: path for path in files}}
 
 
@@ -73,7 +72,7 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
         say_table("Keys that differ", ["key", *names], keys, width=120)
     changes = np.stack([table[f"{name}_a_difference"].values for name in found.levels], axis=-1)
     rows = [
-        [names[r], str(law), *map(signed, changes[r, k])]
+        [names[r], str(law), *map(data.signed, changes[r, k])]
         for r in range(1, len(names))
         for k, law in enumerate(table["law"].values)
         if np.isfinite(changes[r, k]).any()

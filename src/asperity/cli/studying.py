@@ -15,9 +15,7 @@ from asperity.arguments import shown
 from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
-from asperity.reporting import study_figures
-from asperity.reporting.data import read_entries, typed_words
-from asperity.reporting.page import PageFigure, figures_page
+from asperity.reporting import data, page, study_figures
 from asperity.reporting.tables import ReportTable
 from asperity.results import attributes_of, save
 from asperity.scenes.figures.effects import Effects, effects_caption, effects_chart, effects_table
@@ -199,7 +197,7 @@ def _write(
 
 
 def _page(
-    table: xarray.Dataset, blocks: Sequence[PageFigure | ReportTable], written: Sequence[str], best: str
+    table: xarray.Dataset, blocks: Sequence[page.PageFigure | ReportTable], written: Sequence[str], best: str
 ) -> str:
     """The page of a study, with the files that lie beside it; what helps `best` comes first."""
     swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
@@ -213,14 +211,14 @@ def _page(
         "results": ("results (netCDF)", RESULTS),
     }
     beside = dict(offered[what] for what in offered if what in written)
-    return figures_page("Study", best or summary, blocks, beside)
+    return page.figures_page("Study", best or summary, blocks, beside)
 
 
 def _figures(
     table: xarray.Dataset, means: xarray.Dataset | None, band: xarray.Dataset | None, names: Sequence[str]
-) -> list[PageFigure]:
+) -> list[page.PageFigure]:
     """A figure for each swept key that is more than chance, of quantities by name, and one of the band."""
-    laws = read_entries(spec_of(str(law)).entry() for law in table["law"].values)
+    laws = data.read_entries(spec_of(str(law)).entry() for law in table["law"].values)
     looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
     drawn, scatter = table, None
     if means is not None:
@@ -232,11 +230,11 @@ def _figures(
         if drawn.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(drawn)):
             chart = study_figures.key_chart(drawn, scatter, key, looks, names)
             caption = study_figures.key_caption(drawn, scatter, key)
-            figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart))
+            figures.append(page.PageFigure(f"key-{key}", f"Over {key}", caption, chart))
     if band is not None and VARIANT not in band.dims:
         chart = study_figures.ensemble_chart(band, looks)
         words = "Contact force over the seeds", str(band.attrs["meaning"])
-        figures.append(PageFigure("ensemble", *words, chart, BAND))
+        figures.append(page.PageFigure("ensemble", *words, chart, BAND))
     return figures
 
 
@@ -250,17 +248,17 @@ def _by_place(table: xarray.Dataset, effect: xarray.Dataset | None) -> list[tupl
     others = [key for key in json.loads(table.attrs["sweep"]) if key in effect.dims and key != VARIANT]
     places = product(*(range(effect.sizes[key]) for key in others))
     ats = [dict(zip(others, place, strict=True)) for place in places][: study_figures.MOST_PANELS]
-    words = [", ".join(f"{key} = {typed_words(effect[key])[n]}" for key, n in at.items()) for at in ats]
+    words = [", ".join(f"{key} = {data.typed_words(effect[key])[n]}" for key, n in at.items()) for at in ats]
     found = zip(words, (Effects.of(effect.isel(at)) for at in ats), strict=True)
     return [(told, of) for told, of in found if of.parts]  # none where the case as it is has failed
 
 
-def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[PageFigure | ReportTable]:
+def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[page.PageFigure | ReportTable]:
     """Bars and table of what each variant does."""
     for n, (words, of) in enumerate(told, 1):
         title = f"What helps, {words}" if words else "What helps?"
         if not all(of.left_out):
-            yield PageFigure(f"effects-{n}", title, effects_caption(of), effects_chart(of), EFFECTS)
+            yield page.PageFigure(f"effects-{n}", title, effects_caption(of), effects_chart(of), EFFECTS)
         yield replace(effects_table(of), name=f"effects-table-{n}")
 
 

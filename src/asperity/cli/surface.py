@@ -20,11 +20,9 @@ from asperity.parameters import Origin
 from asperity.reporting.figure import write_chart
 from asperity.reporting.texture_figures import lines_chart, surface_chart
 from asperity.spectra import nominal
-from asperity.surfaces import statistics
-from asperity.surfaces.cleaning import FILLED_SHARE_WARNED, nearly_complete
+from asperity.surfaces import cleaning, likeness, statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level
-from asperity.surfaces.likeness import FLAT
 from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.spectra import psd_1d, psd_radial
@@ -152,7 +150,7 @@ def _show_first(
     octaves = _third_octaves([first] if isinstance(first, Profile) else [])
     write_chart(surface_chart(first.heights, spacing, spectra, octaves), title, picture)
     if isinstance(first, HeightMap) and spectra:
-        spectra[AREAL] = psd_radial(nearly_complete(first) or first)
+        spectra[AREAL] = psd_radial(cleaning.nearly_complete(first) or first)
     told = {"statistics": [asdict(item) for item in items], "homogeneity": homogeneous}
     return told | _numbers(first.heights, octaves), spectra
 
@@ -193,9 +191,9 @@ def _spectra_of(surface: HeightMap | Profile) -> Spectra:
     """Spectra of levelled heights along x, and of a map along y; none where more than 5 % are missing."""
     whole: HeightMap | Profile | None
     if isinstance(surface, Profile):
-        names, whole = ["along the line"], nearly_complete(surface)
+        names, whole = ["along the line"], cleaning.nearly_complete(surface)
     else:
-        names, whole = ["along x", "along y"], nearly_complete(surface)
+        names, whole = ["along x", "along y"], cleaning.nearly_complete(surface)
     if whole is None:
         return {}
     spectra = {name: psd_1d(whole, axis) for axis, name in enumerate(names)}
@@ -267,12 +265,12 @@ def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
     """Print whether the texture of a map is the same everywhere; return its numbers, none of a line."""
     if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(statistics.TILES):
         return None
-    whole, what = nearly_complete(surface), "Homogeneity, Std and spectra are those of"
+    whole, what = cleaning.nearly_complete(surface), "Homogeneity, Std and spectra are those of"
     if whole is None:
-        share = f"{1.0 - FILLED_SHARE_WARNED:.0%}"
+        share = f"{1.0 - cleaning.FILLED_SHARE_WARNED:.0%}"
         say(f"{what} a map with at least {share} of its points: --fill fills missing points.")
         return None
-    if np.ptp(level(whole).heights) <= FLAT:
+    if np.ptp(level(whole).heights) <= likeness.FLAT:
         say("Homogeneity: a plane has no texture to be tested")
         return None
     found = statistics.homogeneity(whole)

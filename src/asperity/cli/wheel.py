@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.cases import load_case, of_bodies
-from asperity.case.tables import read_outline
+from asperity.case import cases, tables
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.errors import InputError
 from asperity.reference.wheels import SECTIONS
@@ -57,7 +56,7 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
 def _case_of(section: str) -> Any:
     """A wheel on a rail with a section, or a case that has one."""
     if section.endswith(".toml"):
-        return of_bodies(load_case(Path(section)), "wheel")
+        return cases.of_bodies(cases.load_case(Path(section)), "wheel")
     smooth = {"smooth": True}
     if section in SECTIONS:
         return WheelOnRail(surface=smooth, wheel={"section": section})
@@ -65,7 +64,7 @@ def _case_of(section: str) -> Any:
     if not path.is_file():
         allowed = f"{', '.join(SECTIONS)}, or the path of an outline or of a case"
         raise InputError("section", f"'{section}'", allowed)
-    outline, circle = with_running_circle(read_outline(path))
+    outline, circle = with_running_circle(tables.read_outline(path))
     return WheelOnRail(surface=smooth, wheel={"section": path, "radius": float(outline[circle, 0])})
 
 

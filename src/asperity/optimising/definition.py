@@ -13,8 +13,7 @@ from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
 from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
 from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
-from asperity.scenarios.preparing import prepare
-from asperity.scenarios.records import spectrum_levels
+from asperity.scenarios import preparing, records
 from asperity.scenes.plan import A_WEIGHTED, MEASURE_NAMES
 from asperity.spectra import HALF_BAND, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
@@ -72,7 +71,7 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
     if lateral is None and not surface.has_line:
         lateral = 1.0 / surface.anisotropy if surface.rms is not None else 1.0
     if surface.spectrum is not None:
-        wavelength, levels, _ = spectrum_levels(surface.spectrum)
+        wavelength, levels, _ = records.spectrum_levels(surface.spectrum)
         levels = levels + surface.level
     else:
         wavelength, levels = _measured(case)
@@ -93,7 +92,7 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
 
 def _measured(case: scene.Case) -> tuple[Array, Array]:
     """Levels of the path, mean over its lines, at the wavelengths that it holds, the longest first."""
-    textures, spacing = prepare(case).textures, case.contact.spacing
+    textures, spacing = preparing.prepare(case).textures, case.contact.spacing
     line = Profile(textures.line - textures.line.mean(), spacing)
     if textures.path is None:
         wavelength, levels = band_levels_of(line)

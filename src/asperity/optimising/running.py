@@ -9,16 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.arguments import Array, shown
-from asperity.case.content import case_key
-from asperity.case.scene import Case
+from asperity.case import content, scene
 from asperity.errors import InputError, PhysicsWarning
 from asperity.optimising.allocation import Limits, Trial, rms_of, search
 from asperity.optimising.definition import Assignment, Bands, assignment_of, bands_of, with_texture
 from asperity.progress import Progress, shown_progress
 from asperity.running import run
 from asperity.scenarios.preparing import prepare
-from asperity.scenes.plan import Measure, line_frequencies, measures_of
-from asperity.scenes.result import computed_result
+from asperity.scenes import plan, result
 from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
@@ -58,20 +56,20 @@ class Optimised:
     """
 
     assignment: Assignment
-    measure: Measure
+    measure: plan.Measure
     limits: Limits
     before: Bands
     after: Bands
     trials: tuple[Trial, ...]
     settled: bool
-    case: Case
+    case: scene.Case
     result_before: "Result"
     result_after: "Result"
 
     def level(self, after: bool, law: str) -> float:
         """Level of the quantity, dB, of one of the two textures with a law that was rolled over both."""
         tree = self.result_after if after else self.result_before
-        frequency = line_frequencies(tree)
+        frequency = plan.line_frequencies(tree)
         density = self.measure.density(tree, law)
         return float(level_of(density.sum() * (frequency[1] - frequency[0])))
 
@@ -79,7 +77,7 @@ class Optimised:
         """Level of the quantity (b,), dB, while each changed band is passed, of one of the results."""
         density = self.measure.density(tree, law)
         edges = self.after.edges(self.case.speed)
-        return level_of(band_energies(line_frequencies(tree), density, *edges))
+        return level_of(band_energies(plan.line_frequencies(tree), density, *edges))
 
     @property
     def changes(self) -> dict[str, float]:
@@ -126,7 +124,7 @@ class Optimised:
 
 
 def optimise(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Case | Assignment,
+    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case | Assignment,
     progress: Progress | None = None,
     **aim: Any,
 ) -> Optimised:
@@ -180,7 +178,7 @@ def optimise(
 
 def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
     case, aim = assignment.case, assignment.aim
-    measures = measures_of(case)
+    measures = plan.measures_of(case)
     if aim.quantity not in measures:
         raise InputError("quantity", f'"{aim.quantity}" of {case.kind}', " or ".join(measures))
     measure = measures[aim.quantity]
@@ -207,7 +205,7 @@ def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
     return Optimised(assignment, measure, limits, before, after, tuple(trials), settled, found, *results)
 
 
-def _rolled(assignment: Assignment, measure: Measure, bands: Bands, progress: Progress) -> Trial:
+def _rolled(assignment: Assignment, measure: plan.Measure, bands: Bands, progress: Progress) -> Trial:
     """Roll over a texture with the law of the search; what came of it is kept by all that it depends on."""
     aim = assignment.aim
     laws = tuple(dict.fromkeys((aim.law, *measure.beside)))
@@ -216,10 +214,10 @@ def _rolled(assignment: Assignment, measure: Measure, bands: Bands, progress: Pr
     def rolled() -> dict[str, Array]:
         # those of the texture found are told
         with PhysicsWarning.ignored(), one_thread_in_linear_algebra():
-            tree = computed_result(prepare(case), progress, [])
-        return {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
+            tree = result.computed_result(prepare(case), progress, [])
+        return {"frequency": plan.line_frequencies(tree), "density": measure.density(tree, aim.law)}
 
-    kept = made(Store(), case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)
+    kept = made(Store(), content.case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)
     frequency, density = kept["frequency"], kept["density"]
     energies = np.maximum(band_energies(frequency, density, *bands.edges(case.speed)), 0.0)
     whole = float(density.sum() * (frequency[1] - frequency[0]))

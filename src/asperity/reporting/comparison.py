@@ -11,8 +11,7 @@ from xarray import DataArray, DataTree
 
 from asperity.arguments import nearest, shown
 from asperity.errors import InputError
-from asperity.reporting import data
-from asperity.reporting.chart import Numbers
+from asperity.reporting import chart, data
 from asperity.results import variable
 from asperity.schema import Attribute, Entry, contact, provenance, rolling, spectra
 from asperity.spectra import a_weighted_total, level_of
@@ -33,7 +32,7 @@ _WORKING = (contact.WORKING_LOAD, contact.WORKING_APPROACH, contact.WORKING_STIF
 OF_CONTACT = (*_WORKING, contact.CONTACT_AREA_RATIO)
 """Attributes of the reduced contact that are compared."""
 Variables = dict[str, xarray.Variable]
-Curve = tuple[Numbers, Numbers]
+Curve = tuple[chart.Numbers, chart.Numbers]
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +127,7 @@ def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
 
 def _by_law(
     runs: Sequence[NamedRun], laws: Sequence[str], held: Sequence[DataArray | None], **places: Any
-) -> Numbers:
+) -> chart.Numbers:
     """Numbers of runs by the laws of the comparison, and at common places; NaN where a run lacks them."""
     rows = []
     for run, found in zip(runs, held, strict=True):
@@ -138,14 +137,14 @@ def _by_law(
     return np.stack(rows)
 
 
-def _variable(dims: Sequence[str], numbers: Numbers, units: str, meaning: str) -> xarray.Variable:
+def _variable(dims: Sequence[str], numbers: chart.Numbers, units: str, meaning: str) -> xarray.Variable:
     finite = np.where(np.isfinite(numbers), numbers, np.nan)
     told = {} if np.isfinite(finite).all() else {"missing": NO_VALUE}
     return variable(("run", *dims), finite, units, meaning, **told)
 
 
 def _with_difference(
-    name: str, dims: Sequence[str], numbers: Numbers, units: str, meaning: str, *, ratio: bool = False
+    name: str, dims: Sequence[str], numbers: chart.Numbers, units: str, meaning: str, *, ratio: bool = False
 ) -> Variables:
     """Numbers of runs, and their differences to the first, or 20 lg of their ratios to it."""
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -210,7 +209,7 @@ def _pieces(tree: DataTree, entry: Entry) -> Iterator[tuple[str, str, DataArray]
     yield entry.name, entry.long_name + (", energy mean of the places" if others else ""), found
 
 
-def _weighted(name: str, level: Numbers, band: Numbers, units: str, meaning: str) -> Variables:
+def _weighted(name: str, level: chart.Numbers, band: chart.Numbers, units: str, meaning: str) -> Variables:
     """A-weighted totals, and their differences over the bands that a run shares with the first."""
     shared = np.isfinite(level) & np.isfinite(level[:1])
     own, first = (a_weighted_total(np.where(shared, each, np.nan), band) for each in (level, level[:1]))
@@ -241,7 +240,7 @@ def _of_laws(runs: Sequence[NamedRun], laws: Sequence[str]) -> Variables:
 def _of_contacts(runs: Sequence[NamedRun]) -> Variables:
     """Numbers of the contact under the load; of the stiffness also 20 lg of the ratio."""
 
-    def held(of: Attribute) -> Numbers:
+    def held(of: Attribute) -> chart.Numbers:
         return np.array([np.nan if (n := data.number(r.tree, of)) is None else n for r in runs])
 
     found = {of.name: _variable((), held(of), of.units, of.meaning) for of in OF_CONTACT}
@@ -252,7 +251,7 @@ def _of_contacts(runs: Sequence[NamedRun]) -> Variables:
 # --- the contact over approach and wavenumber
 
 
-def _between(x: Numbers, curves: Sequence[Curve | None]) -> Numbers:
+def _between(x: chart.Numbers, curves: Sequence[Curve | None]) -> chart.Numbers:
     """Curves of all runs at common places (runs, n), straight between their own and NaN beyond."""
     nothing = np.full(len(x), np.nan)
     return np.stack([nothing if c is None else np.interp(x, *c, left=np.nan, right=np.nan) for c in curves])

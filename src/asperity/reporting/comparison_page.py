@@ -7,10 +7,9 @@ import numpy as np
 import xarray
 
 from asperity import __version__
-from asperity.reporting import chart, data, panels, tables
+from asperity.reporting import chart, data, page, panels, tables
 from asperity.reporting.chart import INK, MUTED, Axis, Chart, Flags, Line, Numbers, Panel
 from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, ComparedRuns
-from asperity.reporting.page import PageFigure, PageSection, whole_page
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
 from asperity.spectra import nominal_frequency
@@ -190,7 +189,7 @@ def comparison_page(of: ComparedRuns, file: str) -> str:
     trees = [run.tree for run in of.runs]
     citations = [str(text) for tree in trees for text in data.json_attribute(tree, provenance.CITATIONS, [])]
     sections = compared_sections(of)
-    return whole_page(
+    return page.whole_page(
         "comparison.html.jinja",
         [block for section in sections for block in section.blocks],
         {name: dark for tree in reversed(trees) for name, dark in data.law_colours(tree).items()},
@@ -205,17 +204,17 @@ def comparison_page(of: ComparedRuns, file: str) -> str:
     )
 
 
-def compared_sections(of: ComparedRuns) -> list[PageSection]:
+def compared_sections(of: ComparedRuns) -> list[page.PageSection]:
     """Chapters of the page: cases, verdicts, force, each level, contact."""
     found = [
-        PageSection("case", "What differs in the cases", [_case_table(of)]),
-        PageSection("verdicts", "What each run says", [], list(_verdicts(of))),
-        PageSection("force", "Contact force and its loss", [_numbers_table(of.table)]),
+        page.PageSection("case", "What differs in the cases", [_case_table(of)]),
+        page.PageSection("verdicts", "What each run says", [], list(_verdicts(of))),
+        page.PageSection("force", "Contact force and its loss", [_numbers_table(of.table)]),
     ]
     for name, title in ((name, title.capitalize()) for name, title in of.levels.items()):
-        drawn = PageFigure(name, title, _levels_caption(of, name), _levels_chart(of, name))
-        found.append(PageSection(f"levels-{name}", title, [drawn, _difference_table(of, name)]))
-    blocks: list[PageFigure | ReportTable] = [_contact_table(of.table)]
+        drawn = page.PageFigure(name, title, _levels_caption(of, name), _levels_chart(of, name))
+        found.append(page.PageSection(f"levels-{name}", title, [drawn, _difference_table(of, name)]))
+    blocks: list[page.PageFigure | ReportTable] = [_contact_table(of.table)]
     held = (("stiffness", _stiffness), ("filter", _filters))
     if shown := [draw(of) for name, draw in held if name in of.table]:
         caption = (
@@ -224,8 +223,8 @@ def compared_sections(of: ComparedRuns) -> list[PageSection]:
             "fitted."
         )
         last = Chart((*shown[:1], *(replace(panel, beside=True, share=1.15) for panel in shown[1:])))
-        blocks.insert(0, PageFigure("stiffness_and_filter", "Stiffness and filter", caption, last))
-    return [*found, PageSection("contact", "Contact", blocks)]
+        blocks.insert(0, page.PageFigure("stiffness_and_filter", "Stiffness and filter", caption, last))
+    return [*found, page.PageSection("contact", "Contact", blocks)]
 
 
 def _verdicts(of: ComparedRuns) -> Iterator[tuple[str, str, str]]:

@@ -14,7 +14,6 @@ from xarray import DataArray, DataTree
 
 from asperity.errors import InputError
 from asperity.reporting import chart
-from asperity.reporting.chart import Flags, Numbers
 from asperity.schema import Attribute, Entry, provenance, rolling, spectra
 from asperity.spectra import nominal, say_little
 from asperity.units import quantity
@@ -44,7 +43,7 @@ def variable_of(tree: DataTree, entry: Entry) -> DataArray:
     return found.transpose(*entry.dims, missing_dims="ignore")
 
 
-def values(tree: DataTree, entry: Entry) -> Numbers:
+def values(tree: DataTree, entry: Entry) -> chart.Numbers:
     """Numbers of an entry, which must exist."""
     return np.asarray(variable_of(tree, entry).values, dtype=float)
 
@@ -126,7 +125,7 @@ def laws(tree: DataTree, entry: Entry) -> list[str]:
     return [] if found is None else [str(found["law"].values[n]) for n in with_numbers(found, "law")]
 
 
-def of_law(tree: DataTree, entry: Entry, law: str) -> Numbers:
+def of_law(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:
     """Numbers of one law, at the first of several contacts, other dimensions in the order of the schema."""
     found = variable_of(tree, entry)
     row = [str(name) for name in found["law"].values].index(law)
@@ -135,7 +134,7 @@ def of_law(tree: DataTree, entry: Entry, law: str) -> Numbers:
     )
 
 
-def doubtful(tree: DataTree, product: Entry) -> Flags:
+def doubtful(tree: DataTree, product: Entry) -> chart.Flags:
     """Bands whose levels say little: the `product` of bandwidth and averaging time is small.
 
     Of force levels also those that still hold the start of the record.

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import data
-from asperity.reporting.chart import Numbers
+from asperity.reporting import chart, data
 from asperity.reporting.tables import OFF, ReportTable, error_on_map, setting_names, setting_numbers
 from asperity.schema import bearing, contact, convergence, provenance, rolling
 from asperity.spectra import nominal_frequency
@@ -170,7 +169,7 @@ def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
     yield HeadlineNumber("time without contact", value, told)
 
 
-def deciding_bands(bands: Numbers, level: Numbers) -> str:
+def deciding_bands(bands: chart.Numbers, level: chart.Numbers) -> str:
     """The fewest one-third octaves (b,), Hz, that hold half the energy of levels (b,), dB, in words."""
     energy = np.nan_to_num(10.0 ** (level / 10.0))
     loudest = np.argsort(-energy, kind="stable")

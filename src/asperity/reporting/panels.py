@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import chart, data
+from asperity.reporting import chart, data, figure
 from asperity.reporting.chart import Axis, Flags, Line, Mark, Numbers, Panel
-from asperity.reporting.figure import Lines, Series
 from asperity.schema import Entry, rolling, spectra
 from asperity.spectra import LEAST_PRODUCT, MOST_START
 
@@ -125,14 +124,14 @@ def shaded_words(tree: DataTree, product: Entry = spectra.BAND_TIME_PRODUCT) -> 
     )
 
 
-def products(product: Entry) -> Callable[[DataTree], Iterable[Series]]:
+def products(product: Entry) -> Callable[[DataTree], Iterable[figure.Series]]:
     """Columns: bandwidth times averaging time of bands, and whether their levels say something."""
 
-    def columns(tree: DataTree) -> Iterable[Series]:
+    def columns(tree: DataTree) -> Iterable[figure.Series]:
         if data.present(tree, product):
             enough = (~data.doubtful(tree, product)).astype(float)
-            yield Series("B T", product.units, data.values(tree, product), product)
-            yield Series("level says something", "1", enough)
+            yield figure.Series("B T", product.units, data.values(tree, product), product)
+            yield figure.Series("level says something", "1", enough)
 
     return columns
 
@@ -143,7 +142,7 @@ def products(product: Entry) -> Callable[[DataTree], Iterable[Series]]:
 def styled(
     tree: DataTree,
     x: Numbers,
-    lines: Iterable[Series],
+    lines: Iterable[figure.Series],
     *,
     size: float = 1.0,
     markers: bool = False,
@@ -183,8 +182,8 @@ DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than tha
 
 
 def narrow_levels(
-    tree: DataTree, lines: Lines, shown: Iterable[Series], reference: float = 1.0
-) -> tuple[Numbers, list[Series]]:
+    tree: DataTree, lines: figure.Lines, shown: Iterable[figure.Series], reference: float = 1.0
+) -> tuple[Numbers, list[figure.Series]]:
     """Levels of PSDs in dB within the drawn range, no denser than a line can show."""
     low, high = frequency_range(tree)
     kept = (lines.at >= low) & (lines.at <= high) & (lines.at > 0)
@@ -208,10 +207,10 @@ def draw_spectrum(
     reference: float = 1.0,
     behind: Callable[[DataTree], Sequence[Mark]] = lambda _: (),
     shown: slice = slice(None),
-) -> Callable[[DataTree, Lines], list[Panel]]:
+) -> Callable[[DataTree, figure.Lines], list[Panel]]:
     """Draw a figure: levels of its lines, all or those `shown`, over frequency, other marks behind."""
 
-    def draw(tree: DataTree, lines: Lines) -> list[Panel]:
+    def draw(tree: DataTree, lines: figure.Lines) -> list[Panel]:
         levels = styled(tree, *narrow_levels(tree, lines, lines.lines[shown], reference))
         return [spectrum_panel(tree, label, levels, behind(tree))]
 
@@ -220,7 +219,7 @@ def draw_spectrum(
 
 def band_panel(
     tree: DataTree,
-    lines: Lines,
+    lines: figure.Lines,
     label: str,
     levels: Sequence[Line],
     product: Entry = spectra.BAND_TIME_PRODUCT,
@@ -248,7 +247,7 @@ def time_axis(tree: DataTree, time: Numbers) -> tuple[Axis, float]:
     return axis, unit
 
 
-def main_limits(lines: Sequence[Series], pulling: Collection[str]) -> tuple[float, float]:
+def main_limits(lines: Sequence[figure.Series], pulling: Collection[str]) -> tuple[float, float]:
     """Limits of an axis that suit the main law, the first of `lines`.
 
     Its range, wider by at most `HEADROOM` of it on either side where zero, or another law that can lose
@@ -267,7 +266,7 @@ def main_limits(lines: Sequence[Series], pulling: Collection[str]) -> tuple[floa
 
 
 def beyond_limits(
-    lines: Sequence[Series], limits: tuple[float, float], unit: str, axis: str = "The axis"
+    lines: Sequence[figure.Series], limits: tuple[float, float], unit: str, axis: str = "The axis"
 ) -> str:
     """Sentence that names the laws which leave the axis, with their extremes; empty if none does."""
     left = [

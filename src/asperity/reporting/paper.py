@@ -13,9 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.transforms import ScaledTranslation, blended_transform_factory
 
-from asperity.reporting import chart
-from asperity.reporting.chart import GRID, INK, MUTED, WIDE, Axis, Mark, Panel, limits
-from asperity.reporting.data import engineering, power_of_ten
+from asperity.reporting import chart, data
 
 RC: dict[Any, Any] = {
     "svg.fonttype": "none",
@@ -26,24 +24,24 @@ RC: dict[Any, Any] = {
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
     "axes.labelsize": 9,
-    "axes.edgecolor": MUTED,
-    "axes.labelcolor": INK,
-    "axes.titlecolor": INK,
+    "axes.edgecolor": chart.MUTED,
+    "axes.labelcolor": chart.INK,
+    "axes.titlecolor": chart.INK,
     "axes.facecolor": "none",
     "axes.linewidth": 0.7,
     "axes.grid": True,
     "axes.axisbelow": True,
     "axes.unicode_minus": True,
     "figure.facecolor": "white",
-    "grid.color": GRID,
+    "grid.color": chart.GRID,
     "grid.linewidth": 0.6,
     "hatch.linewidth": 0.8,
-    "text.color": INK,
+    "text.color": chart.INK,
     "text.parse_math": False,
-    "xtick.color": MUTED,
-    "ytick.color": MUTED,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
+    "xtick.color": chart.MUTED,
+    "ytick.color": chart.MUTED,
+    "xtick.labelcolor": chart.INK,
+    "ytick.labelcolor": chart.INK,
     "xtick.labelsize": 8.5,
     "ytick.labelsize": 8.5,
     "legend.frameon": False,
@@ -78,7 +76,7 @@ def draw(drawn: chart.Chart, title: str = "") -> ShownFigure:
     with rc_context(RC):
         rows = chart.rows_of(drawn)
         heights = [max(panel.height for panel in row) for row in rows]
-        figure = ShownFigure(figsize=(WIDE, sum(heights)), layout="constrained")
+        figure = ShownFigure(figsize=(chart.WIDE, sum(heights)), layout="constrained")
         grid = figure.add_gridspec(len(rows), 1, height_ratios=heights)
         named: set[tuple[str, str]] = set()
         for number, row in enumerate(rows):
@@ -86,7 +84,7 @@ def draw(drawn: chart.Chart, title: str = "") -> ShownFigure:
             inner = grid[number].subgridspec(1, len(row), width_ratios=shares)
             for n, panel in enumerate(row):  # one alone stands in the column of the others
                 axes = figure.add_subplot(grid[number] if len(row) == 1 else inner[n])
-                _draw_panel(axes, panel, WIDE * panel.share / sum(shares), named)
+                _draw_panel(axes, panel, chart.WIDE * panel.share / sum(shares), named)
             if len(row) == 1 and number + 1 < len(rows) and _goes_on(row[0], *rows[number + 1]):
                 figure.axes[-1].tick_params(axis="x", labelbottom=False)
                 figure.axes[-1].set_xlabel("")
@@ -102,15 +100,15 @@ def save_figure(figure: Figure, file: BinaryIO, format: str) -> None:
         figure.savefig(file, format=format, dpi=DOTS, metadata=UNDATED[format])
 
 
-def _goes_on(panel: Panel, below: Panel, *beside: Panel) -> bool:
+def _goes_on(panel: chart.Panel, below: chart.Panel, *beside: chart.Panel) -> bool:
     """Whether the panel below has the same axis, which then need not be named twice."""
     same = (panel.x.label, panel.x.ticks) == (below.x.label, below.x.ticks)
-    return same and limits(panel, "x") == limits(below, "x") and not (below.title or beside)
+    return same and chart.limits(panel, "x") == chart.limits(below, "x") and not (below.title or beside)
 
 
-def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, str]]) -> None:
+def _draw_panel(axes: Axes, panel: chart.Panel, width: float, named: set[tuple[str, str]]) -> None:
     """Draw a panel of a width in inches; what is `named` already gets no second place in a legend."""
-    x, y = limits(panel, "x"), limits(panel, "y")
+    x, y = chart.limits(panel, "x"), chart.limits(panel, "y")
     _draw_axis(axes, "x", panel.x, x, width)
     _draw_axis(axes, "y", panel.y, y, panel.height)
     for order, mark in enumerate(panel.marks):
@@ -129,7 +127,7 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, st
         axes.set_title(panel.title, pad=6 + above)
 
 
-def _draw_axis(axes: Axes, way: str, axis: Axis, ends: Ends, length: float) -> None:
+def _draw_axis(axes: Axes, way: str, axis: chart.Axis, ends: Ends, length: float) -> None:
     """Scale, ticks and name of an axis of a length in inches, and what stands opposite to it."""
     side, (low, high) = axes.xaxis if way == "x" else axes.yaxis, sorted(ends)
     axes.set(**{f"{way}label": axis.label, f"{way}scale": "log" if axis.log else "linear"})
@@ -144,7 +142,7 @@ def _draw_axis(axes: Axes, way: str, axis: Axis, ends: Ends, length: float) -> N
         side.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
         side.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     elif axis.log:
-        side.set_major_formatter(ticker.FuncFormatter(lambda value, _: power_of_ten(value)))
+        side.set_major_formatter(ticker.FuncFormatter(lambda value, _: data.power_of_ten(value)))
     if axis.minor or axis.ticks:
         side.set_minor_locator(ticker.FixedLocator(axis.minor))
     side.set_minor_formatter(ticker.NullFormatter())
@@ -169,16 +167,16 @@ def _draw_second(axes: Axes, way: str, second: chart.Second, log: bool, ends: En
     side.set_label_text(second.label)
     if log:
         low, high = sorted(float(there(np.array(end))) for end in ends)
-        steps = (1.0, 2.0, 5.0) if high / low <= 3000 * length / WIDE else (1.0,)
+        steps = (1.0, 2.0, 5.0) if high / low <= 3000 * length / chart.WIDE else (1.0,)
         side.set_major_locator(ticker.LogLocator(subs=steps))
         side.set_minor_locator(ticker.NullLocator())
     if second.unit:
         digits = 1 if log else 3
-        words = ticker.FuncFormatter(lambda value, _: engineering(value, second.unit, digits))
+        words = ticker.FuncFormatter(lambda value, _: data.engineering(value, second.unit, digits))
         side.set_major_formatter(words)
 
 
-def _draw_mark(axes: Axes, mark: Mark, x: Ends, y: Ends, width: float, order: float) -> None:
+def _draw_mark(axes: Axes, mark: chart.Mark, x: Ends, y: Ends, width: float, order: float) -> None:
     """Draw a mark in a panel of a width in inches that reaches from end to end of `x` and `y`."""
     look: dict[str, Any] = {"label": getattr(mark, "label", "") or None, "zorder": order}
     match mark:

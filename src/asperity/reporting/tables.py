@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import data
-from asperity.reporting.chart import Flags, Numbers
+from asperity.reporting import chart, data
 from asperity.schema import Attribute, Entry, contact, convergence, provenance, rolling, spectra, surface
 from asperity.spectra import LEAST_PRODUCT, say_little
 
@@ -62,7 +61,7 @@ def number_cells(
     return [Cell(told(float(each)) if np.isfinite(each) else "–", own) for each, own in cells]
 
 
-def band_cells(bands: Iterable[float], doubtful: Flags) -> list[Cell]:
+def band_cells(bands: Iterable[float], doubtful: chart.Flags) -> list[Cell]:
     """Column of one-third octaves, in grey where they say little."""
     return number_cells(
         bands, data.nominal_band, ["number faint" if doubt else "number" for doubt in doubtful]
@@ -70,7 +69,7 @@ def band_cells(bands: Iterable[float], doubtful: Flags) -> list[Cell]:
 
 
 def change_cells(
-    changes: Numbers, doubtful: Flags, off: float = 1.0, far: float = 3.0, places: int = 1
+    changes: chart.Numbers, doubtful: chart.Flags, off: float = 1.0, far: float = 3.0, places: int = 1
 ) -> list[Cell]:
     """Column of level differences, shaded above two sizes; in grey and in brackets where they say little."""
 
@@ -279,7 +278,7 @@ def setting_names(tree: DataTree) -> list[str]:
     return data.words(tree, convergence.SETTING)
 
 
-def setting_numbers(tree: DataTree, entry: Entry) -> Numbers:
+def setting_numbers(tree: DataTree, entry: Entry) -> chart.Numbers:
     """Numbers of an entry by setting, NaN where none is known."""
     return (
         data.values(tree, entry) if data.present(tree, entry) else np.full(len(setting_names(tree)), np.nan)
@@ -322,12 +321,12 @@ def settings_table(tree: DataTree) -> ReportTable | None:
 _CHANGES = (convergence.LARGEST_CHANGE, convergence.LARGEST_BAND, convergence.STIFFNESS_CHANGE)
 
 
-def _size_cells(sizes: Numbers) -> list[Cell]:
+def _size_cells(sizes: chart.Numbers) -> list[Cell]:
     looks = ["number" + size_look(each, OFF, FAR) for each in sizes]
     return number_cells(sizes, "{:.2f}", looks)
 
 
-def _largest_motion(tree: DataTree) -> Numbers:
+def _largest_motion(tree: DataTree) -> chart.Numbers:
     """Largest size of the change of the main law's motion, in the bands of the force."""
     if not data.present(tree, convergence.MOTION_LEVEL_CHANGE):
         return np.full(len(setting_names(tree)), np.nan)

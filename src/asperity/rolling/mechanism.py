@@ -15,9 +15,8 @@ from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
 from asperity.laws.spec import Law, SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling import assembly, steps
+from asperity.rolling import assembly, roll, steps
 from asperity.rolling.ground import Ground, no_channels
-from asperity.rolling.roll import Ledger, ledger_of, warn_of_counts
 from asperity.rolling.stepper import Stepper, sizes_of, stacked
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -231,7 +230,7 @@ class RolledMechanism:
     bodies: tuple[Array, ...]  # coordinates of each (d, t), m or rad, positive as its contacts open
     displacement: Array  # (sensors, t), m
     acceleration: Array  # (sensors, t), m/s²
-    energy: Ledger  # where the work of the loads went, in run-in and run
+    energy: roll.Ledger  # where the work of the loads went, in run-in and run
     evaluations: int  # of the laws
     unconverged_steps: int
     outcome: Outcome
@@ -287,7 +286,7 @@ def roll_mechanism(
     energies = stepper.energies()
     stepper.run(progress, checkpoint)
     _warn(stepper, course)
-    return _kept(stepper, settled, len(mechanism.bodies), ledger_of(stepper, energies))
+    return _kept(stepper, settled, len(mechanism.bodies), roll.ledger_of(stepper, energies))
 
 
 def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
@@ -311,7 +310,7 @@ def _standing(edge: Edge, step: int) -> Edge:
     return replace(edge, positions=stay(edge.positions), sides=sides, heights=heights)
 
 
-def _kept(stepper: Stepper, settled: int, bodies: int, energy: Ledger) -> RolledMechanism:
+def _kept(stepper: Stepper, settled: int, bodies: int, energy: roll.Ledger) -> RolledMechanism:
     kept, counts, record = slice(settled, None), stepper.motion.counts, stepper.record
     cores = zip(stepper.bodies[:bodies], record.core, strict=False)
     return RolledMechanism(
@@ -402,4 +401,4 @@ def _warn(stepper: Stepper, course: _OnEdges) -> None:
             stop = min(first + CHECKED, course.total + 1)
             law = _looked_up(course.mechanism.edges[k], first, stop)
             beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first:stop]), 0)[2]
-    warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])
+    roll.warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])

@@ -12,12 +12,10 @@ import numpy as np
 
 from asperity import errors
 from asperity.arguments import Array, ArrayLike, NDArray
-from asperity.kernels import stepping
-from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.kernels import pointforce, stepping
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
-from asperity.rolling.assembly import assemble
-from asperity.rolling.ground import Path, warn_if_bent
+from asperity.rolling import assembly, ground
 from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -137,18 +135,18 @@ def roll_bodies(
     ComputationError
         If nothing is at rest at the start, or the motion runs away.
     """
-    whole = Path.laid(start, speed, time_step, duration, settling)
+    whole = ground.Path.laid(start, speed, time_step, duration, settling)
     ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
-    stepper, path = assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
+    stepper, path = assembly.assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
     energies = stepper.energies()
     try:
         stepper.run(progress, checkpoint)
     finally:  # why a motion may have run away
-        warn_if_bent(over, stepper.record.over_displacement)
+        ground.warn_if_bent(over, stepper.record.over_displacement)
     return _rolled(stepper, path, energies)
 
 
-def _rolled(stepper: Stepper, path: Path, energies: tuple[float, float, float]) -> RolledBodies:
+def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, float]) -> RolledBodies:
     """What is kept of a run that started with these energies."""
     record, system, counts = stepper.record, stepper.system, stepper.motion.counts
     kept, softened = slice(path.settled, None), system.softening[:, None] * record.contact_force
@@ -176,7 +174,7 @@ def _rolled(stepper: Stepper, path: Path, energies: tuple[float, float, float]) 
     )
 
 
-def _refuse_missed_loads(stepper: Stepper, path: Path, apart: NDArray[np.bool_]) -> None:
+def _refuse_missed_loads(stepper: Stepper, path: ground.Path, apart: NDArray[np.bool_]) -> None:
     """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
     record, of = stepper.record, stepper.system.body
     touched = []  # how far texture and contact displace bodies while they touch, m
@@ -226,16 +224,16 @@ def contact_losses(flying: NDArray[np.bool_], time_step: float) -> list[ContactL
     ]
 
 
-def flying(prepared: Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:
+def flying(prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:
     """Whether the bodies are apart at each step, by force, N, and approach, m, (n,) each.
 
     Never for a contact that can pull.
     """
-    if isinstance(prepared, Prepared):
+    if isinstance(prepared, pointforce.Prepared):
         if prepared.bilateral:
             return np.zeros(force.shape, dtype=bool)
         if prepared.damped_in_flight:
-            force = evaluate_all(prepared, approach, 0)[0]
+            force = pointforce.evaluate_all(prepared, approach, 0)[0]
     return np.asarray(force <= 0.0)
 
 
@@ -300,7 +298,7 @@ def refuse_missed_load(
 
 def warn_of_steps(
     names: Sequence[str],
-    prepared: Sequence[Prepared | SteppedLaw],
+    prepared: Sequence[pointforce.Prepared | SteppedLaw],
     counts: NDArray[np.int64],
     approach: Array,
 ) -> None:
@@ -310,11 +308,11 @@ def warn_of_steps(
     is that which the laws saw. Contacts under laws of one name count together.
     """
     beyond = [
-        int(evaluate_all(law, seen, 0)[2]) if isinstance(law, Prepared) else 0
+        int(pointforce.evaluate_all(law, seen, 0)[2]) if isinstance(law, pointforce.Prepared) else 0
         for law, seen in zip(prepared, approach, strict=True)
     ]
     for law in prepared:
-        if not isinstance(law, Prepared):
+        if not isinstance(law, pointforce.Prepared):
             law.warn_of_flaws()
     warn_of_counts(names, counts, beyond, approach.shape[1])
 

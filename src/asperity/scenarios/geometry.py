@@ -9,15 +9,12 @@ import numpy as np
 import scipy
 
 from asperity.arguments import Array, require
-from asperity.case.scene import Case
-from asperity.case.sections import ContactKeys
-from asperity.case.sideways import read_section
+from asperity.case import scene, sections, sideways
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning
-from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.levelling import level
+from asperity.surfaces import heightmap, levelling
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in loads of the class of the working load."""
@@ -104,7 +101,7 @@ class Geometry:
         return replace(self, largest_force=min(self.largest_force, held))
 
 
-def window_cells(contact: ContactKeys) -> int:
+def window_cells(contact: sections.ContactKeys) -> int:
     """Cells along the window's side: odd, so that the lowest point of the gap lies on a cell."""
     return 2 * (contact.cells // 2) + 1
 
@@ -114,18 +111,18 @@ def cells_over(length: float, spacing: float) -> int:
     return math.ceil(length / spacing - 1e-6)
 
 
-def across_window(contact: ContactKeys) -> Array:
+def across_window(contact: sections.ContactKeys) -> Array:
     """Coordinates (n,) of the window's cells from its middle, in both directions, m."""
     n = window_cells(contact)
     return contact.spacing * np.arange(-(n // 2), n // 2 + 1, dtype=np.float64)
 
 
-def parabola(contact: ContactKeys, radius: float) -> Array:
+def parabola(contact: sections.ContactKeys, radius: float) -> Array:
     """Section x²/2R (n,) of the gap on the window's cells, R and section in m."""
     return across_window(contact) ** 2 / (2.0 * radius)
 
 
-def geometry_of(case: Case) -> Geometry:
+def geometry_of(case: scene.Case) -> Geometry:
     """Lay what rolls and what it rolls over out on the contact grid, under the static load.
 
     The gap x²/2R + section is that of the smooth contact along the path; the section across is x²/2R, too, or
@@ -155,7 +152,7 @@ def geometry_of(case: Case) -> Geometry:
     return shape.within_window()
 
 
-def _check_half_space(case: Case, hertz: Hertz, load: float) -> None:
+def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
     """Hold the contact under the load, and in the highest state given, to the half-space."""
     body, top = case.rolling, case.contact.approaches
     asked = [(hertz.approach(load), f"a working load of {load:.3g} N")]
@@ -196,13 +193,13 @@ _FINE = 10
 
 
 def _section(
-    measured: Path | Profile | None, radius: float, key: str
+    measured: Path | heightmap.Profile | None, radius: float, key: str
 ) -> tuple[Callable[[Array], Array], float]:
     """Depth below the middle of one body across the path, and half the width where it is known, m."""
     if measured is None:
         curvature = 1.0 / radius
         return lambda y: 0.5 * curvature * y**2, math.inf
-    levelled = level(read_section(measured, key))
+    levelled = levelling.level(sideways.read_section(measured, key))
     count = len(levelled.heights)
     known = (np.arange(count) - 0.5 * (count - 1)) * levelled.spacing
     spline = scipy.interpolate.make_interp_spline(known, -levelled.heights, k=3)
@@ -217,7 +214,7 @@ def _section(
     return depth, float(known[-1])
 
 
-def _measured_gap(case: Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
+def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
     y, body, over = across_window(case.contact), case.rolling, case.rolled_over
     keys = f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"

@@ -9,14 +9,12 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, shown
-from asperity.case.scene import Case
-from asperity.case.sections import ContactKeys
+from asperity.case import scene, sections
 from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, warn_of_flaws
 from asperity.errors import InputError
 from asperity.laws import Law, LawSpec, Materials, Need, spec_of
 from asperity.progress import Progress
-from asperity.reduction.filter import filtered_texture, punch_taps
-from asperity.reduction.table import ForceTable, StoredForces, scan_into
+from asperity.reduction import filter, table
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
@@ -28,7 +26,7 @@ from asperity.store import Cache
 class LawMaterials:
     """What the laws of one contact of a case are made of."""
 
-    case: Case
+    case: scene.Case
     textures: Textures
     shape: Geometry
     reduction: reducing.Reduction | None  # state functions; None where the case has no samples
@@ -84,12 +82,12 @@ class LawMaterials:
         if Need.FILTER not in law.needs:
             return StateTexture.unfiltered(-self.textures.followed, dx, start)
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
-            taps, states = punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
+            taps, states = filter.punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
         else:
             line_filter = self.reduction.filters[reducing.normalisation(self.case.contact, law)]
             reducing.warn_of_filter(line_filter, law.name, self.reduction.pressed.approach)
             taps, states = line_filter.taps, line_filter.contact_filter.approaches
-        return self._over_defects(filtered_texture(self.textures.line, dx, taps, states, start))
+        return self._over_defects(filter.filtered_texture(self.textures.line, dx, taps, states, start))
 
     def _over_defects(self, texture: StateTexture) -> StateTexture:
         """Add the trajectory over defects: rolled over already, it is not to be filtered again."""
@@ -114,14 +112,14 @@ class LawMaterials:
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
     @cached_property
-    def scan(self) -> ScannedForces[StoredForces]:
+    def scan(self) -> ScannedForces[table.StoredForces]:
         """The scan of the path."""
         job = ScanJob(
             self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
             self._reduced.approaches, table_stride(self.shape), rtol_for(self.case.numerics.force_accuracy),
             self._scanned_planes, self.textures.before,
         )  # fmt: skip
-        scanned = scan_into(self.cache, job, progress=self.progress, message="scanning the path")
+        scanned = table.scan_into(self.cache, job, progress=self.progress, message="scanning the path")
         warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
         return scanned
 
@@ -140,7 +138,7 @@ class LawMaterials:
         stride = table_stride(self.shape)
         return slice(self.textures.before % stride, None, stride)
 
-    def _table(self) -> ForceTable:
+    def _table(self) -> table.ForceTable:
         """The scan of the path, to look forces up in."""
         rows, dx, body = self._scanned_rows, self.shape.spacing[0], self.shape.body
         if self.textures.defects is not None:
@@ -149,7 +147,7 @@ class LawMaterials:
             assert self._reduced.touches is not None
             touches = self._reduced.touches[rows]
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
-        return ForceTable(self.scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
+        return table.ForceTable(self.scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
 
 
 def table_stride(shape: Geometry) -> int:
@@ -158,7 +156,7 @@ def table_stride(shape: Geometry) -> int:
 
 
 def working_point(
-    contact: ContactKeys, shape: Geometry, reduction: reducing.Reduction | None
+    contact: sections.ContactKeys, shape: Geometry, reduction: reducing.Reduction | None
 ) -> tuple[float, float]:
     """Approach under the working load, m, and the stiffness that a linear contact has there, N/m.
 

@@ -20,11 +20,8 @@ from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.reduction.filter import FEWEST_POSITIONS
-from asperity.scenarios import reducing
-from asperity.scenarios.compiling import compile_kernels
+from asperity.scenarios import compiling, laws, reducing, running_in
 from asperity.scenarios.geometry import Geometry, geometry_of, window_cells
-from asperity.scenarios.laws import table_stride
-from asperity.scenarios.running_in import running_in_passes, running_in_positions
 from asperity.scenarios.scene import Scene, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
@@ -206,7 +203,7 @@ def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, Sca
     if strips := [strip for strip in textures.strips if strip.heights.any()]:
         sizes["filters"] = sized(strips, reducing.filter_stride(shape), FILTER_SHARE)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
-        sizes["path"] = sized([textures.path], table_stride(shape), 1.0, textures.before)
+        sizes["path"] = sized([textures.path], laws.table_stride(shape), 1.0, textures.before)
     return sizes
 
 
@@ -281,13 +278,15 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     case, shape, textures, trial = prepared.case, prepared.shape, prepared.textures, None
     with one_thread_in_linear_algebra():
         if textures.maps:
-            compile_kernels(progress)
+            compiling.compile_kernels(progress)
             trial = try_contacts(case, shape, textures, progress)
     scans = scan_sizes(case, shape, textures)
     steps = round((case.settled_time + case.rolled_time) / case.time_step)
     solutions = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
     if case.contact.running_in is not None:
-        solutions["running in"] = running_in_passes(case) * running_in_positions(shape, textures)
+        solutions["running in"] = running_in.running_in_passes(case) * running_in.running_in_positions(
+            shape, textures
+        )
     contacts = len(prepared.scene.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
     seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.scene.points)

@@ -10,15 +10,14 @@ from typing import cast
 import numpy as np
 
 from asperity.arguments import Array, require
-from asperity.case.body import Rolling
-from asperity.case.content import name_of
+from asperity.case import body, content
 from asperity.case.sideways import complete
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
-from asperity.surfaces import measured_lines
+from asperity.surfaces import measured_lines, synthesis
 from asperity.surfaces.bands import check_levels, from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
@@ -26,7 +25,6 @@ from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.steps import QUARTER, rotated
 from asperity.surfaces.strip import Rows, Strip
-from asperity.surfaces.synthesis import Continuation, close, extend, long_strip_from_bands
 
 MOST_POINTS = 2.0**27
 """Points of a measured map on the contact grid (1 GiB)."""
@@ -87,7 +85,7 @@ def spectrum_record(
     if before is None:
         strip: Strip = strip_from_bands(*bands, lateral=lateral, seed=seed)
     else:
-        strip = long_strip_from_bands(*bands, lateral=lateral, seed=seed, before=before)
+        strip = synthesis.long_strip_from_bands(*bands, lateral=lateral, seed=seed, before=before)
     held = f"bands of {nominal_length(wavelength.max())} to {nominal_length(wavelength.min())}"
     return Record(strip, f"{name}, {held}, {level_db:+g} dB", areal=bool(np.isfinite(lateral)))
 
@@ -115,7 +113,7 @@ def _held(wavelength: Array, levels: Array, grid: Grid, name: str, *, closed: bo
 def spectrum_levels(spectrum: str | TableSource) -> tuple[Array, Array, str]:
     """Band levels of a texture, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
     if not isinstance(spectrum, str):
-        return *read_levels(spectrum), name_of(spectrum)
+        return *read_levels(spectrum), content.name_of(spectrum)
     if spectrum in cnossos.WHEEL_ROUGHNESS:
         return *cnossos.wheel_roughness(spectrum), spectrum
     return *cnossos.rail_roughness(spectrum), spectrum
@@ -222,12 +220,12 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
     complete(measured, "surface.line")
     spacing, rows = grid.spacing, grid.rows
     line = level(resample(level(measured), spacing)).heights
-    origin = f"measured, {name_of(surface.line)}"  # type: ignore[arg-type]
+    origin = f"measured, {content.name_of(surface.line)}"  # type: ignore[arg-type]
     how = surface.continuation
     if how in ("mirror", "repeat") and line.size < rows:
         fade = min(least, line.size) // 2 if how == "repeat" else 0
-        kind = cast(Continuation, how)
-        line = extend(line, rows + lead, kind, spacing=spacing, start=-lead, crossfade=fade)
+        kind = cast(synthesis.Continuation, how)
+        line = synthesis.extend(line, rows + lead, kind, spacing=spacing, start=-lead, crossfade=fade)
         return Record(Rows(line[:, None]), f"{origin}, {how}ed")
     if may_shorten:
         rows = min(rows, line.size)
@@ -252,12 +250,12 @@ def lines_across(surface: Surface, grid: Grid) -> Record:
         check_levels([Profile(line, grid.spacing) for line in lines], "rail's lines")
     if lines.shape[1] < grid.rows:
         origin += f", {surface.continuation}ed"
-    how = cast(Continuation, surface.continuation or "refuse")
-    extended = extend(lines.T, grid.rows, how, spacing=grid.spacing, what="rail's record").T
+    how = cast(synthesis.Continuation, surface.continuation or "refuse")
+    extended = synthesis.extend(lines.T, grid.rows, how, spacing=grid.spacing, what="rail's record").T
     return Record(Rows(_across(extended, surface, grid)), origin, areal=False, lines=tuple(profiles))
 
 
-def lines_around(rolling: Rolling, name: str, grid: Grid, *, check: bool) -> Record:
+def lines_around(rolling: body.Rolling, name: str, grid: Grid, *, check: bool) -> Record:
     """Lay measured lines around what rolls out as one turn that closes on itself, m.
 
     `grid` holds one turn of the path's grid; the rows returned are those of the record, if it is nearly as
@@ -287,11 +285,11 @@ def lines_around(rolling: Rolling, name: str, grid: Grid, *, check: bool) -> Rec
     fine = np.array([resample(Profile(line, spacing), grid.spacing).heights for line in lines])
     if check:
         check_levels([Profile(line, grid.spacing) for line in fine], f"{name}'s lines")
-    heights = _across(close(fine.T, round(JOIN / grid.spacing)).T, rolling, grid)
+    heights = _across(synthesis.close(fine.T, round(JOIN / grid.spacing)).T, rolling, grid)
     return Record(Rows(heights), origin, areal=False, lines=tuple(profiles))
 
 
-def line_around(rolling: Rolling, name: str, contact: int, grid: Grid) -> Record:
+def line_around(rolling: body.Rolling, name: str, contact: int, grid: Grid) -> Record:
     """Lay the measured line of a contact out as one turn that closes on itself, the same all across, m."""
     measured, origin = processed(rolling, name, degree=0)
     line, whole = measured[contact % len(measured)], grid.length
@@ -300,7 +298,7 @@ def line_around(rolling: Rolling, name: str, contact: int, grid: Grid) -> Record
         raise _not_round(name, f"{length:.4g} m" + ", with gaps" * bool(line.missing_share), whole)
     once = line.heights[: round(whole / line.spacing)] if length > (1.0 + FULL_TURN) * whole else line.heights
     fine = resample(level(Profile(once, line.spacing), 0), grid.spacing).heights
-    return Record(Rows(close(fine[:, None], round(JOIN / grid.spacing))), origin, areal=False)
+    return Record(Rows(synthesis.close(fine[:, None], round(JOIN / grid.spacing))), origin, areal=False)
 
 
 def _not_round(name: str, received: str, whole: float) -> InputError:
@@ -319,7 +317,7 @@ def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Pr
     raw = (measured,) if isinstance(measured, Profile) else measured_lines.lines_of(measured)
     fill, *rest = (step in section.processing for step in ("fill", "spikes", "curvature"))
     done = [measured_lines.process(line, fill_gaps=fill, spikes=rest[0], curvature=rest[1]) for line in raw]
-    words = f"{name_of(section.line)}, {_done([how for _, how in done])}"  # type: ignore[arg-type]
+    words = f"{content.name_of(section.line)}, {_done([how for _, how in done])}"  # type: ignore[arg-type]
     return [level(line, degree) for line, _ in done], words
 
 
@@ -335,7 +333,7 @@ def _done(steps: Sequence[measured_lines.Processing]) -> str:
 
 def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
     if len(lines) > 1 and section.line_distance is None:
-        key = f"{'wheel' if isinstance(section, Rolling) else 'surface'}.line_distance"
+        key = f"{'wheel' if isinstance(section, body.Rolling) else 'surface'}.line_distance"
         allowed, remedy = "the distance across between neighbouring lines", 'Add line_distance = "5 mm", say.'
         raise InputError(key, f"no distance for {len(lines)} lines", allowed, remedy)
     distance = section.line_distance or grid.spacing

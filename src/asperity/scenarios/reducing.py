@@ -7,16 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.scene import Case
-from asperity.case.sections import ContactKeys
+from asperity.case import scene, sections
 from asperity.contact import scan
 from asperity.contact.batched import find_device
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import ContactFilterWarning, InputError
 from asperity.laws import LawSpec, Need, spec_of
 from asperity.progress import Progress, counted
-from asperity.reduction import filter, stiffness
-from asperity.reduction.texture import areal_texture, punch_weights
+from asperity.reduction import filter, stiffness, texture
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
 from asperity.store import Cache
@@ -71,11 +69,11 @@ class PressedSamples:
 
 
 def samples_of(
-    case: Case, shape: Geometry, maps: Iterable[HeightMap], axes: tuple[float, float]
+    case: scene.Case, shape: Geometry, maps: Iterable[HeightMap], axes: tuple[float, float]
 ) -> list[Array]:
     """Samples (nx, ny) of a case, cut from maps, about the plane felt by a patch of these semi-axes, m."""
     cells = (shape.body.shape[0], shape.body.shape[1])
-    weights = punch_weights(shape.spacing, axes)
+    weights = texture.punch_weights(shape.spacing, axes)
     return stiffness.patches([each.heights for each in maps], cells, case.contact.samples, weights)
 
 
@@ -102,11 +100,11 @@ def patch_planes(path: Strip, shape: Geometry) -> Array:
 
     The mean under the patch of the class of the geometry's working load, centred on each row.
     """
-    return -areal_texture(path, shape.spacing, [0.0], [shape.class_axes]).heights[0]
+    return -texture.areal_texture(path, shape.spacing, [0.0], [shape.class_axes]).heights[0]
 
 
 def reduce(
-    case: Case,
+    case: scene.Case,
     textures: Textures,
     shape: Geometry,
     planes: Array | None,
@@ -155,7 +153,7 @@ def reduce(
     return Reduction(approaches, ensemble, datums, axes, filters, pressed, remedy, along, counts)
 
 
-def filtered_loads(contact: ContactKeys, shape: Geometry) -> tuple[float, float]:
+def filtered_loads(contact: sections.ContactKeys, shape: Geometry) -> tuple[float, float]:
     """Least and largest mean force of a state that has a filter, N.
 
     Chosen states go on to where the flattest place carries the largest force, and others carry far more.
@@ -196,7 +194,7 @@ def _touches(strip: Strip | Array, planes: Array, shape: Geometry) -> Array:
 
 
 def _approaches(
-    case: Case, textures: Textures, shape: Geometry, along: Array | None, samples: Sequence[Array]
+    case: scene.Case, textures: Textures, shape: Geometry, along: Array | None, samples: Sequence[Array]
 ) -> Array:
     """States as given, or by the load that places carry.
 
@@ -267,7 +265,7 @@ SMOOTH_WAVENUMBERS = 120
 LineFilters = Mapping[filter.Normalise, filter.LineFilter]
 
 
-def normalisation(contact: ContactKeys, law: LawSpec) -> filter.Normalise:
+def normalisation(contact: sections.ContactKeys, law: LawSpec) -> filter.Normalise:
     """How the filter of a law is normalised: as the case says, else as the law wants it."""
     return law.normalise if contact.normalise is None else contact.normalise  # type: ignore[return-value]
 
@@ -278,7 +276,7 @@ def filter_stride(shape: Geometry) -> int:
 
 
 def line_filters(
-    case: Case,
+    case: scene.Case,
     textures: Textures,
     shape: Geometry,
     ensemble: stiffness.StiffnessEnsemble,

@@ -18,12 +18,9 @@ from asperity.laws import spec_of
 from asperity.scenarios import records
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import Grid, Record
-from asperity.surfaces import synthesis
+from asperity.surfaces import levelling, measured_lines, statistics, synthesis
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import level
-from asperity.surfaces.measured_lines import roll_over
-from asperity.surfaces.statistics import rms_slope
 from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
 
 STRIP_WINDOWS = 16
@@ -68,7 +65,7 @@ class Textures:
     @property
     def rms_slope(self) -> float:
         """Rms slope of the samples on the contact grid."""
-        return float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in self.maps])))
+        return float(np.sqrt(np.mean([statistics.rms_slope(sample) ** 2 for sample in self.maps])))
 
     @property
     def recorded(self) -> slice:
@@ -328,7 +325,7 @@ def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
             joint = case.record_start + 0.5 * case.speed * case.rolled_time
         dip = dipped_joint(position - joint, surface.joint_depth, surface.joint_length)
         heights += dip
-        centre += roll_over(Profile(dip, spacing), rolling.radius).heights
+        centre += measured_lines.roll_over(Profile(dip, spacing), rolling.radius).heights
     if rolling.flat is not None and contact + 1 in rolling.flat_contacts:
         (depth, length), around = rolling.flat, round(rolling.circumference / spacing) * spacing
         first = rolling.flat_position
@@ -362,13 +359,15 @@ def strips_of(
     if contact.sample_length is None and longest >= FEWEST_WINDOWS * ny:
         rows = min(rows, longest)
     if longest < rows or narrowest < ny:
-        strips = tuple(level(synthesis.from_map(maps, (rows, ny), seed)) for seed in seeds)
+        strips = tuple(levelling.level(synthesis.from_map(maps, (rows, ny), seed)) for seed in seeds)
         return strips, "filter strips synthesised in their likeness"
     cut, of_each = list[HeightMap](), math.ceil(len(seeds) / len(maps))
     for i in range(len(seeds)):
         heights = maps[i % len(maps)].heights
         first = round((i // len(maps) + 0.5) / of_each * (heights.shape[1] - ny))
-        cut.append(level(HeightMap(heights[:rows, first : first + ny], maps[0].spacing, maps[0].source)))
+        cut.append(
+            levelling.level(HeightMap(heights[:rows, first : first + ny], maps[0].spacing, maps[0].source))
+        )
     return tuple(cut), "filter strips cut from them"
 
 
@@ -387,7 +386,7 @@ def cut_from(path: Strip, contact: ContactKeys, duration: float, *, first: int =
         )
     count, spacing = contact.samples, (contact.spacing, contact.spacing)
     firsts = first + np.linspace(0, length - rows, count + 2)[1:-1].round().astype(int)
-    found = tuple(level(HeightMap(path.rows(int(i), int(i) + rows), spacing)) for i in firsts)
+    found = tuple(levelling.level(HeightMap(path.rows(int(i), int(i) + rows), spacing)) for i in firsts)
     return found if any(strip.heights.any() for strip in found) else found[:1]
 
 

@@ -18,11 +18,9 @@ from asperity.laws import Law, Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies
-from asperity.scenarios.compiling import compile_kernels
+from asperity.scenarios import compiling, preparing, reducing
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import LawMaterials, working_point
-from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.reducing import Reduction, patch_planes, reduce
 from asperity.scenarios.running_in import RunInCase, run_in_case
 from asperity.scenarios.scene import Scene
 from asperity.scenarios.textures import Textures, other_contacts, recorded_time
@@ -65,7 +63,7 @@ class Computed:
         return self.materials.shape
 
     @property
-    def reduction(self) -> Reduction | None:
+    def reduction(self) -> reducing.Reduction | None:
         """State functions; None without samples."""
         return self.materials.reduction
 
@@ -160,7 +158,7 @@ def spectrum_segment(samples: int, step: float) -> int:
     return min(max(samples // 4, shortest), longest, samples)
 
 
-def compute(prepared: PreparedCase, progress: Progress) -> Computed:
+def compute(prepared: preparing.PreparedCase, progress: Progress) -> Computed:
     """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
     case, scene, textures, shape = prepared.case, prepared.scene, prepared.textures, prepared.shape
     store, seconds, last, ran = Store(), {"textures": prepared.seconds}, time.perf_counter(), None
@@ -171,7 +169,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         now = time.perf_counter()
         seconds[part], last = now - last, now
 
-    compile_kernels(progress)  # not before the files are known to be right
+    compiling.compile_kernels(progress)  # not before the files are known to be right
     book("compiled functions")
     over = _in_time(scene, case, store, progress)
     book("what is rolled over")
@@ -181,8 +179,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         ran = run_in_case(case, textures, shape, store, progress)
         textures = ran.textures
         book("running in")
-    planes = None if textures.path is None else patch_planes(textures.path, shape)
-    reduction = reduce(case, textures, shape, planes, store, progress) if textures.maps else None
+    planes = None if textures.path is None else reducing.patch_planes(textures.path, shape)
+    reduction = reducing.reduce(case, textures, shape, planes, store, progress) if textures.maps else None
     book("reduction")
     first = LawMaterials(case, textures, shape, reduction, planes, store, progress)
     every, unused = [first, *(first.of_contact(own) for own in others)], replace(first)
@@ -236,7 +234,7 @@ def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     return tuple(np.sum(each, axis=0) for each in zip(*parts, strict=True))
 
 
-def checkpoint_of(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
+def checkpoint_of(law: Law, prepared: preparing.PreparedCase, store: Store) -> Checkpoint | None:
     """Where a law that is solved in every step is kept, by the whole case and its path.
 
     Left out of the case are `TOLD_OF` and the names of its laws, each of which rolls alone.

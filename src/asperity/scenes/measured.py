@@ -16,8 +16,7 @@ from asperity.errors import ComputationError, Finding, Grade, MeasuredTrackWarni
 from asperity.radiation import pass_by
 from asperity.radiation.pass_by import Receiver
 from asperity.reference import cnossos, tracks, tsi_noise
-from asperity.scenes import schema
-from asperity.scenes.compute import Computed
+from asperity.scenes import compute, schema
 from asperity.schema import Attribute, Values, spectra
 from asperity.spectra import HALF_BAND, nominal_frequency
 from asperity.structures.track import Track, decay_rate_en15461
@@ -153,7 +152,7 @@ def hammer_tests(keys: TrackKeys, track: Track, band: Array) -> tuple[HammerTest
     return computed.measured(rates, mobility), computed
 
 
-def measured_track(run: Computed) -> tuple[Values, Array, Array] | None:
+def measured_track(run: compute.Computed) -> tuple[Values, Array, Array] | None:
     """What was measured on the track of a case: laid out, and what it does in bands (b,).
 
     Factors of the sound power of rail and sleepers, and of the length of rail that radiates, over those of

@@ -23,8 +23,7 @@ from asperity.scenes.measured import measured_passage
 from asperity.schema import Entry, Values, spectra
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum, level_of
 from asperity.structures.track import Track, decay_rate
-from asperity.surfaces.bands import band_levels_of
-from asperity.surfaces.heightmap import Profile
+from asperity.surfaces import bands, heightmap
 
 Table = tuple[ArrayLike, ArrayLike]
 """Band centres and levels in dB, each (n,)."""
@@ -191,7 +190,7 @@ def _roughness(line: Array, spacing: float) -> Table | None:
         return None
     known = cnossos.wavelengths()
     shortest, longest = max(known.min(), 2.0 * spacing * HALF_BAND), known.max()
-    wavelength, level = band_levels_of(Profile(line, spacing))
+    wavelength, level = bands.band_levels_of(heightmap.Profile(line, spacing))
     inside = (wavelength > shortest / 1.05) & (wavelength < longest * 1.05)
     return wavelength[inside], np.where(np.isfinite(level), level, EMPTY)[inside]
 

@@ -10,10 +10,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Of
-from asperity.schema import Entry, provenance
-from asperity.schema.bearing import BALL_LOAD
-from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, LONGEST_LOSS, TIME
-from asperity.schema.spectra import BAND, FORCE_LEVEL
+from asperity.schema import Entry, bearing, provenance, rolling, spectra
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -70,16 +67,18 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         from asperity.reporting.paper import draw
         from asperity.scenes.report import figures_of
 
-        if name is None and data.present(self, CONTACT_FORCE, TIME):
+        if name is None and data.present(self, rolling.CONTACT_FORCE, rolling.TIME):
             return draw(_overview(self))
-        of_bearing = name is None and data.present(self, BALL_LOAD)
+        of_bearing = name is None and data.present(self, bearing.BALL_LOAD)
         (figure,) = chosen_figures(figures_of(self), [LOAD_ZONE if of_bearing else name])
         return draw(figure.laid_out(self))
 
     def _repr_html_(self) -> str:
         tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]
-        rolled = data.present(self, CONTACT_FORCE, TIME)
-        if data.stated(self, provenance.VERDICT) is None or not (rolled or data.present(self, BALL_LOAD)):
+        rolled = data.present(self, rolling.CONTACT_FORCE, rolling.TIME)
+        if data.stated(self, provenance.VERDICT) is None or not (
+            rolled or data.present(self, bearing.BALL_LOAD)
+        ):
             return tree
         title, verdict = (
             escape(str(data.stated(self, each))) for each in (provenance.TITLE, provenance.VERDICT)
@@ -106,11 +105,11 @@ def _numbers(tree: DataTree) -> str:
     heads = ["law", "mean force", "rms about it", "largest", "time without contact", "longest loss"]
     rows = [f"<tr>{''.join(f'<th>{name}</th>' for name in heads)}</tr>"]
     losses: dict[Entry, Callable[[float], str]] = {
-        CONTACT_LOSS_SHARE: "{:.2%}".format,
-        LONGEST_LOSS: lambda s: data.engineering(s, "s") if s > 0 else "–",
+        rolling.CONTACT_LOSS_SHARE: "{:.2%}".format,
+        rolling.LONGEST_LOSS: lambda s: data.engineering(s, "s") if s > 0 else "–",
     }
-    for law in data.laws(tree, CONTACT_FORCE):
-        force = data.of_law(tree, CONTACT_FORCE, law)
+    for law in data.laws(tree, rolling.CONTACT_FORCE):
+        force = data.of_law(tree, rolling.CONTACT_FORCE, law)
         cells = [law, *(data.engineering(float(f(force)), "N") for f in (np.nanmean, np.nanstd, np.nanmax))]
         for entry, write in losses.items():
             known = law in data.laws(tree, entry) and not data.law_entry(tree, law).may_pull
@@ -123,13 +122,13 @@ def _picture(tree: DataTree) -> str:
     from asperity.reporting.paper import draw  # half a second
 
     image = base64.b64encode(draw(_overview(tree))._repr_png_()).decode()
-    main = escape(data.laws(tree, CONTACT_FORCE)[0])
+    main = escape(data.laws(tree, rolling.CONTACT_FORCE)[0])
     return f'<img alt="contact force of {main}" width="840" src="data:image/png;base64,{image}">'
 
 
 def _overview(tree: DataTree) -> chart.Chart:
     """Force of the main law in time, and the force levels of all laws."""
-    main, time = next(Of(CONTACT_FORCE, "{law}")(tree)), data.values(tree, TIME)
+    main, time = next(Of(rolling.CONTACT_FORCE, "{law}")(tree)), data.values(tree, rolling.TIME)
     size, unit = data.force_unit(float(np.nanmax(np.abs(main.values))))
     second, symbol = data.time_unit(float(time[-1] - time[0]))
     starts, low, high = chart.envelope(main.values / size, COLUMNS)
@@ -140,9 +139,9 @@ def _overview(tree: DataTree) -> chart.Chart:
     low_end, high_end = panels.main_limits([main], ())
     up = chart.Axis(f"contact force / {unit}", low_end / size, high_end / size)
     drawn = [chart.Panel(chart.Axis(f"time / {symbol}"), up, (shown,), main.law, height=3.0)]
-    if data.present(tree, FORCE_LEVEL):
-        band = data.values(tree, BAND)
-        levels = panels.styled(tree, band, Of(FORCE_LEVEL, "{law}")(tree))
+    if data.present(tree, spectra.FORCE_LEVEL):
+        band = data.values(tree, spectra.BAND)
+        levels = panels.styled(tree, band, Of(spectra.FORCE_LEVEL, "{law}")(tree))
         axis = panels.levels_axis("force level / dB re 1 N", [line.y for line in levels])
         drawn.append(chart.Panel(panels.band_axis(band), axis, tuple(levels), height=3.0, beside=True))
     return chart.Chart(tuple(drawn))

@@ -7,16 +7,13 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.arguments import Array
-from asperity.case.beam import BeamKeys
-from asperity.case.rolled_over import TrackKeys
+from asperity.case import beam, rolled_over
 from asperity.case.scene import Case
 from asperity.errors import ComputationError, warn_of_findings
 from asperity.laws import Role, in_role
-from asperity.scenarios.laws import working_point
-from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios import laws, preparing
 from asperity.scenarios.refining import Setting, Way
-from asperity.scenes import noise, schema
-from asperity.scenes.measured import findings_of_measured
+from asperity.scenes import measured, noise, schema
 from asperity.scenes.track import LOWEST, described_losses, findings_of_losses, loss_factor_error
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting, third_octave_bands
@@ -30,7 +27,7 @@ ACCELERATION = "rms acceleration"
 MEASURE_NAMES = (A_WEIGHTED, ACCELERATION)
 
 
-def planned_rows(prepared: PreparedCase) -> list[tuple[str, str]]:
+def planned_rows(prepared: preparing.PreparedCase) -> list[tuple[str, str]]:
     """What else will be computed, in words: several contacts, a track, and its sound."""
     offsets, over = prepared.scene.offsets, prepared.scene.over
     found = []
@@ -40,14 +37,14 @@ def planned_rows(prepared: PreparedCase) -> list[tuple[str, str]]:
     return found + (_rows_of_track(prepared, over) if isinstance(over, Track) else [])
 
 
-def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]]:
+def _rows_of_track(prepared: preparing.PreparedCase, track: Track) -> list[tuple[str, str]]:
     """Characteristic numbers of the track, in words, and what is known of its sound."""
     case = prepared.case
-    _, stiffness = working_point(case.contact, prepared.shape, None)
+    _, stiffness = laws.working_point(case.contact, prepared.shape, None)
     scene, highest = prepared.scene, case.numerics.highest_frequency
     losses = loss_factor_error(track, scene.first, stiffness, highest)
     bands = third_octave_bands(LOWEST, highest)[0]
-    doubts = findings_of_losses(losses) + findings_of_measured(case.track, track.nominal, bands)
+    doubts = findings_of_losses(losses) + measured.findings_of_measured(case.track, track.nominal, bands)
     known = "rail, sleepers and wheel"
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers, for {reason}"
@@ -91,13 +88,13 @@ def _rows_of_bays(case: Case, track: Track) -> Iterator[tuple[str, str]]:
 def own_settings(case: Case) -> list[Setting]:
     """How finely what is rolled over is resolved: modes of a beam, or the kernel behind a track's poles."""
     over = case.rolled_over
-    if isinstance(over, TrackKeys):
+    if isinstance(over, rolled_over.TrackKeys):
         if case.numerics.kernel != "poles":
             return [Setting("poles", (), "the rail is scattered from its kernel, without poles")]
         words = f"up to {case.numerics.poles or POLES} → the kernel that they are fitted to"
         scattered = Way(words, {"numerics.kernel": "scatter", "numerics.poles": None})
         return [Setting("poles", (scattered,), scans_kept=True)]
-    if not isinstance(over, BeamKeys):
+    if not isinstance(over, beam.BeamKeys):
         return []
     before = over.highest_mode(case.numerics.highest_frequency)
     words = f"up to {written(before, 'Hz', 'kHz')} → up to {written(2.0 * before, 'Hz', 'kHz')}"
@@ -117,7 +114,7 @@ class Measure:
 
 def measures_of(case: Case) -> dict[str, Measure]:
     """What textures of a case are judged by, by name: sound where a track is rolled over, else motion."""
-    if isinstance(case.rolled_over, TrackKeys):
+    if isinstance(case.rolled_over, rolled_over.TrackKeys):
         power = "sound power level of rolling, A-weighted"
         at_points = "acceleration level of the rail at the points passed by, energy mean"
         return {

@@ -2,8 +2,7 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, Entry
-from asperity.schema.rolling import CONTACTS
+from asperity.schema import Attribute, Entry, rolling
 from asperity.schema.spectra import BAND_TIME_PRODUCT, NO_SIGNAL
 
 _rolling, _spectra = partial(Entry, "rolling"), partial(Entry, "spectra")
@@ -397,7 +396,7 @@ _SLIP = (
 )
 SLIP_SHARE = _side("slip_share(law)", "1", _SLIP)
 LATERAL_FORCE_SPREAD = _side("lateral_force_rms(law)", "N", f"rms of the {_FORCE}")
-SIDEWAYS_CONTACT = _side("contact", "1", CONTACTS)
+SIDEWAYS_CONTACT = _side("contact", "1", rolling.CONTACTS)
 _EACH = "rms of the lateral force of each contact, in stick"
 LATERAL_CONTACT_SPREAD = _side("lateral_contact_force_rms(law, contact)", "N", _EACH)
 _PLACE = "of the contact across the {}, from its middle, positive towards the field side"

@@ -12,13 +12,11 @@ from asperity.contact.hertz import stick_stiffness
 from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
 from asperity.scenarios.scene import force_transfer
-from asperity.scenes import schema
-from asperity.scenes.compute import Computed
+from asperity.scenes import compute, schema
 from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
 from asperity.schema import Values
 from asperity.spectra import HALF_BAND, a_weighted_total, band_energies, energy_sum, level_of
-from asperity.structures import lateral_rail
-from asperity.structures.modal import modal_answers
+from asperity.structures import lateral_rail, modal
 from asperity.structures.wheel_modes import WheelModes
 
 PLACES = 12
@@ -34,7 +32,7 @@ SOURCES = (
 )
 
 
-def moves_sideways(computed: Computed) -> bool:
+def moves_sideways(computed: compute.Computed) -> bool:
     """Whether anything does: where the contact is off the middle, or the web of a drawn wheel may be bent."""
     case = computed.case
     return "sideways" in case.inner and (any(case.contact_places) or case.rolling.is_drawn)
@@ -44,7 +42,7 @@ def moves_sideways(computed: Computed) -> bool:
 class Sideways:
     """Forces and motion sideways, of what was rolled on one rail, on the lines of the spectra."""
 
-    computed: Computed
+    computed: compute.Computed
 
     @cached_property
     def track(self) -> lateral_rail.LateralTrack:
@@ -173,7 +171,7 @@ class Sideways:
         square = np.sum(spread * np.abs(self.shares) ** 2, axis=0) if sideways else share
         omega, place = 2.0 * np.pi * fine, self.computed.scene.place
         radial, axial = (each[:, None] for each in modes.at(place))
-        answers = modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
+        answers = modal.modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
         moved = radial**2 + 2.0 * radial * axial * share + axial**2 * square
         rigid = 1.0 / (case.rolling.contact_mass * omega) ** 2
         velocity = np.vstack([rigid, rigid * square, np.abs(omega * answers) ** 2 * moved])
@@ -183,7 +181,7 @@ class Sideways:
         return radiator.power(self.lines, self.means(velocity)) * self.seen_of_all
 
 
-def sideways_group(computed: Computed, over_frequency: xarray.Dataset) -> Values:
+def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -> Values:
     """Lay out receptances and decay sideways, the lateral force of each law, its grip and its sound power.
 
     The sound power of all together takes that of rail and sleepers from the spectra.

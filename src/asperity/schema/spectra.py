@@ -2,8 +2,7 @@
 
 from functools import partial
 
-from asperity.schema import Entry
-from asperity.schema.rolling import CONTACTS
+from asperity.schema import Entry, rolling
 
 _entry = partial(Entry, "spectra")
 NO_SIGNAL = "there is no signal in these bands, and nothing has no level"
@@ -28,7 +27,7 @@ START_SHARE = _entry(
     attributes=("most",),
 )
 
-CONTACT = _entry("contact", "1", CONTACTS)
+CONTACT = _entry("contact", "1", rolling.CONTACTS)
 FORCE_PSD = _entry(
     "force_psd(law, frequency)", "N2/Hz", "PSD of the contact force, one-sided, mean of the contacts"
 )

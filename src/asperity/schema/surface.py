@@ -2,11 +2,10 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, Entry
-from asperity.schema.contact import RUN_IN, SAMPLED
+from asperity.schema import Attribute, Entry, contact
 
 _entry, _attribute = partial(Entry, "surface"), partial(Attribute, "surface")
-_sampled = partial(_entry, condition=SAMPLED)
+_sampled = partial(_entry, condition=contact.SAMPLED)
 _beside = partial(_entry, condition="where texture lies beside the line")
 _rough = partial(_entry, condition="where the path is rough")
 _measured = partial(_entry, condition="where maps were measured, large enough to be told apart")
@@ -20,7 +19,7 @@ PATH_HEIGHTS = _beside("path_heights(path_x, path_y)", "m", "height of the path"
 DISTANCE = _entry("distance", "m", "distance along the path")
 _LINE = "height along the middle of the path"
 LINE = _entry("line(distance)", "m", _LINE)
-LINE_UNTOUCHED = _entry("line_untouched(distance)", "m", f"{_LINE} before running-in", RUN_IN)
+LINE_UNTOUCHED = _entry("line_untouched(distance)", "m", f"{_LINE} before running-in", contact.RUN_IN)
 PATH_HEIGHT = _rough("path_height", "m", "height of the path about its mean")
 _DENSITY = "probability density of the heights of the path"
 PATH_HEIGHT_DENSITY = _rough("path_height_density(path_height)", "1/m", _DENSITY)

@@ -12,11 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from asperity import __version__
 from asperity.arguments import shown
-from asperity.case import PRESETS
-from asperity.case.any_case import CaseKey, allowed_in, entries, entry_of
-from asperity.case.cases import case_class
-from asperity.case.scene import Case
-from asperity.case.toml import toml_value
+from asperity.case import PRESETS, any_case, cases, scene, toml
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
@@ -80,13 +76,15 @@ def page_text() -> str:
 @cache
 def forms() -> tuple[CaseForm, ...]:
     """Make the form of each kind of bodies that roll."""
-    return tuple(_form(name) for name in PRESETS if issubclass(case_class(name), Case))
+    return tuple(_form(name) for name in PRESETS if issubclass(cases.case_class(name), scene.Case))
 
 
 def _form(name: str) -> CaseForm:
-    model, groups = case_class(name), []
+    model, groups = cases.case_class(name), []
     whole = model.TITLE.rstrip(".")
-    shown = [each for each in entries(model) if each.name in model.SHOWN.get(each.section, (each.name,))]
+    shown = [
+        each for each in any_case.entries(model) if each.name in model.SHOWN.get(each.section, (each.name,))
+    ]
     for title, keys in groupby(shown, lambda entry: entry.section):
         meaning = model.sections()[title].meaning if title else whole
         fields = (_field(entry, title, model.WRITTEN_OUT) for entry in keys if entry.dotted != _KIND)
@@ -94,14 +92,14 @@ def _form(name: str) -> CaseForm:
     return CaseForm(name, whole, tuple(groups))
 
 
-def _field(entry: CaseKey, title: str, written_out: Mapping[str, str]) -> FormField:
+def _field(entry: any_case.CaseKey, title: str, written_out: Mapping[str, str]) -> FormField:
     usual, written, companion = entry.key.default, written_out.get(entry.dotted), entry.key.goes_with
     control, choices = _control(entry)
     return FormField(
         entry.dotted,
         entry.name,
         entry.key.meaning,
-        allowed_in(entry.key).removesuffix(" in quotes"),
+        any_case.allowed_in(entry.key).removesuffix(" in quotes"),
         entry.key.otherwise if usual is None else typed(usual),
         control,
         choices,
@@ -110,7 +108,7 @@ def _field(entry: CaseKey, title: str, written_out: Mapping[str, str]) -> FormFi
     )
 
 
-def _control(entry: CaseKey) -> tuple[str, tuple[str, ...]]:
+def _control(entry: any_case.CaseKey) -> tuple[str, tuple[str, ...]]:
     match entry.key.kind:
         case Choice() as choice:
             return "choice", choice.known
@@ -131,7 +129,7 @@ def typed(value: object) -> str:
         return YES if value else NO
     if isinstance(value, list | tuple):
         return ", ".join(map(typed, value))
-    return toml_value(value) if isinstance(value, Mapping) else str(value)
+    return toml.toml_value(value) if isinstance(value, Mapping) else str(value)
 
 
 def case_data(
@@ -153,10 +151,10 @@ def case_data(
     InputError
         If a key or a file is unknown, or a value is no text.
     """
-    model = case_class(kind)
+    model = cases.case_class(kind)
     data: dict[str, Any] = {_KIND: kind}
     for dotted, text in values.items():
-        entry = entry_of(model, dotted)
+        entry = any_case.entry_of(model, dotted)
         if not isinstance(text, str) or len(text) > LONGEST_VALUE:
             raise InputError(dotted, shown(text), f"a text of at most {LONGEST_VALUE} characters")
         if text.strip():
@@ -166,7 +164,7 @@ def case_data(
     return data
 
 
-def _value(entry: CaseKey, text: str, file_of: Callable[[str], Path | None]) -> Any:
+def _value(entry: any_case.CaseKey, text: str, file_of: Callable[[str], Path | None]) -> Any:
     kind = entry.key.kind
     if isinstance(kind, ListOf):
         parts = (part.strip() for part in text.split(","))
@@ -206,14 +204,14 @@ def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> 
 
     `id_of` finds the identifier of a file's path; an `InputError` names a file that has none.
     """
-    model = case_class(data.get(_KIND))
+    model = cases.case_class(data.get(_KIND))
     found = {}
     sections = {name: value for name, value in data.items() if isinstance(value, Mapping)}
     flat = {name: value for name, value in data.items() if name not in {_KIND, *sections}}
     for title, keys in sections.items():  # in which a material of numbers is a value
         flat |= {f"{title}.{name}": value for name, value in keys.items()}
     for dotted, value in flat.items():
-        kind = entry_of(model, dotted).key.kind
+        kind = any_case.entry_of(model, dotted).key.kind
         named = isinstance(kind, File)
         named |= isinstance(kind, Either) and isinstance(kind.other, File) and value not in kind.words
         text = id_of(str(value)) if named else typed(value)

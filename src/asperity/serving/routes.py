@@ -16,10 +16,8 @@ from starlette.routing import Route
 
 from asperity.case.toml import LARGEST_CASE
 from asperity.errors import AsperityError
-from asperity.reporting.chart import colour_variables
-from asperity.reporting.payload import chart_script, chart_style
-from asperity.serving import stored_runs
-from asperity.serving.case_form import page_text
+from asperity.reporting import chart, payload
+from asperity.serving import case_form, stored_runs
 from asperity.serving.worker_processes import Jobs, Questions, Refused
 
 CONTACT_SECONDS, FILE_SECONDS = 60.0, 120.0
@@ -98,16 +96,16 @@ class Server:
 
     async def page(self, request: Request) -> Response:
         """Send the page itself."""
-        return HTMLResponse(page_text())
+        return HTMLResponse(case_form.page_text())
 
     async def static(self, request: Request) -> Response:
         """Send its scripts and its styles."""
         match request.path_params["name"]:
             case "charts.js":
-                return Response(chart_script(), media_type="text/javascript")
+                return Response(payload.chart_script(), media_type="text/javascript")
             case "charts.css":
-                light, dark = (f":root {{ {colour_variables(dark=of)} }}" for of in (False, True))
-                style = f"{light}\n@media (prefers-color-scheme: dark) {{ {dark} }}\n{chart_style()}"
+                light, dark = (f":root {{ {chart.colour_variables(dark=of)} }}" for of in (False, True))
+                style = f"{light}\n@media (prefers-color-scheme: dark) {{ {dark} }}\n{payload.chart_style()}"
                 return Response(style, media_type="text/css")
             case name if name in _STATIC:
                 content = resources.files(__package__).joinpath(name).read_bytes()

@@ -10,12 +10,8 @@ from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
 from asperity.arguments import Array
-from asperity.reporting import data
-from asperity.reporting.chart import COLOURS
+from asperity.reporting import chart, data, page, payload, tables
 from asperity.reporting.comparison_page import compared_sections, summary
-from asperity.reporting.page import PageFigure, page_figure, page_template
-from asperity.reporting.payload import charts_json
-from asperity.reporting.tables import ReportTable
 from asperity.results import read_result
 from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
 from asperity.scenes.report import compare, comparison_of, report
@@ -55,7 +51,7 @@ def viewed_run(path: str) -> dict[str, Any]:
         },
         "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
         **told_blocks(
-            [page_figure(tree, each, each.collect(tree)) for each in FIGURES if each.drawable(tree)]
+            [page.page_figure(tree, each, each.collect(tree)) for each in FIGURES if each.drawable(tree)]
         ),
     }
 
@@ -109,16 +105,16 @@ def _spacing(coordinate: Array) -> float:
 # --- figures and tables
 
 
-def told_blocks(blocks: Sequence[PageFigure | ReportTable]) -> dict[str, str]:
+def told_blocks(blocks: Sequence[page.PageFigure | tables.ReportTable]) -> dict[str, str]:
     """Elements of figures and tables, one after the other, and the charts that go into them."""
-    macros: Any = page_template("blocks.html.jinja").module
-    charts = {block.name: block.chart for block in blocks if isinstance(block, PageFigure)}
+    macros: Any = page.page_template("blocks.html.jinja").module
+    charts = {block.name: block.chart for block in blocks if isinstance(block, page.PageFigure)}
     # no file lies beside this page
     elements = (
-        macros.figure(replace(block, file="")) if isinstance(block, PageFigure) else macros.table(block)
+        macros.figure(replace(block, file="")) if isinstance(block, page.PageFigure) else macros.table(block)
         for block in blocks
     )
-    return {"blocks": "".join(elements), "charts": charts_json(charts, COLOURS)}
+    return {"blocks": "".join(elements), "charts": payload.charts_json(charts, chart.COLOURS)}
 
 
 # --- several runs

@@ -22,18 +22,14 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 from asperity import errors
-from asperity.case.cases import case_of, demo_case, load_case, of_bodies
-from asperity.case.scene import Case
-from asperity.case.toml import read_toml
+from asperity.case import cases, scene, toml
 from asperity.files import alone_in
 from asperity.parameters import Origin
 from asperity.progress import Progress
 from asperity.sandbox import MEMORY, end_with_parent, limit_process
-from asperity.serving import stored_runs
-from asperity.serving.case_form import case_data, form_values
+from asperity.serving import case_form, stored_runs
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.readers import read_surface
-from asperity.surfaces.readers.hints import in_case, spelled
+from asperity.surfaces.readers import hints, read_surface
 from asperity.units import written
 
 if TYPE_CHECKING:
@@ -56,10 +52,10 @@ _pressed: "OrderedDict[str, PressedSample]" = OrderedDict()
 # --- questions about cases and files
 
 
-def _case(kind: str, values: dict[str, object], surfaces: str) -> Case:
+def _case(kind: str, values: dict[str, object], surfaces: str) -> scene.Case:
     root = Path(surfaces)
-    data = case_data(kind, values, lambda identifier: stored_runs.surface_named(root, identifier))
-    return of_bodies(case_of(data, Origin("the case", root, units=True)), "page")
+    data = case_form.case_data(kind, values, lambda identifier: stored_runs.surface_named(root, identifier))
+    return cases.of_bodies(cases.case_of(data, Origin("the case", root, units=True)), "page")
 
 
 def read_form(kind: str, values: dict[str, object], surfaces: str) -> Told:
@@ -73,11 +69,11 @@ def read_form(kind: str, values: dict[str, object], surfaces: str) -> Told:
 def read_case_file(text: str, surfaces: str) -> Told:
     """Read a case file into the form."""
     root = Path(surfaces)
-    data = read_toml(text, "case", "the case")
-    of_bodies(case_of(data, Origin("the case", root, units=True)), "page")
+    data = toml.read_toml(text, "case", "the case")
+    cases.of_bodies(cases.case_of(data, Origin("the case", root, units=True)), "page")
     return {
         "kind": data["kind"],
-        "values": form_values(data, lambda path: stored_runs.identifier_of(root, path)),
+        "values": case_form.form_values(data, lambda path: stored_runs.identifier_of(root, path)),
     }
 
 
@@ -100,7 +96,7 @@ def prepare_to_press() -> Told:
     """Press a sample once, so that the first one finds everything imported and compiled."""
     from asperity.serving.contact_preview import PressedSample
 
-    PressedSample(of_bodies(demo_case(), "page")).at(None)
+    PressedSample(cases.of_bodies(cases.demo_case(), "page")).at(None)
     return {}
 
 
@@ -108,7 +104,7 @@ def examined(path: str) -> Told:
     """Say what is in an uploaded file, or what a case has to say of it; an `InputError` if none reads it."""
     try:
         # said below
-        with spelled(in_case("surface", _HINTS)), errors.MissingPointsWarning.ignored():
+        with hints.spelled(hints.in_case("surface", _HINTS)), errors.MissingPointsWarning.ignored():
             first = read_surface(path, index=0)
     except errors.InputError as error:
         if "in [surface]" not in error.remedy:
@@ -211,7 +207,7 @@ def _roll(folder: Path, progress: Progress) -> None:
     # those on the physics stand in the result
     with alone_in(folder), warnings.catch_warnings(action="ignore"):
         progress(0, 1, "preparing")
-        tree = run(prepare_case(load_case(folder / stored_runs.CASE), "the case"), progress=progress)
+        tree = run(prepare_case(cases.load_case(folder / stored_runs.CASE), "the case"), progress=progress)
         progress(0, 1, "writing")
         with suppress(errors.InputError):  # nothing to listen to
             listen(tree, folder / stored_runs.SOUNDS)

@@ -8,8 +8,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.parameters import Quantity, checked_parameters, parameter
-from asperity.structures.modal import modal_answers
-from asperity.structures.periodic_rail import refuse_decay
+from asperity.structures import modal, periodic_rail
 from asperity.structures.support import BendingSleeper, MeasuredSleeper, RigidMass, Spring
 from asperity.structures.track import VANISHING_DAMPING, Track
 from asperity.structures.wheel_modes import WheelModes
@@ -207,7 +206,7 @@ def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralW
     −2/((λ − 1/λ) Σ_i z_i² sin k_i L/(i α_i)), as in `asperity.structures.periodic_rail` for one motion.
     """
     phase, amplitude = free.wavenumbers * spacing, 1j * free.amplitudes
-    refuse_decay(phase.imag)
+    periodic_rail.refuse_decay(phase.imag)
     sine, shapes = np.sin(phase), free.shapes
     matrix = np.einsum("if,aif,abf,blf,lf->fil", amplitude, shapes, support, shapes, sine, optimize=True)
     matrix += np.einsum("if,il->fil", np.cos(phase), np.eye(3))
@@ -377,7 +376,7 @@ def wheel_receptances(
     if modes is None:
         return rigid.astype(complex)
     shape = np.stack(modes.at(place))  # (2, p)
-    answers = modal_answers(frequency, modes.natural_frequencies, modes.damping_ratios)
+    answers = modal.modal_answers(frequency, modes.natural_frequencies, modes.damping_ratios)
     return np.asarray(rigid + np.einsum("ap,bp,fp->abf", shape, shape, answers))
 
 

@@ -8,9 +8,8 @@ import scipy
 
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, real_array
 from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, percent
-from asperity.structures import modal_fit
+from asperity.structures import modal, modal_fit
 from asperity.structures.body import GRAVITY, Body, carriage
-from asperity.structures.modal import ModalStructure, modal_answers, warn_of_coarse
 from asperity.structures.modal_fit import RESIDUAL_DAMPING, Modes
 from asperity.structures.wheel import Wheel
 
@@ -64,9 +63,9 @@ def with_stiffness_above(
 def _squares_above(frequency: Array, number: NDArray[np.intp], flexible: Complex, modes: Modes) -> Array:
     """Squared shapes (e, above), 1/kg, of the modes above the band where forces act."""
     natural, ratios, shapes = modes
-    answers = modal_answers(frequency, natural, ratios)
+    answers = modal.modal_answers(frequency, natural, ratios)
     above = frequency[-1] * np.array(ABOVE)
-    columns = modal_answers(frequency, above, np.full(above.size, RESIDUAL_DAMPING))
+    columns = modal.modal_answers(frequency, above, np.full(above.size, RESIDUAL_DAMPING))
     squares = []
     for j, i in enumerate(number):
         own = flexible[:, i, j]
@@ -116,7 +115,7 @@ def fit_structure(
     mass: float | None = None,
     inertia: float | None = None,
     centre: float | None = None,
-) -> ModalStructure:
+) -> modal.ModalStructure:
     """Structure that is rolled over, by its receptances at several places under forces at some of them.
 
     Parameters
@@ -175,19 +174,19 @@ def fit_structure(
     _check_energy(f, given[:, number])
     rigid = np.zeros_like(given)
     if mass is not None:
-        still = ModalStructure(at, np.ones(1), 0.0, np.ones((at.size, 1)))
+        still = modal.ModalStructure(at, np.ones(1), 0.0, np.ones((at.size, 1)))
         moved = still.with_rigid_body(mass, inertia=inertia, centre=centre).mode_shapes[:, :-1]
         rigid = -(moved @ moved[number].T) / (2.0 * np.pi * f[:, None, None]) ** 2 + 0j
     natural, ratios, shapes = modal_fit.fit_shapes(f, given, rigid, number)
     inside = natural <= INSIDE * f[-1]
     natural, ratios, shapes = natural[inside], ratios[inside], shapes[:, inside]
-    warn_of_coarse(at, shapes, natural)
+    modal.warn_of_coarse(at, shapes, natural)
     modal_fit.warn_of_wide_lines(f, natural, ratios)
     fine, modes = with_stiffness_above(f, at, number, given - rigid, (natural, ratios, shapes))
     error = _judged(f, given[:, number], rigid[:, number], (*modes[:2], modes[2][::FINER][number]))
     # what is above the band has no wavelength
     with CoarseSamplingWarning.ignored():
-        structure = ModalStructure(fine, *modes, fit_error=error)
+        structure = modal.ModalStructure(fine, *modes, fit_error=error)
         if mass is None:
             return structure
         return structure.with_rigid_body(mass, inertia=inertia, centre=centre)
@@ -298,7 +297,7 @@ def _check_energy(frequency: Array, at_forces: Complex) -> None:
 def _judged(f: Array, given: Complex, rigid: Complex, modes: Modes) -> float:
     """Error of the level at the places of the forces (e,), dB, by receptances there (n, e, e)."""
     natural, ratios, shapes = modes
-    fitted = np.einsum("njj->nj", rigid) + modal_answers(f, natural, ratios) @ (shapes**2).T
+    fitted = np.einsum("njj->nj", rigid) + modal.modal_answers(f, natural, ratios) @ (shapes**2).T
     error = modal_fit.level_error(fitted, np.einsum("njj->nj", given))
     modal_fit.judge_fit("receptance", error, f"{len(natural)} modes")
     return error

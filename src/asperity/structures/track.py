@@ -13,7 +13,6 @@ from asperity.reference.tracks import named_track
 from asperity.structures import periodic_rail, stiffness_table, track_parameters
 from asperity.structures import support as chains
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
-from asperity.structures.periodic_rail import Rail
 
 _LOSSES = [(f"{layer}_damping", f"{layer}_loss_factor") for layer in track_parameters.LAYERS]
 _INSTEAD = [*_LOSSES, *((b, a) for a, b in _LOSSES), *(("pad_table", each) for each in _LOSSES[0])]
@@ -147,13 +146,13 @@ class Track(track_parameters.TrackParameters):
         return relaxed or measured or chains.ConstantLoss(factor)
 
     @property
-    def rail(self) -> Rail:
+    def rail(self) -> periodic_rail.Rail:
         """The rail without supports."""
         section, losses = (
             (self.shear_stiffness, self.rotary_inertia),
             self._losses("rail", self.rail_loss_factor),
         )
-        return Rail(self.bending_stiffness, self.mass_per_length, losses, *section)
+        return periodic_rail.Rail(self.bending_stiffness, self.mass_per_length, losses, *section)
 
     @property
     def springs(self) -> dict[str, chains.Spring]:

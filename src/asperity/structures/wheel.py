@@ -6,9 +6,8 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, positive
 from asperity.errors import InputError
-from asperity.structures import modal_fit
+from asperity.structures import modal, modal_fit
 from asperity.structures.body import Body, no_modes, resonances
-from asperity.structures.modal import modal_answers
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,5 +149,5 @@ class Wheel:
         if not (f > 0.0).all():
             allowed = "above 0: a free wheel has no static receptance"
             raise InputError("frequency (Hz)", float(np.min(f)), allowed)
-        modes = modal_answers(f, self.natural_frequencies, self.damping_ratios)
+        modes = modal.modal_answers(f, self.natural_frequencies, self.damping_ratios)
         return np.asarray(modes @ (1.0 / self.modal_masses) - 1.0 / (self.mass * (2.0 * np.pi * f) ** 2))

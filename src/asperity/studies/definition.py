@@ -13,13 +13,9 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import require, shown
+from asperity.case import cases, chosen_lengths, form, scene, toml
 from asperity.case.any_case import AnyCase, entry_of
-from asperity.case.cases import case_class, case_of, keys_and_origin, read_with_case
-from asperity.case.chosen_lengths import shared_lengths
 from asperity.case.content import case_key, content, file_digest
-from asperity.case.form import numbered
-from asperity.case.scene import Case
-from asperity.case.toml import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin
 from asperity.studies.axes import VARIANT, SweptAxis, VariantAxis, as_in_toml, flat, variant_axis, written_out
@@ -129,7 +125,7 @@ class Study:
     @property
     def text(self) -> str:
         """The case in TOML, without the keys that are swept; what stands in memory is described."""
-        return toml_text(self.data)
+        return toml.toml_text(self.data)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -148,7 +144,9 @@ class Study:
         """
         digest_of = lru_cache(maxsize=None)(file_digest)
         found = [self._member(index, digest_of, {}) for index in np.ndindex(self.shape)]
-        if shared := shared_lengths([member.case for member in found if isinstance(member.case, Case)]):
+        if shared := chosen_lengths.shared_lengths(
+            [member.case for member in found if isinstance(member.case, scene.Case)]
+        ):
             found = [self._member(member.index, digest_of, shared) for member in found]
         errors = [member.error for member in found if member.error is not None]
         if len(errors) == len(found):
@@ -169,10 +167,10 @@ class Study:
     def _case(self, values: Mapping[str, Any]) -> AnyCase:
         """The case with values of the swept keys, and with what a variant changes of that."""
         data = _with_values(self.data, {key: value for key, value in values.items() if key != VARIANT})
-        case = case_of(data, self.origin)
+        case = cases.case_of(data, self.origin)
         for axis in self.axes:
             if isinstance(axis, VariantAxis) and (keys := axis.keys(values[VARIANT], case)):
-                changed = case_of(_with_values(data, keys), self.origin)
+                changed = cases.case_of(_with_values(data, keys), self.origin)
                 if changed == case:
                     raise CaseError(values[VARIANT], ["nothing changes: the case is so already"])
                 return changed
@@ -185,7 +183,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     All errors of keys and values are reported at once.
     """
     remedy = "Check the path, or write a study with 'asperity new study > study.toml'."
-    data, base, origin = read_with_case(path, "study", remedy)
+    data, base, origin = cases.read_with_case(path, "study", remedy)
     if unknown := sorted(data.keys() - {"sweep"}):
         errors = [InputError(name, "an unknown key", "case and [sweep]") for name in unknown]
         raise CaseError(str(path), list(map(str, errors)))
@@ -216,7 +214,7 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase, sweep: 
     CaseError
         With all errors at once, if keys or values are wrong.
     """
-    return _checked(*keys_and_origin(case), sweep, "study")
+    return _checked(*cases.keys_and_origin(case), sweep, "study")
 
 
 def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | os.PathLike[str]) -> Study:
@@ -235,7 +233,7 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | 
             remedy = "Put all values into one list."
             require(dotted not in axes, dotted, "the key more than once", "each key once", remedy)
             if dotted == VARIANT:
-                axes[dotted], found = variant_axis(case_class(data.get("kind")), values, origin)
+                axes[dotted], found = variant_axis(cases.case_class(data.get("kind")), values, origin)
                 errors += [error.about(f"sweep.{error.what}") for error in found]
             else:
                 axes[dotted] = _axis(data.get("kind"), dotted, values, origin)
@@ -254,7 +252,7 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | 
 def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxis:
     remedy = "Write a study for each kind."
     require(dotted != "kind", "kind", "a swept key", "one kind of case in a study", remedy)
-    entry = entry_of(case_class(kind), dotted)
+    entry = entry_of(cases.case_class(kind), dotted)
     if isinstance(values, np.ndarray) and values.ndim == 1:
         values = values.tolist()
     values = expanded(dotted, values)
@@ -279,7 +277,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
 
 def _with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Keys of a case with other values for some of them."""
-    changed = numbered(data)
+    changed = form.numbered(data)
     for dotted, value in values.items():
         section, _, name = dotted.rpartition(".")
         if not section:

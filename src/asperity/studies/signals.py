@@ -13,9 +13,8 @@ import xarray
 
 from asperity import files
 from asperity.arguments import Array, file_path, one_of, require, shown
-from asperity.case.any_case import entry_of
+from asperity.case import any_case, bearing
 from asperity.case.ball_bearing import BallBearingCase
-from asperity.case.bearing import read_signal
 from asperity.errors import InputError
 from asperity.results import save, variable
 from asperity.sensing import through_path, with_noise
@@ -99,8 +98,8 @@ class SignalSet:
         rate = self.path_rate
         rate = quantity(rate, "Hz") if isinstance(rate, str) else rate
         if rate is not None or file.suffix.lower() == ".wav":
-            return read_signal(file, rate)
-        times, values = (read_signal(file, 1.0, column=n)[0] for n in (1, 2))
+            return bearing.read_signal(file, rate)
+        times, values = (bearing.read_signal(file, 1.0, column=n)[0] for n in (1, 2))
         steps = np.diff(times)
         even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.01 * steps.mean()
         require(even, f"times in {file.name}", "uneven ones", "equal steps, s", "Or give the sampling rate.")
@@ -215,5 +214,5 @@ def _absent(title: str) -> Any:
 
 def _titled(dotted: str) -> str:
     """Name of a key with its unit."""
-    unit = entry_of(BallBearingCase, dotted).unit if dotted != VARIANT else None
+    unit = any_case.entry_of(BallBearingCase, dotted).unit if dotted != VARIANT else None
     return f"{dotted} [{unit}]" if unit and unit != "1" else dotted

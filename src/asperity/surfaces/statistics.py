@@ -9,12 +9,10 @@ import scipy
 
 from asperity.arguments import Array, require
 from asperity.spectra import psd
-from asperity.surfaces.cleaning import nearly_complete
+from asperity.surfaces import cleaning, levelling, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.spectra import LagSums, autocorrelation_lengths, lengths_of, psd_2d, texture_direction
 from asperity.surfaces.strip import Strip
-from asperity.surfaces.synthesis import from_map
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
 """Distances, points, and sixty times the weights of differences of heights in the slope between them."""
@@ -80,7 +78,7 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     """
     square = _square_slope(surface)
     slopes = {"dq": np.sqrt(np.nanmean(square)), "dr": np.nanmean(np.sqrt(1.0 + square)) - 1.0}
-    (shortest, longest), whole = autocorrelation_lengths(surface), nearly_complete(surface)
+    (shortest, longest), whole = autocorrelation_lengths(surface), cleaning.nearly_complete(surface)
     texture = {"al": shortest, "tr": shortest / longest}
     texture["td"] = np.nan if whole is None else texture_direction(whole)
     values = _amplitudes(*_powers(surface.heights)) | slopes | texture | stratified(surface.heights)
@@ -357,15 +355,15 @@ def homogeneity(
     fit = several and all(n >= 2 * count for n, count in zip(surface.shape, tiles, strict=True))
     require(fit, "tiles", tiles, f"two or more tiles of 2 points or more in {surface.shape}")
     require(surrogates >= 19, "surrogates", surrogates, "at least 19, for 5 % significance")
-    coarse = _coarse(level(surface), tiles)
-    measured, (nx, ny) = _tile_mean_squares(level(coarse), tiles), coarse.shape
+    coarse = _coarse(levelling.level(surface), tiles)
+    measured, (nx, ny) = _tile_mean_squares(levelling.level(coarse), tiles), coarse.shape
     variation = float(measured.std() / measured.mean())
-    long = from_map(coarse, (nx * surrogates, ny), seed).heights
+    long = synthesis.from_map(coarse, (nx * surrogates, ny), seed).heights
     pieces = (HeightMap(long[k * nx : (k + 1) * nx], coarse.spacing) for k in range(surrogates))
-    squares = [_tile_mean_squares(level(piece), tiles) for piece in pieces]
+    squares = [_tile_mean_squares(levelling.level(piece), tiles) for piece in pieces]
     chance = np.array([s.std() / s.mean() for s in squares])
     p_value = (1.0 + float(np.sum(chance >= variation))) / (surrogates + 1.0)
-    tile_rms = np.sqrt(_tile_mean_squares(level(surface), tiles))
+    tile_rms = np.sqrt(_tile_mean_squares(levelling.level(surface), tiles))
     return Homogeneity(tile_rms, variation, float(np.median(chance)), p_value)
 
 
@@ -373,7 +371,7 @@ def _coarse(surface: HeightMap, tiles: tuple[int, int]) -> HeightMap:
     """The surface on fewer points where it has more than the test needs."""
     room = min(n / (FEWEST_POINTS * count) for n, count in zip(surface.shape, tiles, strict=True))
     step = max(1.0, min(max(surface.shape) / MOST_POINTS, room))
-    return resample(surface, (step * surface.spacing[0], step * surface.spacing[1]))
+    return levelling.resample(surface, (step * surface.spacing[0], step * surface.spacing[1]))
 
 
 def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> Array:

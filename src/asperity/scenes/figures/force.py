@@ -13,11 +13,10 @@ from asperity.reporting.tables import ReportTable, number_cells, table, text_cel
 from asperity.scenes import schema
 from asperity.scenes.figures import track
 from asperity.schema import rolling, spectra
-from asperity.schema.rolling import CONTACT_FORCE, TIME
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, CONTACT_FORCE_LEVEL, CONTACT_FORCE_PSD, FREQUENCY
 from asperity.spectra import energy_sum
 
-FORCES = Of(CONTACT_FORCE, "{law}")
+FORCES = Of(rolling.CONTACT_FORCE, "{law}")
 IN_FREQUENCY = "linear, frequency domain"
 """Name of the linear contact that is solved there."""
 REFERENCE_STYLE: dict[str, Any] = {
@@ -168,7 +167,7 @@ AROUND_PEAK = 0.024
 
 
 def _main_force(tree: DataTree) -> chart.Numbers:
-    return data.of_law(tree, CONTACT_FORCE, data.laws(tree, CONTACT_FORCE)[0])
+    return data.of_law(tree, rolling.CONTACT_FORCE, data.laws(tree, rolling.CONTACT_FORCE)[0])
 
 
 def lost(tree: DataTree, law: str, force: chart.Numbers) -> chart.Flags:
@@ -180,7 +179,7 @@ def lost(tree: DataTree, law: str, force: chart.Numbers) -> chart.Flags:
 
 def _main_flight(tree: DataTree) -> chart.Flags:
     """Time steps at which the main law has lost contact."""
-    return lost(tree, data.laws(tree, CONTACT_FORCE)[0], _main_force(tree))
+    return lost(tree, data.laws(tree, rolling.CONTACT_FORCE)[0], _main_force(tree))
 
 
 def piece(tree: DataTree) -> slice:
@@ -201,7 +200,7 @@ def _around(middle: int, length: int, count: int) -> slice:
 
 def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
     """Time steps within `length` s around the largest force of the main law."""
-    time = data.values(tree, TIME)
+    time = data.values(tree, rolling.TIME)
     steps = min(len(time), max(2, round(length * (len(time) - 1) / (time[-1] - time[0]))))
     return _around(int(np.nanargmax(_main_force(tree))), steps, len(time))
 
@@ -209,7 +208,7 @@ def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
 def _forces(tree: DataTree, lines: Lines, **look: Any) -> list[chart.Panel]:
     """Contact force of all laws over a piece of the run, and below it, where there is any, the loss of it."""
     axis, unit = panels.time_axis(tree, lines.at)
-    size, symbol = data.force_unit(float(np.nanmax(np.abs(data.values(tree, CONTACT_FORCE)))))
+    size, symbol = data.force_unit(float(np.nanmax(np.abs(data.values(tree, rolling.CONTACT_FORCE)))))
     low, high = (end / size for end in panels.main_limits(lines.lines, data.pulling(tree)))
     drawn = [
         replace(line, opacity=0.5, width=0.8) if np.nanmin(line.y) < low or np.nanmax(line.y) > high else line
@@ -245,7 +244,7 @@ def _forces_words(tree: DataTree, lines: Lines) -> str:
 
 
 def _whole(tree: DataTree) -> Lines:
-    return Lines(next(Of(TIME)(tree)), list(FORCES(tree)))
+    return Lines(next(Of(rolling.TIME)(tree)), list(FORCES(tree)))
 
 
 def _extremes(tree: DataTree) -> Iterable[Series]:
@@ -258,13 +257,13 @@ def _extremes(tree: DataTree) -> Iterable[Series]:
 
 
 def _starts(tree: DataTree) -> Iterable[Series]:
-    time = data.values(tree, TIME)
-    yield Series("time", TIME.units, time[chart.envelope(time, COLUMNS)[0]])
+    time = data.values(tree, rolling.TIME)
+    yield Series("time", rolling.TIME.units, time[chart.envelope(time, COLUMNS)[0]])
 
 
 def _whole_run(tree: DataTree, _: Lines) -> chart.Chart:
     """Contact force of all laws over the whole run, every time step."""
-    whole, unit = _whole(tree), panels.time_axis(tree, data.values(tree, TIME))[1]
+    whole, unit = _whole(tree), panels.time_axis(tree, data.values(tree, rolling.TIME))[1]
     peak = int(np.nanargmax(whole.lines[0].values))
     losses = [
         (sum(ends) // 2, 6 * (ends[1] - ends[0] + 1) + 40)
@@ -295,9 +294,9 @@ def _piece_caption(tree: DataTree) -> str:
 
 
 def _peak_caption(tree: DataTree) -> str:
-    force, law = _main_force(tree), data.laws(tree, CONTACT_FORCE)[0]
+    force, law = _main_force(tree), data.laws(tree, rolling.CONTACT_FORCE)[0]
     peak = int(np.nanargmax(force))
-    where = f"{data.engineering(force[peak], 'N')} at {data.values(tree, TIME)[peak]:.4f} s"
+    where = f"{data.engineering(force[peak], 'N')} at {data.values(tree, rolling.TIME)[peak]:.4f} s"
     if data.present(tree, rolling.POSITION):
         where += f", {data.values(tree, rolling.POSITION)[peak]:.3f} m along the rail"
     words = _forces_words(tree, FORCE_PEAK.collect(tree))
@@ -307,7 +306,7 @@ def _peak_caption(tree: DataTree) -> str:
 FORCE_PIECE = Figure(
     "force_piece",
     "Contact force, a short piece",
-    Of(TIME),
+    Of(rolling.TIME),
     (FORCES,),
     _forces,
     _piece_caption,
@@ -329,7 +328,7 @@ FORCE_ENVELOPE = Figure(
     (_extremes,),
     _whole_run,
     _whole_caption,
-    further=(CONTACT_FORCE, TIME),
+    further=(rolling.CONTACT_FORCE, rolling.TIME),
 )
 FORCE = (FORCE_ENVELOPE, FORCE_PIECE, FORCE_PEAK, FORCE_SPECTRUM, LINEAR_SPECTRUM, FORCE_BANDS)
 """Of a track the force around its largest value, and marks of it in the spectrum."""

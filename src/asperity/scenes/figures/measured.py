@@ -8,11 +8,9 @@ from xarray import DataTree
 
 from asperity.reference.tsi_noise import PassByLimit
 from asperity.reporting import chart, data, figure, panels, tables
-from asperity.reporting.chart import Line, Panel
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema
-from asperity.schema import Entry
-from asperity.schema.spectra import BAND
+from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting
 
 MEASURED = "measured, in one-third octaves"
@@ -34,7 +32,7 @@ def over_bands(
     def columns(tree: DataTree) -> Iterator[figure.Series]:
         if not data.present(tree, entry):
             return
-        at, band = data.values(tree, frequency), data.values(tree, BAND)
+        at, band = data.values(tree, frequency), data.values(tree, spectra.BAND)
         number = np.rint(10.0 * np.log10(at / band[0])).astype(int)
         inside = (number >= 0) & (number < len(band))
         found = np.where(inside, data.values(tree, entry)[np.clip(number, 0, len(band) - 1)], np.nan)
@@ -63,7 +61,7 @@ def measured_table(tree: DataTree) -> tables.ReportTable | None:
         return None
     shown = np.isfinite(data.values(tree, schema.MEASURED_POWER_CHANGE))
     doubtful = np.zeros(shown.sum(), dtype=bool)
-    columns = {"band": tables.band_cells(data.values(tree, BAND)[shown], doubtful)}
+    columns = {"band": tables.band_cells(data.values(tree, spectra.BAND)[shown], doubtful)}
     for head, entry in _COLUMNS.items():
         if data.present(tree, entry):
             found = data.values(tree, entry)[shown]
@@ -120,11 +118,11 @@ _LOOKS: dict[str, tuple[Any, ...]] = {
 }
 
 
-def _bands(tree: DataTree, lines: figure.Lines) -> list[Panel]:
-    drawn = [Line(lines.at, s.values, s.label, *_LOOKS.get(s.label, ())) for s in lines.lines]
+def _bands(tree: DataTree, lines: figure.Lines) -> list[chart.Panel]:
+    drawn = [chart.Line(lines.at, s.values, s.label, *_LOOKS.get(s.label, ())) for s in lines.lines]
     told = [line.y for line in drawn if line.label in ("total", schema.WITH_SIDEWAYS, "measured")]
     axis = panels.levels_axis("sound pressure level / dB(A) re 20 µPa", told, span=50.0)
-    return [Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)]
+    return [chart.Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)]
 
 
 PASS_BY_BANDS = figure.Figure(

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import data, panels
-from asperity.reporting.chart import INK, Axis, Panel, Rules
+from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
@@ -106,7 +105,7 @@ PIECE = 0.1
 """Length of the piece around the largest force, s."""
 
 
-def _displacement(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+def _displacement(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
     """Displacement of rail and wheel at the contact and their approach, all laws, over a piece of the run."""
     time, unit = panels.time_axis(tree, lines.at)
     sleepers = track.sleeper_times(tree, lines.at[0], lines.at[-1], unit)
@@ -114,8 +113,8 @@ def _displacement(tree: DataTree, lines: Lines) -> Iterator[Panel]:
         if motions := lines.of(entry):
             drawn = panels.styled(tree, lines.at / unit, motions, size=size)
             low, high = panels.main_limits(motions, data.pulling(tree))
-            downwards = Axis(f"{name} / {length}", high / size, low / size)
-            yield Panel(time, downwards, (*sleepers, *drawn), height=1.75)
+            downwards = chart.Axis(f"{name} / {length}", high / size, low / size)
+            yield chart.Panel(time, downwards, (*sleepers, *drawn), height=1.75)
 
 
 def _displacement_caption(tree: DataTree) -> str:
@@ -208,7 +207,7 @@ def _main_and_linear(tree: DataTree) -> list[str]:
     return [*(law for law in data.baselines_among(tree, [main, *others])[:1] if law != main), main]
 
 
-def _velocity(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+def _velocity(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
     """Velocity of the rail at the passed points, around the passing, by the main law and by a linear one."""
     label = "time since the wheel passed / ms" if data.number(tree, rolling.SPEED) else "time / ms"
     laws = _main_and_linear(tree)
@@ -219,9 +218,9 @@ def _velocity(tree: DataTree, lines: Lines) -> Iterator[Panel]:
         of_laws = [replace(s, values=s.values[shown] * 1e3) for s in found if s.law in laws]
         # they swing fast: dashes would not be seen
         drawn = panels.styled(tree, time, of_laws, main=laws[-1], width=1.0, dashes=())
-        passed = [] if passing is None else [Rules(np.zeros(1), colour=INK)]
-        axes = Axis(label, time[0], time[-1], linked="passing"), Axis("velocity / (mm/s)")
-        yield Panel(*axes, (*passed, *drawn), title, height=1.9)
+        passed = [] if passing is None else [chart.Rules(np.zeros(1), colour=chart.INK)]
+        axes = chart.Axis(label, time[0], time[-1], linked="passing"), chart.Axis("velocity / (mm/s)")
+        yield chart.Panel(*axes, (*passed, *drawn), title, height=1.9)
 
 
 def _velocity_caption(tree: DataTree) -> str:
@@ -233,7 +232,7 @@ def _velocity_caption(tree: DataTree) -> str:
     )
 
 
-def _velocity_spectra(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+def _velocity_spectra(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
     """Power spectral densities of the rail's velocity at the passed points, all laws, a panel per point."""
     points = {
         title: panels.narrow_levels(tree, lines, found, schema.VELOCITY_REFERENCE**2)

@@ -10,10 +10,9 @@ from xarray import DataTree
 
 from asperity.reference.cnossos import CNOSSOS
 from asperity.reference.grounds import HARD
-from asperity.reporting import chart, data, panels
+from asperity.reporting import chart, data, headline, panels
 from asperity.reporting.chart import INK, MUTED, Axis, Boxes, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
-from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import compared_numbers, limit_sentence, moved_words
@@ -423,7 +422,7 @@ PASS_BY = Figure(
 # --- what the report says first
 
 
-def noise_answers(tree: DataTree) -> Answers | None:
+def noise_answers(tree: DataTree) -> headline.Answers | None:
     """Sound power of the main law by both models, and what decides it."""
     own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
     if not own and not standard:
@@ -442,11 +441,11 @@ def noise_answers(tree: DataTree) -> Answers | None:
         ("CNOSSOS-EU", standard, by_tables),
     )
     cards = tuple(
-        HeadlineNumber(f"sound power, {how}", f"{of[WHOLE]:.1f} dB(A)", note)
+        headline.HeadlineNumber(f"sound power, {how}", f"{of[WHOLE]:.1f} dB(A)", note)
         for how, of, note in models
         if WHOLE in of
     )
-    return Answers(lead, " ".join(more), cards, (_sources_table(own | side, standard),))
+    return headline.Answers(lead, " ".join(more), cards, (_sources_table(own | side, standard),))
 
 
 def _by_vibration(tree: DataTree, own: Mapping[str, float], side: Mapping[str, float]) -> list[str]:
@@ -481,7 +480,7 @@ def _bands(tree: DataTree, entry: Entry, part: str) -> str:
     """Bands that hold half the A-weighted sound power of what radiates, by the main law."""
     band = data.values(tree, BAND if entry is OWN else schema.NOISE_BAND)
     level = data.of_law(tree, entry, data.laws(tree, entry)[0])[parts_of(tree, entry).index(part)]
-    return deciding_bands(band, level + a_weighting(band))
+    return headline.deciding_bands(band, level + a_weighting(band))
 
 
 def _sources_table(own: Mapping[str, float], standard: Mapping[str, float]) -> ReportTable:
@@ -506,7 +505,7 @@ _HEADLINES = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_M
 """Single numbers; the first only of a vehicle, whose length is known."""
 
 
-def pass_by_answers(tree: DataTree) -> Answers | None:
+def pass_by_answers(tree: DataTree) -> headline.Answers | None:
     """Level beside the track by the main law."""
     levels = {
         name: float(data.of_law(tree, entry, data.laws(tree, entry)[0])[-1])
@@ -527,8 +526,8 @@ def pass_by_answers(tree: DataTree) -> Answers | None:
         own = data.of_law(tree, entry, data.laws(tree, entry)[0])[parts.index(WHOLE)]
         told += f"; vertical motion alone {own:.1f} dB(A)"
     note = f"re 20 µPa{where}{told}{measured}; own radiation model{held}"
-    number = HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note)
-    return Answers(more=limit_sentence(tree), numbers=(number,))
+    number = headline.HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note)
+    return headline.Answers(more=limit_sentence(tree), numbers=(number,))
 
 
 # --- the wheel, mode by mode

@@ -7,8 +7,7 @@ from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of
 from asperity.scenes import schema
-from asperity.schema.contact import HERTZ_RADIUS
-from asperity.schema.rolling import SPEED
+from asperity.schema import contact, rolling
 
 PRODUCT = schema.SURFACE_BAND_LENGTH_PRODUCT
 SPAN = 60.0
@@ -31,7 +30,7 @@ def _levels(tree: DataTree, lines: Lines) -> list[Panel]:
     lowest = max(np.nanmax(series.values) for series in parts) - SPAN
     levels = [np.where(series.values >= lowest, series.values, np.nan) for series in parts]
     kept = np.isfinite(levels).any(axis=0)  # bands in which some part reaches into the span
-    wavelength, speed = lines.at[kept], data.number(tree, SPEED)
+    wavelength, speed = lines.at[kept], data.number(tree, rolling.SPEED)
     drawn = [
         Line(wavelength, level[kept], series.name, *_LOOKS.get(series.name, (chart.MUTED, (), 1.4, "^")))
         for series, level in zip(parts, levels, strict=True)
@@ -47,7 +46,7 @@ def _levels(tree: DataTree, lines: Lines) -> list[Panel]:
 
 def _contact(tree: DataTree, wavelength: Numbers) -> list[Mark]:
     """The length of the contact, where it is among the wavelengths."""
-    length = 2 * (data.number(tree, HERTZ_RADIUS) or 0.0)
+    length = 2 * (data.number(tree, contact.HERTZ_RADIUS) or 0.0)
     if not wavelength.min() < length < wavelength.max():
         return []
     words = f"length of the contact, 2a = {data.engineering(length, 'm')}"

@@ -24,8 +24,7 @@ from asperity.reporting.chart import (
 from asperity.reporting.figure import Figure, Lines, Series
 from asperity.scenes.figures.track import sleepers_between
 from asperity.scenes.schema import ROLLING_POINT, ROLLING_SENSOR
-from asperity.schema import Entry, contact, provenance
-from asperity.schema.rolling import OFFSET, POSITION, SPEED
+from asperity.schema import Entry, contact, provenance, rolling
 
 Lengths = dict[str, float]
 """Of a scene, by name, m."""
@@ -49,7 +48,7 @@ def _scene(
     """Declare the scene of a kind by its own lengths, what is drawn and what is said, without the contact."""
 
     def columns(tree: DataTree) -> Iterator[Series]:
-        position = data.values(tree, POSITION)
+        position = data.values(tree, rolling.POSITION)
         path = {"record begins at x": float(position[0]), "record ends at x": float(position[-1])}
         for name, value in (path | own(tree) | _of_contact(tree)).items():
             if value is not None:
@@ -69,7 +68,7 @@ def _scene(
         found = data.stated(tree, provenance.KIND)
         return (found if found in OWN else "") == kind
 
-    scene = Figure("scene", title, None, (columns,), drawn, said, (POSITION, *needs), worth=of_kind)
+    scene = Figure("scene", title, None, (columns,), drawn, said, (rolling.POSITION, *needs), worth=of_kind)
     return scene
 
 
@@ -227,7 +226,7 @@ def _beam(tree: DataTree, of: Lengths) -> list[Panel]:
     if not radius or not height:
         return [side]
     reach = 2.2 * radius
-    ball = _rolling_body(0.0, radius, 1e-3, data.number(tree, SPEED), inside=0.15)
+    ball = _rolling_body(0.0, radius, 1e-3, data.number(tree, rolling.SPEED), inside=0.15)
     x, y = Axis("x / mm", -reach, reach), Axis("z / mm", -1.3 * height, 2.1 * radius)
     close = [_block(-reach, -height, 2 * reach, height), *ball]
     return [side, _view(x, y, close, "the ball on the beam", 3.4)]
@@ -262,7 +261,7 @@ def _of_bodies(tree: DataTree) -> dict[str, float | None]:
     own = {"radius": data.case_quantity(tree, "body.radius", "m")}
     if data.case_words(tree, "over") == "beam":
         own["length"] = data.case_quantity(tree, "beam.length", "m")
-    own |= _numbered(tree, OFFSET, "contact {} ahead by")
+    own |= _numbered(tree, rolling.OFFSET, "contact {} ahead by")
     return own | _numbered(tree, ROLLING_SENSOR, "sensor {} at x")
 
 
@@ -321,7 +320,7 @@ def _track(tree: DataTree, of: Lengths) -> list[Panel]:
     sleepers = sleepers_between(tree, left, right, spacing)
     marks = [*_rail(tree, left, right, sleepers), path, _places(points, -RAIL / 2)]
     if radius is not None:
-        marks += _rolling_body(at, radius, 1.0, data.number(tree, SPEED), inside=0.12)
+        marks += _rolling_body(at, radius, 1.0, data.number(tree, rolling.SPEED), inside=0.12)
     x = Axis("x along the rail / m", left, right)
     y = Axis("m", -RAIL - PAD - SLEEPER - BALLAST, 2.1 * (radius or 0.46))
     return [_view(x, y, marks, "the wheel on the track", 3.6, share=1.9)]
@@ -357,5 +356,5 @@ def _track_words(_: DataTree, of: Lengths) -> str:
 SCENES = (
     _scene("ball-on-beam", "The scene, to scale", _of_beam, _beam, _beam_words),
     _scene("wheel-on-rail", "The scene, to scale", _of_track, _track, _track_words, height=3.6),
-    _scene("", "The scene", _of_bodies, _bodies, _bodies_words, OFFSET),
+    _scene("", "The scene", _of_bodies, _bodies, _bodies_words, rolling.OFFSET),
 )
