@@ -77,13 +77,12 @@ def ensemble():
 def test_rough_contacts_are_between_the_bounds(ensemble):
     """On any area (1 − ν) k_n ≤ k_t ≤ k_n, and the harmonic mean no less than Mindlin's share."""
     *_, found = ensemble
-    assert found.tangential[..., 0, 1] == pytest.approx(
-        found.tangential[..., 1, 0], abs=1e-5 * found.normal.min()
-    )
-    values, mindlin = np.linalg.eigvalsh(found.tangential) / found.normal[..., None], 1.4 / 1.7
+    ratio, mindlin = found.tangential / found.normal[..., None, None], 1.4 / 1.7
+    assert ratio[..., 0, 1] == pytest.approx(ratio[..., 1, 0], abs=1e-5)
+    values = np.linalg.eigvalsh(ratio)
     assert values.min() > 0.7
     assert values.max() < 1.0
-    mean = 2.0 / (1.0 / found.tangential[..., 0, 0] + 1.0 / found.tangential[..., 1, 1]) / found.normal
+    mean = 2.0 / (1.0 / ratio[..., 0, 0] + 1.0 / ratio[..., 1, 1])
     assert mean.min() > mindlin * (1.0 - 1e-6)
     assert mean.max() < 1.01 * mindlin
 
@@ -115,22 +114,17 @@ def test_no_friction_that_nothing_reaches_matters(ensemble, monkeypatch):
     monkeypatch.setattr(traction, "UNLIMITED", 2e9)
     monkeypatch.setattr(traction, "MOTION", 3e-12)
     again = traction_states(space, like(0.3), gap, samples[:1], [0.5e-6])
-    assert again.tangential[:, 0, 0] == pytest.approx(
-        found.tangential[:, 0, 1], rel=1e-4, abs=1e-5 * found.normal.min()
-    )
+    assert again.tangential[:, 0, 0] == pytest.approx(found.tangential[:, 0, 1], abs=300.0)  # of 1e7 N/m
     assert again.creep[:, 0, 0] == pytest.approx(found.creep[:, 0, 1], rel=1e-6)
 
 
 def test_what_is_left_out_is_told():
     space, gap, _ = smooth(12)
-    unlike = (
-        Material("hard", 300e9, 0.2, 1.0),
-        Material("soft", 1.0 / (1.0 / space.modulus - 0.96 / 300e9), 0.0, 1.0),
-    )
+    soft = Material("soft", 1.0 / (1.0 / space.modulus - 0.96 / 300e9), 0.0, 1.0)
     with pytest.warns(OutOfRangeWarning, match="The bodies are unlike"):
-        traction_states(space, unlike, gap, [np.zeros_like(gap)], [APPROACH])
+        traction_states(space, (Material("hard", 300e9, 0.2, 1.0), soft), gap, [0.0 * gap], [APPROACH])
     with pytest.warns(TruncatedContactWarning, match="end the approaches lower"):
-        traction_states(space, like(0.3), gap, [np.zeros_like(gap)], [4.0 * APPROACH])
+        traction_states(space, like(0.3), gap, [0.0 * gap], [4.0 * APPROACH])
 
 
 def asked(sample, approaches):
@@ -141,11 +135,7 @@ def asked(sample, approaches):
 test_what_has_no_states_is_refused = refusals(
     ([np.zeros((12, 12))], [1e-6, 5e-7], "approaches: received numbers that do not rise"),
     ([np.full((12, 12), -1e-5)], [1e-6], r"approaches: received 1e-06 m; allowed: above 1.0\d*e-05 m, where"),
-    (
-        [np.zeros((11, 12))],
-        [1e-6],
-        "samples: received 1 of 11 rows at least; allowed: arrays of finite",
-    ),
+    ([np.zeros((11, 12))], [1e-6], "samples: received 1 of 11 rows at least; allowed: arrays of"),
     ([], [1e-6], "samples: received 0 of 0 rows"),
     ([np.full((12, 12), np.nan)], [1e-6], "sample: received nan; allowed: arrays of finite"),
     ([np.zeros((12, 9))], [1e-6], r"sample: received shape \(12, 9\)"),

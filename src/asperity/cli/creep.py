@@ -88,7 +88,10 @@ def _told_states(states: TractionStates, source: str) -> Told:
     """Rough over smooth under the same load in words, the functions themselves as columns."""
     load, change, panels = states.load.mean(axis=0), states.change, list[Panel]()
     title = f"{source}: rough contact over smooth under the same load, {len(states.load)} samples"
-    told = {name: [f"{m:.3f} ± {s:.2g}" for m, s in zip(*each, strict=True)] for name, each in change.items()}
+    told = {
+        name: [f"{m:.3f} ± {s:.2g}" if m == m else "short sample" for m, s in zip(*each, strict=True)]
+        for name, each in change.items()
+    }
     _say_columns(title, {"approach / µm": 1e6 * states.approaches, "load / N": load} | told)
     columns = {"approach [m]": states.approaches, "load [N]": load}
     numbers = {"approach": states.approaches, "load": states.load}

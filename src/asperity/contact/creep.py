@@ -170,7 +170,10 @@ class RolledSample:
         rows, spare = len(body), len(heights) - len(body)
         length = contact_rows(smooth)
         allowed = f"at least {rows + LEAST_LENGTHS * length} rows, the window and {LEAST_LENGTHS} contacts"
-        require(spare >= LEAST_LENGTHS * length, "sample to roll over", f"{len(heights)} rows", allowed)
+        remedy = "Lengthen it, in a case by contact.sample_length."
+        require(
+            spare >= LEAST_LENGTHS * length, "sample to roll over", f"{len(heights)} rows", allowed, remedy
+        )
         stride = math.ceil(length / STEPS)
         steps, contacts, start = min(LENGTHS * length, spare) // stride, list[Contact](), None
         first = (spare - steps * stride) // 2
