@@ -82,7 +82,7 @@ class ShaftKeys(Section):
         if isinstance(found, Path):
             found = read_modal_structure(found, around=True)
         known = isinstance(found, ModalStructure)
-        require(known, "modes", name_of(found), "a file, or a ModalStructure over angles in rad")
+        require(known, "modes", name_of(found), "a file, or an asperity.ModalStructure over angles in rad")
         remedy = "Leave out rigid modes, which mass and springs make."
         require(found.frequencies.all(), "modes", "one of 0 Hz", "modes that bend", remedy)
         return Around(found, contact_angle)
