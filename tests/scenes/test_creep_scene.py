@@ -53,7 +53,10 @@ def test_a_wheel_that_heads_for_the_field_side_creeps_to_the_other_and_is_pushed
     assert np.all(np.array(falling[schema.SAMPLE_FRICTION])[:, 1] > 0.0)
     both = creeping({"angle_of_attack": -ATTACK, "lateral": 0.002, "longitudinal": 0.001, "spin": 0.2})
     assert both[schema.CREEPAGE] == (0.001, pytest.approx(math.tan(ATTACK) + 0.002), 0.2)
-    assert max(both[schema.SAMPLE_FRICTION][0]) < 0.0
+    (along, across), moment = both[schema.SAMPLE_FRICTION][0], both[schema.SPIN_MOMENT][0]
+    assert max(along, across) < 0.0
+    driven = -SPEED * (along * 0.001 + across * (math.tan(ATTACK) + 0.002) + moment * 0.2)
+    assert both[schema.SAMPLE_HEAT][0] == pytest.approx(driven, rel=1e-12)
     assert creeping({}) == creeping({"angle_of_attack": 0.0}) == {}
 
 
