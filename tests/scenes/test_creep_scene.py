@@ -72,6 +72,7 @@ def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(comp
     little = creeping({"lateral": 0.0035})
     assert np.all(np.array([little[schema.STICK_AREA], little[schema.SLIP_AREA]]) > 0.0)
     assert little[schema.FULL_SLIP_SCALE] > 1.0
+    assert np.any((little[schema.SLIP_VELOCITY] == 0.0) & (little[schema.TRACTION] > 0.0))
     assert little[schema.FULL_SLIP_SHARE] == np.mean(force <= little[schema.FULL_SLIP_LOAD])
 
 

@@ -56,7 +56,7 @@ def creep_group(computed: Computed) -> Values:
         schema.CREEP_X: x[:, 0],
         schema.CREEP_Y: y[0],
         schema.TRACTION: np.hypot(*shown.traction),
-        schema.SLIP_VELOCITY: speed * np.hypot(*shown.slip),
+        schema.SLIP_VELOCITY: np.where(shown.sticks, 0.0, speed * np.hypot(*shown.slip)),
         schema.CREEPAGE: creepage,
         schema.FULL_SLIP_SCALE: bodies.full_slip_scale(shape.load),
         schema.FULL_SLIP_LOAD: bodies.full_slip_load,

@@ -31,9 +31,9 @@ def _stick(tree: DataTree, lines: Lines) -> Iterator[Panel]:
 def _full_slip(tree: DataTree) -> str:
     """Say where full slip begins, by creepage and by load."""
     scale, load = (data.number(tree, each) for each in (schema.FULL_SLIP_SCALE, schema.FULL_SLIP_LOAD))
-    begins = "is not reached" if scale is None else f"begins at {scale:.3g} of these creepages"
+    begins = "is not reached" if scale is None else f"begins at {scale:.3g} times these creepages"
     up_to = "any load of the run" if load is None else data.engineering(load, "N")
-    return f"Under the working load full slip {begins}; with them all slips up to {up_to}."
+    return f"Full slip {begins}, by smooth bodies under the working load; with them all slips up to {up_to}."
 
 
 def _forces(tree: DataTree, lines: Lines) -> Iterator[Panel]:
@@ -103,7 +103,7 @@ CREEP = (
         (field(schema.TRACTION, schema.CREEP_Y, "q"), field(schema.SLIP_VELOCITY, schema.CREEP_Y, "v")),
         _stick,
         lambda tree: (
-            "Under the working load, of the first sample, or of smooth bodies. What has traction and no slip "
+            "The first sample, or smooth bodies, under the working load. What has traction and no slip "
             f"velocity sticks. {_full_slip(tree)}"
         ),
         (schema.TRACTION, schema.SLIP_VELOCITY, schema.CREEP_Y),
