@@ -55,6 +55,11 @@ class Friction:
         if self.velocity is not None:
             real("slip velocity of friction", self.velocity, "a velocity above 0, m/s", above=0.0)
 
+    @property
+    def falls(self) -> bool:
+        """Whether the coefficient depends on the slip; of a subclass it may."""
+        return self.kinetic < 1.0 or type(self) is not Friction
+
     def coefficient(self, velocity: Array, slipped: Array) -> Array:
         """Coefficient of cells (nx, ny) at a slip velocity, m/s, that have slipped or not."""
         fallen = slipped if self.velocity is None else -np.expm1(-velocity / self.velocity)

@@ -142,16 +142,10 @@ def convolve_traction(
                 out[i * pitch + first + j] = complex(x[2 * i * n + j], -x[(2 * i + 1) * n + j])
 
 
-KEPT = 16
-"""Directions of search against which a new one is made orthogonal."""
 INNER_ITERATIONS, FORCING = 40, 0.1
 """Of a linear solution, at most; by how much it reduces the residual."""
-LEANING = 0.5
-"""Weight of a cell's own stiffness against slip in the preconditioner, found by trial."""
-LONGEST_TURN = 1.0
-"""Of a traction in a step, rad."""
-ACROSS = 1.0
-"""Largest distance, in radii of its disc, by which slip is let move a traction when it is judged."""
+EDGE = 1.0 - 1e-12
+"""Share of the bound from which on a traction counts as on the edge."""
 RETREAT, LEAST, ROUNDING = 4.0, 1e-2, 1e-12
 """Factor of the damping where a step would raise the energy, by more than this share, and the least then."""
 
@@ -165,29 +159,30 @@ class TractionBox(NamedTuple):
     bound: NDArray  # (size,), largest traction, Pa
     slope: NDArray  # (size,), slip over traction where that turns, and the damping, m/Pa
     kept: NDArray  # (size,), ``kept v + mirrored conj(v)`` is the part of v that is free to change
+    weight: NDArray  # (size,), root of a cell's own flexibility over that with the slope
     mirrored: NDArray  # (size,), and all from here on complex
     rigid: NDArray  # (size,), slip without traction, m
     traction: NDArray  # (size,), Pa
     slip: NDArray  # (size,), m
-    trial: NDArray  # (size,), traction with slipping cells on the edge of their discs, Pa
-    response: NDArray  # (size,), what a traction displaces, m
+    trial: NDArray  # (size,), traction that is tried, Pa
+    response: NDArray  # (size,), its slip; of a direction what that displaces, m
     normal: NDArray  # (size,), direction of the traction in slipping cells, else zero
     residual: NDArray  # (size,), of the linear problem, m
     change: NDArray  # (size,), its solution, Pa
     carried: NDArray  # (size and REACH rows on both sides,)
-    steps: NDArray  # (KEPT, size), Pa
-    responses: NDArray  # (KEPT, size), m
+    steps: NDArray  # (directions, size), Pa
+    responses: NDArray  # (directions, size), m
     work: NDArray
 
 
-def traction_box(nx: int, ny: int, c: TractionConvolution) -> TractionBox:
-    """Make a box without friction and traction."""
+def traction_box(nx: int, ny: int, c: TractionConvolution, directions: int = 2) -> TractionBox:
+    """Make a box without friction and traction; a direction of search is made orthogonal to the others."""
     n = width(np.float64)
     pitch = max(whole_vectors(ny, n), ny + REACH)
     size = nx * pitch
     work = np.zeros(2 * c.spectra.shape[1] + 2 * n * max(len(c.roots_x), len(c.roots_y)))
-    real, vectors = np.zeros((3, size)), np.zeros((9, size), complex)
-    carried, searched = np.zeros(size + 2 * REACH * pitch, complex), np.zeros((2, KEPT, size), complex)
+    real, vectors = np.zeros((4, size)), np.zeros((9, size), complex)
+    carried, searched = np.zeros(size + 2 * REACH * pitch, complex), np.zeros((2, directions, size), complex)
     return TractionBox._make((nx, ny, pitch, *real, *vectors, carried, *searched, work))
 
 
@@ -196,9 +191,8 @@ class TractionTask(NamedTuple):
 
     diagonal: float  # displacement of a cell by its own traction, m/Pa
     carried: float  # share of a row's slip that comes from the row ahead: below one, zero without rolling
-    damping: float  # at most, m/Pa: about what long waves of traction displace
     symmetric: bool  # whether there is an energy
-    tolerance: float  # largest slip, m, that is against Coulomb's law
+    rtol: float  # largest slip that is against Coulomb's law, over the largest without traction
     max_iterations: int
 
 
@@ -217,85 +211,106 @@ def _add(target: NDArray, factor: float, field: NDArray) -> None:
         p[i] += factor * q[i]
 
 
-@compiled(**INNER)
+@compiled(**INNER, **REASSOCIATE)
+def _length(value: complex) -> float:
+    return np.sqrt(value.real**2 + value.imag**2)  # abs() takes care of overflow, and time
+
+
+@compiled(**INNER, **REASSOCIATE)
 def _within(value: complex, bound: float) -> complex:
-    length = abs(value)
+    length = _length(value)
     return value * (bound / length) if length > bound else value
 
 
-@compiled(**INNER)
+@compiled(**INNER, **REASSOCIATE)
 def _free(b: TractionBox, q: int, value: complex) -> complex:
     """Part of a vector that may change in a cell: all where it sticks, along the edge where it slips."""
     return b.kept[q] * value + b.mirrored[q] * value.conjugate()
 
 
-@compiled(**CALLED)
-def _judge(b: TractionBox, diagonal: float) -> tuple[float, float]:
+@compiled(**CALLED, **REASSOCIATE)
+def _judge(b: TractionBox) -> tuple[float, float]:
     """Tell cells that stick from those that slip; return the largest slip against the law and the norm, m.
 
-    A cell slips if p − s/d leaves its disc; d is so large that no slip takes it through the disc.
+    A cell slips on the edge of its disc if the slip would take it out. All else should be without slip.
     """
     worst, total = 0.0, 0.0
     for q in range(len(b.bound)):
-        g, p, s, n, d, missed = b.bound[q], b.traction[q], b.slip[q], 0.0j, diagonal, 0.0
-        b.kept[q], b.trial[q] = 0.0, p
+        g, p, s, n, missed = b.bound[q], b.traction[q], b.slip[q], 0.0j, 0.0
+        b.kept[q] = 0.0
         if g > 0.0:
-            d = max(d, abs(s) / (ACROSS * g))
-            z = p - s / d
-            slips = abs(z) > g
-            n = z / abs(z) if slips else n
-            b.kept[q], b.trial[q] = 0.5 if slips else 1.0, g * n if slips else p
-            missed = d * abs(p - g * n) if slips else abs(s)
+            size, b.kept[q] = _length(p), 1.0
+            n = p / size if size > EDGE * g else n
+            along = (s * n.conjugate()).real
+            if along < 0.0:
+                b.kept[q] = 0.5
+                s -= along * n
+            else:
+                n = 0.0j
+            missed = _length(s)
         b.normal[q], b.mirrored[q] = n, -0.5 * n * n
         worst, total = max(worst, missed), total + missed**2
     return worst, np.sqrt(total)
 
 
-@compiled(**CALLED)
-def _linearise(b: TractionBox, damping: float) -> None:
-    """Set residual and slope at the trial traction, whose displacement is the response."""
+@compiled(**CALLED, **REASSOCIATE)
+def _linearise(b: TractionBox, damping: float, diagonal: float) -> None:
+    """Set residual, slope and weight at the traction."""
     for q in range(len(b.bound)):
-        s = b.rigid[q] + b.response[q] + damping * (b.trial[q] - b.traction[q])
-        against = -(s * b.normal[q].conjugate()).real
+        against = -(b.slip[q] * b.normal[q].conjugate()).real
         b.slope[q] = damping + (against / b.bound[q] if against > 0.0 else 0.0)
-        b.residual[q], b.change[q] = -_free(b, q, s), 0.0
+        b.weight[q] = 1.0 / np.sqrt(1.0 + b.slope[q] / diagonal)
+        b.residual[q], b.change[q] = -_free(b, q, b.slip[q]), 0.0
 
 
-@compiled(**CALLED)
+@compiled(**INNER, **REASSOCIATE)
+def _stencil(masked: NDArray, taps: NDArray, pitch: int, target: NDArray) -> None:
+    """Apply the stencil to a field between REACH rows of zeros, both given by their parts in turn."""
+    row, c0, c1, c2, c3, c4, c5 = 2 * pitch, taps[0], taps[1], taps[2], taps[3], taps[4], taps[5]
+    above, m, below = masked[row - 4 :], masked[2 * row - 4 :], masked[3 * row - 4 :]
+    top, bottom = masked, masked[4 * row :]
+    for q in range(len(target)):
+        s = c0 * m[q + 4] + c1 * (above[q + 4] + below[q + 4]) + c2 * (m[q + 2] + m[q + 6])
+        s += c3 * (above[q + 2] + above[q + 6] + below[q + 2] + below[q + 6])
+        target[q] = s + c4 * (top[q] + bottom[q]) + c5 * (m[q] + m[q + 8])
+
+
+@compiled(**CALLED, **REASSOCIATE)
 def _precondition_traction(b: TractionBox, taps: NDArray, task: TractionTask, target: NDArray) -> None:
     """Carry the residual on from the leading edge, as in the simplified theory, and apply the stencil."""
     row, m = b.pitch, b.carried
     for q in range(len(b.bound) - 1, -1, -1):
         value = b.residual[q] + task.carried * m[(REACH + 1) * row + q]
-        m[REACH * row + q] = _free(b, q, value / (1.0 + LEANING * b.slope[q] / task.diagonal))
+        m[REACH * row + q] = b.weight[q] * _free(b, q, value)
+    _stencil(m.view(np.float64), taps, row, target.view(np.float64))
     for q in range(len(b.bound)):
-        o = REACH * row + q
-        s = taps[0] * m[o] + taps[1] * (m[o - row] + m[o + row]) + taps[2] * (m[o - 1] + m[o + 1])
-        s += taps[3] * (m[o - row - 1] + m[o - row + 1] + m[o + row - 1] + m[o + row + 1])
-        s += taps[4] * (m[o - 2 * row] + m[o + 2 * row]) + taps[5] * (m[o - 2] + m[o + 2])
-        target[q] = _free(b, q, s)
+        target[q] = b.weight[q] * _free(b, q, target[q])
 
 
-@compiled(**CALLED)
+@compiled(**CALLED, **REASSOCIATE)
 def _solve_linear(c: TractionConvolution, taps: NDArray, b: TractionBox, task: TractionTask) -> int:
-    """Find the change of the trial traction: conjugate residuals, truncated; return the iterations."""
-    first = _product(b.residual, b.residual)
+    """Find the change of the traction; return the iterations.
+
+    Conjugate gradients, or, without an energy, conjugate residuals, truncated.
+    """
+    first, held = _product(b.residual, b.residual), len(b.steps)
+    against = b.steps if task.symmetric else b.responses
     for k in range(INNER_ITERATIONS):
-        step, response = b.steps[k % KEPT], b.responses[k % KEPT]
+        step, response = b.steps[k % held], b.responses[k % held]
         _precondition_traction(b, taps, task, step)
         convolve_traction(c, step, b.nx, b.ny, b.pitch, b.work, b.response)
         for q in range(len(step)):
             response[q] = _free(b, q, b.response[q]) + b.slope[q] * step[q]
-        for other in range(max(0, k - KEPT + 1), k):
-            share = -_product(response, b.responses[other % KEPT])
-            _add(response, share, b.responses[other % KEPT])
-            _add(step, share, b.steps[other % KEPT])
-        norm = np.sqrt(_product(response, response))
+        for other in range(max(0, k - held + 1), k):
+            share = -_product(response, against[other % held])
+            _add(response, share, b.responses[other % held])
+            _add(step, share, b.steps[other % held])
+        norm = np.sqrt(max(_product(response, against[k % held]), 0.0))
         if norm == 0.0:
             return k + 1
         for q in range(len(step)):
             step[q], response[q] = step[q] / norm, response[q] / norm
-        share = _product(b.residual, response)
+        share = _product(b.residual, against[k % held])
         _add(b.change, share, step)
         _add(b.residual, -share, response)
         if _product(b.residual, b.residual) <= FORCING**2 * first:
@@ -303,16 +318,11 @@ def _solve_linear(c: TractionConvolution, taps: NDArray, b: TractionBox, task: T
     return INNER_ITERATIONS
 
 
-@compiled(**CALLED)
+@compiled(**CALLED, **REASSOCIATE)
 def _take(b: TractionBox) -> None:
-    """Change the trial traction, along the edges of the discs where it slips, and project it on them."""
+    """Change the traction, along the edges of the discs where it slips, and project it on them."""
     for q in range(len(b.bound)):
-        g, n, p = b.bound[q], b.normal[q], b.trial[q] + b.change[q]
-        if n != 0.0:
-            turn = (n.conjugate() * b.change[q]).imag / g
-            turn = min(max(turn, -LONGEST_TURN), LONGEST_TURN)
-            p = g * n * complex(np.cos(turn), np.sin(turn))
-        b.trial[q] = _within(p, g)
+        b.trial[q] = _within(b.traction[q] + b.change[q], b.bound[q])
 
 
 @compiled(**CALLED)
@@ -330,37 +340,53 @@ def _adopt(b: TractionBox) -> None:
         b.traction[q], b.slip[q] = b.trial[q], b.response[q]
 
 
+@compiled(**CALLED, **REASSOCIATE)
+def _shorten(b: TractionBox) -> None:
+    """Go back to the least energy on the way to the trial traction, if it leads up to where it began."""
+    work, curvature = 0.0, 0.0
+    for q in range(len(b.bound)):
+        step = (b.trial[q] - b.traction[q]).conjugate()
+        work += (b.slip[q] * step).real
+        curvature += ((b.response[q] - b.slip[q]) * step).real
+    share = -work / curvature if work < 0.0 else 0.0
+    for q in range(len(b.bound)):
+        b.trial[q] = b.traction[q] + share * (b.trial[q] - b.traction[q])
+        b.response[q] = b.slip[q] + share * (b.response[q] - b.slip[q])
+
+
 @compiled(**LOOP, nogil=True)
 def solve_traction(
     c: TractionConvolution, taps: NDArray, b: TractionBox, task: TractionTask
 ) -> tuple[int, int, float]:
     """Solve for tractions within the bound, opposite to the slip where they reach it, without slip elsewhere.
 
-    Starts from the traction of the box, cut to the bound. Newton's iteration on ``p = P(p − s/d)`` with the
-    projection P on the discs, damped in proportion to what is left; with an energy, no step that raises it is
-    taken. Returns the iterations, the convolutions, and the largest slip that is against the law, m.
+    Starts from the traction of the box, cut to the bound. Newton's iteration, projected on the discs and
+    damped in proportion to what is left; with an energy, no step that raises it is taken. Returns the
+    iterations, the convolutions, and the largest slip that is against the law, over that without traction.
     """
-    damping, last, convolutions, iteration = task.damping, 0.0, 1, 0
+    damping, last, largest, convolutions, iteration = task.diagonal, 0.0, 0.0, 1, 0
     for q in range(len(b.bound)):
         b.trial[q] = _within(b.traction[q], b.bound[q])
+        square = b.rigid[q].real ** 2 + b.rigid[q].imag ** 2 if b.bound[q] > 0.0 else 0.0
+        last, largest = last + square, max(largest, square)
+    last, largest = np.sqrt(last), np.sqrt(largest)
     energy = _twice_energy(c, b)
     _adopt(b)
-    worst, norm = _judge(b, task.diagonal)
-    while worst > task.tolerance and iteration < task.max_iterations:
+    worst, norm = _judge(b)
+    while worst > task.rtol * largest and iteration < task.max_iterations:
         iteration += 1
         if last > 0.0:
-            damping = min(damping * norm / last, task.damping)
+            damping = min(damping * norm / last, task.diagonal)
         last = norm
-        _judge(b, max(damping, task.diagonal))
-        convolve_traction(c, b.trial, b.nx, b.ny, b.pitch, b.work, b.response)
-        _linearise(b, damping)
-        convolutions += 2 + _solve_linear(c, taps, b, task)
+        _linearise(b, damping, task.diagonal)
+        convolutions += 1 + _solve_linear(c, taps, b, task)
         _take(b)
         reached = _twice_energy(c, b)
         if task.symmetric and reached > energy + ROUNDING * abs(energy):
-            damping, last = max(RETREAT * damping, LEAST * task.damping), 0.0
-            continue
+            damping, last = max(RETREAT * damping, LEAST * task.diagonal), 0.0
+            _shorten(b)
+            reached = _product(b.trial, b.response) + _product(b.trial, b.rigid)
         energy = reached
         _adopt(b)
-        worst, norm = _judge(b, task.diagonal)
-    return iteration, convolutions, worst
+        worst, norm = _judge(b)
+    return iteration, convolutions, worst / largest if largest > 0.0 else worst
