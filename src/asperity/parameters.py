@@ -5,6 +5,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -565,8 +566,13 @@ def parameter(
     return dataclasses.field(default=default, metadata={"key": declared})
 
 
-def keys_of(model: Any, otherwise: str) -> dict[str, Key]:
+def keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
     """Keys of the parameters that a physical dataclass declares; `otherwise` is what holds without them."""
+    return _keys_of(model, otherwise)
+
+
+@cache
+def _keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
     declared = {field.name: field.metadata.get("key") for field in dataclasses.fields(model)}
     return {name: dataclasses.replace(key, otherwise=otherwise) for name, key in declared.items() if key}
 

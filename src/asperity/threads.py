@@ -6,8 +6,9 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import cache
 from itertools import islice
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from asperity.errors import InputError
 
@@ -47,11 +48,17 @@ def refuse_to_go_on() -> None:
 @contextmanager
 def one_thread_in_linear_algebra() -> Iterator[None]:
     """Keep BLAS and LAPACK to one thread, because the number of their threads changes the last digits."""
-    import scipy.linalg  # noqa: F401  brings a library of its own, which must be there to be limited
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(limits=1, user_api="blas"):
+    with _libraries().limit(limits=1, user_api="blas"):
         yield
+
+
+@cache
+def _libraries() -> Any:
+    """Libraries with threads that numpy and scipy have: to find them takes milliseconds."""
+    import scipy.linalg  # noqa: F401  brings a library of its own, which must be there to be limited
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = None) -> Generator[R]:

@@ -121,7 +121,7 @@ def _same(example: Any, default: Any) -> bool:
 
 def _keys_of(model: Any) -> dict[str, Key]:
     """Keys of what a dataclass declares, with a default where that of the class is its example."""
-    found = keys_of(model, otherwise="none")
+    found = dict(keys_of(model, otherwise="none"))
     for field in fields(model):
         key = found[field.name]
         if field.default not in (None, MISSING) and _same(key.kind(key.example), field.default):

@@ -9,7 +9,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Complex, require
 from asperity.case.scene import Case
 from asperity.structures.body import Body
-from asperity.structures.modal import Modal, modal_receptance
+from asperity.structures.modal import Modal, receptances_between
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 from asperity.structures.wheel_modes import WheelModes
@@ -41,11 +41,10 @@ class StructureAtContact:
         """Displacement at places `x` (p,), m, per harmonic force at `x0` (p,), (p, f), m/N, e^{+iωt}."""
         if isinstance(self.over, Track):
             return self.over.receptance(frequency, x, x0)
-        pairs = list(zip(np.atleast_1d(x), np.atleast_1d(x0), strict=True))
-        found = np.zeros((len(pairs), np.size(frequency)), dtype=complex)
-        if self.over is not None:
-            found[:] = [modal_receptance(self.over, frequency, *pair) for pair in pairs]
-        return found
+        if self.over is None:
+            return np.zeros((np.size(x), np.size(frequency)), dtype=complex)
+        pairs = zip(np.atleast_1d(x), np.atleast_1d(x0), strict=True)
+        return np.array(receptances_between(self.over, frequency, pairs))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,6 @@
 """Structures by their modes along the path: the protocol, and tables of modes."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import factorial
@@ -62,11 +63,18 @@ def modal_receptance(structure: Modal, frequency: ArrayLike, x: float, x0: float
     InputError
         If a position is off the structure, or a frequency zero and there are modes of a rigid body.
     """
-    (response, force), _ = structure.shapes([x, x0])
+    return receptances_between(structure, frequency, [(x, x0)])[0]
+
+
+def receptances_between(
+    structure: Modal, frequency: ArrayLike, pairs: Iterable[tuple[float, float]]
+) -> list[Complex]:
+    """Receptances as `modal_receptance`, of pairs of positions: of the response and of the force, m."""
     natural = structure.natural_frequencies
     if not np.all(frequency) and not natural.all():
         raise InputError("frequency (Hz)", 0, "above 0: what nothing holds has no static receptance")
-    return modal_answers(frequency, natural, structure.damping_ratios) @ (response * force)
+    answers = modal_answers(frequency, natural, structure.damping_ratios)
+    return [answers @ np.prod(structure.shapes(pair)[0], axis=0) for pair in pairs]
 
 
 def modal_answers(frequency: ArrayLike, natural: Array, ratios: Array) -> Complex:
