@@ -390,6 +390,8 @@ class Law(Protocol):
 def from_materials(law: Callable[..., Law], **materials: str) -> Callable[[Materials], Law]:
     """Builder of a law: its fields are the materials of the same names, or of those that are named.
 
+    A field of which there is no material keeps its default.
+
     Parameters
     ----------
     law : type
@@ -405,6 +407,7 @@ def from_materials(law: Callable[..., Law], **materials: str) -> Callable[[Mater
 
     def build(of_case: Materials) -> Law:
         named = {each.name: materials.get(each.name, each.name) for each in fields(law)}  # type: ignore[arg-type]
-        return law(**{field: getattr(of_case, material) for field, material in named.items()})
+        there = set(dir(of_case))
+        return law(**{field: getattr(of_case, each) for field, each in named.items() if each in there})
 
     return build
