@@ -38,6 +38,7 @@ WHEEL = {
     "duration": "50 ms",
     "settling": "20 ms",
     "surface": {"spectrum": "iso3095"},
+    "wheel": {"section": "rigid"},
     "contact": {"spacing": "1 mm", "window": "25 mm", "samples": 2, "sample_length": "0.1 m"},
     "numerics": {"highest_frequency": "1 kHz", "poles": 60},
 }

@@ -15,7 +15,7 @@ MAP = 'file = "map.npy"\nheight_unit = "um"\npixel = "8 um"'
 LINE = 'line = "line.npy"\nline_unit = "nm"\nline_spacing = "8 um"'
 BALL = '[ball]\nload = "60 N"\n'
 SAMPLES = '[contact]\nsamples = 2\napproaches = ["{}", "{}"]\n'
-WHEEL = '[wheel]\nsection = "rigid"\nline = "wheel.npy"\nline_unit = "um"\n'
+WHEEL = 'line = "wheel.npy"\nline_unit = "um"\n'
 
 
 def on(surface):

@@ -154,7 +154,9 @@ def test_a_right_seal_around_a_hostile_file_leaves_the_program_free_to_end(circl
 WHEEL = (
     f'kind = "wheel-on-rail"\nlaws = ["hertz"]\nduration = "50 ms"\n[surface]\nspectrum = "iso3095"\n{ONE}'
 )
-DAMPED = f'{WHEEL}damping = "{{}} N s/m"\n[numerics]\nhighest_frequency = "2 kHz"\n'
+DAMPED = (
+    f'{WHEEL}damping = "{{}} N s/m"\n[numerics]\nhighest_frequency = "2 kHz"\n[wheel]\nsection = "rigid"\n'
+)
 LIGHT = f'{BALL.replace("5 ms", "20 ms")}{ROUGH}{ONE}[ball]\nload = "5 N"\nmass = "1e-5 kg"\n'
 MODES = "frequency (Hz), damping ratio, modal mass (kg)\n" + "".join(
     f"{300 + 20 * i}, 0.001, 100\n" for i in range(200)

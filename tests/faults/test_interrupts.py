@@ -1,5 +1,6 @@
 """Interrupts and kills at any moment: all that is written is whole, and the next run ends as ever."""
 
+import itertools
 import os
 import random
 import signal
@@ -84,13 +85,14 @@ def test_a_run_killed_at_any_moment_goes_on(undisturbed, tmp_path, seed):
     goes_on(folder, undisturbed / "out")
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-@pytest.mark.parametrize(
-    ("words", "delay"),
-    [(("new", "study"), 0.0), (("check", "case.toml"), 0.2), (STUDIES, 0.0), (STUDIES, 0.7)],
-)
-def test_every_interrupt_is_told_in_a_word(tmp_path, name, words, delay):
-    folder = prepared(tmp_path, study=STUDY)
+NAMES = ["SIGINT", "SIGTERM", "SIGHUP"]
+MOMENTS = [(("new", "study"), 0.0), (("check", "case.toml"), 0.2), (STUDIES, 0.0), (STUDIES, 0.7)]
+EACH = list(itertools.product(NAMES, MOMENTS) if LONG else zip([*NAMES, NAMES[0]], MOMENTS, strict=True))
+
+
+@pytest.mark.parametrize(("name", "moment"), EACH)
+def test_every_interrupt_is_told_in_a_word(tmp_path, name, moment):
+    folder, (words, delay) = prepared(tmp_path, study=STUDY), moment
     for later in [0.02 * n for n in range(40)] if LONG else [0.0]:
         started = program(folder, *words, code=WHEN_IT_LISTENS, start_new_session=True)
         assert started.stdout.readline() == "listens\n"

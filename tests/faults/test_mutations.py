@@ -106,7 +106,7 @@ def test_mutated_netcdf(tmp_path):
         made.dimensions = {"x": 3, "y": 4}
         made.create_variable("z", ("x", "y"), data=HEIGHTS, fletcher32=True).attrs["units"] = "um"
     whole, source = file.read_bytes(), random.Random("netcdf")
-    for _ in range(4000 if LONG else 20):
+    for _ in range(4000 if LONG else 8):
         file.write_bytes(mutated(whole, source))
         with suppress(InputError):
             assert not np.isinf(read_surface(file, **HINTS).heights).any()

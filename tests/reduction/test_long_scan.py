@@ -78,11 +78,14 @@ def test_a_table_of_stored_forces_is_that_of_held_ones_until_they_are_cleared_aw
         stored.at(at)
 
 
+MORE = 6000  # rows
+
+
 def peak(work):
-    """The most memory of a short path and of a long one: less of two, as others may take some."""
+    """How much more memory a path takes that is longer by `MORE`: less of two, as others may take some."""
     work(400)  # compiles
     peaks = []
-    for rows in (4000, 16000):
+    for rows in (2000, 2000 + MORE):
         tries = []
         for _ in range(2):
             gc.collect()
@@ -107,7 +110,7 @@ def test_memory_does_not_grow_with_the_path(tmp_path, monkeypatch):
     monkeypatch.setattr("asperity.contact.scan.BLOCK", 64)
     stores = (Store(tmp_path / str(n)) for n in count())
     monkeypatch.setattr(ScanJob, "solve", overlaps)
-    assert peak(lambda rows: scan_into(next(stores), job(rows), workers=1)) < 12 * 12000
+    assert peak(lambda rows: scan_into(next(stores), job(rows), workers=1)) < 12 * MORE
 
 
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
@@ -119,7 +122,7 @@ def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
         areal_texture(strip(rows), *given_)
         first_touch(strip(rows), body())
 
-    assert peak(work) < 40 * 12000
+    assert peak(work) < 40 * MORE
     whole, pieces = strip(2000).rows(0, 2000), areal_texture(strip(2000), *given_).heights
     monkeypatch.setattr("asperity.reduction.texture.PIECE", 5000)
     np.testing.assert_allclose(pieces, areal_texture(whole, *given_).heights, rtol=0, atol=1e-20)

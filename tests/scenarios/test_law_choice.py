@@ -225,12 +225,15 @@ def test_real_contact_and_the_map_advise_the_same(high, doubted):
     assert choice.taken == ("table" if doubted else "areal")
 
 
+RAIL = {"kind": "wheel-on-rail", "duration": "0.1 s", "wheel": {"section": "rigid"}}
+
+
 @pytest.mark.parametrize(
     "case",
     [
         BALL | {"laws": ["hertz"], "surface": {"line": Profile(1e-8 * np.sin(np.arange(3000.0)), 2e-5)}},
-        {"kind": "wheel-on-rail", "duration": "0.1 s", "settling": "0.05 s", "surface": {"smooth": True}},
-        {"kind": "wheel-on-rail", "duration": "0.1 s", "surface": {"joint_depth": "1 mm"}},
+        RAIL | {"settling": "0.05 s", "surface": {"smooth": True}},
+        RAIL | {"surface": {"joint_depth": "1 mm"}},
     ],
 )
 def test_nothing_is_said_where_the_map_knows_nothing(case):

@@ -33,6 +33,7 @@ RAIL = {
     "kind": "wheel-on-rail",
     "settling": "0.1 s",
     "surface": {"spectrum": "iso3095"},
+    "wheel": {"section": "rigid"},
     "contact": {"samples": 3},
     "numerics": {"poles": 20},
 }

@@ -38,7 +38,8 @@ def unmarked(tree):
 BEAM = {"kind": "ball-on-beam", "duration": "10 ms", "laws": ["hertz"], "contact": {"samples": 1},
         "surface": {"rms": "0.3 um"}, "numerics": {"highest_frequency": "2 kHz"}}  # fmt: skip
 RAIL = {"kind": "wheel-on-rail", "duration": "50 ms", "settling": "50 ms", "laws": ["hertz", "linear"],
-        "contact": {"samples": 1}}  # fmt: skip
+        "contact": {"samples": 1}, "wheel": {"section": "rigid"}}  # fmt: skip
+RINGING = {"wheel": {"section": "straight-web"}, "numerics": {"highest_frequency": "1.6 kHz"}}
 CORRUGATED = {"corrugation": "0.2 mm", "corrugation_wavelength": "30 mm"}
 
 
@@ -48,7 +49,7 @@ CORRUGATED = {"corrugation": "0.2 mm", "corrugation_wavelength": "30 mm"}
     [
         (BEAM | {"beam": {"sensors": ["0 m", "0.5 m"]}}, ["acceleration_level"]),  # at an end
         (BEAM | {"beam": {"length": "100 m"}}, None),
-        (RAIL | {"surface": {"smooth": True}}, None),
+        (RAIL | {"surface": {"smooth": True}} | RINGING, None),
         (RAIL | {"surface": CORRUGATED}, None),  # that the wheel leaves
     ],
 )

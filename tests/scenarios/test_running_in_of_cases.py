@@ -36,6 +36,7 @@ RAIL = {
     "duration": "10 ms",
     "settling": "5 ms",
     "surface": {"rms": "3 um", "longest": "20 mm", "shortest": "4 mm"},
+    "wheel": {"section": "rigid"},
     "contact": {
         "spacing": "1 mm", "samples": 1, "sample_length": "60 mm", "hardness": "0.9 GPa", "running_in": 1,
     },

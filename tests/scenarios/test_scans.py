@@ -182,6 +182,7 @@ duration = "10 ms"
 settling = "5 ms"
 surface = {rms = "0.2 mm", longest = "12 mm", shortest = "4 mm"}
 contact = {spacing = "1 mm", window = "41 mm", samples = 2, sample_length = "120 mm"}
+wheel.section = "rigid"
 numerics = {highest_frequency = "4 kHz", poles = 60}
 """
 

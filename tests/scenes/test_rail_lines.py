@@ -19,6 +19,7 @@ settling = "50 ms"
 [surface]
 {surface}
 [wheel]
+section = "rigid"
 {wheel}
 [contact]
 spacing = "1 mm"
