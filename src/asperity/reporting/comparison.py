@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray
-from xarray import DataArray, DataTree
 
 from asperity.arguments import nearest, shown
 from asperity.errors import InputError
@@ -40,7 +39,7 @@ class NamedRun:
     """The result of a run, and what it is called beside the others."""
 
     name: str
-    tree: DataTree
+    tree: xarray.DataTree
 
     @property
     def laws(self) -> list[str]:
@@ -126,7 +125,7 @@ def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
 
 
 def _by_law(
-    runs: Sequence[NamedRun], laws: Sequence[str], held: Sequence[DataArray | None], **places: Any
+    runs: Sequence[NamedRun], laws: Sequence[str], held: Sequence[xarray.DataArray | None], **places: Any
 ) -> chart.Numbers:
     """Numbers of runs by the laws of the comparison, and at common places; NaN where a run lacks them."""
     rows = []
@@ -161,7 +160,7 @@ def _with_difference(
 
 def _levels(runs: Sequence[NamedRun], laws: Sequence[str], entries: Sequence[Entry]) -> Variables:
     """Levels by run, law and band, A-weighted totals, and what chance makes of a level."""
-    pieces: dict[tuple[str, str, str], list[DataArray | None]] = {}
+    pieces: dict[tuple[str, str, str], list[xarray.DataArray | None]] = {}
     for entry in entries:
         for r, run in enumerate(runs):
             for name, meaning, level in _pieces(run.tree, entry):
@@ -186,14 +185,14 @@ def _levels(runs: Sequence[NamedRun], laws: Sequence[str], entries: Sequence[Ent
     return found | {DEVIATION: _variable(("band",), np.array(deviation), "dB", meaning)}
 
 
-def _placed(found: DataArray) -> DataArray:
+def _placed(found: xarray.DataArray) -> xarray.DataArray:
     """Numbers by the places of their bands, in tenths of decades from 1 Hz."""
     band = found.dims[-1]
     places = np.rint(10.0 * np.log10(found[band].values)).astype(int)
     return found.rename({band: "place"}).assign_coords(place=places)
 
 
-def _pieces(tree: DataTree, entry: Entry) -> Iterator[tuple[str, str, DataArray]]:
+def _pieces(tree: xarray.DataTree, entry: Entry) -> Iterator[tuple[str, str, xarray.DataArray]]:
     """Levels of a run by law and place, with name and meaning: one, or one for each source that has words."""
     if not data.present(tree, entry):
         return
@@ -225,10 +224,10 @@ def _weighted(name: str, level: chart.Numbers, band: chart.Numbers, units: str, 
 def _of_laws(runs: Sequence[NamedRun], laws: Sequence[str]) -> Variables:
     """Mean, rms and peak of the force, and the loss of contact."""
 
-    def numbers(run: NamedRun, entry: Entry, reduce: Callable[[Any], Any]) -> DataArray | None:
+    def numbers(run: NamedRun, entry: Entry, reduce: Callable[[Any], Any]) -> xarray.DataArray | None:
         names = data.laws(run.tree, entry)
         found = [float(reduce(data.of_law(run.tree, entry, law))) for law in names]
-        return DataArray(found, {"law": names}) if names else None
+        return xarray.DataArray(found, {"law": names}) if names else None
 
     found: Variables = {}
     for name, (meaning, entry, reduce) in OF_FORCE.items():
@@ -289,7 +288,7 @@ def _filters(runs: Sequence[NamedRun]) -> Variables:
     return {"wavenumber": axis} | _with_difference("filter", ("wavenumber",), level, "dB", meaning)
 
 
-def working_filter(tree: DataTree) -> Curve | None:
+def working_filter(tree: xarray.DataTree) -> Curve | None:
     """Wavenumbers and magnitude in dB of a run's filter at the working approach.
 
     Between the states around it the magnitude goes straight, as the filtered texture does when it is rolled

@@ -7,7 +7,6 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import xarray
-from xarray import DataTree
 
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError, printable
@@ -112,17 +111,17 @@ def chapters() -> tuple[Chapter, ...]:
     return (*CHAPTERS, *(each.load() for each in entry_points(group=OF_OTHERS)))
 
 
-def figures_of(tree: DataTree) -> list[Figure]:
+def figures_of(tree: xarray.DataTree) -> list[Figure]:
     """Figures that `tree` holds the data of, in the order of the page."""
     return drawable_figures(tree, chapters())
 
 
-def page_of(tree: DataTree, *, summary: bool = False) -> str:
+def page_of(tree: xarray.DataTree, *, summary: bool = False) -> str:
     """The whole page of a run, see `asperity.reporting.page.page`."""
     return page(tree, chapters(), summary=summary)
 
 
-def report(result: DataTree, path: str | os.PathLike[str], figures: str | None = None) -> Path:
+def report(result: xarray.DataTree, path: str | os.PathLike[str], figures: str | None = None) -> Path:
     """Write the report of a run: one page, and the numbers (CSV) of each of its figures.
 
     Parameters
@@ -154,7 +153,7 @@ def report(result: DataTree, path: str | os.PathLike[str], figures: str | None =
     >>> page.name, len(list(page.parent.glob("*.csv"))) > 3  # one for each figure
     ('report.html', True)
     """
-    if not isinstance(result, DataTree):
+    if not isinstance(result, xarray.DataTree):
         raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
     target = _page_in("report", path)
     format = None if figures is None else figure_format("figures", figures)
@@ -171,7 +170,7 @@ def _page_in(name: str, path: object) -> Path:
     return target if target.suffix.lower() == ".html" else target / f"{name}.html"
 
 
-def write_page(result: DataTree, target: Path) -> Path:
+def write_page(result: xarray.DataTree, target: Path) -> Path:
     """Write the page of a result and, beside it, the numbers of its figures."""
     collected = {figure.name: figure.collect(result) for figure in figures_of(result)}
     for name, lines in collected.items():
@@ -179,7 +178,7 @@ def write_page(result: DataTree, target: Path) -> Path:
     return write_bytes(target, page(result, chapters(), collected).encode())
 
 
-def write_summary(result: DataTree, target: Path) -> Path:
+def write_summary(result: xarray.DataTree, target: Path) -> Path:
     """Write a summary of a result, on one sheet of paper."""
     return write_bytes(target, page_of(result, summary=True).encode())
 
@@ -194,7 +193,7 @@ def names_of_reports() -> list[str]:
 
 
 def compare(
-    *results: DataTree | str | os.PathLike[str],
+    *results: xarray.DataTree | str | os.PathLike[str],
     names: Sequence[str] | None = None,
     laws: Sequence[str] = (),
     path: str | os.PathLike[str] | None = None,
@@ -252,7 +251,7 @@ def compare(
 
 
 def comparison_of(
-    results: Sequence[DataTree | str | os.PathLike[str]],
+    results: Sequence[xarray.DataTree | str | os.PathLike[str]],
     names: Sequence[str] | None = None,
     laws: Sequence[str] = (),
 ) -> ComparedRuns:
@@ -272,8 +271,8 @@ def comparison_of(
     return compared(runs, [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)], laws)
 
 
-def _tree(result: object) -> DataTree:
-    if isinstance(result, DataTree):
+def _tree(result: object) -> xarray.DataTree:
+    if isinstance(result, xarray.DataTree):
         return result
     return read_result(file_path("run", result, "a result, or the path of a run.nc or of its folder"))
 

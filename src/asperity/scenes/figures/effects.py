@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray
-from xarray import DataTree
 
 from asperity.reporting import chart, data, figure, headline, panels, tables
 from asperity.reporting.chart import INK, Axis, Boxes, Chart, Mark, Numbers, Panel
@@ -137,11 +136,11 @@ def _cell(effect: float, error: float) -> tables.Cell:
 # --- in the report of a run
 
 
-def _of_run(tree: DataTree) -> Effects:
+def _of_run(tree: xarray.DataTree) -> Effects:
     return Effects.of(tree[schema.EFFECT.group].to_dataset())
 
 
-def _columns(tree: DataTree) -> Iterator[figure.Series]:
+def _columns(tree: xarray.DataTree) -> Iterator[figure.Series]:
     """One row: a column for each variant and part."""
     of = _of_run(tree)
     for name, effect in zip(of.variants, of.effect, strict=True):
@@ -149,17 +148,17 @@ def _columns(tree: DataTree) -> Iterator[figure.Series]:
             yield figure.Series(f"{name}: {part}", "dB", np.array([value]), schema.EFFECT)
 
 
-def what_helps_table(tree: DataTree) -> tables.ReportTable | None:
+def what_helps_table(tree: xarray.DataTree) -> tables.ReportTable | None:
     """What each change does, if it was asked."""
     return effects_table(_of_run(tree)) if data.present(tree, schema.EFFECT_LEVEL) else None
 
 
-def what_helps_answers(tree: DataTree) -> headline.Answers | None:
+def what_helps_answers(tree: xarray.DataTree) -> headline.Answers | None:
     """What helps most, if it was asked."""
     return headline.Answers(more=_of_run(tree).best) if data.present(tree, schema.EFFECT) else None
 
 
-def _draw(tree: DataTree, lines: figure.Lines) -> Chart:
+def _draw(tree: xarray.DataTree, lines: figure.Lines) -> Chart:
     return effects_chart(_of_run(tree))
 
 
