@@ -1,10 +1,12 @@
 # ruff: noqa: E402 (the threads are set before numpy is imported)
 """Friction: a steady state and a step of a transient beside the normal solution, and FASTSIM beside them.
 
-Wheel on rail of the creep curve printed by CONTACT (48 × 44 cells), and the same on finer grids. One thread,
-the least of some rounds.
+Wheel on rail of the creep curve printed by CONTACT (48 × 44 cells), and the same on finer grids. The normal
+solution from nothing, and from the pressure at 2 % less load. Then a ball under half of the tangential force
+that friction carries, and the like in a peer (`benchmarks/peers.sh` installs it), where a Python is named
+that has it. Processor time of one thread, the least of some rounds.
 
-    python benchmarks/friction.py
+    python benchmarks/friction.py [--peers-python FOLDER/bin/python]
 """
 
 from __future__ import annotations
@@ -13,6 +15,13 @@ import os
 
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ[variable] = "1"
+
+import argparse
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from single_contact import least
@@ -26,18 +35,51 @@ BODY = Material("steel", 2.0 * SHEAR * (1.0 + POISSON), POISSON, 7850.0)
 
 
 def main() -> None:
-    """Print a row for each grid."""
+    """Print a row for each grid, and the ball."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--peers-python")
+    peer = parser.parse_args().peers_python
     axes = SMOOTH.semi_axes(SMOOTH.approach(LOAD))
     ellipse = RollingEllipse(axes, SHEAR, POISSON)
-    fast = least(lambda: ellipse.fastsim_force((1.6e-3, 0.0), 0.0, FRICTION * LOAD), 20)
+    fast = taken(lambda: ellipse.fastsim_force((1.6e-3, 0.0), 0.0, FRICTION * LOAD), 20)
     print(f"FASTSIM, 50 × 50: {1e3 * fast:.2f} ms")
-    print("| cells | normal | steady | convolutions | step | convolutions |")
+    print("| cells | normal | warm | steady | convolutions | step | convolutions |")
     for n in ((48, 44), (96, 88), (192, 176)):
         spacing = (2.2 * axes[0] / n[0], 2.2 * axes[1] / n[1])
         x, y = (d * (np.arange(m) - 0.5 * (m - 1)) for m, d in zip(n, spacing, strict=True))
         gap = x[:, None] ** 2 / (2.0 * SMOOTH.radius_x) + y**2 / (2.0 * SMOOTH.radius_y)
         space = HalfSpace(n, spacing, SMOOTH.modulus)
         print(f"| {n[0]} × {n[1]} | {row(space, gap)} |")
+    print(ball(64))
+    if peer:
+        subprocess.run([peer, str(Path(__file__).with_name("friction_peer.py")), "64"], check=True)
+
+
+def taken(work: Callable[[], Any], rounds: int) -> float:
+    """Processor time of some work, s."""
+    return least(work, rounds, time.thread_time)
+
+
+def ball(n: int) -> str:
+    """Time of a shift to half of the force."""
+    x = np.arange(n) - 0.5 * (n - 1)
+    space = HalfSpace((n, n), 1e-4, SMOOTH.modulus)
+    gap = np.add.outer(x**2, x**2) * 1e-8 / (2.0 * 0.46)
+    rolling = FrictionalHalfSpace(space, (BODY, BODY), FRICTION)
+    contact = space.solve(gap, approach=0.6 * float(gap[0].min()))
+    half = -0.5 * FRICTION * contact.force
+    found = rolling.shift(contact, force=(half, None))
+    normal, shifted = (
+        taken(work, 5)
+        for work in (
+            lambda: space.solve(gap, approach=contact.approach),
+            lambda: rolling.shift(contact, force=(half, None)),
+        )
+    )
+    return (
+        f"a ball, {n}²: pressure {1e3 * normal:.1f} ms, shift to half of the force {1e3 * shifted:.1f} ms, "
+        f"{found.convolutions} convolutions in the last solution"
+    )
 
 
 def row(space: HalfSpace, gap: np.ndarray) -> str:
@@ -45,12 +87,14 @@ def row(space: HalfSpace, gap: np.ndarray) -> str:
     rolling, contact = FrictionalHalfSpace(space, (BODY, BODY), FRICTION), space.solve(gap, load=LOAD)
     steady = rolling.roll(contact, (1.6e-3, 0.0))
     state = rolling.roll(contact, (1.7e-3, 0.0), before=steady)
-    normal = least(lambda: space.solve(gap, load=LOAD), 10)
-    rolled = least(lambda: rolling.roll(contact, (1.6e-3, 0.0)), 10)
-    step = least(lambda: rolling.roll(contact, (1.7e-3, 0.0), before=steady), 10)
-    times = [f"{1e3 * normal:.1f} ms"]
-    for time, of in ((rolled, steady), (step, state)):
-        times += [f"{1e3 * time:.1f} ms", str(of.convolutions)]
+    lighter = space.solve(gap, load=0.98 * LOAD).pressure
+    normal = taken(lambda: space.solve(gap, load=LOAD), 20)
+    warm = taken(lambda: space.solve(gap, load=LOAD, start=lighter), 20)
+    rolled = taken(lambda: rolling.roll(contact, (1.6e-3, 0.0)), 20)
+    step = taken(lambda: rolling.roll(contact, (1.7e-3, 0.0), before=steady), 20)
+    times = [f"{1e3 * each:.2f} ms" for each in (normal, warm)]
+    for seconds, of in ((rolled, steady), (step, state)):
+        times += [f"{1e3 * seconds:.2f} ms", str(of.convolutions)]
     return " | ".join(times)
 
 

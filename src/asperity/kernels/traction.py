@@ -212,14 +212,14 @@ def _add(target: NDArray, factor: float, field: NDArray) -> None:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _length(value: complex) -> float:
-    return np.sqrt(value.real**2 + value.imag**2)  # abs() takes care of overflow, and time
+def _square(value: complex) -> float:
+    return value.real**2 + value.imag**2  # abs() takes care of overflow, and time
 
 
 @compiled(**INNER, **REASSOCIATE)
 def _within(value: complex, bound: float) -> complex:
-    length = _length(value)
-    return value * (bound / length) if length > bound else value
+    square = _square(value)
+    return value * (bound / np.sqrt(square)) if square > bound**2 else value
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -239,27 +239,30 @@ def _judge(b: TractionBox) -> tuple[float, float]:
         g, p, s, n, missed = b.bound[q], b.traction[q], b.slip[q], 0.0j, 0.0
         b.kept[q] = 0.0
         if g > 0.0:
-            size, b.kept[q] = _length(p), 1.0
-            n = p / size if size > EDGE * g else n
+            square, b.kept[q] = _square(p), 1.0
+            n = p / np.sqrt(square) if square > (EDGE * g) ** 2 else n
             along = (s * n.conjugate()).real
             if along < 0.0:
                 b.kept[q] = 0.5
                 s -= along * n
             else:
                 n = 0.0j
-            missed = _length(s)
+            missed = _square(s)
         b.normal[q], b.mirrored[q] = n, -0.5 * n * n
-        worst, total = max(worst, missed), total + missed**2
-    return worst, np.sqrt(total)
+        worst, total = max(worst, missed), total + missed
+    return np.sqrt(worst), np.sqrt(total)
 
 
 @compiled(**CALLED, **REASSOCIATE)
 def _linearise(b: TractionBox, damping: float, diagonal: float) -> None:
     """Set residual, slope and weight at the traction."""
+    sticking = 1.0 / np.sqrt(1.0 + damping / diagonal)
     for q in range(len(b.bound)):
         against = -(b.slip[q] * b.normal[q].conjugate()).real
-        b.slope[q] = damping + (against / b.bound[q] if against > 0.0 else 0.0)
-        b.weight[q] = 1.0 / np.sqrt(1.0 + b.slope[q] / diagonal)
+        b.slope[q], b.weight[q] = damping, sticking
+        if against > 0.0:
+            b.slope[q] += against / b.bound[q]
+            b.weight[q] = 1.0 / np.sqrt(1.0 + b.slope[q] / diagonal)
         b.residual[q], b.change[q] = -_free(b, q, b.slip[q]), 0.0
 
 
@@ -367,7 +370,7 @@ def solve_traction(
     damping, last, largest, convolutions, iteration = task.diagonal, 0.0, 0.0, 1, 0
     for q in range(len(b.bound)):
         b.trial[q] = _within(b.traction[q], b.bound[q])
-        square = b.rigid[q].real ** 2 + b.rigid[q].imag ** 2 if b.bound[q] > 0.0 else 0.0
+        square = _square(b.rigid[q]) if b.bound[q] > 0.0 else 0.0
         last, largest = last + square, max(largest, square)
     last, largest = np.sqrt(last), np.sqrt(largest)
     energy = _twice_energy(c, b)
