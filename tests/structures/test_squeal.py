@@ -44,7 +44,7 @@ def test_creep_that_damps_without_bounds_sticks_and_one_that_stops_all_motion_is
     wheel = modes_of([1000.0], [1e-9], [0.0], [0.1])
     (root,) = roots_of(CreepingContact(1e9, 2e9, 1e12, 0.0), wheel)
     assert root.real == pytest.approx(math.hypot(TURN * 1000.0, 0.1 * math.sqrt(2e9)), rel=1e-6)
-    assert np.isnan(roots_of(CreepingContact(1e9, RIGID, 2.5e6, 0.0), wheel)).all()
+    assert np.isnan(roots_of(CreepingContact(1e9, RIGID, 2.5e6, 0.0), wheel).imag).all()
 
 
 @pytest.mark.parametrize("share", [0.9, 0.99, 1.01, 1.5])

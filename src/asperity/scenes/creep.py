@@ -6,6 +6,7 @@ from asperity.arguments import Array, Complex
 from asperity.contact.creep import LEAST_LENGTHS, RolledSample, contact_rows
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.quasi_steady import CreepingBodies, forces_of
+from asperity.errors import OutOfRangeWarning
 from asperity.scenarios.creep import rough_strips, smooth_with_friction
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
@@ -32,7 +33,8 @@ def creep_group(computed: Computed) -> Values:
     rows = [_facts(first)]
     for strip in rough_strips(shape, computed.textures):
         if len(strip) - len(shape.body) >= LEAST_LENGTHS * contact_rows(smooth):  # room to roll over it
-            steady, states = RolledSample.along(smooth, strip).states(rolling, creepage, speed)
+            with OutOfRangeWarning.ignored():  # what is out of it has been told of the smooth contact
+                steady, states = RolledSample.along(smooth, strip).states(rolling, creepage, speed)
             missed = rows[0] - _facts(steady)  # by its long steps
             rows.append(np.mean([_facts(each) for each in states], axis=0) + missed)
             shown = states[-1] if shown is first else shown

@@ -87,7 +87,7 @@ class CreepingContact:
             change *= np.minimum(1.0, WIDEST * np.abs(here) / np.abs(change))
             at[moved] = here - change
             moved[moved] = np.abs(change) > CLOSE * np.abs(here)
-        return np.where(moved | (at.real < LEAST * np.abs(at)), np.nan, at)
+        return np.where(moved | (at.real < LEAST * np.abs(at)), complex(np.nan, np.nan), at)
 
 
 def poles_of(modes: WheelModes) -> Complex:
