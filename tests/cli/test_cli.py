@@ -72,7 +72,6 @@ def test_an_interrupt_before_a_command_begins_is_130(monkeypatch):
 
 def test_the_module_is_the_program():
     script = "import runpy; runpy.run_module('asperity', run_name='__main__')"
-    assert program("new", "study", script=script).stdout == call("new", "study").stdout
     wrong = program("new", "wheel-on-beam", script=script, code=2).stderr
     assert wrong.startswith("Error: kind: received 'wheel-on-beam'; allowed: \"ball-on-beam\", ")
     assert len(wrong.splitlines()) == 1
@@ -121,17 +120,6 @@ def test_a_pipe_without_a_minus_sign_gets_a_hyphen(encoding, shown):
 
 
 # --- help and completion
-
-
-def test_help_imports_nothing_heavy():
-    script = (
-        "import sys\nfrom asperity.cli import main\nmain(['--help'], standalone_mode=False)\n"
-        "heavy = {'numpy', 'scipy', 'numba', 'xarray', 'pydantic', 'pint', 'matplotlib', 'rich'}\n"
-        "print(sorted(heavy & set(sys.modules)))"
-    )
-    told = program(script=script).stdout
-    assert "Roll a body" in told
-    assert told.splitlines()[-1] == "[]"
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -1,6 +1,5 @@
 """A law is one file and one line: in a copy of the package, that is all that is added."""
 
-import ast
 import json
 import os
 import shutil
@@ -90,14 +89,6 @@ def test_a_law_is_one_file_and_one_line(tmp_path):
     assert done.stdout.strip() == "all follows"
 
 
-def test_importing_laws_and_cases_compiles_nothing():
-    heavy = ("numba", "scipy.fft", "scipy.optimize", "xarray", "matplotlib")
-    modules = ("asperity.laws", "asperity.case.scene", "asperity.case.ball_on_beam")
-    code = f"import sys, {', '.join(modules)}; print([m for m in {heavy!r} if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
 def test_every_law_has_its_module_its_colour_and_its_row_in_the_readme():
     readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
     looks = [laws.spec_of(name).look for name in laws.names()]
@@ -109,14 +100,3 @@ def test_every_law_has_its_module_its_colour_and_its_row_in_the_readme():
         base, _, variant = name.partition("-")
         assert f"`{base}`" in table
         assert not variant or f"`…-{variant}`" in table
-
-
-def test_nothing_but_the_laws_decides_by_their_names():
-    """What the others of the package need to know of a law stands in its spec."""
-    own = set(laws.names()) - {"hertz"}  # a value of contact.linearise, too
-    source = Path(asperity.__file__).parent
-    for module in sorted(source.rglob("*.py")):
-        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Compare):
-                compared = {part.value for part in ast.walk(node) if isinstance(part, ast.Constant)}
-                assert not own & compared, f"{module}:{node.lineno}"

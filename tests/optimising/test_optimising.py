@@ -24,7 +24,7 @@ from small_cases import COARSE, WHEEL
 pytestmark = pytest.mark.usefixtures("cache_of_module")
 CASE = COARSE | {
     "start": "0.2 m",
-    "duration": "0.2 s",
+    "duration": "0.1 s",
     "surface": {"rms": "0.05 um", "longest": "2 mm", "shortest": "0.1 mm"},
     "contact": COARSE["contact"] | {"samples": 1},
 }

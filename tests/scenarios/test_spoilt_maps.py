@@ -31,12 +31,14 @@ def spoilt(surface, side, seed=3):
     return HeightMap(bad, surface.spacing, surface.source)
 
 
-def loaded(surface, approaches=None, load="10 N", spacing="4 um", window="0.4 mm", lightest=LIGHTEST, **keys):
+CONTACT = {"spacing": "4 um", "window": "0.4 mm", "samples": 3, "sample_length": "0.8 mm"}
+
+
+def loaded(surface, approaches=None, load="10 N", lightest=LIGHTEST, contact=CONTACT, **keys):
     """Approaches, force F and k_c = F/r of the samples that a case takes from a map, in states with load."""
     case = {
         "kind": "ball-on-beam", "laws": ["shifted"], "duration": "1 ms", "start": "0.45 m",
-        "settling": "1 ms", "surface": {"file": surface} | keys, "ball": {"load": load},
-        "contact": {"spacing": spacing, "window": window, "samples": 6, "sample_length": "1 mm"},
+        "settling": "1 ms", "surface": {"file": surface} | keys, "ball": {"load": load}, "contact": contact,
     }  # fmt: skip
     prepared = prepare_case(as_case(case))
     shape = prepared.shape
@@ -86,7 +88,8 @@ def test_measured_map(name, lightest):
             "the measured maps of AA5754 are not here (docs/real_surfaces.md says where they are from)"
         )
     surface = HeightMap(1e-6 * np.load(file)[name][0], 1.5625e-6)
-    keys = {"load": "20 N", "spacing": "5 um", "window": "0.5 mm", "shortest": "20 um"}
+    grid = {"spacing": "5 um", "window": "0.5 mm", "samples": 6, "sample_length": "1 mm"}
+    keys = {"load": "20 N", "contact": grid, "shortest": "20 um"}
     approaches, _, clean = loaded(surface, lightest=lightest, spikes=True, fill=True, **keys)
     _, _, mended = loaded(spoilt(surface, 1), approaches, spikes=True, fill=True, **keys)
     np.testing.assert_allclose(mended, clean, rtol=0.02)
