@@ -1,69 +1,64 @@
 """Signals measured beside a faulty 6205, and computed ones: lines, side bands, harmonics, pulses.
 
     python benchmarks/measured_6205.py DATA.npz
+    python benchmarks/measured_6205.py --names 1797_OR_at_3_14 1730_B_21 --load 200,0
 
 DATA.npz holds drive-end accelerations in g at 12 kHz from the bearing data of Case Western Reserve
-University (an SKF 6205 beside a motor of 2 hp; round pits of 0.178 and 0.533 mm, 0.28 mm deep, on the outer
-raceway in the middle of the load zone or on the inner one), by names such as `1797_OR_at_6_7`.
+University (an SKF 6205 beside a motor of 2 hp; round pits, 0.28 mm deep), by names of speed in 1/min, place,
+and diameter in thousandths of an inch: IR on the inner raceway, B on a ball, OR_at_6, OR_at_3 and OR_at_12 on
+the outer one in the middle of the load zone, a quarter turn beside it and opposite. All of them are taken, or
+those of --names, which are computed where they are not in the data, too.
 
-Computed is the same bearing by `table`, on smooth raceways with the pit: conformities and clearance of the
-named 6205, and the path to the sensor as one resonance of the outer ring on its housing, chosen here: 0.3 kg
-at 3 kHz, damping ratio 0.03. The load of the rig is not known: 100 N radially, without and with 100 N
-axially, also chosen here. Nothing else can be turned. The same is done to both: the band from 2 to 4 kHz, its
-envelope, its lines; harmonics are told by their ranks, as the path decides about levels.
+Computed is `measured_6205.toml`, a case that `asperity run` takes as well, with that speed, pit and load, by
+`table`. Conformities and clearance are those of the named 6205, and the path to the sensor is one resonance
+of the outer ring on its housing. The load of the rig is not known: 100 N radially, without and with 100 N
+axially, or what --load says. Nothing else can be turned. The same is done to both: the band from 2 to 4 kHz,
+its envelope, its lines; harmonics are told by their ranks, as the path decides about levels.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import re
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+import asperity
 from asperity import BallBearing
+from asperity.case.cases import load_case
 from asperity.diagnostics import amplitude_spectrum, envelope_spectrum, find_lines
-from asperity.rolling.bearing import BearingRings, roll_bearing
-from asperity.scenarios.raceway_laws import raceway_laws, raceway_on
-from asperity.structures.ring import Ring
-from asperity.surfaces.faults import Fault
 
+CASE = load_case(Path(__file__).with_suffix(".toml"))
 BEARING, RATE, BAND = BallBearing.named("6205"), 12_000.0, (2000.0, 4000.0)
-SIZES, DEPTH = {"7": 0.178e-3, "21": 0.533e-3}, 0.28e-3
-STEP = 1.0 / (RATE * 28)
-MASS, RESONANCE, DAMPING_RATIO, CONTACT_DAMPING = 0.3, 3000.0, 0.03, 50.0
+INCH = 25.4e-3
+PLACES = {"IR": ("inner", 0), "B": ("ball", 0), "OR_at_6": ("outer", 0), "OR_at_3": ("outer", 90),
+          "OR_at_12": ("outer", 180)}  # fmt: skip
+"""Part with the pit, and degrees from the load."""
+NAME = re.compile(rf"(\d+)_({'|'.join(PLACES)})_(\d+)")
 NOISE = 0.02
 """Rms of white noise that a computed signal is given, over its own: lines are told from what is around."""
-Load = tuple[float, float]  # radial, axial, N
-LOADS: dict[str, Load | None] = {"measured": None, "radial": (100.0, 0.0), "and axial": (100.0, 100.0)}
 RISEN = 0.25
 """Share of its peak from which on a pulse has begun."""
 
 
-def computed(part: str, size: float, speed: float, load: Load, duration: float) -> np.ndarray:
-    """Acceleration of the outer ring along the load, g, at 12 kHz, with a pit on one raceway."""
-    from scipy.signal import resample_poly
-
-    still, both = BEARING.loaded(*load), []
-    largest, angle = float(still.outer_load.max()), still.contact_angle if load[1] else 0.0
-    contacts = BEARING.inner_contact, BEARING.outer_contact
-    for name, contact, radius in zip(("inner", "outer"), contacts, BEARING.raceway_radii, strict=True):
-        pits = [Fault("pit", length=size, depth=DEPTH)] if name == part else []
-        surface = raceway_on(contact, largest, radius, faults=pits)
-        both.append(raceway_laws(["table"], contact, surface, largest, damping=CONTACT_DAMPING)["table"])
-    held = MASS * (2 * math.pi * RESONANCE) ** 2
-    housing = Ring.rigid(
-        MASS, angle, radial_stiffness=held, axial_stiffness=held, damping_ratio=DAMPING_RATIO
-    )
-    run = roll_bearing(
-        BEARING, BearingRings(Ring.rigid(0.5, angle), housing), *both, speed=speed, radial=load[0],
-        axial=load[1], duration=duration, settling=0.1, time_step=STEP, sensors=[("outer", 0.0, "radial")],
+def computed(name: str, load: tuple[float, float], duration: float) -> list[np.ndarray]:
+    """Accelerations of the outer ring, g, along the load and beside the pit, of a record's name."""
+    speed, place, size = NAME.fullmatch(name).groups()
+    part, angle = PLACES[place]
+    fault = {"on": part, "angle": math.radians(angle), "length": int(size) * 1e-3 * INCH}
+    case = CASE.with_(
+        speed=int(speed) / 60, radial=load[0], axial=load[1], duration=duration, fault=fault,
+        sensors=[0.0, math.radians(angle)],
     )  # fmt: skip
-    signal = resample_poly(run.acceleration[0], 1, round(1 / STEP / RATE))[:-1] / 9.81
-    noise = NOISE * signal.std() * np.random.default_rng(1).standard_normal(signal.size)
-    return signal + noise
+    found = []
+    for signal in asperity.run(case, brief=True)["rolling/ring_acceleration"].values[0] / 9.81:
+        noise = NOISE * signal.std() * np.random.default_rng(1).standard_normal(signal.size)
+        found.append(signal + noise)
+    return found
 
 
 @dataclass
@@ -90,8 +85,9 @@ def seen(signal: np.ndarray, part: str, nominal: float) -> Seen:
     shaft = find_lines(amplitude_spectrum(signal, RATE), nominal, harmonics=3)
     speed = nominal * (1.0 + shaft.deviation) if shaft.found else nominal
     turning = BEARING.kinematics(speed, contact_angle=0.0)
-    spectrum, other = envelope_spectrum(signal, RATE, BAND), {"inner": "outer", "outer": "inner"}[part]
-    family = find_lines(spectrum, turning.tone(part), distance=speed)
+    spectrum, other = envelope_spectrum(signal, RATE, BAND), "inner" if part == "outer" else "outer"
+    beside = turning.cage if part == "ball" else speed
+    family = find_lines(spectrum, turning.tone(part), distance=beside)
     first = family.amplitude[0]
     frequency, amplitude = spectrum
     away = amplitude[abs(frequency - turning.tone(other)) < 0.02 * turning.tone(other)].max() / first
@@ -116,46 +112,83 @@ def rise_of(signal: np.ndarray, passing: float) -> float:
     return float(np.argmax((mean > RISEN * mean[-1])[::-1] == 0) / fine)
 
 
+def row_of(name: str, origin: str, found: Seen) -> str:
+    """Line of the table."""
+    deviation = 100 * (found.order / found.expected - 1)
+    cells = [
+        name, origin, f"{found.order:.3f}, {deviation:+.2f} %", f"{found.sides:.2f}", f"{found.other:.3f}",
+        found.ranks, f"{found.rise * 1e3:.2f}", f"{found.kurtosis:.1f}",
+    ]  # fmt: skip
+    return f"| {' | '.join(cells)} |"
+
+
+def at_rest(load: tuple[float, float], speed: float, angle: float) -> float:
+    """Largest static load of a ball at an angle, deg, on the outer ring, N."""
+    return float(BEARING.loaded(*load, speed=speed, cage_angles=[math.radians(angle)]).outer_load[0, 0])
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("data", type=Path)
-    parser.add_argument("--duration", type=float, default=1.0)
+    parser.add_argument("data", type=Path, nargs="?")
+    parser.add_argument("--names", nargs="+", default=[], help="of records, as 1797_OR_at_3_14")
+    parser.add_argument("--load", action="append", help="radial and axial, N, as 100,100; may be repeated")
+    parser.add_argument("--duration", type=float, default=1.0, help="of what is computed, s")
     chosen = parser.parse_args()
     warnings.simplefilter("ignore")
-    data, firsts = np.load(chosen.data), {}
-    print("| pit, 1/min | | order, to α = 0 | side bands | other raceway | ranks | rise, ms | kurtosis |")
+    data = np.load(chosen.data) if chosen.data else {}
+    loads = [tuple(map(float, each.split(","))) for each in chosen.load or ["100,0", "100,100"]]
+    names = chosen.names or [name for name in data if NAME.fullmatch(name)]
+    if wrong := [name for name in names if not NAME.fullmatch(name)]:
+        parser.error(f"{wrong[0]}: names are SPEED_PLACE_SIZE, PLACE one of {', '.join(PLACES)}")
+    origins = {load: f"{load[0]:g} N, {load[1]:g} N axially" for load in loads}
+    firsts: dict[tuple[object, ...], float] = {}
+    print("| record | | order, to α = 0 | side bands | other raceway | ranks | rise, ms | kurtosis |")
     print("|---|---|---:|---:|---:|---|---:|---:|")
-    for part, name in (("outer", "OR_at_6"), ("inner", "IR")):
-        for size, length in SIZES.items():
-            for minute in (1797, 1730):
-                for origin, load in LOADS.items():
-                    if load is None:
-                        signal = data[f"{minute}_{name}_{size}"].astype(float)
-                    else:
-                        signal = computed(part, length, minute / 60, load, chosen.duration)
-                    found = seen(signal, part, minute / 60)
-                    firsts[part, minute, origin, size] = found.lines[0]
-                    row = [
-                        f"{length * 1e3:.2f} mm, {part}, {minute}" if load is None else "",
-                        origin,
-                        f"{found.order:.3f}, {100 * (found.order / found.expected - 1):+.2f} %",
-                        f"{found.sides:.2f}",
-                        f"{found.other:.3f}",
-                        found.ranks,
-                        f"{found.rise * 1e3:.2f}",
-                        f"{found.kurtosis:.1f}",
-                    ]
-                    print(f"| {' | '.join(row)} |", flush=True)
-    print(
-        "\n| first line of 0.53 mm over that of 0.18 mm | " + " | ".join(LOADS) + " |\n|---|---:|---:|---:|"
-    )
-    for part, minute in ((part, minute) for part in ("outer", "inner") for minute in (1797, 1730)):
-        both = [firsts[part, minute, each, "21"] / firsts[part, minute, each, "7"] for each in LOADS]
-        print(f"| {part}, {minute} | {' | '.join(f'{ratio:.1f}' for ratio in both)} |")
+    for name in names:
+        speed, place, _ = NAME.fullmatch(name).groups()
+        part, turns = PLACES[place][0], int(speed) / 60
+        if name in data:
+            found = seen(data[name].astype(float), part, turns)
+            firsts[name, "measured", "here"] = found.lines[0]
+            print(row_of(name, "measured", found), flush=True)
+        for load, origin in origins.items():
+            for where, signal in zip(("along", "here"), computed(name, load, chosen.duration), strict=True):
+                found = seen(signal, part, turns)
+                firsts[name, origin, where] = found.lines[0]
+            print(row_of("" if name in data else name, origin, found), flush=True)
+
+    def ratios(title: str, over: str, pairs: list[tuple[str, str]]) -> None:
+        shown = [(name, base) for name, base in pairs if name in names and base in names and name != base]
+        if not shown:
+            return
+        print(f"\n{title}\n\n| {over} | measured | {' | '.join(origins.values())} |")
+        print(f"|---|---:{'|---:' * len(loads)}|")
+        for name, base in shown:
+            cells = []
+            for origin in ("measured", *origins.values()):
+                each = [firsts.get((one, origin, "here")) for one in (name, base)]
+                cells.append("–" if None in each else f"{each[0] / each[1]:.3g}")
+            for n, load in enumerate(loads, 1):
+                speed, place, _ = NAME.fullmatch(name).groups()
+                if (angle := PLACES[place][1]) and over == "record":
+                    fixed = firsts[name, origins[load], "along"] / firsts[base, origins[load], "along"]
+                    pressed = [at_rest(load, int(speed) / 60, each) for each in (angle, 0)]
+                    cells[n] += f"; along {fixed:.3g}; load {pressed[0] / pressed[1]:.3g}"
+            print(f"| {name} | {' | '.join(cells)} |")
+
+    middle = [(name, re.sub(r"_at_\d+_", "_at_6_", name)) for name in names]
+    ratios(
+        "First line over that of the same pit at 6 o'clock: seen beside the pit; along the load; and the "
+        "largest static load of a ball there over that at 6.", "record", middle
+    )  # fmt: skip
+    smallest = min((int(name.rpartition("_")[2]) for name in names), default=0)
+    sizes = [(name, f"{name.rpartition('_')[0]}_{smallest}") for name in names]
+    ratios("First line over that of the smallest pit at the same place.", "larger pit", sizes)
     for part, radius in zip(("inner", "outer"), BEARING.raceway_radii, strict=True):
         passing = 2 * math.pi * radius * BEARING.kinematics(1797 / 60).tone(part) / BEARING.balls
-        told = ", ".join(f"{1e3 * length / passing:.2f} ms" for length in SIZES.values())
-        print(f"\nA ball passes the {part} pits in {told} at 1797 1/min.")
+        sizes = sorted({int(name.rpartition("_")[2]) for name in names})
+        told = ", ".join(f"{each * INCH / passing:.2f} ms" for each in sizes)
+        print(f"\nA ball passes the pits on the {part} raceway in {told} at 1797 1/min.")
 
 
 if __name__ == "__main__":

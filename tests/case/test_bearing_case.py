@@ -147,12 +147,9 @@ def table_of_modes(path, until=360, last=1.0, lowest=None, angle="angle (deg)"):
     shapes[-1] *= last
     frequency = RING.frequencies / 1e3
     frequency[0] = frequency[0] if lowest is None else lowest
-    head = (
-        ["frequency (kHz)", *frequency],
-        ["damping ratio", *RING.damping],
-        ["modal mass (kg)", *RING.radial**-2.0],
-    )
-    rows = [*head, [angle, *"abcd"], *np.column_stack([psi, shapes])]
+    head = [["frequency (kHz)", *frequency], ["damping ratio", *RING.damping]]
+    head += [["modal mass (kg)", *RING.radial**-2.0], [angle, *"abcd"]]
+    rows = [*head, *np.column_stack([psi, shapes])]
     path.write_text("\n".join(",".join(map(str, row)) for row in rows))
     return str(path)
 

@@ -245,19 +245,15 @@ def test_several_faults_lie_where_they_are_and_each_is_heard():
     others = {"on": "inner"}, {"on": "ball", "ball": 4}, {"angle": "90 deg"}
     case = as_case(BEARING | {"fault": [pit, *(pit | each for each in others)], "duration": "0.5 s"})
     prepared = prepare_bearing(case)
+    assert prepared.caught == ()
     inner, outer = (np.flatnonzero(each.faults.any(axis=1)) / len(each.faults) for each in prepared.raceways)
     assert np.unique(np.round(8 * outer) / 8 % 1.0).tolist() == [0.0, 0.25]
     assert np.unique(np.round(8 * inner) / 8 % 1.0).tolist() == [0.0]
-    assert [bool(surface.faults.any()) for surface in prepared.balls] == [
-        number == 4 for number in range(1, 10)
-    ]
+    assert [n for n, surface in enumerate(prepared.balls, 1) if surface.faults.any()] == [4]
     tree = asperity.run(case, brief=True)
     assert group(tree)["lines_found"].values[0, :2].tolist() == [1.0, 1.0]
-    marks = {
-        mark.label: mark
-        for mark in DRAWING.laid_out(tree).panels[0].marks
-        if getattr(mark, "marker", "") == "D"
-    }
+    drawn = DRAWING.laid_out(tree).panels[0].marks
+    marks = {mark.label: mark for mark in drawn if getattr(mark, "marker", "") == "D"}
     raceway = 0.5 * (PITCH + D) * 1e3
     assert marks["faults of the outer raceway"].x == pytest.approx([0.0, raceway], abs=0.01)
     angle, ball = 2.0 * np.pi * 3 / BALLS, marks["fault of the balls"]  # where it touches the outer ring
@@ -277,9 +273,9 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
     """On coarse cells: a ball's waves under the contact, and their heights beside a smooth ball."""
     of = {"balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"}
     case = as_case(
-        {"kind": "ball-bearing", "bearing": of, "axial": "60 N", "speed": "120000 1/min", "settling": "0 s",
-         "laws": ["areal", "direct"], "duration": "2.1 ms", "centrifugal": False, "time_step": "3 us",
-         "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
+        {"kind": "ball-bearing", "bearing": of, "axial": "60 N", "radial": "5 N", "speed": "120000 1/min",
+         "laws": ["areal", "direct"], "duration": "2.1 ms", "settling": "0 s", "time_step": "3 us",
+         "centrifugal": False, "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
     )  # fmt: skip
     bearing, surfaces, directions = case.bearing.bearing, [], []
     radii = (*bearing.raceway_radii, *[0.5 * bearing.ball_diameter] * 3)
@@ -312,7 +308,6 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
     assert check["value"].split(", ")[:2] == off
     # balls run forwards on the ring that stands still
     assert directions == [False, True]
-    assert np.ptp(tree["rolling/ball_azimuth"].values[0]) > np.pi
 
 
 def test_pressures_that_dent_are_warned_of():

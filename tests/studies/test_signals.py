@@ -147,12 +147,8 @@ def test_the_command_line_writes_them():
 
 
 def test_labels_tell_every_fault_and_none_where_there_is_none():
-    second = {
-        "fault[2].on": "ball",
-        "fault[2].ball": 7,
-        "fault[2].length": 2.0**-12,
-        "fault[2].depth": "9 um",
-    }
+    second = {"on": "ball", "ball": 7, "length": 2.0**-12, "depth": "9 um"}
+    second = {f"fault[2].{name}": value for name, value in second.items()}
     _, (_, one, two) = written(sweep={"variant": OUTER | {"two": OUTER["outer pit"] | second}})
     names = ["on", "ball", "length [m]", "angle [rad]"]
     assert [two[f"fault.{name}"] for name in names[:2]] == ["outer", "0"]

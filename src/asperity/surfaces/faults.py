@@ -60,7 +60,7 @@ class Fault:
     --------
     >>> from asperity.surfaces.faults import Fault
     >>> pit = Fault("pit", length=0.18e-3, depth=0.28e-3)
-    >>> pit.heights([0.0, 0.08e-3, 0.1e-3], 0.0).round(5).tolist()  # along its middle
+    >>> (pit.heights([0.0, 0.08e-3, 0.1e-3], 0.0).round(5) + 0.0).tolist()  # along its middle
     [-0.00028, -0.00028, 0.0]
     """
 
