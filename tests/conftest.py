@@ -21,6 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import asperity  # noqa: E402
 from asperity import sandbox  # noqa: E402
 from asperity.case.cases import as_case  # noqa: E402
+from asperity.errors import InputError  # noqa: E402
 from small_cases import CASES, Made, changed  # noqa: E402
 
 hypothesis.settings.register_profile("untimed", deadline=None)
@@ -40,14 +41,23 @@ def pytest_unconfigure():
 
 
 @pytest.fixture(autouse=True)
-def results_opened_here(monkeypatch):
-    """Results of tests are their own: `test_results.py` and `faults` open them in sandboxes."""
+def files_opened_here(monkeypatch):
+    """Results, modes and tables of tests are their own: only what cannot be read is opened in a sandbox.
 
-    def opened(function, arguments, *_):
-        sandbox.send(function(*arguments), answer := io.BytesIO())
+    `test_results.py` and `faults` open all results in one.
+    """
+
+    def opened(function, arguments, *of_file):
+        try:
+            sandbox.send(function(*arguments), answer := io.BytesIO())
+        except InputError:
+            raise
+        except Exception:
+            return sandbox.sandboxed(function, arguments, *of_file)
         return sandbox.received(answer.getvalue())
 
-    monkeypatch.setattr("asperity.results.sandboxed", opened)
+    for module in ("results", "structures.modal_files", "case.tables"):
+        monkeypatch.setattr(f"asperity.{module}.sandboxed", opened)
 
 
 @pytest.fixture

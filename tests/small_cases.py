@@ -1,6 +1,9 @@
 """A small real run of each kind of case, as small as the chain goes."""
 
+import numpy as np
+
 from asperity.case.cases import as_case
+from asperity.schema import UNKNOWN
 
 BALL = {
     "kind": "ball-on-beam",
@@ -100,3 +103,14 @@ COARSE = {
     "numerics": {"highest_frequency": "2 kHz"},
 }
 """A ball on a grid so coarse that many of them roll in a test."""
+
+
+def unmarked(tree):
+    """Names of variables with values that are not finite, without a reason."""
+    for node in tree.subtree:
+        for name, values in node.to_dataset(inherit=False).variables.items():
+            reason = values.attrs.get("missing", UNKNOWN) != UNKNOWN
+            if values.dtype.kind == "f" and (
+                np.isinf(values.values).any() or np.isnan(values.values).any() > reason
+            ):
+                yield f"{node.path}/{name}"

@@ -13,8 +13,8 @@ from asperity.case.any_case import entries
 from asperity.case.cases import case_class, case_of
 from asperity.errors import AsperityError
 from asperity.parameters import Choice, Number, Quantity
-from asperity.schema import UNKNOWN
 from asperity.units import quantity
+from small_cases import unmarked
 
 ROUGH = {
     "duration": "20 ms",
@@ -72,16 +72,6 @@ def random_case(source):
     return case
 
 
-def flaws(tree):
-    """Names of variables with values that are neither finite nor marked."""
-    for node in tree.subtree:
-        for name, values in node.to_dataset(inherit=False).variables.items():
-            if values.dtype.kind != "f" or np.isfinite(values.values).all():
-                continue
-            if np.isinf(values.values).any() or values.attrs.get("missing", UNKNOWN) == UNKNOWN:
-                yield f"{node.path}/{name}"
-
-
 @pytest.mark.parametrize("seed", range(300) if LONG else (1,))
 @pytest.mark.filterwarnings("ignore")
 def test_a_random_case_is_computed_or_refused(seed, own_cache):
@@ -95,5 +85,5 @@ def test_a_random_case_is_computed_or_refused(seed, own_cache):
     except AsperityError as error:
         assert len(str(error)) < 2000, case  # noqa: PT017 (either is right)
         return
-    assert list(flaws(tree)) == [], case
+    assert list(unmarked(tree)) == [], case
     assert np.isfinite(tree["rolling/contact_force"].values).all(), case

@@ -8,6 +8,7 @@ from asperity.errors import PhysicsWarning
 from asperity.scenes.report import page_of
 from asperity.schema import UNKNOWN, Entry
 from asperity.schema.spectra import NO_SIGNAL
+from small_cases import unmarked
 
 LEVEL = Entry("spectra", "level(band)", "dB re 1 N", "level", missing=NO_SIGNAL)
 FORCE = Entry("rolling", "force(time)", "N", "force")
@@ -22,17 +23,6 @@ def test_what_is_not_finite_is_missing_with_a_reason_or_a_warning():
     with pytest.warns(PhysicsWarning, match="1 of 2 values of force are not finite numbers"):
         found = FORCE.variable([1.0, np.nan])
     assert found.attrs["missing"] == UNKNOWN
-
-
-def unmarked(tree):
-    """Names of variables with values that are not finite, without a reason."""
-    for node in tree.subtree:
-        for name, values in node.to_dataset(inherit=False).variables.items():
-            reason = values.attrs.get("missing", UNKNOWN) != UNKNOWN
-            if values.dtype.kind == "f" and (
-                np.isinf(values.values).any() or np.isnan(values.values).any() > reason
-            ):
-                yield f"{node.path}/{name}"
 
 
 BEAM = {"kind": "ball-on-beam", "duration": "10 ms", "laws": ["hertz"], "contact": {"samples": 1},

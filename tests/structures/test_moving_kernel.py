@@ -75,7 +75,7 @@ def test_close_supports_give_the_moving_deflection_of_the_winkler_beam():
     critical = (4 * stiffness * BENDING / MASS**2) ** 0.25
     beta = (stiffness / (4 * BENDING)) ** 0.25
     for share in (0.3, 0.6):
-        kernel = moving_kernel(track, share * critical, 1e-4, positions=6)
+        kernel = moving_kernel(track, share * critical, 1e-4, positions=2)
         expected = beta / (2 * stiffness) / np.sqrt(1 - share**2)
         np.testing.assert_allclose(kernel.weights.sum(axis=1), expected, rtol=5e-3)
 
