@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, NDArray, require
-from asperity.case.form import Section
-from asperity.case.toml import read_definition, read_toml, refuse_vast
+from asperity.case import form, toml
 from asperity.errors import InputError
 from asperity.parameters import Choice, Origin, Quantity, key, keys_of, optional
 from asperity.reference.bearings import BEARINGS
@@ -24,7 +23,7 @@ LOAD, LOADS = Quantity("N", at_least=0), "0 N to 100 MN: bearings carry less"
 SPEEDS = "0 Hz to 10 kHz: bearings turn slower"
 
 
-class BearingGeometry(Section, parameters=DIMENSIONS):
+class BearingGeometry(form.Section, parameters=DIMENSIONS):
     """A ball bearing, named or by its dimensions."""
 
     ALTERNATIVES = (("clearance", "contact_angle"),)
@@ -65,8 +64,8 @@ def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:
     keys: dict[str, Any] = {"name": source}
     if source not in BEARINGS:
         remedy = f"Named bearings: {', '.join(BEARINGS)}."
-        keys = read_toml(read_definition(source, "bearing", remedy), "bearing", source)
-        refuse_vast(keys, source)
+        keys = toml.read_toml(toml.read_definition(source, "bearing", remedy), "bearing", source)
+        toml.refuse_vast(keys, source)
     return BearingKeys.read(keys | {k: v for k, v in options.items() if v is not None}, Origin.file(source))
 
 

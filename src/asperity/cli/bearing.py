@@ -13,9 +13,8 @@ from asperity.errors import InputError
 from asperity.reference.bearings import PRINTED_BY
 from asperity.reporting.figure import write_chart
 from asperity.scenes.figures.bearing import envelope_chart, load_zone_chart
+from asperity.structures import bearing_statics, body
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
-from asperity.structures.bearing_statics import LoadedBearing
-from asperity.structures.body import GRAVITY
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import factor, quantity
@@ -83,7 +82,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     return {"balls": balls, **ring, "tones": tones if speed else None}
 
 
-def _say_balls(found: LoadedBearing, load: str) -> None:
+def _say_balls(found: bearing_statics.LoadedBearing, load: str) -> None:
     """A row for each ball, one of which is right below the load."""
     axes = {ring: 1e3 * np.array(found.semi_axes(ring))[:, 0] for ring in ("inner", "outer")}
     rows = []
@@ -107,7 +106,7 @@ def _say_balls(found: LoadedBearing, load: str) -> None:
     say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
 
 
-def _say_ring(found: LoadedBearing) -> None:
+def _say_ring(found: bearing_statics.LoadedBearing) -> None:
     micrometres = (1e6 * each for each in (found.displacement[0], *found.compliance))
     stiffness = 1e-6 * np.diagonal(found.stiffness, axis1=1, axis2=2)
     ends = [f"{low:.4g} to {high:.4g}" for low, high in zip(stiffness.min(0), stiffness.max(0), strict=True)]
@@ -235,7 +234,7 @@ def _say_lines(
 
 def _say_velocities(values: Array, rate: float, unit: str) -> Array:
     """Rms velocities in the bands of ISO 15242-2 of a signal in a unit of velocity or acceleration."""
-    size, kind = GRAVITY, "acceleration"
+    size, kind = body.GRAVITY, "acceleration"
     if unit != "g":
         try:
             size = factor(unit, "m/s^2")

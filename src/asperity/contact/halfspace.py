@@ -10,12 +10,10 @@ import numpy as np
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, real, require
 from asperity.errors import Outcome, UnconvergedWarning
+from asperity.kernels import fourier, projected_cg, scanning
 from asperity.kernels.batched import convolve_padded, padded_spectrum, unit_indentation
 from asperity.kernels.box import foundation_approach
-from asperity.kernels.fourier import smooth_length
 from asperity.kernels.influence import Influence, influence, influence_table, prepared
-from asperity.kernels.projected_cg import inverse_stencil
-from asperity.kernels.scanning import REACH, Block, room, solve_positions
 from asperity.progress import Progress
 from asperity.store import Cache
 from asperity.surfaces.heightmap import HeightMap
@@ -169,7 +167,7 @@ class HalfSpace:
         self.modulus = real("contact modulus", modulus, "a positive number, Pa", above=0.0, remedy=remedy)
         allowed = "a positive number, Pa, or None"
         self.hardness = None if hardness is None else real("hardness", hardness, allowed, above=0.0)
-        reach_x, reach_y = (smooth_length(max(n, 32)) for n in self.shape)
+        reach_x, reach_y = (fourier.smooth_length(max(n, 32)) for n in self.shape)
         dx, dy = self.spacing
         scale = math.pi * self.modulus
         table = influence_table(reach_x, reach_y, dx, dy) / scale
@@ -485,7 +483,7 @@ class HalfSpace:
         rtol: float,
         single: bool = False,
         load: float = -1.0,
-    ) -> Block:
+    ) -> scanning.Block:
         """Lay out contacts to be solved, with nothing known of them; arguments as in `scanning.Block`.
 
         In single precision the iteration is half again as fast, down to a tolerance of about 1e-6.
@@ -493,14 +491,14 @@ class HalfSpace:
         rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
         k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
         known = self._known[np.float32 if single else np.float64]
-        return Block(
+        return scanning.Block(
             rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
-            room(known, *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
+            scanning.room(known, *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
             np.zeros(size), np.zeros(4, dtype=np.int64),
         )  # fmt: skip
 
-    def solve_block(self, block: Block) -> Block:
+    def solve_block(self, block: scanning.Block) -> scanning.Block:
         """Solve the contacts of a block, each from what is known of those before; unchecked and silent.
 
         Threads share the convolutions that are prepared: at worst one overwrites what another has prepared,
@@ -510,7 +508,7 @@ class HalfSpace:
         while position < count:
             refuse_to_go_on()
             end, known = min(position + AT_ONCE, count), self._known[precision]
-            position, level, nx, ny = solve_positions(known, block, position, level, end)
+            position, level, nx, ny = scanning.solve_positions(known, block, position, level, end)
             if position < end:
                 self._known[precision] = prepared(self._known[precision], nx, ny)
         return block
@@ -526,7 +524,7 @@ class HalfSpace:
         estimate = foundation_approach(gap, load, self.modulus, self.cell_area, self.pressure_cap)
         iterations = 0
         while True:
-            reach = lowest + REACH * (estimate - lowest)
+            reach = lowest + scanning.REACH * (estimate - lowest)
             contact = self._contact(gap, reach, start, rtol, load / self.cell_area)
             iterations += contact.iterations
             if contact.approach <= reach:
@@ -537,7 +535,7 @@ class HalfSpace:
 @lru_cache
 def _unit_taps(ratio: float) -> Array:
     """Preconditioning stencil of cells 1 × ratio, π E* being one."""
-    return inverse_stencil(influence_table(32, 32, 1.0, ratio))
+    return projected_cg.inverse_stencil(influence_table(32, 32, 1.0, ratio))
 
 
 def _tolerance(rtol: float) -> float:

@@ -8,8 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.contact.friction import SlidingContact
-from asperity.contact.tangential import FrictionalHalfSpace
+from asperity.contact import friction, tangential
 from asperity.errors import OutOfRangeWarning
 
 SIZES = np.linspace(0.2, 1.0, 17)
@@ -43,13 +42,13 @@ class CreepingBodies:
     are long against it, v/f > 2a. The pressure is that of smooth bodies without friction.
     """
 
-    rolling: FrictionalHalfSpace
+    rolling: tangential.FrictionalHalfSpace
     gap: Array = field(repr=False)
     creepage: tuple[float, float, float]
     speed: float
     largest_load: float
 
-    def at(self, load: float, scale: float = 1.0, across: float = 0.0) -> SlidingContact:
+    def at(self, load: float, scale: float = 1.0, across: float = 0.0) -> friction.SlidingContact:
         """The contact under a load, N, with the creepages times a scale, and a lateral one added.
 
         Creepages that are out of range are not told of.
@@ -100,7 +99,7 @@ class CreepingBodies:
         return (more - less) / (2.0 * step), (high - low) / (2.0 * LOAD_CHANGE * load)
 
 
-def forces_of(found: SlidingContact) -> Array:
+def forces_of(found: friction.SlidingContact) -> Array:
     """Forces on the first body along and across, N, and moment about the normal, N m (3,)."""
     return np.array((*found.force, found.moment))
 

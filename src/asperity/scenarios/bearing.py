@@ -15,9 +15,8 @@ from asperity.errors import InputError, PhysicsWarning
 from asperity.laws import Law, Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
-from asperity.scenarios.preparing import START_TIME, Work, refuse
+from asperity.scenarios import preparing, reducing
 from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on, raceway_with_balls
-from asperity.scenarios.reducing import STATES
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS
 from asperity.structures.ring import Ring
@@ -69,11 +68,11 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
                 made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
             except InputError as error:
                 errors.append(error.about(f"{NAMES[name]}: {error.what}"))
-    refuse(errors, source)
+    preparing.refuse(errors, source)
     return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
 
 
-def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
+def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparing.Work]:
     """What will be computed, in words, and how much work it is; coarsely, as nothing is solved for that."""
     case, turning, found = prepared.case, prepared.case.kinematics, prepared.case.static
     steps = round((case.settling + case.duration) / case.step)
@@ -82,10 +81,10 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
     for name, surface in zip(RINGS, prepared.raceways, strict=True):
         rough = np.count_nonzero((surface.heights + surface.faults).any(axis=1))
         if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
-            solutions[f"scan of the {NAMES[name]}"] = int(rough) * STATES
+            solutions[f"scan of the {NAMES[name]}"] = int(rough) * reducing.STATES
     for law in (law for law in case.laws if spec_of(law).solved_every_step):
         solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
-    seconds = START_TIME + STEP_TIME * steps * found.bearing.balls * runs
+    seconds = preparing.START_TIME + STEP_TIME * steps * found.bearing.balls * runs
     tones = ", ".join(f"{NAMES[part]} {turning.tone(part):.4g} Hz" for part in PARTS)
     load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
@@ -99,7 +98,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], Work]:
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
         ("not in it", LEFT_OUT),
     ]
-    return rows, Work({}, solutions, steps, None, seconds + SOLUTION_TIME * sum(solutions.values()))
+    return rows, preparing.Work({}, solutions, steps, None, seconds + SOLUTION_TIME * sum(solutions.values()))
 
 
 def bearing_rings(case: BallBearingCase) -> BearingRings:

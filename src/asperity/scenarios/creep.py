@@ -6,14 +6,11 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.scene import Case
-from asperity.contact.creep import CreepCurve, creep_curve
+from asperity.contact import creep, halfspace, tangential
 from asperity.contact.friction import Friction
-from asperity.contact.halfspace import Contact
-from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import InputError
 from asperity.progress import Progress
-from asperity.reduction.stiffness import weighted_mean
-from asperity.reduction.texture import punch_weights
+from asperity.reduction import stiffness, texture
 from asperity.reduction.traction import TractionStates, middle_of, traction_states
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.preparing import PreparedCase
@@ -30,7 +27,7 @@ def creep_of(
     direction: str = "longitudinal",
     count: int = 16,
     progress: Progress | None = None,
-) -> CreepCurve:
+) -> creep.CreepCurve:
     """Creep curve of what rolls in a case under its working load.
 
     The smooth contact comes first, then the samples that the case is reduced by. The traction acts on what
@@ -38,7 +35,7 @@ def creep_of(
     """
     case, shape = prepared.case, prepared.shape
     rolling, smooth = smooth_with_friction(case, shape, friction)
-    return creep_curve(
+    return creep.creep_curve(
         rolling, smooth, shape.semi_axes, direction, count=count,
         samples=rough_strips(shape, prepared.textures), speed=case.speed, progress=progress,
     )  # fmt: skip
@@ -68,16 +65,16 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
 
 def smooth_with_friction(
     case: Case, shape: Geometry, friction: float | Friction
-) -> tuple[FrictionalHalfSpace, Contact]:
+) -> tuple[tangential.FrictionalHalfSpace, halfspace.Contact]:
     """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
     space = shape.half_space(case.contact.hardness)
     bodies = case.rolling.material, case.rolled_over.material
     smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
-    return FrictionalHalfSpace(space, bodies, friction), smooth
+    return tangential.FrictionalHalfSpace(space, bodies, friction), smooth
 
 
 def rough_strips(shape: Geometry, textures: Textures) -> list[Array]:
     """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m."""
-    weights, nx = punch_weights(shape.spacing, shape.class_axes), len(shape.body)
+    weights, nx = texture.punch_weights(shape.spacing, shape.class_axes), len(shape.body)
     rough = [strip.heights for strip in textures.strips if strip.heights.any()]
-    return [heights - weighted_mean(middle_of(heights, nx), weights) for heights in rough]
+    return [heights - stiffness.weighted_mean(middle_of(heights, nx), weights) for heights in rough]

@@ -8,8 +8,7 @@ from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.quasi_steady import CreepingBodies, forces_of
 from asperity.errors import OutOfRangeWarning
 from asperity.scenarios.creep import rough_strips, smooth_with_friction
-from asperity.scenes import schema
-from asperity.scenes.compute import Computed
+from asperity.scenes import compute, schema
 from asperity.scenes.sideways import Sideways
 from asperity.schema import Values
 from asperity.structures.squeal import CreepingContact, poles_of, ringing_modes
@@ -21,7 +20,7 @@ SOURCES = (
 )
 
 
-def creep_group(computed: Computed) -> Values:
+def creep_group(computed: compute.Computed) -> Values:
     """Lay out friction under the working load and in time, and the stability of the wheel on the rail."""
     case, shape, speed = computed.case, computed.shape, computed.case.speed
     if "creep" not in case.inner or not any(case.creep.creepage):
@@ -71,7 +70,7 @@ def _facts(found: SlidingContact) -> Array:
     return np.array((found.stick_area, found.slip_area, *forces_of(found)))
 
 
-def _squeal(computed: Computed, bodies: CreepingBodies) -> Values:
+def _squeal(computed: compute.Computed, bodies: CreepingBodies) -> Values:
     """Free motions of the wheel on the rail at mid-span, of a wheel whose axial modes are known."""
     scene, side = computed.scene, Sideways(computed)
     modes = scene.modes

@@ -23,7 +23,6 @@ from asperity.scenarios.preparing import PreparedCase
 from asperity.scenes import creep, measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
-from asperity.scenes.measured import findings_of_passage
 from asperity.scenes.population import answers
 from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
 from asperity.structures.rail_poles import RailBetween, RailPoles
@@ -72,7 +71,7 @@ def computed_result(
         found += measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
         beside = sideways.sideways_group(computed, in_bands)
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands, beside)
-        found += findings_of_passage(own)
+        found += measured.findings_of_passage(own)
         creeps = creep.creep_group(computed)
         own |= beside | creeps
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))

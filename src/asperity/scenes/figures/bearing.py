@@ -25,9 +25,7 @@ from asperity.reporting.chart import (
 from asperity.reporting.figure import Figure, Lines, Of
 from asperity.reporting.headline import Answers, HeadlineNumber
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
-from asperity.schema import bearing, provenance
-from asperity.schema.rolling import TIME
-from asperity.schema.spectra import FREQUENCY
+from asperity.schema import bearing, provenance, rolling, spectra
 
 CORNERS = 180
 RING = 0.35
@@ -180,7 +178,7 @@ TURN = Figure(
 
 
 def _some_turns(tree: DataTree) -> slice:
-    time = data.values(tree, TIME)
+    time = data.values(tree, rolling.TIME)
     length = TURNS / (data.number(tree, bearing.TURNING) or TURNS)
     return slice(0, int(np.searchsorted(time, length)) + 1)
 
@@ -194,7 +192,7 @@ def _acceleration(tree: DataTree, lines: Lines) -> list[Panel]:
 ACCELERATION = Figure(
     "ring_acceleration",
     "Acceleration of the outer ring",
-    Of(TIME),
+    Of(rolling.TIME),
     (Of(bearing.RING_ACCELERATION, "{law}"),),
     _acceleration,
     "At the first accelerometer, radially outwards, in the first three turns of the record.",
@@ -240,7 +238,7 @@ def _velocity(tree: DataTree, lines: Lines) -> list[Panel]:
 SPECTRUM = Figure(
     "velocity_spectrum",
     "Spectrum of the radial velocity",
-    Of(FREQUENCY),
+    Of(spectra.FREQUENCY),
     (Of(bearing.VELOCITY_AMPLITUDE, "{law}"),),
     _velocity,
     "Lines of the radial velocity of the outer ring at the first accelerometer; the highest of each 1/96 "

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import data, panels
+from asperity.reporting import data, headline, panels
 from asperity.reporting.chart import MUTED, VERMILLION, Axis, Line, Note, Panel
 from asperity.reporting.figure import Figure, Lines, Of, field
-from asperity.reporting.headline import Answers
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.reporting.texture_figures import map_panel
 from asperity.scenes import schema
@@ -151,8 +150,8 @@ def friction_table(tree: DataTree) -> ReportTable | None:
     return table("friction_table", "Friction", columns, note)
 
 
-def creep_answers(tree: DataTree) -> Answers | None:
+def creep_answers(tree: DataTree) -> headline.Answers | None:
     """Say whether a wheel that creeps squeals."""
     if not data.present(tree, schema.STICK_AREA):
         return None
-    return Answers(more=squeal_sentence(tree))
+    return headline.Answers(more=squeal_sentence(tree))
