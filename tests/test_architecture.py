@@ -55,9 +55,7 @@ def test_packages_wait_until_they_are_used():
     assert "Roll a body" in done.stdout
 
 
-def test_public_names_resolve():
-    for name in asperity.__all__:
-        assert getattr(asperity, name) is not None
+def test_public_names_are_listed():
     assert set(asperity.__all__) <= set(dir(asperity))
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         asperity.nothing  # noqa: B018

@@ -88,12 +88,6 @@ def test_result_read_back_from_its_file_has_the_same_numbers(real_run, tmp_path)
         assert columns_text(part.collect(read).columns) == columns_text(part.collect(real_run).columns)
 
 
-def test_same_result_same_page(real_run, text):
-    if kind_of(real_run) == "bodies":
-        pytest.skip("its parts are among those of the others")
-    assert page_of(real_run) == text
-
-
 def test_figure_without_its_numbers_is_left_out_and_goes_without_all_others_and_attributes(real_run):
     """What it needs is what it says."""
     bare = real_run.copy()

@@ -26,12 +26,3 @@ def test_every_figure_is_drawn_and_readable_on_screens_and_paper(browser, addres
         assert not page.locator("figure.chart details").first.is_visible()
         page.emulate_media(media="screen")
         assert_accessible(page)
-
-
-def test_numbers_stand_where_no_script_runs(browser, address):
-    page = browser.new_page(java_script_enabled=False)
-    page.goto(address)
-    figures = page.locator("figure.chart").count()
-    assert figures > 8
-    assert page.locator("figure.chart details.numbers td:visible").count() > 10 * figures
-    page.close()
