@@ -180,11 +180,6 @@ def test_a_check_shows_the_track_the_run_in_and_what_loss_factors_do_to_the_forc
     assert "loss factors" not in call("check", "viscous.toml").stdout
 
 
-def test_a_check_says_what_is_doubtful_before_anything_is_computed():
-    Path("case.toml").write_text('start = "0 m"\nsettling = "0 s"\n' + CASE)
-    assert "Warning: the record starts 0 ms after rest" in call("check", "case.toml").stderr
-
-
 def test_a_check_reads_what_is_measured():
     np.save("map[dim] :x:.npy", np.random.default_rng(0).normal(size=(64, 64)))  # names are no markup
     Path("measured.toml").write_text(MAP.replace("map.npy", "map[dim] :x:.npy"))

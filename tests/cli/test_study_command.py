@@ -15,7 +15,6 @@ import xarray as xr
 
 import asperity
 from asperity.cli.studying import varied
-from asperity.running import run
 from asperity.spectra import a_weighting
 from asperity.studies.definition import load_study, study_of
 from command_line import RAIL, SMALL, call, words_of
@@ -136,15 +135,6 @@ def test_means_deviations_and_band_over_the_seeds_are_written(computed):
     page = (computed.out / "study.html").read_text(encoding="utf-8")
     assert '<figure id="ensemble" class="chart">' in page
     assert 'href="ensemble.csv"' in page
-
-
-def test_a_member_is_what_a_run_of_its_case_is(out, computed):
-    one = f'seed = 3\n{FILTERED}[ball]\nload = "5 N"\n'
-    Path("one.toml").write_text(one)
-    one = run("one.toml")["rolling"]
-    member = computed.table.sel({"seed": 3, "ball.load": 5.0})
-    np.testing.assert_array_equal(member["contact_loss_share"], one["contact_loss_share"][:, 0])
-    np.testing.assert_array_equal(member["rms_force"], one["contact_force"][:, 0].std("time"))
 
 
 def test_a_case_is_varied_in_the_units_that_were_typed_with_a_figure_for_each_key():

@@ -37,9 +37,9 @@ CIRCLES = Path(__file__).with_name("circles.nc").read_bytes()  # in which HDF5 t
 ENDS = Path(__file__).with_name("ends.nc").read_bytes()  # which ends the process that opens it
 
 
-def case(text, says, code=2, **files):
+def case(text, says, **files):
     """A case that is checked: the words, the exit code that is right, what has to be said, and the files."""
-    return ("check", "case.toml"), code, says, {"case.toml": text} | files
+    return ("check", "case.toml"), 2, says, {"case.toml": text} | files
 
 
 def study(sweep, says):
@@ -60,10 +60,6 @@ CORPUS = {
     "a beam 1 um high": case(f'{BALL}{ROUGH}[beam]\nheight = "1 um"\n', "height: .*allowed: at least 187 um"),
     "a ball of 1e-9 kg": case(f'{BALL}{ROUGH}[ball]\nmass = "1e-9 kg"\n', "heights with an rms slope of 1"),
     "1 mm/s": case(f'{BALL}speed = "1 mm/s"\n{ROUGH}', r"contact\.spacing: received 0\.1 um at 0.001 m/s"),
-    "approaches that never touch": case(
-        f'{BALL}{ROUGH}{ONE}approaches = ["-78 um", "-77 um"]\n',
-        r"contact\.approaches: received up to -77 um, where the samples carry 0 N",
-    ),
     "a free beam on 0.1 Hz": (
         ("run", "case.toml", "--no-report"),
         3,
@@ -79,12 +75,6 @@ CORPUS = {
         ("run", "case.toml", "-o", "a" * 300), 2, "File name too long", {"case.toml": BALL + ROUGH}
     ),
     "a name that is no UTF-8": (("check", "\udcff.toml"), 2, r"\\xff\.toml: received no such file", {}),
-    "a map whose name is markup": case(
-        BALL + MAP.format("map [um] v2.npy") + ONE,
-        r"map \[um\] v2\.npy",
-        code=0,
-        **{"map [um] v2.npy": npy(np.random.default_rng(1).normal(size=(120, 120)))},
-    ),
     "a folder whose name is markup": (
         ("check", "a [/b]/case.toml"), 2, r"a \[/b\]/case\.toml: 1 error", {"a [/b]/case.toml": BALL}
     ),
@@ -123,7 +113,7 @@ def test_what_once_failed(name, tmp_path, replay):
     found, told = replay(words, files)
     assert found == code
     assert re.search(says, told), told
-    assert len(told) < (2000 if code else 20_000)
+    assert len(told) < 2000
     assert "\x1b" not in told
     assert left(tmp_path) == []
 
