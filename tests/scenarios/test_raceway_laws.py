@@ -227,10 +227,10 @@ def test_direct_sees_the_pits_of_ball_and_raceway_where_they_are(forwards):
     surface, away, radius, beta = raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(PIT,)), 0.05 * MM, 0.7 * MM, 5.0
     pit = Fault("pit", angle=beta, length=0.18 * MM, depth=0.28 * MM)
     ball = raceway_on(CONTACT, 0.8 * LOAD, radius, faults=(pit,))
-    assert ball.spacing != surface.spacing
     (law,) = with_balls(CONTACT, surface, [ball], LOAD, forwards=forwards)
-    sign = 1.0 if forwards else -1.0
-    spots = beta - sign * np.array([away, -away]) / radius + 2 * np.pi * np.array([0, 7])
+    spots = (
+        beta - (1.0 if forwards else -1.0) * np.array([away, -away]) / radius + 2 * np.pi * np.array([0, 7])
+    )
     on = law.prepare(np.column_stack([[np.pi * MM - away] * 2, spots]))
     for step, places in enumerate(([away, away], [away, -away])):
 

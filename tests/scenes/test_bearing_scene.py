@@ -262,8 +262,8 @@ def test_several_faults_lie_where_they_are_and_each_is_heard():
 
 
 def test_faults_that_overlap_are_told():
-    deeper = [BEARING["fault"], BEARING["fault"] | {"length": "0.1 mm"}]
-    prepared = prepare_bearing(as_case(BEARING | {"fault": deeper}))
+    pit = BEARING["fault"]
+    prepared = prepare_bearing(as_case(BEARING | {"fault": [pit, pit | {"length": "0.1 mm"}]}))
     assert "their heights add up" in str(prepared.caught[0].message)
     assert prepared.raceways[1].faults.min() == pytest.approx(-0.2e-3)
 
