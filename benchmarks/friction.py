@@ -2,9 +2,9 @@
 """Friction: a steady state and a step of a transient beside the normal solution, and FASTSIM beside them.
 
 Wheel on rail of the creep curve printed by CONTACT (48 × 44 cells), and the same on finer grids. The normal
-solution from nothing, and from the pressure at 2 % less load. Then a ball under half of the tangential force
-that friction carries, and the like in a peer (`benchmarks/peers.sh` installs it), where a Python is named
-that has it. Processor time of one thread, the least of some rounds.
+solution from nothing, and from the pressure at 2 % less load. Then likewise steps over a rough surface, and a
+ball under half of the tangential force that friction carries, with the like in a peer (`benchmarks/peers.sh`
+installs it), where a Python is named that has it. Processor time of one thread, the least of some rounds.
 
     python benchmarks/friction.py [--peers-python FOLDER/bin/python]
 """
@@ -20,6 +20,7 @@ import argparse
 import subprocess
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,10 @@ from single_contact import least
 
 from asperity import FrictionalHalfSpace, HalfSpace, Hertz, Material
 from asperity.contact.creep import RollingEllipse
+from asperity.surfaces.synthesis import self_affine
 
 SHEAR, POISSON, LOAD, FRICTION = 82e9, 0.28, 106.7e3, 0.33
+STEPS = 60
 SMOOTH = Hertz(SHEAR / (1.0 - POISSON), 0.625, 1.7767208179193736)
 BODY = Material("steel", 2.0 * SHEAR * (1.0 + POISSON), POISSON, 7850.0)
 
@@ -50,6 +53,9 @@ def main() -> None:
         gap = x[:, None] ** 2 / (2.0 * SMOOTH.radius_x) + y**2 / (2.0 * SMOOTH.radius_y)
         space = HalfSpace(n, spacing, SMOOTH.modulus)
         print(f"| {n[0]} × {n[1]} | {row(space, gap)} |")
+    print("| rolled over a rough surface, cells | normal | step | convolutions |")
+    for n in ((40, 28), (80, 56), (160, 112)):
+        print(f"| {n[0]} × {n[1]} | {rolled(n)} |")
     print(ball(64))
     if peer:
         subprocess.run([peer, str(Path(__file__).with_name("friction_peer.py")), "64"], check=True)
@@ -58,6 +64,32 @@ def main() -> None:
 def taken(work: Callable[[], Any], rounds: int) -> float:
     """Processor time of some work, s."""
     return least(work, rounds, time.thread_time)
+
+
+def rolled(n: tuple[int, int]) -> str:
+    """Mean times of contacts one cell apart, each from the one before, moved with the surface."""
+    axes = SMOOTH.semi_axes(SMOOTH.approach(LOAD))
+    spacing = (2.1 * axes[0] / n[0], 2.1 * axes[1] / n[1])
+    x, y = (d * (np.arange(m) - 0.5 * (m - 1)) for m, d in zip(n, spacing, strict=True))
+    gap = x[:, None] ** 2 / (2.0 * SMOOTH.radius_x) + y**2 / (2.0 * SMOOTH.radius_y)
+    waves = {"longest": axes[0], "shortest": 4.0 * max(spacing)}
+    heights = self_affine(
+        (n[0] + STEPS, n[1]), spacing, rms=0.2 * SMOOTH.approach(LOAD), hurst=0.8, seed=2, **waves
+    ).heights
+    space = HalfSpace(n, spacing, SMOOTH.modulus)
+    rolling, contact = FrictionalHalfSpace(space, (BODY, BODY), FRICTION), space.solve(gap, load=LOAD)
+    state, sums = rolling.roll(contact, (1e-3, 0.0)), np.zeros(3)
+    for row in range(STEPS):
+        pressure = np.roll(state.normal.pressure, -1, axis=0)
+        began = time.thread_time()
+        contact = space.solve(gap - heights[row : row + n[0]], load=LOAD, start=pressure)
+        middle = time.thread_time()
+        start = replace(state, traction=np.roll(state.traction, -1, axis=1))
+        state = rolling.roll(contact, (1e-3, 0.0), before=state, start=start)
+        if row >= STEPS // 2:
+            sums += middle - began, time.thread_time() - middle, state.convolutions
+    normal, step, convolutions = sums / (STEPS - STEPS // 2)
+    return f"{1e3 * normal:.2f} ms | {1e3 * step:.2f} ms | {convolutions:.0f}"
 
 
 def ball(n: int) -> str:
