@@ -343,6 +343,12 @@ test_what_has_no_meaning_is_refused = refusals(
     (lambda s, c: s.roll(c, (0.0, 0.0, 0.1)), "creepage: received"),
     (lambda s, c: s.shift(c, (1e-6,)), "shift: received"),
     (lambda s, c: s.roll(c, before=on_fewer_cells()), "state before: received one on another grid"),
+    (lambda s, c: s.roll(None), "contact: received NoneType; allowed: a Contact, as HalfSpace.solve returns"),
+    (
+        lambda s, c: FrictionalHalfSpace(s.half_space, ("steel",) * 2, 0.3),
+        "bodies: received 'steel'; allowed: two materials",
+    ),
+    (lambda s, c: FrictionalHalfSpace(s.half_space, (SOFT,), 0.3), "bodies: received ("),
     (lambda s, c: ellipse(1.0, 0.3, 24)[1].roll(c), "contact: received one on another half-space"),
     of=lambda ask: ask(*ellipse(1.0, 0.3, 24)[1::-1]),
 )

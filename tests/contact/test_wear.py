@@ -1,6 +1,7 @@
 """Wear: closed forms of what friction takes, the balance of work and volume, places, passes, and messages."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -212,7 +213,23 @@ def test_archard_wears_by_velocity_and_pressure(pressure, velocity, factor, regi
 
 
 GAP, ROLLING = wheel(8, 0.3)
-RAIL = np.zeros((9, 8))
+RAIL, NOTHING = np.zeros((9, 8)), np.zeros((8, 8))
+NO_REGIME = 3 + NOTHING.astype(int)
+ROLLED = {
+    "rolling": ROLLING,
+    "law": LINEAR,
+    "contact": ROLLING.roll(ROLLING.half_space.solve(GAP, load=LOAD)),
+}
+
+
+@dataclass(frozen=True)
+class Given:
+    """A law that removes what it is told, whatever that is."""
+
+    answer: object
+
+    def removal(self, rubbing):
+        return self.answer
 
 
 def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
@@ -229,6 +246,16 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
         (ArchardWear, {"hardness": 3e9, "velocities": 0.2}, "velocities: received 0.2; allowed: two slip"),
         (ArchardWear, {"hardness": 3e9, "velocities": (0.7, 0.2)}, "velocities: received numbers that"),
         (wear, {"law": 1e-4}, r"law of wear: received float; allowed: an object with removal"),
+        (wear, {"law": EnergyWear}, r"law of wear: received type; allowed: an object with removal"),
+        (wear, {"law": Given(None)}, "removal of Given: received None; allowed: depth over rolled distance"),
+        (wear, {"law": Given((NOTHING + math.nan, NOTHING))}, "removal of Given: received nan"),
+        (wear, {"law": Given((NOTHING[1:], NOTHING))}, r"removal of Given: received shape \(7, 8\)"),
+        (wear, {"law": Given((NOTHING, NOTHING))}, "removal of Given: received regimes of float64"),
+        (wear, {"law": Given((NOTHING, 0))}, r"removal of Given: received regimes of int64, shape \(\)"),
+        (wear, {"law": Given((NOTHING, NO_REGIME))}, "removal of Given: received regimes of int64"),
+        (wear_depth, ROLLED | {"law": Given(None)}, "removal of Given: received None"),
+        (wear_depth, ROLLED | {"contact": None}, "contact: received NoneType; allowed: a SlidingContact"),
+        (wear_depth, ROLLED | {"rolling": wheel(8, 0.2)[1]}, "contact: received one on another half-space"),
         (wear, {"surface": RAIL[:, :6]}, "window of wear: received 8 × 8 cells on a surface of 9 × 6"),
         (wear, {"body": GAP[:4]}, r"body that wears: received shape \(4, 8\); allowed: lengths in m"),
         (wear, {"load": 0.0}, "load: received 0.0; allowed: a force above 0"),

@@ -73,6 +73,8 @@ def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(comp
     assert np.all(np.array([little[schema.STICK_AREA], little[schema.SLIP_AREA]]) > 0.0)
     assert little[schema.FULL_SLIP_SCALE] > 1.0
     assert np.any((little[schema.SLIP_VELOCITY] == 0.0) & (little[schema.TRACTION] > 0.0))
+    for none in (found, little):  # by symmetry there is no force along, and no rounding in its place
+        assert not np.any([none[schema.SAMPLE_FRICTION][0][0], *none[schema.FRICTION_FORCE][:, :, 0].ravel()])
     assert little[schema.FULL_SLIP_SHARE] == np.mean(force <= little[schema.FULL_SLIP_LOAD])
 
 

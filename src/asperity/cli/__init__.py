@@ -200,9 +200,9 @@ def bearing(
 
 @_begin("Creep force over creepage of what rolls in a case.", long_work=True)
 @click.argument("case", type=PATH)
-@click.option("--direction", type=click.Choice(["longitudinal", "lateral", "spin"]), default="longitudinal",
-              show_default=True, help="Creepage that grows; spin makes a lateral force.")  # fmt: skip
-@click.option("--friction", type=float, default=0.3, show_default=True, help="Coefficient of friction.")
+@click.option("--direction", type=click.Choice(["longitudinal", "lateral", "spin"]),
+              help="Creepage that grows; spin makes a lateral force. [default: longitudinal]")  # fmt: skip
+@click.option("--friction", type=float, help="Coefficient of friction. [default: 0.3]")
 @click.option("--points", type=int, help="Points up to full slip, or states. [default: 16; 6 states]")
 @click.option(
     "--states", is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."

@@ -15,6 +15,7 @@ from asperity.errors import InputError
 from asperity.progress import progress_bar
 from asperity.reduction.traction import TractionStates
 from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Area, Axis, Chart, Line, Mark, Panel
+from asperity.reporting.data import engineering
 from asperity.reporting.figure import FORMATS, write_chart, write_columns
 from asperity.scenarios.creep import creep_of, states_of
 from asperity.scenarios.preparing import PreparedCase
@@ -28,8 +29,8 @@ MOST_POINTS = 1000
 
 def show_creep(
     source: Path,
-    direction: str,
-    friction: float,
+    direction: str | None,
+    friction: float | None,
     points: int | None,
     picture: Path | None,
     table: Path | None,
@@ -39,6 +40,10 @@ def show_creep(
     if picture is not None:
         ends = picture.suffix.lower().lstrip(".") in FORMATS
         require(ends, "picture", f"'{picture}'", f"a name that ends in .{', .'.join(FORMATS)}")
+    alone = (direction is None and friction is None) or not states
+    remedy = "In states nothing slips, and all directions are computed: leave the other away."
+    require(alone, "--states", "--direction or --friction with it", "one without the other", remedy)
+    direction, friction = direction or "longitudinal", 0.3 if friction is None else friction
     law = Friction(real("--friction", friction, "a coefficient above 0", above=0.0))
     allowed = f"a whole number from 2 to {MOST_POINTS}"
     count = (6 if states else 16) if points is None else points
@@ -69,7 +74,8 @@ Told = tuple[str, dict[str, Any], Chart, dict[str, Any]]
 
 def _told_curve(curve: CreepCurve, prepared: PreparedCase, source: str) -> Told:
     shape, columns, (smooth, *rough) = prepared.shape, _columns(curve), curve.slopes
-    title = f"{source}: {shape.load:.4g} N, friction {curve.limit / shape.load:.4g}, {curve.direction}"
+    load, friction = engineering(shape.load, "N"), f"{curve.limit / shape.load:.4g}"
+    title = f"{source}: {load}, friction {friction}, {curve.direction}"
     _say_columns(f"{title}: creep force over friction", columns)
     at, linear = f"At the smallest {NAMES[curve.direction]}", "of Kalker's linear force"
     words = f"{at} the smooth contact has {smooth:.4f} {linear}"

@@ -17,6 +17,8 @@ MOST, HALVINGS = 100.0, 12
 """Times the creepages, and part of them, between which full slip is sought; halvings of that interval."""
 CREEP_CHANGE, LOAD_CHANGE = 0.05, 0.25
 """Shares by which creepage and load are changed for slopes of the force; less moves single cells."""
+ROUNDING = 1e-9
+"""Share of what friction carries below which a force is none: it would be opposite by symmetry."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +103,8 @@ class CreepingBodies:
 
 def forces_of(found: friction.SlidingContact) -> Array:
     """Forces on the first body along and across, N, and moment about the normal, N m (3,)."""
-    return np.array((*found.force, found.moment))
+    forces, arms = np.array((*found.force, found.moment)), (1.0, 1.0, math.sqrt(found.normal.area))
+    return np.where(np.abs(forces) > ROUNDING * found.limit * np.array(arms), forces, 0.0)
 
 
 def _change(holds: Callable[[float], bool], low: float, high: float) -> float:

@@ -98,6 +98,10 @@ class FrictionalHalfSpace:
         friction: float | ArrayLike | Friction,
         coupled: bool = True,
     ) -> None:
+        allowed = 'two materials, as asperity.material("steel")'
+        bodies = arguments.two("bodies", bodies, allowed)
+        for body in bodies:
+            require(isinstance(body, Material), "bodies", arguments.shown(body), allowed)
         self.half_space, self.coupled = half_space, coupled
         self.friction = friction if isinstance(friction, Friction) else Friction(friction)
         nu = np.array([body.poisson_ratio for body in bodies])
@@ -278,6 +282,8 @@ class FrictionalHalfSpace:
         self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: _Manner
     ) -> SlidingContact:
         """Check the input, find the components of the motion whose force is given, and look at the result."""
+        known = isinstance(normal, Contact)
+        require(known, "contact", type(normal).__name__, "a Contact, as HalfSpace.solve returns it")
         require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
         for state in (manner.before, manner.start):
             fits = state is None or state.bound.shape == self.half_space.shape

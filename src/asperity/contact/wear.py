@@ -192,7 +192,19 @@ def _check_numbers(law: Any, endless: tuple[str, ...]) -> None:
 
 def _check_law(law: object) -> None:
     allowed = "an object with removal(rubbing), as asperity.EnergyWear()"
-    require(hasattr(law, "removal"), "law of wear", type(law).__name__, allowed)
+    is_law = hasattr(law, "removal") and not isinstance(law, type)
+    require(is_law, "law of wear", type(law).__name__, allowed)
+
+
+def _removal(law: WearLaw, rubs: Rubbing) -> tuple[Array, NDArray[np.intp]]:
+    """What a law removes; it may be anyone's."""
+    what, shape, last = f"removal of {type(law).__name__}", rubs.work.shape, len(REGIMES) - 1
+    allowed = f"depth over rolled distance, finite, and whole regimes from 0 to {last}, two arrays {shape}"
+    depth, regimes = two(what, law.removal(rubs), allowed)
+    rate, regime = finite_array(what, depth, allowed, shape=shape), np.asarray(regimes)
+    known = regime.shape == shape and regime.dtype.kind in "biu" and np.isin(regime, range(last + 1)).all()
+    require(known, what, f"regimes of {regime.dtype}, shape {regime.shape}", allowed)
+    return rate, regime.astype(np.intp)
 
 
 def wear_depth(rolling: FrictionalHalfSpace, contact: SlidingContact, law: WearLaw) -> Array:
@@ -230,8 +242,12 @@ def wear_depth(rolling: FrictionalHalfSpace, contact: SlidingContact, law: WearL
     '4.2 nm in a pass'
     """
     _check_law(law)
+    rolls = isinstance(contact, SlidingContact)
+    require(rolls, "contact", type(contact).__name__, "a SlidingContact, as roll returns it")
     require(contact.speed > 0.0, "contact", "one that was shifted, or stands", "one that rolls, at a speed")
-    depth, _ = law.removal(rubbing(rolling, contact, contact))
+    here = contact.normal.half_space is rolling.half_space
+    require(here, "contact", "one on another half-space", "one on that of `rolling`")
+    depth, _ = _removal(law, rubbing(rolling, contact, contact))
     return depth.sum(axis=0) * rolling.half_space.spacing[0]
 
 
@@ -465,7 +481,7 @@ def _pass(
         rubs, before = rubbing(job.bodies, after, before), after
         if first < 0:
             continue
-        rate, regime = job.law.removal(rubs)
+        rate, regime = _removal(job.law, rubs)
         depth[under] += distance * rate
         volume += distance * space.cell_area * np.bincount(regime.ravel(), rate.ravel(), len(REGIMES))
         work += distance * space.cell_area * float(rubs.work.sum())

@@ -53,7 +53,8 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
         (case.rolling.material, case.rolled_over.material),
     )
     if not samples:
-        raise InputError("surface", "smooth bodies", "a rough surface", "Give it a file, rms or a spectrum.")
+        remedy = "Give it a file or rms, of a rail a spectrum."
+        raise InputError("surface", "none, or as a line alone", "a rough surface with samples", remedy)
     space = shape.half_space(case.contact.hardness)
     resolved = (LEAST_CELLS * max(shape.spacing) / min(shape.axes(1.0))) ** 3
     loads = max(LIGHTEST_STATE * shape.class_load, resolved), shape.largest_force

@@ -96,4 +96,5 @@ def _squeal(computed: compute.Computed, bodies: CreepingBodies) -> Values:
         schema.AXIAL_SHARE: axial / (radial + axial),
         schema.CREEP_DAMPING: contact.damping,
         schema.LOAD_SLOPE: over_load,
+        schema.LARGEST_GROWTH: float(np.nanmax(-omega.imag)),
     }

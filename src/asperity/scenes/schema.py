@@ -448,6 +448,9 @@ CREEP_DAMPING = _creep_fact(
     "creep_damping", "N s/m", "−∂F_y/∂η/V; negative: friction falls", condition=_SQUEALS
 )
 LOAD_SLOPE = _creep_fact("friction_per_load", "1", "slope of the lateral force over load", condition=_SQUEALS)
+LARGEST_GROWTH = _creep_fact(
+    "largest_growth_rate", "1/s", "that of the fastest motion; above zero it squeals", condition=_SQUEALS
+)
 
 
 _TOTAL = {"radiator": "total"}
@@ -464,6 +467,8 @@ KEPT: dict[Entry, dict[str, str]] = {
     SOUND_POWER_LEVEL_A: {"source": "total"},
     RADIATED_POWER_LEVEL: {},
     RADIATED_POWER_LEVEL_A: {},
+    FULL_SLIP_SHARE: {},
+    MEAN_FRICTION_POWER: {},
 }
 """What a study keeps of it, where a result has it, and where of it."""
 SHOWN = (
@@ -471,5 +476,8 @@ SHOWN = (
     RADIATED_POWER_LEVEL_A.name,
     PASS_BY_MAXIMUM_LEVEL.name,
     TRANSIT_EXPOSURE_LEVEL.name,
+    FULL_SLIP_SHARE.name,
+    MEAN_FRICTION_POWER.name,
+    LARGEST_GROWTH.name,
 )
 """What a study shows of it unasked."""

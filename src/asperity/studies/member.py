@@ -33,7 +33,7 @@ KEPT = (
 """What is kept of all results, beside what the schema of a scene says."""
 OF_CONTACTS = spectra.CONTACT_FORCE_LEVEL
 """What is kept of every contact, where there are several; all else by contact is that of the first."""
-FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE)
+FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE, scene.LARGEST_GROWTH)
 """Attributes of a result that are kept."""
 LEVEL = "dB re"
 """Beginning of the units of levels."""
@@ -54,7 +54,7 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
     for place in set(PLACES) & set(map(str, table.dims)):
         table = _numbered(table, place)
     for fact in FACTS:
-        if (value := tree[fact.group].attrs.get(fact.name)) is not None:
+        if fact.group in tree.children and (value := tree[fact.group].attrs.get(fact.name)) is not None:
             table[fact.name] = variable((), value, fact.units, fact.meaning)
     told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
     return table.assign_attrs({name: tree.attrs[name] for name in told})

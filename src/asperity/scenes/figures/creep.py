@@ -31,8 +31,8 @@ def _full_slip(tree: DataTree) -> str:
     """Say where full slip begins, by creepage and by load."""
     scale, load = (data.number(tree, each) for each in (schema.FULL_SLIP_SCALE, schema.FULL_SLIP_LOAD))
     begins = "is not reached" if scale is None else f"begins at {scale:.3g} times these creepages"
-    up_to = "any load of the run" if load is None else data.engineering(load, "N")
-    return f"Full slip {begins}, by smooth bodies under the working load; with them all slips up to {up_to}."
+    under = "under any load of the run" if load is None else f"up to {data.engineering(load, 'N')}"
+    return f"Full slip {begins}, by smooth bodies under the working load; with them all slips {under}."
 
 
 def _forces(tree: DataTree, lines: Lines) -> Iterator[Panel]:
