@@ -9,6 +9,7 @@ import pytest
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.contact.hertz import stick_stiffness
 from asperity.reference.materials import MATERIALS
+from asperity.scenarios.creep import friction_of
 from asperity.scenarios.preparing import prepare
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
@@ -58,6 +59,8 @@ def test_a_wheel_that_heads_for_the_field_side_creeps_to_the_other_and_is_pushed
     driven = -SPEED * (along * 0.001 + across * (math.tan(ATTACK) + 0.002) + moment * 0.2)
     assert both[schema.SAMPLE_HEAT][0] == pytest.approx(driven, rel=1e-12)
     assert creeping({}) == creeping({"angle_of_attack": 0.0}) == {}
+    asked = friction_of(WheelOnRail(**KEYS | {"creep": FALLING, "sideways": {"friction": 0.4}}))
+    assert (asked.static, asked.kinetic, asked.velocity) == (0.4, 0.5, 0.3)
 
 
 def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(computed, creeping):

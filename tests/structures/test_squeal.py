@@ -112,3 +112,5 @@ def test_the_mode_that_rings_is_that_of_most_energy():
     forces = contact.force_ratio(alone(wheel, roots))
     assert forces == pytest.approx(0.0)
     assert ringing_modes(wheel, 0.0, roots, forces).tolist() == [0, 1, 0]
+    poles = poles_of(wheel)  # without friction each mode rings alone
+    assert ringing_modes(wheel, 0.0, poles, 0.0 * poles).tolist() == [*range(len(poles))]

@@ -202,7 +202,7 @@ def bearing(
 @click.argument("case", type=PATH)
 @click.option("--direction", type=click.Choice(["longitudinal", "lateral", "spin"]),
               help="Creepage that grows; spin makes a lateral force. [default: longitudinal]")  # fmt: skip
-@click.option("--friction", type=float, help="Coefficient of friction. [default: 0.3]")
+@click.option("--friction", type=float, help="Coefficient of friction. [default: the case's; 0.3]")
 @click.option("--points", type=int, help="Points up to full slip, or states. [default: 16; 6 states]")
 @click.option(
     "--states", is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."

@@ -17,7 +17,7 @@ from asperity.reduction.traction import TractionStates
 from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Area, Axis, Chart, Line, Mark, Panel
 from asperity.reporting.data import engineering
 from asperity.reporting.figure import FORMATS, write_chart, write_columns
-from asperity.scenarios.creep import creep_of, states_of
+from asperity.scenarios.creep import creep_of, friction_of, states_of
 from asperity.scenarios.preparing import PreparedCase
 from asperity.terminal import say, say_table
 
@@ -43,8 +43,8 @@ def show_creep(
     alone = (direction is None and friction is None) or not states
     remedy = "In states nothing slips, and all directions are computed: leave the other away."
     require(alone, "--states", "--direction or --friction with it", "one without the other", remedy)
-    direction, friction = direction or "longitudinal", 0.3 if friction is None else friction
-    law = Friction(real("--friction", friction, "a coefficient above 0", above=0.0))
+    if friction is not None:
+        real("--friction", friction, "a coefficient above 0", above=0.0)
     allowed = f"a whole number from 2 to {MOST_POINTS}"
     count = (6 if states else 16) if points is None else points
     whole("--points", count, allowed, at_least=2, at_most=MOST_POINTS)
@@ -56,7 +56,9 @@ def show_creep(
         if states:
             found = _told_states(states_of(prepared, count, progress), str(source))
         else:
-            found = _told_curve(creep_of(prepared, law, direction, count, progress), prepared, str(source))
+            law = friction_of(prepared.case) if friction is None else Friction(friction)
+            curve = creep_of(prepared, law, direction or "longitudinal", count, progress)
+            found = _told_curve(curve, prepared, str(source))
     title, columns, chart, numbers = found
     files = dict[str, Path]()
     if table is not None:

@@ -298,7 +298,8 @@ class FrictionalHalfSpace:
             index, target = np.array(list(wanted)), np.array(list(wanted.values()))
             found = self._under_force(normal, found, index, target, manner)
         if not found.converged:
-            words = f"friction at {found.creepage} did not converge: {found.outcome.value}"
+            why = "let it fall over more slip velocity" if self.friction.falls else found.outcome.value
+            words = f"friction at {found.creepage} did not converge: {why}"
             warnings.warn(words, UnconvergedWarning, stacklevel=3)
         self._doubt(found, manner)
         return found

@@ -64,6 +64,13 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
     return traction_states(space, bodies, shape.body, samples, approaches, progress)
 
 
+def friction_of(case: Case) -> Friction:
+    """What a case says of friction, or a coefficient of 0.3 where it says nothing of creep."""
+    if "creep" not in case.inner:
+        return Friction(0.3)
+    return Friction(case.sideways.friction, case.creep.kinetic, case.creep.falling_velocity)
+
+
 def smooth_with_friction(
     case: Case, shape: Geometry, friction: float | Friction
 ) -> tuple[tangential.FrictionalHalfSpace, halfspace.Contact]:

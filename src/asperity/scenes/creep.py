@@ -4,10 +4,10 @@ import numpy as np
 
 from asperity.arguments import Array, Complex
 from asperity.contact.creep import LEAST_LENGTHS, RolledSample, contact_rows
-from asperity.contact.friction import Friction, SlidingContact, cell_places
+from asperity.contact.friction import SlidingContact, cell_places
 from asperity.contact.quasi_steady import CreepingBodies, forces_of
 from asperity.errors import OutOfRangeWarning
-from asperity.scenarios.creep import rough_strips, smooth_with_friction
+from asperity.scenarios.creep import friction_of, rough_strips, smooth_with_friction
 from asperity.scenes import compute, schema
 from asperity.scenes.sideways import Sideways
 from asperity.schema import Values
@@ -25,9 +25,8 @@ def creep_group(computed: compute.Computed) -> Values:
     case, shape, speed = computed.case, computed.shape, computed.case.speed
     if "creep" not in case.inner or not any(case.creep.creepage):
         return {}
-    keys, creepage = case.creep, case.creep.creepage
-    friction = Friction(case.sideways.friction, keys.kinetic, keys.falling_velocity)
-    rolling, smooth = smooth_with_friction(case, shape, friction)
+    creepage = case.creep.creepage
+    rolling, smooth = smooth_with_friction(case, shape, friction_of(case))
     first = shown = rolling.roll(smooth, creepage[:2], creepage[2], speed=speed)
     rows = [_facts(first)]
     for strip in rough_strips(shape, computed.textures):
@@ -96,5 +95,5 @@ def _squeal(computed: compute.Computed, bodies: CreepingBodies) -> Values:
         schema.AXIAL_SHARE: axial / (radial + axial),
         schema.CREEP_DAMPING: contact.damping,
         schema.LOAD_SLOPE: over_load,
-        schema.LARGEST_GROWTH: float(np.nanmax(-omega.imag)),
+        schema.LARGEST_GROWTH: float(np.max(-omega.imag[known], initial=-np.inf)),
     }

@@ -103,7 +103,8 @@ def ringing_modes(modes: WheelModes, place: float, omega: Complex, forces: Compl
     across the tread, m.
     """
     (radial, axial), poles = modes.at(place), poles_of(modes)
-    pushed = (np.multiply.outer(forces, radial) + axial) / (
-        (omega[:, None] - poles) * (omega[:, None] + poles.conj())
-    )
+    with np.errstate(divide="ignore", invalid="ignore"):  # at a pole its mode rings alone
+        pushed = (np.multiply.outer(forces, radial) + axial) / (
+            (omega[:, None] - poles) * (omega[:, None] + poles.conj())
+        )
     return np.asarray(np.argmax(np.abs(pushed), axis=1))
