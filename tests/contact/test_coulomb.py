@@ -343,7 +343,7 @@ test_what_has_no_meaning_is_refused = refusals(
     (lambda s, c: s.roll(c, (0.0, 0.0, 0.1)), "creepage: received"),
     (lambda s, c: s.shift(c, (1e-6,)), "shift: received"),
     (lambda s, c: s.roll(c, before=on_fewer_cells()), "state before: received one on another grid"),
-    (lambda s, c: s.roll(None), "contact: received NoneType; allowed: a Contact, as HalfSpace.solve returns"),
+    (lambda s, c: s.roll(None), "contact: received NoneType; allowed: a contact, as solve of"),
     (
         lambda s, c: FrictionalHalfSpace(s.half_space, ("steel",) * 2, 0.3),
         "bodies: received 'steel'; allowed: two materials",

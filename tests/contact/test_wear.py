@@ -188,6 +188,17 @@ def test_a_part_that_was_kept_is_not_rolled_again(tmp_path):
     assert other.removed == pytest.approx(whole.removed * 7850.0 / 8000.0, rel=1e-3, abs=0.0)
 
 
+def test_the_cache_tells_laws_apart_by_every_place_of_their_maps(tmp_path):
+    """Of more places, and more digits, than numpy writes down unasked."""
+    gap, rolling = wheel(34, 0.3)
+    for middle in (0.0, 1e-12):
+        depth = np.full((34, 34), 1e-3)
+        depth[17, 17] += middle
+        law = Given((depth, np.zeros((34, 34), dtype=int)))
+        after = worn(rolling, np.zeros((34, 34)), gap, LOAD, law, (1e-3, 0.0), cache=Store(tmp_path))
+        assert after.depth[17, 17] == pytest.approx(depth[17, 17] * SIDE / 34, rel=1e-14, abs=0.0)
+
+
 @pytest.mark.parametrize(
     ("work", "mass", "regime"),
     [(5e6, 26.5e-3, 0), (40e6, 55e-3, 1), (100e6, 55e-3 + 61.9e-3 * 22.8, 2), (0.0, 0.0, 0)],
@@ -222,6 +233,10 @@ ROLLED = {
 }
 
 
+class Nameless:
+    removal = EnergyWear.removal
+
+
 @dataclass(frozen=True)
 class Given:
     """A law that removes what it is told, whatever that is."""
@@ -247,6 +262,7 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
         (ArchardWear, {"hardness": 3e9, "velocities": (0.7, 0.2)}, "velocities: received numbers that"),
         (wear, {"law": 1e-4}, r"law of wear: received float; allowed: an object with removal"),
         (wear, {"law": EnergyWear}, r"law of wear: received type; allowed: an object with removal"),
+        (wear, {"law": Nameless(), "cache": Store(".")}, "received one without fields to keep it by"),
         (wear, {"law": Given(None)}, "removal of Given: received None; allowed: depth over rolled distance"),
         (wear, {"law": Given((NOTHING + math.nan, NOTHING))}, "removal of Given: received nan"),
         (wear, {"law": Given((NOTHING[1:], NOTHING))}, r"removal of Given: received shape \(7, 8\)"),
@@ -254,7 +270,7 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
         (wear, {"law": Given((NOTHING, 0))}, r"removal of Given: received regimes of int64, shape \(\)"),
         (wear, {"law": Given((NOTHING, NO_REGIME))}, "removal of Given: received regimes of int64"),
         (wear_depth, ROLLED | {"law": Given(None)}, "removal of Given: received None"),
-        (wear_depth, ROLLED | {"contact": None}, "contact: received NoneType; allowed: a SlidingContact"),
+        (wear_depth, ROLLED | {"contact": None}, "contact: received NoneType; allowed: a contact with"),
         (wear_depth, ROLLED | {"rolling": wheel(8, 0.2)[1]}, "contact: received one on another half-space"),
         (wear, {"surface": RAIL[:, :6]}, "window of wear: received 8 × 8 cells on a surface of 9 × 6"),
         (wear, {"body": GAP[:4]}, r"body that wears: received shape \(4, 8\); allowed: lengths in m"),

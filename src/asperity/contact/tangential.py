@@ -283,7 +283,7 @@ class FrictionalHalfSpace:
     ) -> SlidingContact:
         """Check the input, find the components of the motion whose force is given, and look at the result."""
         known = isinstance(normal, Contact)
-        require(known, "contact", type(normal).__name__, "a Contact, as HalfSpace.solve returns it")
+        require(known, "contact", type(normal).__name__, "a contact, as solve of a half-space returns it")
         require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
         for state in (manner.before, manner.start):
             fits = state is None or state.bound.shape == self.half_space.shape

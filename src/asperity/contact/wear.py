@@ -1,8 +1,9 @@
 """Wear: what the friction of a rolling contact takes from a surface, pass by pass."""
 
 import math
+import sys
 import warnings
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from functools import partial
 from typing import Any, NamedTuple, Protocol
 
@@ -243,10 +244,10 @@ def wear_depth(rolling: FrictionalHalfSpace, contact: SlidingContact, law: WearL
     """
     _check_law(law)
     rolls = isinstance(contact, SlidingContact)
-    require(rolls, "contact", type(contact).__name__, "a SlidingContact, as roll returns it")
+    require(rolls, "contact", type(contact).__name__, "a contact with friction, as roll returns it")
     require(contact.speed > 0.0, "contact", "one that was shifted, or stands", "one that rolls, at a speed")
     here = contact.normal.half_space is rolling.half_space
-    require(here, "contact", "one on another half-space", "one on that of `rolling`")
+    require(here, "contact", "one on another half-space", "one on that of the bodies")
     depth, _ = _removal(law, rubbing(rolling, contact, contact))
     return depth.sum(axis=0) * rolling.half_space.spacing[0]
 
@@ -308,7 +309,8 @@ class _Wearing(NamedTuple):
         space, friction = self.bodies.half_space, self.bodies.friction
         bodies = [self.bodies.shear_modulus, self.bodies.poisson_ratio, self.bodies.unlikeness]
         parameters = [list(space.spacing), space.modulus, space.hardness, bodies, self.bodies.coupled]
-        parameters += [repr(friction), repr(self.law), list(self.motion), *self[5:]]
+        with np.printoptions(threshold=sys.maxsize, floatmode="unique"):  # maps in full
+            parameters += [repr(friction), repr(self.law), list(self.motion), *self[5:]]
         return content_key("wear", heights, self.body, self.load, np.asarray(friction.static), parameters)
 
 
@@ -394,6 +396,8 @@ def worn(
     shape_of = finite_array("body that wears", body, f"lengths in m, an array {shape}", shape=shape)
     check_window("wear", shape, heights.shape)
     check_settings(None, cache, progress)
+    kept = cache is None or is_dataclass(law)
+    require(kept, "law of wear", "one without fields to keep it by", "a frozen dataclass, or no cache")
     positions = len(heights) if closed else len(heights) - shape[0] + 1
     allowed = f"a force above 0, N, or one for each of {positions} positions"
     loads = finite_array("load", load, allowed, above=0.0)
