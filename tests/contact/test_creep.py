@@ -119,6 +119,8 @@ def test_samples_follow_the_smooth_contact():
     assert force == pytest.approx(begins, abs=0.03 * (1.0 - begins))
     assert slips == pytest.approx(curve.slip_share[1, 0], abs=5e-4)
     assert rolling.roll(contact, xi, distance=distance).force[0] / steady < 0.9 * begins
+    with pytest.raises(InputError, match=r"sample: received shape \(260, 26\); allowed: heights in m, 27"):
+        creep_curve(rolling, smooth, (a, b), samples=[heights[:, 1:]])
     with pytest.raises(InputError, match="sample to roll over: received 80 rows; allowed: at least"):
         creep_curve(rolling, smooth, (a, b), samples=[heights[:80]])
 

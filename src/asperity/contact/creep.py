@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array, one_of, real, require
+from asperity.arguments import Array, ArrayLike, finite_array, one_of, real, require, two_lengths
 from asperity.contact.friction import SlidingContact, cell_places
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.contact.tangential import FrictionalHalfSpace
@@ -304,7 +304,13 @@ def creep_curve(
     the contact. A pattern that stood still in the contact would let each asperity begin anew.
     """
     unit = np.array(DIRECTIONS[one_of("direction of creep", direction, DIRECTIONS)])
-    ellipse = RollingEllipse(semi_axes, rolling.shear_modulus, rolling.poisson_ratio)
+    ny = smooth.half_space.shape[1]
+    samples = [
+        finite_array("sample", each, f"heights in m, {ny} columns", shape=(None, ny)) for each in samples
+    ]
+    ellipse = RollingEllipse(
+        two_lengths("semi-axes", semi_axes), rolling.shear_modulus, rolling.poisson_ratio
+    )
     unit[2] /= ellipse.mean_axis
     axis = 0 if direction == "longitudinal" else 1
 

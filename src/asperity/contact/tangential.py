@@ -100,8 +100,8 @@ class FrictionalHalfSpace:
     ) -> None:
         allowed = 'two materials, as asperity.material("steel")'
         bodies = arguments.two("bodies", bodies, allowed)
-        for body in bodies:
-            require(isinstance(body, Material), "bodies", arguments.shown(body), allowed)
+        known = all(isinstance(each, Material) for each in bodies)
+        require(known, "bodies", arguments.shown(bodies), allowed)
         self.half_space, self.coupled = half_space, coupled
         self.friction = friction if isinstance(friction, Friction) else Friction(friction)
         nu = np.array([body.poisson_ratio for body in bodies])
@@ -282,11 +282,10 @@ class FrictionalHalfSpace:
         self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: _Manner
     ) -> SlidingContact:
         """Check the input, find the components of the motion whose force is given, and look at the result."""
-        known = isinstance(normal, Contact)
-        require(known, "contact", type(normal).__name__, "a contact, as solve of a half-space returns it")
-        require(normal.half_space is self.half_space, "contact", "one on another half-space", "one on this")
+        here = getattr(normal, "half_space", None) is self.half_space
+        require(here, "contact", "one on another half-space, or none", "one on this")
         for state in (manner.before, manner.start):
-            fits = state is None or state.bound.shape == self.half_space.shape
+            fits = state is None or np.shape(getattr(state, "bound", 0.0)) == self.half_space.shape
             require(fits, "state before", "one on another grid", f"one on {self.half_space.shape}")
         real("rtol", manner.rtol, "a number between 0 and 1, as 1e-6", above=0.0, below=1.0)
         allowed = "two forces, N, or None where the motion is given"

@@ -243,11 +243,9 @@ def wear_depth(rolling: FrictionalHalfSpace, contact: SlidingContact, law: WearL
     '4.2 nm in a pass'
     """
     _check_law(law)
-    rolls = isinstance(contact, SlidingContact)
-    require(rolls, "contact", type(contact).__name__, "a contact with friction, as roll returns it")
+    here = isinstance(contact, SlidingContact) and contact.normal.half_space is rolling.half_space
+    require(here, "contact", "none of these bodies", "one that their roll returns")
     require(contact.speed > 0.0, "contact", "one that was shifted, or stands", "one that rolls, at a speed")
-    here = contact.normal.half_space is rolling.half_space
-    require(here, "contact", "one on another half-space", "one on that of the bodies")
     depth, _ = _removal(law, rubbing(rolling, contact, contact))
     return depth.sum(axis=0) * rolling.half_space.spacing[0]
 
