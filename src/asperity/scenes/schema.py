@@ -449,7 +449,7 @@ CREEP_DAMPING = _creep_fact(
 )
 LOAD_SLOPE = _creep_fact("friction_per_load", "1", "slope of the lateral force over load", condition=_SQUEALS)
 LARGEST_GROWTH = _creep_fact(
-    "largest_growth_rate", "1/s", "that of the fastest motion; above zero it squeals", condition=_SQUEALS
+    "largest_growth_rate", "1/s", "growth rate of the fastest motion; squeal above zero", condition=_SQUEALS
 )
 
 
