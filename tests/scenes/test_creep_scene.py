@@ -18,6 +18,7 @@ from asperity.scenes.figures.creep import CREEP, creep_answers, friction_table
 from asperity.scenes.result import computed_result
 from asperity.schema import tree
 from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
+from asperity.studies.member import kept
 from small_cases import HEARD
 
 ATTACK, SPEED = 0.012, 20.0
@@ -109,5 +110,8 @@ def test_the_page_says_whether_it_squeals_and_shows_where_it_slips(computed, fal
     rows = [[cell.text for cell in row] for row in friction_table(result).rows]
     assert [row[0] for row in rows] == ["smooth", "sample 1", "sample 2", "in time, linear"]
     assert rows[3][1:3] == ["–", "100.0"]
+    of_study = kept(result)
+    assert of_study["largest_growth_rate"] == falling[schema.GROWTH_RATE].max()
+    assert of_study["mean_friction_power"] == falling[schema.MEAN_FRICTION_POWER]
     rigid = replace(computed, scene=replace(computed.scene, modes=None))
     assert "Whether it squeals is not known" in answer(creep_group(rigid))
