@@ -143,6 +143,8 @@ test_what_is_no_curve_is_refused = refusals(
     (lambda *of: creep_curve(*of, "sideways"), "direction of creep: received 'sideways'"),
     (lambda *of: creep_curve(*of, creepages=[0.0, 0.1]), "creepages: received 0"),
     (lambda *of: creep_curve(*of, creepages=[0.2, 0.1]), "creepages: received numbers that do not rise"),
+    (lambda *of: creep_curve(*of, count=0), "points of the curve: received 0"),
     (lambda *of: kalker_coefficients(30.0, 0.3), "ratio of the semi-axes: received 30"),
+    (lambda *of: kalker_coefficients(1.0, "x"), "Poisson's ratio: received 'x'"),
     of=asked,
 )

@@ -247,8 +247,8 @@ class Given:
         return self.answer
 
 
-def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
-    worn(ROLLING, surface, body, load, law, **keywords)
+def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, rolling=ROLLING, **keywords):
+    worn(rolling, surface, body, load, law, **keywords)
 
 
 @pytest.mark.parametrize(
@@ -260,6 +260,7 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, **keywords):
         (ArchardWear, {"hardness": -1.0}, "hardness of ArchardWear: received -1.0"),
         (ArchardWear, {"hardness": 3e9, "velocities": 0.2}, "velocities: received 0.2; allowed: two slip"),
         (ArchardWear, {"hardness": 3e9, "velocities": (0.7, 0.2)}, "velocities: received numbers that"),
+        (wear, {"rolling": ROLLING.half_space}, "bodies that roll: received HalfSpace; allowed: a half"),
         (wear, {"law": 1e-4}, r"law of wear: received float; allowed: an object with removal"),
         (wear, {"law": EnergyWear}, r"law of wear: received type; allowed: an object with removal"),
         (wear, {"law": Nameless(), "cache": Store(".")}, "received one without fields to keep it by"),

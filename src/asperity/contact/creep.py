@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array, one_of, real, require, two_lengths
+from asperity.arguments import Array, ArrayLike, finite_array, one_of, real, require, two_lengths, whole
 from asperity.contact.friction import SlidingContact, cell_places
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.contact.tangential import FrictionalHalfSpace
@@ -62,6 +62,7 @@ def kalker_coefficients(ratio: float, poisson: float) -> tuple[float, float, flo
     '4.11'
     """
     real("ratio of the semi-axes", ratio, "a ratio from 0.05 to 20", at_least=0.05, at_most=20.0)
+    real("Poisson's ratio", poisson, "from 0 to 0.5", at_least=0.0, at_most=0.5)
     body, found = Material("body", 2.0 * (1.0 + poisson), poisson, 1.0), []
     for n in GRIDS:
         space = HalfSpace(
@@ -320,6 +321,7 @@ def creep_curve(
     stuck = against(ellipse.linear_force((unit[0], unit[1]), unit[2]))
     full = rolling.roll(smooth).limit
     if creepages is None:
+        whole("points of the curve", count, "a whole number of at least 1", at_least=1)
         creepages = FULL_SLIP * full / stuck * (np.arange(1, count + 1) / count) ** 1.5
     xi = finite_array("creepages", creepages, "rising numbers above 0", shape=(None,), rising=True, above=0.0)
     points = [(at * unit[0], at * unit[1], at * unit[2]) for at in xi]

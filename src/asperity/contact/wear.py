@@ -388,6 +388,8 @@ def worn(
     '0.11 mm³ from 0.16 kJ'
     """
     _check_law(law)
+    known = isinstance(rolling, FrictionalHalfSpace)
+    require(known, "bodies that roll", type(rolling).__name__, "a half-space with two bodies and friction")
     given, space = (*two("creepage", creepage, "two numbers"), spin), rolling.half_space
     motion = tuple(real("creepage", each, "finite numbers") for each in given)
     heights, shape = heights_on(space, surface, "surface to be worn"), space.shape
