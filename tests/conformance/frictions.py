@@ -15,7 +15,7 @@ RAIL = (82e9, 0.28)
 """Shear modulus, Pa, and Poisson's ratio of a body, as that of wheel and rail."""
 
 
-def source(example, note="to the last digit printed"):
+def source(example, note="to the digits printed"):
     return f"program CONTACT, rev. 2707, example {example}; {note}"
 
 
@@ -72,7 +72,7 @@ def onset_of_rolling():
         state = rolling.roll(contact, force=force, before=state, start=state)
         if step in printed:
             found = state.creepage[0]
-            yield row(f"creepage after {step} cells", printed[step], found, tolerance=1e-6)
+            yield row(f"creepage after {step} cells", printed[step], found, tolerance=5e-7)
 
 
 def creep_curve():
@@ -86,7 +86,7 @@ def creep_curve():
     shares = [0.007015, 0.2588, 0.4742, 0.6482, 0.7831, 0.8816, 0.9467, 0.9832, 0.9976, 0.9991, 0.9997]
     for creepage, share in zip(percent, shares, strict=True):
         found = -rolling.roll(contact, (0.01 * creepage, 0.0)).force[0] / (0.33 * contact.force)
-        yield row(f"force / friction at {creepage:g} %", share, found, tolerance=6e-5)
+        yield row(f"force / friction at {creepage:g} %", share, found, tolerance=5e-5)
 
 
 def spin_and_lateral():
@@ -102,7 +102,7 @@ def spin_and_lateral():
     yield exact("force across / friction", -0.6074, found.force[1] / found.limit, tolerance=5e-5)
     yield exact("moment", -48.21, found.moment, "N m", tolerance=5e-3)
     yield exact("cells that stick, of 1276", 356, in_cells(found)[1], tolerance=0.0)
-    yield exact("power", 540.4, found.dissipated_power, "W", tolerance=0.06)
+    yield exact("power", 540.4, found.dissipated_power, "W", tolerance=0.05)
     fast = WithPrintedFlexibilities((a, b), *RAIL).fastsim_force((0.0, -0.625e-3), spin, 0.3 * load)
     limit = -0.6359 + (-0.6359 + 0.6118) / 4.0  # of first order in cells, of which there are 40² and 200²
     note = "cases 2 and 5, extrapolated, with its flexibilities"
@@ -142,7 +142,8 @@ def unlike_ball():
         state = rolling.shift(pressed(rolling, 4.116, 4.116, load, middle=(-1e-7, -1e-7)), before=state)
     row = partial(Check, body="soft ball on a rigid plane, 45²", source=source("spence35"), absolute=True)
     yield row("approach", 98.74e-6, state.normal.approach, "µm", tolerance=5e-3)
-    yield row("largest pressure", 23920.0, state.normal.pressure.max(), "Pa", tolerance=7.0)
+    near = source("spence35", "to 0.7 of the last digit printed")
+    yield row("largest pressure", 23920.0, state.normal.pressure.max(), "Pa", source=near, tolerance=7.0)
     yield row("cells in contact", 921, in_cells(state)[0], tolerance=0.0)
     yield row("cells that stick", 225, in_cells(state)[1], tolerance=0.0)
     yield row("work of the last stage", 1.842e-8, state.work, "J", tolerance=5e-12)
@@ -163,6 +164,6 @@ def unlike_cylinders():
         found = rolling.roll(contact, force=(-share * friction * contact.force, None), speed=1.0)
         body = f"aluminium on steel, µ = {friction:g}, F = {share:g} µP"
         row = partial(Check, body=body, source=source("bentall"), absolute=True)
-        yield row("creepage", creepage, -found.creepage[0], tolerance=6e-8)
+        yield row("creepage", creepage, -found.creepage[0], tolerance=5e-8)
         yield row("cells in contact", touching, in_cells(found)[0], tolerance=0.0)
         yield row("cells that stick", sticking, in_cells(found)[1], tolerance=0.0)

@@ -365,7 +365,7 @@ class FrictionalHalfSpace:
                 middle = 0.5 * (low + high)
                 if math.isfinite(middle) and not low < at + change[0] < high:
                     change[0] = middle - at
-                change = math.copysign(min(abs(change[0]), longest), missing[0]) * np.ones(1)
+                change[0] = math.copysign(min(abs(change[0]), longest), missing[0])
                 longest = 4.0 * abs(change[0])
             motion[index] += change
             found = self._rounds(normal, tuple(motion.tolist()), manner._replace(start=found))

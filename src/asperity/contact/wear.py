@@ -46,15 +46,11 @@ def rubbing(rolling: FrictionalHalfSpace, contact: SlidingContact, before: Slidi
     Traction is the mean of that before and after at the same material, also where that leaves the contact: so
     the work of a steady state is that of its forces, however coarse the grid.
     """
-    (dx, _), (x, y), (xi, eta, spin) = (
-        rolling.half_space.spacing,
-        cell_places(rolling.half_space),
-        contact.creepage,
-    )
+    dx, (x, y) = rolling.half_space.spacing[0], cell_places(rolling.half_space)
     now, past = (each.traction[0] + 1j * each.traction[1] for each in (contact, before))
-    moved = rolling.displacement(now, contact.normal.pressure) - rolling.displacement(
-        past, before.normal.pressure, dx
-    )
+    moved = rolling.displacement(now, contact.normal.pressure)
+    moved = moved - rolling.displacement(past, before.normal.pressure, dx)
+    xi, eta, spin = contact.creepage
     slip = xi + 1j * eta + spin * (1j * (x + SPIN_AHEAD * dx) - y) + moved / dx
     traction, pressure = now.copy(), contact.normal.pressure.copy()
     traction[:-1] += past[1:]

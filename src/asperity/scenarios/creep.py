@@ -48,10 +48,8 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
     the largest that the window holds.
     """
     case, shape = prepared.case, prepared.shape
-    samples, bodies = (
-        rough_strips(shape, prepared.textures),
-        (case.rolling.material, case.rolled_over.material),
-    )
+    samples = rough_strips(shape, prepared.textures)
+    bodies = case.rolling.material, case.rolled_over.material
     if not samples:
         remedy = "Give it a file or rms, of a rail a spectrum."
         raise InputError("surface", "none, or as a line alone", "a rough surface with samples", remedy)
