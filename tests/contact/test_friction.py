@@ -84,6 +84,17 @@ def test_the_convolution_is_a_sum_over_cells():
         )
 
 
+@pytest.mark.parametrize("load", [1e-19, 1e5])  # contacts of 0.3 nm and 30 mm
+def test_neither_size_nor_precision_is_bound_by_the_single_precision_of_a_search(load):
+    normal, solver, a, _ = ellipse(0.7, 0.3, (24, 20), load=load)
+    creepage = 0.1 * normal.approach / a
+    rolled = solver.roll(normal, (creepage, 0.0), 0.2 * creepage / a, rtol=1e-11)
+    moved = solver.roll(normal, (1.2 * creepage, 0.0), before=rolled, rtol=1e-11)
+    assert rolled.converged
+    assert moved.converged
+    assert 0.2 < -rolled.force[0] / rolled.limit < -moved.force[0] / moved.limit < 0.99
+
+
 KALKER = {  # J. J. Kalker (1990), table E3: c11, c22, c23, printed with three digits
     (0.5, 0.25): (3.62, 3.01, 0.929),
     (1.0, 0.25): (4.12, 3.67, 1.47),

@@ -46,6 +46,11 @@ class _Manner(NamedTuple):
     rtol: float
 
     @property
+    def kernel(self) -> tuple[float, bool]:
+        """How far ahead a traction is felt, and whether that is taken from what is felt here."""
+        return (self.ahead if self.steady else 0.0), self.steady
+
+    @property
     def step(self) -> float:
         """Over which slip is counted."""
         return self.ahead or 1.0
@@ -117,13 +122,13 @@ class FrictionalHalfSpace:
         )
         fits = shape in ((), half_space.shape)
         require(fits, "friction", f"a map of shape {shape}", f"a number, or a map {half_space.shape}")
-        (dx, dy), scale = half_space.spacing, math.pi * self.shear_modulus
+        dx, dy = half_space.spacing
         x, y = dx * np.arange(32.0)[:, None], dy * np.arange(32.0)[None, :]
         along, across, _ = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
         own = along[0, 0]
-        self._taps = inverse_stencil(0.5 * (along + across) / own) * (scale / own)
-        self._kernels: dict[float, tuple[Complex, Complex]] = {}
-        self._prepared: dict[tuple[int, int, float, bool], kernel.TractionConvolution] = {}
+        self._taps = inverse_stencil(0.5 * (along + across) / own)
+        self._kernels: dict[tuple[float, bool], Array] = {}
+        self._prepared: dict[tuple[int, int, float, bool, bool], kernel.TractionConvolution] = {}
 
     def shift(
         self,
@@ -229,54 +234,58 @@ class FrictionalHalfSpace:
         box = kernel.traction_box(nx, ny, convolution)
         _cells(box.traction, box)[:] = traction
         kernel.convolve_traction(convolution, box.traction, nx, ny, box.pitch, box.work, box.response)
-        return np.asarray(_cells(box.response, box) + self._of_pressure(pressure, ahead))
+        found = _cells(box.response, box)
+        return np.asarray(found + self._of_pressure(pressure, ahead)) if self._couples else found
 
     def _separations(self, ahead: float) -> tuple[Array, Array]:
         (nx, ny), (dx, dy) = self.half_space.shape, self.half_space.spacing
         return dx * np.arange(1.0 - nx, nx)[:, None] + ahead, dy * np.arange(1.0 - ny, ny)[None, :]
 
-    def _of_traction(self, ahead: float) -> tuple[Complex, Complex]:
-        """Kernels α and β on the whole grid, m/Pa."""
-        if ahead not in self._kernels:
+    def _of_traction(self, ahead: float, steady: bool) -> Array:
+        """Kernels of displacement on the whole grid so far ahead, m/Pa; in steady rolling here, less that."""
+        if (ahead, steady) not in self._kernels:
             at, cell = self._separations(ahead), self.half_space.spacing
-            along, across, mixed = kernel.traction_displacement(*at, *cell, self.poisson_ratio)
-            scale = 0.5 / (math.pi * self.shear_modulus)
-            self._kernels[ahead] = scale * (along + across), scale * (along - across + 2j * mixed)
-        return self._kernels[ahead]
+            found = kernel.traction_displacement(*at, *cell, self.poisson_ratio)
+            kernels = np.stack(found) / (math.pi * self.shear_modulus)
+            self._kernels[ahead, steady] = self._of_traction(0.0, False) - kernels if steady else kernels
+        return self._kernels[ahead, steady]
+
+    def _own(self, ahead: float, steady: bool) -> float:
+        """Displacement of a cell by its own traction, m/Pa."""
+        nx, ny = self.half_space.shape
+        return float(self._of_traction(ahead, steady)[:2, nx - 1, ny - 1].mean())
 
     def _unlike(self, ahead: float = 0.0) -> Complex:
         """Gap by a traction of unlike bodies, x + iy, on the whole grid, m/Pa; likewise −u by a pressure."""
         spread = kernel.pressure_displacement(*self._separations(ahead), *self.half_space.spacing)
         return np.asarray(self.unlikeness / math.pi * spread)
 
-    def _of_pressure(self, pressure: Array, ahead: float, steady: bool = False) -> Complex | float:
+    @property
+    def _couples(self) -> bool:
+        """Whether pressure and traction act on each other."""
+        return self.coupled and self.unlikeness != 0.0
+
+    def _of_pressure(self, pressure: Array, ahead: float, steady: bool = False) -> Complex:
         """Displacement of unlike bodies by a pressure, m; in steady rolling less that ahead."""
-        if not (self.coupled and self.unlikeness):
-            return 0.0
         spread = self._unlike() - self._unlike(ahead) if steady else self._unlike(ahead)
         return -_convolved(spread, pressure)
 
-    def _convolution(self, nx: int, ny: int, ahead: float, steady: bool) -> kernel.TractionConvolution:
-        """Influence of tractions on a box so far ahead; in steady rolling here, less that.
+    def _convolution(
+        self, nx: int, ny: int, ahead: float, steady: bool, single: bool = False
+    ) -> kernel.TractionConvolution:
+        """Influence of tractions on a box; in single precision over what displaces a cell by its own.
 
         On as many cells as transforms of the same length hold, so that few boxes need one of their own.
         """
-        lengths = (smooth_length(2 * n - 1) for n in (nx, ny))
-        nx, ny = (min(m // 2, n) for m, n in zip(lengths, self.half_space.shape, strict=True))
-        key = (nx, ny, ahead, steady)
+        nx, ny = (min(smooth_length(m), n) for m, n in zip((nx, ny), self.half_space.shape, strict=True))
+        key = (nx, ny, ahead, steady, single)
         if key not in self._prepared:
-            middle, kernels = self.half_space.shape, list(self._of_traction(ahead))
-            if steady:
-                kernels = [a - b for a, b in zip(self._of_traction(0.0), kernels, strict=True)]
-            inside = tuple(slice(m - n, m + n - 1) for m, n in zip(middle, (nx, ny), strict=True))
-            self._prepared[key] = kernel.traction_convolution(*(each[inside] for each in kernels))
+            middle, unit = self.half_space.shape, self._own(ahead, steady) if single else 1.0
+            inside = (slice(m - n, m + n - 1) for m, n in zip(middle, (nx, ny), strict=True))
+            kernels = self._of_traction(ahead, steady)[:, *inside] / unit
+            dtype = np.float32 if single else np.float64
+            self._prepared[key] = kernel.traction_convolution(kernels, nx, ny, dtype)
         return self._prepared[key]
-
-    def _own(self, manner: _Manner) -> float:
-        """Displacement of a cell by its own traction, m/Pa, less that ahead in steady rolling."""
-        middle = tuple(n - 1 for n in self.half_space.shape)
-        ahead = self._of_traction(manner.ahead)[0][middle] if manner.steady else 0.0
-        return float((self._of_traction(0.0)[0][middle] - ahead).real)
 
     def _find(
         self, normal: Contact, motion: tuple[float, ...], force: Forces, manner: _Manner
@@ -352,7 +361,7 @@ class FrictionalHalfSpace:
             return np.asarray(force * (-math.log1p(-share) / share if share else 1.0))
 
         motion = np.array(found.creepage)
-        softness = self._own(manner) / (manner.step * normal.area)
+        softness = self._own(*manner.kernel) / (manner.step * normal.area)
         jacobian_inverse, low, high, longest = -softness * np.eye(len(index)), -math.inf, math.inf, math.inf
         missing = stretched(np.array(found.force)[index]) - stretched(target)
         for _ in range(MAX_ROUNDS):
@@ -389,13 +398,13 @@ class FrictionalHalfSpace:
         for _ in range(MAX_ROUNDS):
             found = self._solve(loaded, bound, past, motion, manner)
             counts += found.iterations, found.convolutions
-            if not (self.friction.falls or (self.coupled and self.unlikeness)):
+            if not (self.friction.falls or self._couples):
                 break
             slipping = (found.bound > 0.0) & np.logical_not(found.sticks)
             # half of the way: slip and coefficient chase each other where friction falls steeply
             velocity = 0.5 * (velocity + np.hypot(*found.slip) * manner.speed * slipping)
             slipped |= slipping
-            if self.coupled and self.unlikeness:
+            if self._couples:
                 traction = found.traction[0] - 1j * found.traction[1]
                 gap = normal.undeformed_gap + _convolved(self._unlike(), traction).real
                 loaded = space.at_load(gap, normal.force, loaded.pressure, 1e-8)
@@ -411,25 +420,28 @@ class FrictionalHalfSpace:
         self, normal: Contact, bound: Array, past: Complex, motion: tuple[float, ...], manner: _Manner
     ) -> SlidingContact:
         """Solve at a bound, on the box of the contact."""
-        (x, y), (xi, eta, spin), own = cell_places(self.half_space), motion, self._own(manner)
-        ahead = manner.ahead if manner.steady else 0.0
-        turning = spin * (1j * (x + SPIN_AHEAD * manner.ahead) - y)
-        rigid = manner.step * (xi + 1j * eta + turning) - past
-        rigid += self._of_pressure(normal.pressure, ahead, manner.steady)
+        (x, y), (xi, eta, spin), (ahead, steady) = cell_places(self.half_space), motion, manner.kernel
+        rigid = manner.step * complex(xi, eta) - past
+        if spin:
+            rigid += manner.step * spin * (1j * (x + SPIN_AHEAD * manner.ahead) - y)
+        if self._couples:
+            rigid += self._of_pressure(normal.pressure, ahead, steady)
         contact = normal.pressure > 0.0
         box_of = contact if contact.any() else np.ones_like(contact)
         rows, columns = (np.flatnonzero(box_of.any(axis=axis)) for axis in (1, 0))
         inside = slice(*rows[[0, -1]] + [0, 1]), slice(*columns[[0, -1]] + [0, 1])
         nx, ny = bound[inside].shape
-        convolution = self._convolution(nx, ny, ahead, manner.steady)
-        carried, directions = (CARRIED, DIRECTIONS) if manner.steady else (0.0, 2)
-        box = kernel.traction_box(nx, ny, convolution, directions)
+        box = kernel.traction_box(nx, ny, self._convolution(nx, ny, ahead, steady))
+        carried, directions = (CARRIED, DIRECTIONS) if steady else (0.0, 2)
+        single = self._convolution(nx, ny, ahead, steady, single=True)
+        linear = kernel.linear_problem(box, single, self._taps, directions)
         _cells(box.bound, box)[:], _cells(box.rigid, box)[:] = bound[inside], rigid[inside]
         if manner.start is not None:
             start = manner.start.traction[:, *inside]
             _cells(box.traction, box)[:] = start[0] + 1j * start[1]
-        task = kernel.TractionTask(own, carried, not manner.steady, manner.rtol, MAX_ITERATIONS)
-        iterations, convolutions, worst = kernel.solve_traction(convolution, self._taps, box, task)
+        own = self._own(ahead, steady)
+        task = kernel.TractionTask(own, carried, not steady, manner.rtol, MAX_ITERATIONS)
+        iterations, convolutions, worst = kernel.solve_traction(box, linear, task)
         outcome = Outcome.CONVERGED if worst <= manner.rtol else Outcome.ITERATION_LIMIT
         fields = np.zeros((5, *contact.shape))
         p, s = _cells(box.traction, box), _cells(box.slip, box) / manner.step

@@ -110,8 +110,7 @@ def workspace(mx: int, my: int, lanes: int) -> int:
 
 @compiled(**INNER)
 def _clear(buffer: NDArray, first: int, end: int) -> None:
-    for i in range(first, end):
-        buffer[i] = 0.0
+    buffer[first:end] = 0.0
 
 
 @compiled(**INNER)

@@ -7,13 +7,13 @@ A traction is a vector in the plane of the surface. Taken as a complex number, x
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from asperity.kernels.box import REACH
-from asperity.kernels.fourier import factors, roots, smooth_length, transform
+from asperity.kernels.fourier import factors, read_parts, roots, smooth_length, transform, write_parts
 from asperity.kernels.influence import _clear, _edge_log, whole_vectors
 from asperity.kernels.lanes import lanes, transpose, width
-from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
 
 
 def _weighted_log(x: NDArray, y: NDArray, half: float) -> NDArray:
@@ -61,54 +61,57 @@ class TractionConvolution(NamedTuple):
     radices_y: NDArray
     roots_x: NDArray  # (2 mx,), from `fourier.roots`
     roots_y: NDArray  # (2 my,)
-    spectra: NDArray  # (4, mx my): α and β, real and imaginary parts, divided by mx my; m/Pa
+    turn: NDArray  # (2 mx,), exp(−iπ x/mx)
+    spectra: NDArray  # of x by x, y by y and x by y, over 2 mx my, m/Pa; see `traction_convolution`
 
 
-def traction_convolution(same: NDArray, mixed: NDArray) -> TractionConvolution:
-    """Prepare the kernels α and β, (2 nx − 1, 2 ny − 1) with the origin in the middle, for nx × ny cells."""
-    spectra = []
-    for kernel in (same, mixed):
-        sides = [(smooth_length(n), n // 2) for n in kernel.shape]
-        (mx, back_x), (my, back_y) = sides
-        padded = np.zeros((mx, my), dtype=complex)
-        padded[: kernel.shape[0], : kernel.shape[1]] = kernel
-        spectrum = np.fft.fft2(np.roll(padded, (-back_x, -back_y), (0, 1))).ravel() / (mx * my)
-        spectra += [spectrum.real, spectrum.imag]
+def traction_convolution(kernels: NDArray, nx: int, ny: int, dtype: DTypeLike) -> TractionConvolution:
+    """Prepare displacements along x by x, y by y and x by y, (3, 2 nx − 1, 2 ny − 1), for nx × ny cells.
+
+    Turned by half of a period along x, a spectrum is at i + ½ and j: its opposite is mx − 1 − i and −j, and a
+    block of rows has its opposite in a block. Of half of the blocks, six vectors (block, my, 6, lanes).
+    """
+    mx, my, n = 2 * smooth_length(nx), 2 * smooth_length(ny), width(dtype)
+    x, blocks = np.arange(1 - nx, nx), -(-mx // (2 * n))
+    padded = np.zeros((3, mx, my), dtype=complex)
+    padded[:, : 2 * nx - 1, : 2 * ny - 1] = kernels * np.exp(-1j * np.pi / mx * x)[:, None]
+    found = np.fft.fft2(np.roll(padded, (1 - nx, 1 - ny), (1, 2)))[:, : blocks * n] / (2 * mx * my)
+    vectors = np.stack([found.real, found.imag], axis=1).reshape(6, blocks, n, my).transpose(1, 3, 0, 2)
+    numbers = (roots(mx), roots(my), roots(2 * mx)[: 2 * mx], vectors.ravel())
     return TractionConvolution(
-        np.array(factors(mx)), np.array(factors(my)), roots(mx), roots(my), np.array(spectra)
+        np.array(factors(mx)), np.array(factors(my)), *(a.astype(dtype) for a in numbers)
     )
 
 
-@compiled(**CALLED)
-def _transform_rows(c: TractionConvolution, rows: NDArray, spare: NDArray, wide: int) -> None:
-    """Transform each block of rows, which end behind `wide` columns."""
-    my, n = len(c.roots_y) // 2, lanes(rows)
-    line = 2 * my * n
-    for k in range(len(c.roots_x) // 2 // n):
-        row = rows[k * line : (k + 1) * line]
-        _clear(row, 2 * wide * n, line)
-        if transform(row, spare, c.radices_y, c.roots_y):
-            for q in range(line):
-                row[q] = spare[q]
+@compiled(**INNER)
+def _multiply(spectra: NDArray, place: int, x: NDArray, p: int, y: NDArray, q: int) -> None:
+    """Replace a spectrum, and its opposite, by the conjugate of that of the displacements."""
+    n = lanes(x)
+    (fr, fi), (gr, gi) = read_parts(x, p), read_parts(y, q)
+    a, b, c, d = fr + gr, fi - gi, fi + gi, gr - fr  # twice the spectra of both directions
+    (xr, xi), (yr, yi) = read_parts(spectra, place), read_parts(spectra, place + 2 * n)
+    mr, mi = read_parts(spectra, place + 4 * n)
+    ur, ui = xr * a - xi * b + mr * c - mi * d, xr * b + xi * a + mr * d + mi * c
+    vr, vi = mr * a - mi * b + yr * c - yi * d, mr * b + mi * a + yr * d + yi * c
+    write_parts(x, p, ur - vi, -1.0 * (ui + vr))
+    write_parts(y, q, ur + vi, ui - vr)
 
 
 @compiled(**CALLED)
-def _multiply(c: TractionConvolution, rows: NDArray) -> None:
-    """Replace the spectrum f by the conjugate of α f + β conj(f(−k))."""
-    mx, my, n = len(c.roots_x) // 2, len(c.roots_y) // 2, lanes(rows)
-    ar, ai, br, bi = c.spectra[0], c.spectra[1], c.spectra[2], c.spectra[3]
-    for i in range(mx // 2 + 1):
-        opposite_i = mx - i if i else 0
-        own, other = (i // n) * 2 * my * n + i % n, (opposite_i // n) * 2 * my * n + opposite_i % n
-        for j in range(my if i != opposite_i else my // 2 + 1):
-            opposite_j = my - j if j else 0
-            p, q = own + 2 * j * n, other + 2 * opposite_j * n
-            fr, fi, gr, gi = rows[p], rows[p + n], rows[q], rows[q + n]
-            s, t = i * my + j, opposite_i * my + opposite_j
-            rows[p] = ar[s] * fr - ai[s] * fi + br[s] * gr + bi[s] * gi
-            rows[p + n] = br[s] * gi - bi[s] * gr - ar[s] * fi - ai[s] * fr
-            rows[q] = ar[t] * gr - ai[t] * gi + br[t] * fr + bi[t] * fi
-            rows[q + n] = br[t] * fi - bi[t] * fr - ar[t] * gi - ai[t] * gr
+def _across(
+    c: TractionConvolution, block: int, x: NDArray, y: NDArray, wide: int, a: NDArray, b: NDArray
+) -> None:
+    """Convolve a block of rows and its opposite, which end behind `wide` columns, to conjugates."""
+    my, n = len(c.roots_y) // 2, lanes(x)
+    _clear(x, 2 * wide * n, 2 * my * n)
+    _clear(y, 2 * wide * n, 2 * my * n)
+    swapped = transform(x, a, c.radices_y, c.roots_y)
+    transform(y, b, c.radices_y, c.roots_y)
+    p, q, r, s = (a, b, x, y) if swapped else (x, y, a, b)
+    for j in range(my):
+        _multiply(c.spectra, 6 * (block * my + j) * n, p, 2 * j * n, q, 2 * (my - j if j else 0) * n)
+    transform(p, r, c.radices_y, c.roots_y)  # twice as many passes end where they began
+    transform(q, s, c.radices_y, c.roots_y)
 
 
 @compiled(**LOOP, nogil=True)
@@ -117,29 +120,37 @@ def convolve_traction(
 ) -> None:
     """Convolve a complex field (nx pitch,) on a box; zero, and without meaning, in idle columns."""
     mx, my, n = len(c.roots_x) // 2, len(c.roots_y) // 2, lanes(work)
-    size, line, wide = 2 * max(mx, my) * n, 2 * my * n, whole_vectors(ny, n)
+    size, line, wide, half = 2 * max(mx, my) * n, 2 * my * n, whole_vectors(ny, n), -(-mx // (2 * n))
     a, b, rows = work[:size], work[size : 2 * size], work[2 * size :]
     for first in range(0, wide, n):
         for i in range(nx):
+            cosine, sine = c.turn[2 * i], c.turn[2 * i + 1]
             for j in range(n):
                 value = field[i * pitch + first + j]
-                a[2 * i * n + j], a[(2 * i + 1) * n + j] = value.real, value.imag
+                a[2 * i * n + j] = cosine * value.real - sine * value.imag
+                a[(2 * i + 1) * n + j] = cosine * value.imag + sine * value.real
         _clear(a, 2 * nx * n, 2 * mx * n)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
-        for k in range(mx // n):
+        for k in range(half):
             for part in range(0, 2 * n, n):
-                transpose(x, 2 * k * n * n + part, 2 * n, rows, k * line + 2 * first * n + part, 2 * n)
-    _transform_rows(c, rows, a, wide)
-    _multiply(c, rows)
-    _transform_rows(c, rows, a, my)
+                o, opposite = 2 * k * n * n + part, 2 * (mx - 1 - k * n) * n + part
+                transpose(x, o, 2 * n, rows, k * line + 2 * first * n + part, 2 * n)
+                transpose(x, opposite, -2 * n, rows, (half + k) * line + 2 * first * n + part, 2 * n)
+    for k in range(half):
+        one, other = rows[k * line : (k + 1) * line], rows[(half + k) * line : (half + k + 1) * line]
+        _across(c, k, one, other, wide, a, b)
     for first in range(0, wide, n):
-        for k in range(mx // n):
+        for k in range(half):
             for part in range(0, 2 * n, n):
-                transpose(rows, k * line + 2 * first * n + part, 2 * n, a, 2 * k * n * n + part, 2 * n)
+                o, opposite = 2 * k * n * n + part, 2 * (mx - 1 - k * n) * n + part
+                transpose(rows, k * line + 2 * first * n + part, 2 * n, a, o, 2 * n)
+                transpose(rows, (half + k) * line + 2 * first * n + part, 2 * n, a, opposite, -2 * n)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for i in range(nx):
+            cosine, sine = c.turn[2 * i], c.turn[2 * i + 1]
             for j in range(n):
-                out[i * pitch + first + j] = complex(x[2 * i * n + j], -x[(2 * i + 1) * n + j])
+                re, im = x[2 * i * n + j], x[(2 * i + 1) * n + j]
+                out[i * pitch + first + j] = complex(cosine * re - sine * im, -cosine * im - sine * re)
 
 
 INNER_ITERATIONS, FORCING = 40, 0.1
@@ -150,40 +161,66 @@ RETREAT, LEAST, ROUNDING = 4.0, 1e-2, 1e-12
 """Factor of the damping where a step would raise the energy, by more than this share, and the least then."""
 
 
+class LinearProblem(NamedTuple):
+    """Fields of the problem that is linear in a change of the traction, in single precision.
+
+    Slip is in units of its norm, traction in what displaces its own cell by that.
+    """
+
+    convolution: TractionConvolution
+    taps: NDArray  # from `projected_cg.inverse_stencil`
+    kept: NDArray  # (size,), ``kept v + mirrored conj(v)`` is the part of v that is free to change
+    slope: NDArray  # (size,), slip over traction where that turns, and the damping
+    weight: NDArray  # (size,), root of a cell's own flexibility over that with the slope
+    mirrored: NDArray  # (size,), and all from here on complex
+    residual: NDArray  # (size,), slip
+    change: NDArray  # (size,), the solution
+    response: NDArray  # (size,), slip by a direction of search
+    carried: NDArray  # (size and REACH rows on both sides,)
+    steps: NDArray  # (directions, size), directions of search
+    responses: NDArray  # (directions, size), what is left free of their slip
+    work: NDArray
+
+
 class TractionBox(NamedTuple):
     """Fields of a solution on a box of nx rows of `pitch` cells, the idle ones without friction."""
 
     nx: int
     ny: int
     pitch: int
+    convolution: TractionConvolution
     bound: NDArray  # (size,), largest traction, Pa
-    slope: NDArray  # (size,), slip over traction where that turns, and the damping, m/Pa
-    kept: NDArray  # (size,), ``kept v + mirrored conj(v)`` is the part of v that is free to change
-    weight: NDArray  # (size,), root of a cell's own flexibility over that with the slope
-    mirrored: NDArray  # (size,), and all from here on complex
-    rigid: NDArray  # (size,), slip without traction, m
+    rigid: NDArray  # (size,), slip without traction, m, and all from here on complex
     traction: NDArray  # (size,), Pa
     slip: NDArray  # (size,), m
     trial: NDArray  # (size,), traction that is tried, Pa
-    response: NDArray  # (size,), its slip; of a direction what that displaces, m
+    response: NDArray  # (size,), its slip, m
     normal: NDArray  # (size,), direction of the traction in slipping cells, else zero
-    residual: NDArray  # (size,), of the linear problem, m
-    change: NDArray  # (size,), its solution, Pa
-    carried: NDArray  # (size and REACH rows on both sides,)
-    steps: NDArray  # (directions, size), Pa
-    responses: NDArray  # (directions, size), m
     work: NDArray
 
 
-def traction_box(nx: int, ny: int, c: TractionConvolution, directions: int = 2) -> TractionBox:
-    """Make a box without friction and traction; a direction of search is made orthogonal to the others."""
-    n = width(np.float64)
-    pitch = max(whole_vectors(ny, n), ny + REACH)
+def traction_box(nx: int, ny: int, c: TractionConvolution) -> TractionBox:
+    """Make a box without friction and traction."""
+    pitch = max(whole_vectors(ny, width(np.float32)), ny + REACH)
     size = nx * pitch
-    work = np.zeros(2 * c.spectra.shape[1] + 2 * n * max(len(c.roots_x), len(c.roots_y)))
-    real, vectors = np.zeros((4, size)), np.zeros((9, size), complex)
-    carried, searched = np.zeros(size + 2 * REACH * pitch, complex), np.zeros((2, directions, size), complex)
-    return TractionBox._make((nx, ny, pitch, *real, *vectors, carried, *searched, work))
+    fields = np.zeros((6, size), complex)
+    return TractionBox._make((nx, ny, pitch, c, np.zeros(size), *fields, _room(c)))
+
+
+def linear_problem(b: TractionBox, c: TractionConvolution, taps: NDArray, directions: int) -> LinearProblem:
+    """Make room for linear problems, where a direction of search is made orthogonal to the others."""
+    size = len(b.bound)
+    real, fields = np.zeros((3, size), np.float32), np.zeros((4, size), np.complex64)
+    carried = np.zeros(size + 2 * REACH * b.pitch, np.complex64)
+    searched = np.zeros((2, directions, size), np.complex64)
+    known = c, taps.astype(np.float32)
+    return LinearProblem._make((*known, *real, *fields, carried, *searched, _room(c)))
+
+
+def _room(c: TractionConvolution) -> NDArray:
+    """Work of a convolution: all blocks of rows, and two more of the longer side."""
+    mx, my, n = len(c.roots_x) // 2, len(c.roots_y) // 2, width(c.roots_x.dtype)
+    return np.zeros(4 * n * (-(-mx // (2 * n)) * my + max(mx, my)), c.roots_x.dtype)
 
 
 class TractionTask(NamedTuple):
@@ -196,9 +233,16 @@ class TractionTask(NamedTuple):
     max_iterations: int
 
 
+@compiled(**ONCE)
+def _parts(field: NDArray) -> NDArray:
+    """Real and imaginary parts in turn, for vectors."""
+    return field.view(field.real.dtype)
+
+
 @compiled(**INNER, **REASSOCIATE)
 def _product(left: NDArray, right: NDArray) -> float:
-    p, q, total = left.view(np.float64), right.view(np.float64), 0.0  # parts in turn, for vectors
+    p, q = _parts(left), _parts(right)
+    total = p.dtype.type(0.0)
     for i in range(len(p)):
         total += p[i] * q[i]
     return total
@@ -206,9 +250,10 @@ def _product(left: NDArray, right: NDArray) -> float:
 
 @compiled(**INNER, **REASSOCIATE)
 def _add(target: NDArray, factor: float, field: NDArray) -> None:
-    p, q = target.view(np.float64), field.view(np.float64)
+    p, q = _parts(target), _parts(field)
+    share = p.dtype.type(factor)
     for i in range(len(p)):
-        p[i] += factor * q[i]
+        p[i] += share * q[i]
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -223,13 +268,13 @@ def _within(value: complex, bound: float) -> complex:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _free(b: TractionBox, q: int, value: complex) -> complex:
+def _free(p: LinearProblem, q: int, value: complex) -> complex:
     """Part of a vector that may change in a cell: all where it sticks, along the edge where it slips."""
-    return b.kept[q] * value + b.mirrored[q] * value.conjugate()
+    return p.kept[q] * value + p.mirrored[q] * value.conjugate()
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def _judge(b: TractionBox) -> tuple[float, float]:
+def _judge(b: TractionBox, linear: LinearProblem) -> tuple[float, float]:
     """Tell cells that stick from those that slip; return the largest slip against the law and the norm, m.
 
     A cell slips on the edge of its disc if the slip would take it out. All else should be without slip.
@@ -237,33 +282,36 @@ def _judge(b: TractionBox) -> tuple[float, float]:
     worst, total = 0.0, 0.0
     for q in range(len(b.bound)):
         g, p, s, n, missed = b.bound[q], b.traction[q], b.slip[q], 0.0j, 0.0
-        b.kept[q] = 0.0
+        linear.kept[q] = 0.0
         if g > 0.0:
-            square, b.kept[q] = _square(p), 1.0
-            n = p / np.sqrt(square) if square > (EDGE * g) ** 2 else n
+            square, linear.kept[q] = _square(p), 1.0
+            n = p * (1.0 / np.sqrt(square)) if square > (EDGE * g) ** 2 else n
             along = (s * n.conjugate()).real
             if along < 0.0:
-                b.kept[q] = 0.5
+                linear.kept[q] = 0.5
                 s -= along * n
             else:
                 n = 0.0j
             missed = _square(s)
-        b.normal[q], b.mirrored[q] = n, -0.5 * n * n
+        b.normal[q], linear.mirrored[q] = n, -0.5 * n * n
         worst, total = max(worst, missed), total + missed
     return np.sqrt(worst), np.sqrt(total)
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def _linearise(b: TractionBox, damping: float, diagonal: float) -> None:
+def _linearise(b: TractionBox, linear: LinearProblem, damping: float, norm: float, diagonal: float) -> None:
     """Set residual, slope and weight at the traction."""
-    sticking = 1.0 / np.sqrt(1.0 + damping / diagonal)
+    sticking, unit = 1.0 / np.sqrt(1.0 + damping), 1.0 / norm
     for q in range(len(b.bound)):
-        against = -(b.slip[q] * b.normal[q].conjugate()).real
-        b.slope[q], b.weight[q] = damping, sticking
+        n, left = b.normal[q], 0.0j
+        against = -(b.slip[q] * n.conjugate()).real
+        linear.slope[q], linear.weight[q] = damping, sticking
         if against > 0.0:
-            b.slope[q] += against / b.bound[q]
-            b.weight[q] = 1.0 / np.sqrt(1.0 + b.slope[q] / diagonal)
-        b.residual[q], b.change[q] = -_free(b, q, b.slip[q]), 0.0
+            slope = damping + against / (b.bound[q] * diagonal)
+            linear.slope[q], linear.weight[q] = slope, 1.0 / np.sqrt(1.0 + slope)
+        if b.bound[q] > 0.0:
+            left = -unit * (b.slip[q] + against * n)
+        linear.residual[q], linear.change[q] = left, 0.0
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -278,60 +326,77 @@ def _stencil(masked: NDArray, taps: NDArray, pitch: int, target: NDArray) -> Non
         target[q] = s + c4 * (top[q] + bottom[q]) + c5 * (m[q] + m[q + 8])
 
 
-@compiled(**CALLED, **REASSOCIATE)
-def _precondition_traction(b: TractionBox, taps: NDArray, task: TractionTask, target: NDArray) -> None:
-    """Carry the residual on from the leading edge, as in the simplified theory, and apply the stencil."""
-    row, m = b.pitch, b.carried
-    for q in range(len(b.bound) - 1, -1, -1):
-        value = b.residual[q] + task.carried * m[(REACH + 1) * row + q]
-        m[REACH * row + q] = b.weight[q] * _free(b, q, value)
-    _stencil(m.view(np.float64), taps, row, target.view(np.float64))
-    for q in range(len(b.bound)):
-        target[q] = b.weight[q] * _free(b, q, target[q])
+@compiled(**INNER, **REASSOCIATE)
+def _carry(linear: LinearProblem, row: int, share: float, target: NDArray) -> None:
+    """Carry the residual on from the leading edge, as in the simplified theory."""
+    for q in range(len(target) - 1, -1, -1):
+        p = q + row
+        target[q] = linear.residual[q]
+        if p < len(target):
+            target[q] += share * linear.weight[p] * _free(linear, p, target[p])
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def _solve_linear(c: TractionConvolution, taps: NDArray, b: TractionBox, task: TractionTask) -> int:
+def _precondition_traction(b: TractionBox, linear: LinearProblem, carried: float, target: NDArray) -> None:
+    """Apply the stencil to the residual, carried on in steady rolling."""
+    masked, source = linear.carried[REACH * b.pitch :], linear.residual
+    if carried > 0.0:
+        source = linear.response
+        _carry(linear, b.pitch, np.float32(carried), source)
+    for q in range(len(source)):
+        masked[q] = linear.weight[q] * _free(linear, q, source[q])
+    _stencil(_parts(linear.carried), linear.taps, b.pitch, _parts(target))
+    for q in range(len(target)):
+        target[q] = linear.weight[q] * _free(linear, q, target[q])
+
+
+@compiled(**CALLED, **REASSOCIATE)
+def _solve_linear(b: TractionBox, linear: LinearProblem, task: TractionTask) -> int:
     """Find the change of the traction; return the iterations.
 
     Conjugate gradients, or, without an energy, conjugate residuals, truncated.
     """
-    first, held = _product(b.residual, b.residual), len(b.steps)
-    against = b.steps if task.symmetric else b.responses
+    first, held = _product(linear.residual, linear.residual), len(linear.steps)
+    against = linear.steps if task.symmetric else linear.responses
     for k in range(INNER_ITERATIONS):
-        step, response = b.steps[k % held], b.responses[k % held]
-        _precondition_traction(b, taps, task, step)
-        convolve_traction(c, step, b.nx, b.ny, b.pitch, b.work, b.response)
+        step, response = linear.steps[k % held], linear.responses[k % held]
+        _precondition_traction(b, linear, task.carried, step)
+        convolve_traction(linear.convolution, step, b.nx, b.ny, b.pitch, linear.work, linear.response)
         for q in range(len(step)):
-            response[q] = _free(b, q, b.response[q]) + b.slope[q] * step[q]
+            response[q] = _free(linear, q, linear.response[q]) + linear.slope[q] * step[q]
         for other in range(max(0, k - held + 1), k):
             share = -_product(response, against[other % held])
-            _add(response, share, b.responses[other % held])
-            _add(step, share, b.steps[other % held])
-        norm = np.sqrt(max(_product(response, against[k % held]), 0.0))
+            _add(response, share, linear.responses[other % held])
+            _add(step, share, linear.steps[other % held])
+        norm = np.sqrt(max(_product(response, against[k % held]), np.float32(0.0)))
         if norm == 0.0:
             return k + 1
+        unit = np.float32(1.0) / norm
         for q in range(len(step)):
-            step[q], response[q] = step[q] / norm, response[q] / norm
-        share = _product(b.residual, against[k % held])
-        _add(b.change, share, step)
-        _add(b.residual, -share, response)
-        if _product(b.residual, b.residual) <= FORCING**2 * first:
+            step[q], response[q] = step[q] * unit, response[q] * unit
+        share = _product(linear.residual, against[k % held])
+        _add(linear.change, share, step)
+        _add(linear.residual, -share, response)
+        if _product(linear.residual, linear.residual) <= FORCING**2 * first:
             return k + 1
     return INNER_ITERATIONS
 
 
 @compiled(**CALLED, **REASSOCIATE)
-def _take(b: TractionBox) -> None:
+def _take(b: TractionBox, change: NDArray, unit: float) -> None:
     """Change the traction, along the edges of the discs where it slips, and project it on them."""
     for q in range(len(b.bound)):
-        b.trial[q] = _within(b.traction[q] + b.change[q], b.bound[q])
+        step, n = unit * change[q], b.normal[q]
+        step -= (
+            step * n.conjugate()
+        ).real * n  # what is left of it, in single precision, would leave the edge
+        b.trial[q] = _within(b.traction[q] + step, b.bound[q])
 
 
 @compiled(**CALLED)
-def _twice_energy(c: TractionConvolution, b: TractionBox) -> float:
+def _twice_energy(b: TractionBox) -> float:
     """Set the response to the slip under the trial traction; return twice its energy over a cell."""
-    convolve_traction(c, b.trial, b.nx, b.ny, b.pitch, b.work, b.response)
+    convolve_traction(b.convolution, b.trial, b.nx, b.ny, b.pitch, b.work, b.response)
     _add(b.response, 1.0, b.rigid)
     return _product(b.trial, b.response) + _product(b.trial, b.rigid)
 
@@ -358,38 +423,36 @@ def _shorten(b: TractionBox) -> None:
 
 
 @compiled(**LOOP, nogil=True)
-def solve_traction(
-    c: TractionConvolution, taps: NDArray, b: TractionBox, task: TractionTask
-) -> tuple[int, int, float]:
+def solve_traction(b: TractionBox, linear: LinearProblem, task: TractionTask) -> tuple[int, int, float]:
     """Solve for tractions within the bound, opposite to the slip where they reach it, without slip elsewhere.
 
     Starts from the traction of the box, cut to the bound. Newton's iteration, projected on the discs and
     damped in proportion to what is left; with an energy, no step that raises it is taken. Returns the
     iterations, the convolutions, and the largest slip that is against the law, over that without traction.
     """
-    damping, last, largest, convolutions, iteration = task.diagonal, 0.0, 0.0, 1, 0
+    damping, last, largest, convolutions, iteration = 1.0, 0.0, 0.0, 1, 0
     for q in range(len(b.bound)):
         b.trial[q] = _within(b.traction[q], b.bound[q])
         square = _square(b.rigid[q]) if b.bound[q] > 0.0 else 0.0
         last, largest = last + square, max(largest, square)
     last, largest = np.sqrt(last), np.sqrt(largest)
-    energy = _twice_energy(c, b)
+    energy = _twice_energy(b)
     _adopt(b)
-    worst, norm = _judge(b)
+    worst, norm = _judge(b, linear)
     while worst > task.rtol * largest and iteration < task.max_iterations:
         iteration += 1
         if last > 0.0:
-            damping = min(damping * norm / last, task.diagonal)
+            damping = min(damping * norm / last, 1.0)
         last = norm
-        _linearise(b, damping, task.diagonal)
-        convolutions += 1 + _solve_linear(c, taps, b, task)
-        _take(b)
-        reached = _twice_energy(c, b)
+        _linearise(b, linear, damping, norm, task.diagonal)
+        convolutions += 1 + _solve_linear(b, linear, task)
+        _take(b, linear.change, norm / task.diagonal)
+        reached = _twice_energy(b)
         if task.symmetric and reached > energy + ROUNDING * abs(energy):
-            damping, last = max(RETREAT * damping, LEAST * task.diagonal), 0.0
+            damping, last = max(RETREAT * damping, LEAST), 0.0
             _shorten(b)
             reached = _product(b.trial, b.response) + _product(b.trial, b.rigid)
         energy = reached
         _adopt(b)
-        worst, norm = _judge(b)
+        worst, norm = _judge(b, linear)
     return iteration, convolutions, worst / largest if largest > 0.0 else worst
