@@ -42,7 +42,7 @@ def pytest_unconfigure():
 
 @pytest.fixture(autouse=True)
 def files_opened_here(monkeypatch):
-    """Results, modes and tables of tests are their own: only what cannot be read is opened in a sandbox.
+    """Results and modes of tests are their own: only what cannot be read is opened in a sandbox.
 
     `test_results.py` and `faults` open all results in one.
     """
@@ -56,7 +56,7 @@ def files_opened_here(monkeypatch):
             return sandbox.sandboxed(function, arguments, *of_file)
         return sandbox.received(answer.getvalue())
 
-    for module in ("results", "structures.modal_files", "case.tables"):
+    for module in ("results", "structures.modal_files"):
         monkeypatch.setattr(f"asperity.{module}.sandboxed", opened)
 
 

@@ -264,7 +264,7 @@ def within(most):
 @pytest.mark.parametrize(
     ("read", "size", "message"),
     [
-        (read_levels, 2**33, r"a\.txt: received more than 10 MiB; allowed: .* at most 10 MiB"),
+        (read_levels, 2**33, r"a\.txt: received more than 32 MiB; allowed: .* at most 32 MiB"),
         (lambda file: read_surface(file, **UM), 2**31, "received 2 GiB; allowed: at most 1 GiB of text"),
     ],
 )

@@ -28,14 +28,13 @@ def read_text(
     *,
     largest: int,
     remedy: str = "",
-    shorten: str = "",
     latin: bool = False,
 ) -> str:
     """Read a text file that a person has written, without a mark of its encoding.
 
     Of at most `largest` bytes. `source` is its name and `allowed` what may stand there, for messages;
-    `remedy` is what to do if there is no such file, `shorten` if it is too large. What is no UTF-8 is read as
-    Latin-1 if `latin`, as instruments write it.
+    `remedy` is what to do if there is no such file. What is no UTF-8 is read as Latin-1 if `latin`, as
+    instruments write it.
     """
     if received := no_file(path):
         raise InputError(source, received, allowed, remedy)
@@ -46,7 +45,7 @@ def read_text(
         raise InputError(source, f"a file that cannot be read ({error.strerror})", allowed) from None
     if len(content) > largest:
         allowed = f"{allowed} of at most {amount(largest)}"
-        raise InputError(source, f"more than {amount(largest)}", allowed, shorten)
+        raise InputError(source, f"more than {amount(largest)}", allowed)
     return decoded(content, source, allowed, latin=latin)
 
 

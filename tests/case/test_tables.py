@@ -1,8 +1,7 @@
-"""Tables that a case names: read in SI as text, netCDF or array, or refused with what is wrong and where."""
+"""Tables that a case names: read in SI as text or array, or refused with what is wrong and where."""
 
 import math
 
-import h5netcdf
 import numpy as np
 import pytest
 from case_texts import case_text, refusal_of_table
@@ -10,9 +9,7 @@ from case_texts import case_text, refusal_of_table
 from asperity import WheelOnRail
 from asperity.case import measured, tables
 from asperity.case.cases import parse_case
-from asperity.case.tables import RECEPTANCES, read_table
-from asperity.errors import CaseError, InputError
-from asperity.structures.receptance_fit import receptances_in
+from asperity.errors import CaseError
 from refusals import refusals
 
 LEVELS = "wavelength (m), level (dB)\n"
@@ -173,7 +170,7 @@ def bytes_of_levels(content, tmp_path):
 
 test_a_table_that_is_no_text_or_too_large = refusals(
     (b"\xff\xfe\x00", "no UTF-16 in line 1"),
-    (b"#" * (10 * 2**20 + 1), "more than 10 MiB"),
+    (b"#" * (32 * 2**20 + 1), "more than 32 MiB"),
     of=bytes_of_levels,
 )
 
@@ -257,73 +254,3 @@ def test_bands_are_read_without_weighting(tmp_path):
         np.testing.assert_allclose(centres, 10.0 ** np.array([2.3, 3.0, 3.7]))
         assert level[0] == pytest.approx(at_200, abs=0.11)
         assert level[1] == pytest.approx(70.0, abs=0.01)
-
-
-# --- netCDF
-
-
-F, AT, FORCES = np.arange(10.0, 40.0), np.array([0.1, 0.3, 0.4]), np.array([0.1, 0.4])
-GIVEN = np.random.default_rng(1).standard_normal((F.size, AT.size, FORCES.size)) - 1j
-GRID = {
-    "frequency": (("f",), F / 1e3, "kHz"),
-    "position_of_the_response": (("r",), 1e3 * AT, "mm"),
-    "position_of_the_force": (("e",), 1e3 * FORCES, "mm"),
-    "real_part": (("f", "r", "e"), GIVEN.real, "m/N"),
-    "imaginary_part": (("e", "f", "r"), np.moveaxis(GIVEN.imag, 2, 0), "m/N"),
-}
-
-
-def write(path, variables):
-    with h5netcdf.File(path, "w") as file:
-        for along, values, _ in variables.values():
-            for name, size in zip(along, np.shape(values), strict=True):
-                if name not in file.dimensions:
-                    file.dimensions[name] = size
-        for name, (along, values, unit) in variables.items():
-            file.create_variable(name, along, data=values)
-            if unit:
-                file.variables[name].attrs["units"] = unit
-    return path
-
-
-def read_with(name, variable, tmp_path):
-    variables = {key: value for key, value in (GRID | {name: variable}).items() if value is not None}
-    return read_table(write(tmp_path / "wrong.nc", variables), RECEPTANCES)
-
-
-def test_receptances_lie_as_a_matrix_along_frequencies_and_places(tmp_path):
-    rows = read_table(write(tmp_path / "matrix.nc", GRID), RECEPTANCES)
-    for found, expected in zip(receptances_in(rows, "matrix.nc"), (AT, FORCES, F, GIVEN), strict=True):
-        np.testing.assert_allclose(found, expected, rtol=1e-12)
-
-
-def test_a_receptance_of_a_wheel_is_three_variables(tmp_path):
-    point = GIVEN[:, 0, 0]
-    parts = {"real_part": (("f",), point.real, "m/N"), "imaginary_part": (("f",), point.imag, "m/N")}
-    path = write(tmp_path / "wheel.nc", {"frequency": GRID["frequency"]} | parts)
-    for found, expected in zip(tables.read_receptance(path), (F, point), strict=True):
-        np.testing.assert_allclose(found, expected, rtol=1e-12)
-
-
-test_what_is_no_table_is_said = refusals(
-    ("real_part", None, "no variable real_part; allowed: the variables frequency, position_of_the_resp"),
-    ("frequency", (("f",), F, ""), "frequency without a unit"),
-    ("frequency", (("f",), F, "kg"), "'kg'"),
-    ("frequency", (("f",), np.where(F > 20, F, math.nan), "Hz"), "numbers that are not finite"),
-    ("position_of_the_force", (("e", "a", "b", "c"), np.ones((2, 1, 1, 1)), "m"), "at most 3 dimensions"),
-    of=read_with,
-)
-
-
-def test_tables_have_a_most_of_lines(tmp_path, monkeypatch):
-    monkeypatch.setattr(tables, "MOST_LINES", 179)
-    found = [(along, np.asarray(values)) for along, values, _ in GRID.values()]
-    with pytest.raises(InputError, match="a table of 180 lines; allowed: at most 179"):
-        tables._laid_out(found, write(tmp_path / "matrix.nc", GRID))
-
-
-@pytest.mark.parametrize("content", [b"", b"frequency (Hz), 1", b"\x89HDF\r\n\x1a\n" + bytes(300)])
-def test_damaged_files_are_said(tmp_path, content):
-    (tmp_path / "broken.nc").write_bytes(content)
-    with pytest.raises(InputError, match=r"an empty file|intact netCDF-4"):
-        read_table(tmp_path / "broken.nc", RECEPTANCES)

@@ -1,4 +1,4 @@
-"""Tables that a case names, as text with columns or as netCDF: what they hold, read in SI and checked."""
+"""Tables that a case names, as text with columns: what they hold, read in SI and checked."""
 
 import math
 import re
@@ -13,26 +13,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, no_file, shown
+from asperity.arguments import Array, NDArray, shown
 from asperity.case.content import name_of
 from asperity.errors import InputError
-from asperity.files import amount
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
-from asperity.sandbox import Answer, sandboxed
 from asperity.spectra import energy_sum
 from asperity.structures import stiffness_table, support, track_parameters
 from asperity.structures.outline import checked_outline
-from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
 
-LARGEST_TABLE = 10 * 2**20  # bytes of text
-NETCDF = (".nc", ".nc4")
+LARGEST_TABLE = 32 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
 FEWEST_LINES = 10  # of a receptance
-MOST_LINES = 2**22
-"""Lines of a table that is laid out: 160 MiB of five columns."""
-MOST_DIMENSIONS = 3
 MOST_HEADING = 50
 """Lines of a file among which its heading is sought."""
 _BAND = 0.1  # of a decade
@@ -238,8 +231,6 @@ def read_bays(table: TableSource) -> Array:
 
 def _tells(path: Path, word: str) -> bool:
     """Whether the heading of a text file has a word, in small letters."""
-    if path.suffix.lower() in NETCDF:
-        return False
     content = read_text(path, path.name, "a table over frequency", largest=LARGEST_TABLE, latin=True)
     lines = (line.lower() for line in islice(lines_in(content), MOST_HEADING))
     return any(word in line and unit_in_brackets(line) for line in lines)
@@ -264,7 +255,7 @@ def read_table(
     comma or white space; text from '#' on is left out. A heading, or a comment right above the numbers, names
     the unit of each column that has one, as ``wavelength (cm)``; a table that does not is refused. So is a
     line that does not hold one finite number for each column. Other lines of words may stand above the
-    heading. A netCDF-4 file holds `columns` alone. With `repeated` the last column may come several times.
+    heading. With `repeated` the last column may come several times.
     """
     allowed = f"a table with the columns {_named(columns)}"
     if further:
@@ -273,10 +264,7 @@ def read_table(
         if not len(table) or not np.isfinite(table).all():
             raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
         return table
-    if table.suffix.lower() in NETCDF:
-        return read_columns(table, columns)
-    remedy = f"Write it as netCDF ({NETCDF[0]}), which may be larger."
-    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, shorten=remedy, latin=True)
+    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, latin=True)
     words: deque[list[str]] = deque(maxlen=2)
     heading: list[str] = []
     found = array("d")
@@ -353,60 +341,6 @@ def _scale(heading: str, column: Column, path: Path) -> float:
     except InputError as error:
         allowed = f"{column.name} in {column.dimension or 'no unit'}"
         raise InputError(path.name, f"the heading {shown(heading)}", allowed, error.remedy) from None
-
-
-def read_columns(file: Path, columns: Sequence[tuple[str, str]]) -> Array:
-    """Read a table (lines, columns), in SI, of columns by name and SI unit.
-
-    Each column is a variable of that name, with _ for blanks, along one or more dimensions. Those of the
-    table are all of these: a variable that lacks one is the same along it.
-    """
-    from asperity.structures.modal_files import LARGEST_FILE
-
-    if found := no_file(file):
-        raise InputError(str(file), found, "a netCDF-4 file with a table", "Check the path.")
-    size = file.stat().st_size
-    if size > LARGEST_FILE:
-        raise InputError(file.name, amount(size), f"at most {amount(LARGEST_FILE)}")
-    arguments = [str(file.absolute()), list(columns)]
-    _, (table,) = sandboxed(columns_of_netcdf, arguments, file.name, size, "netCDF-4")
-    return table
-
-
-def columns_of_netcdf(path: str, columns: list[tuple[str, str]]) -> Answer:
-    """Lay out the table of a netCDF-4 file."""
-    import h5netcdf
-
-    from asperity.structures.modal_files import netcdf_numbers
-
-    file = Path(path)
-    with hostile(file.name, "netCDF-4"), h5netcdf.File(file, "r") as opened:
-        found: list[tuple[tuple[str, ...], Array]] = []
-        for heading, unit in columns:
-            name = heading.replace(" ", "_")
-            if name not in opened.variables:
-                allowed = f"the variables {', '.join(each.replace(' ', '_') for each, _ in columns)}"
-                raise InputError(file.name, f"no variable {name}", allowed)
-            variable = opened.variables[name]
-            numbers = netcdf_numbers(variable, name, unit, MOST_DIMENSIONS, file)
-            found.append((tuple(variable.dimensions), numbers))
-        return None, [_laid_out(found, file)]
-
-
-def _laid_out(found: list[tuple[tuple[str, ...], Any]], file: Path) -> Array:
-    sizes = {name: size for along, numbers in found for name, size in zip(along, numbers.shape, strict=True)}
-    lines = int(np.prod([float(size) for size in sizes.values()]))
-    if lines > MOST_LINES:
-        raise InputError(file.name, f"a table of {lines} lines", f"at most {MOST_LINES}")
-    table = np.empty((*sizes.values(), len(found)))
-    for column, (along, numbers) in enumerate(found):
-        order = [along.index(name) for name in sizes if name in along]
-        shape = [size if name in along else 1 for name, size in sizes.items()]
-        table[..., column] = numbers.transpose(order).reshape(shape)
-    table = table.reshape(-1, len(found))
-    if not (len(table) and np.isfinite(table).all()):
-        raise InputError(file.name, "no lines, or numbers that are not finite", "a table of finite numbers")
-    return table
 
 
 # --- headings
