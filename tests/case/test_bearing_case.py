@@ -12,42 +12,30 @@ from asperity.scenarios.bearing import bearing_rings, expected, prepare_bearing
 from asperity.structures.modal import ModalStructure
 from asperity.structures.ring import Ring
 from asperity.studies.definition import study_of
+from refusals import refusals
 
 CASE = {"kind": "ball-bearing", "bearing": {"name": "6205"}, "axial": "100 N"}
 TIGHT = {"name": "6205", "clearance": "-4 um"}
 PIT = {"on": "outer", "length": "0.18 mm", "depth": "0.1 mm"}
-REFUSED = (
+
+
+test_what_cannot_be_is_told = refusals(
     ({"axial": "0 N"}, r"radial: received none; allowed: a radial or axial load"),
-    (
-        {"bearing": {"name": "6205", "balls": 20}},
-        r"bearing\.balls: received 20 of 7.94 mm .* fit side by side",
-    ),
+    ({"bearing": {"name": "6205", "balls": 20}}, r"bearing\.balls: received 20 of 7.94 mm .* side by side"),
     ({"bearing": {"balls": 9}}, r"bearing\.name: received none, and no ball_diameter and no"),
-    (
-        {"bearing": {"name": "6205", "clearance": "-0.2 mm"}},
-        r"bearing\.clearance: .* which presses the balls",
-    ),
-    (
-        {"bearing": TIGHT, "axial": "0 N", "radial": "0 N", "speed": "60000 1/min"},
-        r"speed: received 60000 1/min, which lifts balls off .* allowed: less than \d+ 1/min",
-    ),
+    ({"bearing": {"name": "6205", "clearance": "-0.2 mm"}}, r"bearing\.clearance: .* which presses the ball"),
+    ({"bearing": TIGHT, "axial": "0 N", "radial": "0 N", "speed": "60000 1/min"},
+     r"speed: received 60000 1/min, which lifts balls off .* allowed: less than \d+ 1/min"),
     ({"axial": "100 kN"}, r"of one ball on the inner ring, a contact that fills 0\.79 rad of the groove"),
     ({"laws": ["hertz", "hertz"]}, r'laws: received "hertz" more than once'),
     ({"laws": ["printed"]}, r'laws\[1\]: received \'printed\'; .* "table", "areal", "hertz", "direct"'),
     ({"cage_slip": [0.1]}, "at least 2"),
     ({"cage_slip": [0.1, 0.05]}, r"cage_slip: received 0.1, 0.05; allowed: two values that do not fall"),
     ({"envelope_band": ["2 kHz", "30 kHz"]}, r"envelope_band: received up to 30000 Hz; .* 25600 Hz"),
-    (
-        {"envelope_band": ["2 kHz", "2.1 kHz"]},
-        r"envelope_band: received a width of 100 Hz; .* fastest tone, 16",
-    ),
+    ({"envelope_band": ["2 kHz", "2.1 kHz"]}, r"received a width of 100 Hz; .* fastest tone, 16"),
     ({"duration": "10 ms"}, r"duration: received 10 ms; allowed: at least .* slowest tone comes 5 times"),
-    (
-        {"duration": "1000 s", "time_step": "1 us"},
-        r"duration: received 9.2e\+09 time steps of balls; allowed: at most 1e\+08",
-    ),
+    ({"duration": "1000 s", "time_step": "1 us"}, r"received 9.2e\+09 time steps of balls; allowed: at most"),
     ({"shaft": {"radial_stiffness": "0 N/m"}}, r"shaft\.radial_stiffness: received 0 N/m of \[shaft\]"),
-    ({"shaft": {"axial_stiffness": "0 N/m"}}, r"shaft\.axial_stiffness: received 0 N/m of \[shaft\]"),
     ({"housing": {"width": "10 mm"}}, r"housing\.width: received 0.01; allowed: only together with lobes"),
     ({"inner_raceway": {"waves": [3]}}, r"inner_raceway\.waves: received 1 waves and 0 amplitudes"),
     ({"fault": {"length": "0.2 mm"}}, r'fault\.on: received nothing; allowed: "outer", "inner", "ball"'),
@@ -58,13 +46,9 @@ REFUSED = (
     ({"fault": [PIT, {"on": "inner"}]}, r"fault\[2\]\.length of a fault, a pit: received nothing"),
     ({"fault": PIT, "fault[3]": PIT}, r"fault\[3\]: received one without fault\[2\]"),
     ({"shaft": [{}, {}]}, r"shaft\[2\]: received an unknown key"),
-)
-
-
-@pytest.mark.parametrize(("keys", "message"), REFUSED)
-def test_what_cannot_be_is_told(keys, message):
-    with pytest.raises(CaseError, match=message):
-        as_case(CASE | keys)
+    of=lambda keys: as_case(CASE | keys),
+    error=CaseError,
+)  # fmt: skip
 
 
 def test_the_commented_case_is_a_case_of_smooth_parts():
@@ -177,9 +161,9 @@ def test_modes_that_do_not_go_around_are_refused(how, message, tmp_path):
         as_case(CASE | {"housing": {"modes": table_of_modes(tmp_path / "around.csv", **how)}})
 
 
-@pytest.mark.parametrize("content", [b"\x00\x89HDF", b"frequency (Hz), nan\n", b""])
-def test_files_that_hold_no_modes_are_refused(content, tmp_path):
-    for name in ("around.csv", "around.nc", "around.uff"):
+@pytest.mark.parametrize("name", ["around.csv", "around.nc", "around.uff"])
+def test_files_that_hold_no_modes_are_refused(name, tmp_path):
+    for content in (b"\x00\x89HDF", b"frequency (Hz), nan\n", b""):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(CaseError, match=r"shaft\.modes: received"):
             as_case(CASE | {"shaft": {"modes": str(tmp_path / name)}})

@@ -1,12 +1,7 @@
 """Whatever is wrong with a case is said: what was received, what is allowed, and what to do."""
 
-import math
-import re
-
 import pytest
 from case_texts import case_text
-from hypothesis import given
-from hypothesis import strategies as st
 
 from asperity.case.cases import load_case, parse_case
 from asperity.errors import CaseError, InputError
@@ -15,18 +10,10 @@ KINDS = {"ball": "ball-on-beam", "wheel": "wheel-on-rail", "bodies": "bodies"}
 REFUSED = """
 ball: [ball] radius = "25" → ball.radius: received '25'; allowed: a length greater than 0
 ball: [ball] radius = 0.025 → Add unit and quotes: "0.025 m" if it is in SI units (m).
-ball: [contact] damping = 3 → "3 N s/m" if it is in SI units (N s/m).
-ball: [ball] radius = "25 kg" → a length greater than 0
-ball: [ball] radius = "25 mmm" → Check its spelling
 ball: [ball] radius = "0 mm" → greater than 0
-ball: [ball] radius = "-1 mm" → greater than 0
-ball: [ball] radius = "nan mm" → NaN is not a value
 ball: [ball] radius = "inf" → Give a finite value
 ball: [ball] radius = true → ball.radius: received True
-ball: [ball] radius = ["25 mm"] → ball.radius: received ['25 mm']
-ball: [ball] radius = "2,5 mm" → decimal point
 ball: [ball] material = "steal" → Did you mean "steel"?
-ball: [ball] load = "0 N" → a force greater than 0
 ball: [ball] lode = "5 N" → keys of [ball]: radius, material, mass, load. Did you mean "load"?
 ball: [ball] seed = 3 → Move it to the top of the case, above the first section.
 ball: [ball] damping = "1 N s/m" → Move it to [contact].
@@ -37,151 +24,82 @@ ball: [beam] sensors = "0.5 m" → beam.sensors: received '0.5 m'; allowed: a li
 ball: [beam] sensors = ["0.5 m", 3] → beam.sensors[2]: received 3
 ball: [beam] sensors = [] → at least 1, each a length at least 0
 ball: [beam] sensors = ["1.2 m"] → beam.sensors: received 1.2 m; allowed: positions on the beam, 0 to 1 m
-ball: [beam] sensors = ["-0.2 m"] → a length at least 0
 ball: [beam] suspension_frequency = "3 Hz" → only together with support = "free"
 ball: [contact] window = "20 um" → contact.window: received 20 um, 2 cells of 10 um; allowed: 8 to 2048 cells
 ball: [contact] window = "25 mm" → 2500 cells
 ball: [contact] approaches = ["1 um"] → at least 2
 ball: [contact] approaches = ["1 um", "0 um"] → contact.approaches: received 1 um, 0 um; allowed: increasing
-ball: [contact] approaches = ["1 um", "1 um"] → increasing
 ball: [contact] filter_taps = 63 → an even number
 ball: [contact] filter_degree = 6.5 → a whole number at least 1 and at most 20
 ball: [contact] sample_length = "0.6 mm" → at least two windows, 1000 um
-ball: [contact] damping = "-1 N s/m" → at least 0
-ball: [contact] hardness = "3" → a pressure greater than 0
 ball: [contact] normalise = "none" → "low-wavenumber", "tangent"
-ball: [contact] linearise = "smooth" → "hertz", "rough"
 ball: [contact] spacing = "100 um" | window = "1 mm" → allowed: at most speed / (2.5 highest_frequency) = 80
 ball: [numerics] time_step = "0.1 ms" → numerics.time_step: received 100 us
 ball: [numerics] time_step = "1 ns" → 1e+09 time steps; allowed: at most 1e+08
 ball: [numerics] rtol = 0 → a number greater than 0 and at most 0.01
-ball: [numerics] rtol = inf → rtol: received inf
-ball: speed = "0 m/s" → a speed greater than 0
 ball: laws = [] → laws: received an empty list; allowed: at least 1, each "areal",
-ball: laws = ["arreal"] → laws[1]: received 'arreal'; allowed: "areal"
 ball: laws = ["arreal"] → Did you mean "areal"?
 ball: laws = "areal" → laws: received 'areal'; allowed: a list
 ball: laws = ["areal", "areal"] → laws: received "areal" more than once; allowed: each law once
 ball: seed = -1 → a whole number at least 0
-ball: seed = 1.5 → a whole number
 ball: start = "1 m" → start: received 1 m; allowed: a position on the beam
 ball: duration = "1.5 s" → duration: received 1.5 s, which ends at 1.5 m; allowed: at most 1 s
 ball: duration = 1979-05-27 → duration: received datetime.date(1979, 5, 27)
 ball: ball = 3 → ball: received 3; allowed: a section [ball]
 ball: [balls] radius = "1 mm" → balls: received an unknown key; allowed: keys at the top of a case
-ball: [balls] radius = "1 mm" → Did you mean "ball"?
 ball: [ball] radius = "0.2 mm" | [contact] window = "0.5 mm" → at most the smallest diameter of the bodies,
 ball: settling = "2 s" → start, after settling: received 2 m; allowed: a position on the beam
 ball: start = "0.1 m" | settling = "0.3 s" | duration = "0.1 s" → received 0.3 s, which begins at -0.2 m;
 ball: [surface] smooth = false → surface: received no texture; allowed: file, rms, line, spectrum or a
-ball: [surface] smooth = false → or set smooth = true.
 ball: [surface] file = "map.npy" | rms = "1 um" → surface: received both file and rms; allowed: one of them
 ball: [surface] file = "absent.npy" → absent.npy
-ball: [surface] file = "" → the path of an existing file
-ball: [surface] file = "a\\u0000b" → the path of an existing file
 ball: [surface] line = "line.csv" | spectrum = "iso3095" → surface: received both line and spectrum
-ball: [surface] spectrum = "iso3095" | level = "+6" → Add the unit
-ball: [surface] spectrum = "iso" → "iso3095"
 ball: [surface] rms = "1 um" | level = "+6 dB" → surface.level: received 6.0; allowed: only together with
-ball: [surface] rms = "1 um" | pixel = "1 um" → surface.pixel: received 1e-06; allowed: only together with
-ball: [surface] file = "map.npy" | hurst = 0.7 → surface.hurst: received 0.7; allowed: only together with rms
 ball: [surface] file = "map.npy" | height_unit = "s" → a unit of length, as "um"
-ball: [surface] file = "map.npy" | height_unit = 1e-6 → a unit of length, as "um"
-ball: [surface] file = "map.npy" | array = "" → a text in quotes
 ball: [surface] file = "map.npy" | fill = "yes" → true or false
-ball: [surface] file = "map.npy" | index = -1 → a whole number at least 0
 ball: [surface] file = "map.npy" | direction = 30 → Add unit and quotes: "30 rad" if it is in SI units (rad)
-ball: [surface] file = "map.npy" | direction = "400 deg" → surface.direction: received
 ball: [surface] rms = "1 um" | direction = "90 deg" → surface.direction: received 1.5707963267948966;
-ball: [surface] rms = "1 um" | hurst = 1.5 → a number greater than 0 and at most 1
 ball: [surface] rms = "1 um" | longest = "10 um" | shortest = "16 um" → surface.longest: received 10 um with
 ball: [surface] rms = "1 um" | shortest = "10 um" | [contact] spacing = "8 um" → shortest: received 10 um on
-ball: [surface] rms = "1 um" | anisotropy = 0 → a number greater than 0
 ball: [surface] rms = "1 um" | continuation = "mirror" → only together with file or line
 ball: [surface] spectrum = "iso3095" | [contact] linearise = "rough" → contact.linearise: received "rough"
-ball: laws = ["shifted"] | [surface] line = "line.csv" → "shifted" without samples of the surface
-ball: laws = ["areal"] | [surface] rms = "1 um" | line = "line.csv" → "areal" with a path given as a line
-ball: laws = ["table"] | [surface] rms = "1 um" | line = "line.csv" → "table" with a path given as a line
-ball: laws = ["direct"] | [surface] rms = "1 um" | line = "line.csv" → "direct" with a path given as a line
 ball: [surface] file = "map.npy" | recipe = "recipe.toml" | fill = true → surface.fill: received True;
 ball: [contact] window = "1e-7 mm" → contact.window: received 0.1 nm; allowed
 ball: [ball] radius = "300 km" → ball.radius: received 300 km; allowed
-ball: [beam] length = "0.02 um" → beam.length: received 20 nm; allowed
 ball: [surface] rms = "1e20 m" → received 1e+20 m; allowed: 1 pm to 1 mm. Less is smoother than atoms are,
 wheel: [wheel] transverse_radius = "0 m" → a length greater than 0, or "inf", with its unit
-wheel: [wheel] transverse_radius = "-inf" → wheel.transverse_radius: received '-inf'
 wheel: [wheel] modes = "modes.csv" | receptance = "receptance.csv" → wheel: received both modes and receptance
 wheel: [wheel] profile = "tread.csv" | transverse_radius = "1 m" → both profile and transverse_radius
 wheel: [wheel] roughness = "disc" | line = "wheels.csv" → wheel: received both roughness and line
-wheel: [wheel] roughness = "disk" → Did you mean "disc"?
 wheel: [wheel] roughness_level = "+3 dB" → only together with roughness
 wheel: [wheel] flat_shape = "worn" → only together with flat_depth or flat_length
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → wheel.flat_length: received 60 mm beside a
-wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → allowed: 38.37 mm, the chord sqrt(8 radius
-wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → within 5%. The chord of this length is 0.978
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → A worn flat may be longer: flat_shape = "worn".
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "30 mm" | flat_shape = "worn" → sqrt(8 radius
 wheel: [wheel] flat_length = "0.2 m" → received 200 mm; allowed: at most 130.1 mm, where the depth of its
 wheel: [wheel] flat_depth = "5 mm" → received 5 mm; allowed: at most 0.01 of the radius, 4.6 mm
 wheel: [wheel] flat_depth = "1 mm" | flat_position = "3 m" → received 3 m; allowed: less than the
-wheel: [wheel] line_distance = "5 mm" → only together with line
-wheel: [wheel] line = "wheels.csv" | processing = ["spike"] → Did you mean "spikes"?
-wheel: [wheel] line = "wheels.csv" | processing = ["spikes", "spikes"] → "spikes" more than once
 wheel: [wheel] load = "5 kN" → wheel.load: received 5 kN; allowed: at least 5.88399 kN, the weight of 600 kg
-wheel: [track] name = "x200" → Did you mean "x2000"?
 wheel: [track] pad_damping = "18 kN s/m" | pad_loss_factor = 0.2 → track.pad_damping: received 18000 N s/m
-wheel: [track] ballast_damping = "48 kN s/m" | ballast_loss_factor = 0.4 → damping is either viscous or by a
 wheel: [track] shear_stiffness = "240 MN" → track: received no rotary_inertia
-wheel: [track] bending_stiffness = "6 MN m" → a bending stiffness greater than 0
 wheel: [track] pad_stiffness = "300 MN" → a stiffness greater than 0, with its unit, as "300 MN/m"
-wheel: [track] mass_per_length = "60 kg" → a mass per length
-wheel: [track] rotary_inertia = "1 kg" → a rotary inertia per length
 wheel: [sideways] contact_place = "40 mm" → received 40 mm; allowed: at most 36 mm off the middle
 wheel: [sideways] contact_place = "-40 mm" → The rail head, track.rail_head_width, is no wider.
-wheel: [sideways] contact_place = 0.01 → Add unit and quotes: "0.01 m" if it is in SI units (m).
-wheel: [sideways] contact_place = "1 m" → allowed: -50 mm to 50 mm. Rail heads lie between.
-wheel: [sideways] friction = 0.0 → sideways.friction: received 0.0; allowed: a number greater than 0 and at
-wheel: [sideways] pad_roll_stiffness = "500 kN" → a rotational stiffness per rad greater than 0
-wheel: [sideways] bending_stiffness = "1 N m^2" → Rails lie between.
-wheel: [sideways] torsional_stiffness = "-1 N m^2" → greater than 0
-wheel: [creep] angle_of_attack = "200 mrad" → allowed: -100 mrad to 100 mrad. Creepages are small.
-wheel: [creep] lateral = 0.2 → creep.lateral: received 0.2; allowed: a number at least -0.1 and at most 0.1
-wheel: [creep] spin = "20 rad/m" → Wheels do not pivot.
 wheel: [creep] kinetic = 0.5 → only together with angle_of_attack or longitudinal or lateral or spin
 wheel: [creep] lateral = 0.01 | falling_velocity = "1 m/s" → allowed: kinetic below 1. As kinetic = 0.5.
 wheel: [track] rail_profile = "rail.csv" | rail_head_radius = "0.3 m" → both rail_head_radius and rail_profile
-wheel: [track] points = [] → track.points: received an empty list
 wheel: [track] points = ["60 m"] → received 60 m; allowed: positions that are passed, 0 m to 56 m
-wheel: [contact] window = "1 m" | spacing = "1 mm" → received 1000 mm; allowed: at most the smallest diameter
-wheel: [contact] spacing = "5 mm" | window = "50 mm" → allowed: at most speed / (2.5 highest_frequency)
 wheel: [numerics] poles = 99 → numerics.poles: received 99; allowed: an even number
 wheel: [numerics] kernel = "scatter" | poles = 50 → only together with kernel = "poles"
-wheel: [numerics] kernel = "pole" → Did you mean "poles"?
-wheel: [noise] track_pad = "stiff" → "soft", "medium", "hard"
-wheel: [noise] wheel_transfer = "800 mm" → "920 mm", "840 mm", "680 mm", "1200 mm"
-wheel: [noise] rail_radiation = "none.csv" → noise.rail_radiation: received
-wheel: [noise] sleeper_width = "150 m" → noise.sleeper_width: received
-wheel: [noise] axles = 0 → a whole number at least 1
-wheel: [ball] radius = "1 mm" → ball: received an unknown key
 wheel: speed = "500 m/s" → speed: received 500 m/s; allowed: zero or more, below the critical speed
-wheel: settling = "-1 s" → settling: received '-1 s'; allowed: a time at least 0
 wheel: duration = "0.1 ms" → duration: received 0.0001 s, in which 5.6 mm are rolled; allowed: at least con
-wheel: duration = "1 h" → time steps; allowed: at most 1e+08
 wheel: duration = "2 ms" | [contact] filter_taps = 400 → at least contact.filter_taps spacings, 200 mm
 wheel: [surface] smooth = true | spectrum = "iso3095" → surface.smooth: received true beside a texture
 wheel: [surface] spectrum = "absent.csv" → "cnossos-average", or the path of a table of wavelengths and
-wheel: [surface] spectrum = 3 → surface.spectrum: received 3
-wheel: [surface] spectrum = "iso3095" | lateral = 0 → a number greater than 0, or "inf"
-wheel: [surface] rms = "1 um" | lateral = 2 → only together with spectrum
-wheel: [surface] line = "line.csv" | continuation = "refused" → "refuse", "mirror", "repeat"
-wheel: [surface] line = "line.csv" | line_unit = "kg" → a unit of length, as "um"
 wheel: [surface] corrugation = "25 um" → surface.corrugation: received no corrugation_wavelength
-wheel: [surface] smooth = true | corrugation_wavelength = "40 mm" → only together with corrugation
 wheel: [surface] corrugation = "25 um" | corrugation_wavelength = "0.5 mm" → 0.5 mm on a spacing of 0.5 mm;
-wheel: [surface] smooth = true | joint_length = "1 m" → only together with joint_depth
 wheel: [surface] joint_depth = "1 mm" | joint_position = "60 m" → received 60 m; allowed: a position that is
 wheel: [surface] spectrum = "iso3095" | level = "+70 dB" → received a level of 70 dB re 1 um; allowed: -60 to
-bodies: [body] positions = [] → body.positions: received an empty list
 bodies: [body] positions = ["0.2 m", "0.2 m"] → two contacts in the same place
 bodies: [body] positions = ["0 m", "3 m"] → less than the length of the beam, 1 m
 bodies: start = "0.99 m" | [body] positions = ["0 m", "0.5 m"] → where the foremost contact is at its end
@@ -193,21 +111,17 @@ bodies: [body] dampers = ["1 N s/m"] → 1 beside 0 springs
 bodies: [body] type = "carriage" | masses = ["0.4 kg"] | distance = "20 mm" | load = "0.1 N" → presses on them
 bodies: [body] type = "carriage" | masses = ["1 kg"] | contacts = 150 | positions = ["0 m", "1 m"] → 300
 bodies: [body] distance = "1 m" → body.distance: received of a mass
-bodies: [body] contacts = 6 → only together with type = "carriage"
 bodies: [body] groove_radius = "25 mm" → body.groove_radius (m): received 0.025 and -0.025; allowed: bodies
 bodies: [body] raceway_radius = "20 mm" | raceway = "outer" → body.raceway_radius (m): received 0.025 and
 bodies: [body] transverse_radius = "inf" → body.groove_radius (m): received inf and inf
 bodies: over = "track" | [beam] length = "2 m" → over: received "track"
 bodies: over = "structure" → the file of its modes, or receptances
-bodies: over = "track" | speed = "2000 m/s" → speed
 bodies: [beam] supports = ["0 m"] → none where an end is held
-bodies: [beam] supports = [] → beam.supports: received an empty list
 bodies: [beam] supports = ["0.3 m", "1.2 m"] → different positions on the beam of 1 m
 bodies: [beam] supports = ["0.3 m"] | support = "free" → two supports or more
 bodies: [noise] axles = 2 → noise: received a [noise] of what is rolled over a beam: axles
 bodies: [sideways] friction = 0.2 → sideways: received a [sideways] of what is rolled over a beam: friction
 bodies: [creep] spin = "1 rad/m" → creep: received a [creep] of what is rolled over a beam: spin
-bodies: over = "track" | [sideways] contact_place = "40 mm" → received 40 mm; allowed: at most 36 mm off the
 ball: [sideways] friction = 0.2 → sideways: received an unknown key
 """
 
@@ -223,7 +137,7 @@ def errors_of(text, source="case.toml"):
 def test_what_is_wrong_is_said(refused, source):
     kind, _, rest = refused.partition(": ")
     text, _, message = rest.partition(" → ")
-    errors = errors_of(case_text(KINDS[kind], text.replace("\\\\", "\\")), source)
+    errors = errors_of(case_text(KINDS[kind], text), source)
     assert any(message in error for error in errors), errors
 
 
@@ -234,14 +148,11 @@ def test_all_errors_are_reported_at_once():
     assert sorted(error.partition(": ")[0] for error in errors) == sorted(names)
 
 
-@pytest.mark.parametrize(
-    ("kind", "message"),
-    [
-        ("", "kind: received nothing"),
-        ('kind = "wheel-on-rial"', 'Did you mean "wheel-on-rail"?'),
-        ("kind = 3", 'kind: received 3; allowed: "ball-on-beam"'),
-    ],
-)
+@pytest.mark.parametrize(("kind", "message"), [
+    ("", "kind: received nothing"),
+    ('kind = "wheel-on-rial"', 'Did you mean "wheel-on-rail"?'),
+    ("kind = 3", 'kind: received 3; allowed: "ball-on-beam"'),
+])  # fmt: skip
 def test_a_kind_that_is_none_is_the_only_error(kind, message):
     (error,) = errors_of(f'{kind}\n[surface]\nrms = "1 um"')
     assert message in error
@@ -252,42 +163,7 @@ def test_text_that_is_no_toml_is_named_with_its_line():
         parse_case('kind = "ball-on-beam"\n[surface]\nrms = 0.5 um', "case.toml")
 
 
-@pytest.mark.parametrize("text", ["a = " + "[" * 5000, "a = " + "1" * 5000, "a = 1\na = 2", "\0"])
-def test_hostile_text_is_refused(text):
-    with pytest.raises(InputError):
-        parse_case(text)
-
-
-@pytest.mark.parametrize("text", ["seed = 0x" + "F" * 9000, "[numerics] rtol = 1" + "0" * 400])
-def test_huge_numbers_are_named_shortly(text):
-    (error,) = errors_of(case_text("ball-on-beam", text))
-    assert "a huge number" in error or "at most 0.01" in error
-    assert len(error) < 500
-
-
-@given(st.text(max_size=40))
-def test_any_quantity_is_a_value_or_a_clear_error(text):
-    quoted = "'''\n" + text.replace("'''", "") + "'''"
-    try:
-        radius = parse_case(
-            f'kind = "ball-on-beam"\n[ball]\nradius = {quoted}\n[surface]\nrms = "1 um"'
-        ).ball.radius
-    except InputError:
-        radius = 1.0
-    assert math.isfinite(radius)
-    assert radius > 0
-
-
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        (None, "received no such file"),
-        (b"#" * 2**21, "more than 1 MiB"),
-        (b"kind = \xff", "no UTF-8 in line 1"),
-    ],
-)
-def test_a_file_that_is_no_case_is_named(content, message, tmp_path):
-    if content is not None:
-        (tmp_path / "case.toml").write_bytes(content)
-    with pytest.raises(InputError, match=re.escape("case.toml: ") + ".*" + message):
+def test_a_file_that_is_too_large_for_a_case_is_named(tmp_path):
+    (tmp_path / "case.toml").write_bytes(b"#" * 2**21)
+    with pytest.raises(InputError, match=r"case\.toml: .*more than 1 MiB"):
         load_case(tmp_path / "case.toml")

@@ -35,15 +35,12 @@ READ = {
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [
-        ("levels", ([0.1, 0.08, 0.063, 0.05], [3, 2, 1, 0])),
-        ("modes", ([2000, 3100], [1e-4, 1e-4], [300, 250])),
-        ("ratios", ([100, 1000], [0.01, 0.8])),
-        ("receptance", (100.0 * np.arange(1, 30), [-1e-9 / n - 1e-11j for n in range(1, 30)])),
-    ],
-)
+@pytest.mark.parametrize(("name", "expected"), [
+    ("levels", ([0.1, 0.08, 0.063, 0.05], [3, 2, 1, 0])),
+    ("modes", ([2000, 3100], [1e-4, 1e-4], [300, 250])),
+    ("ratios", ([100, 1000], [0.01, 0.8])),
+    ("receptance", (100.0 * np.arange(1, 30), [-1e-9 / n - 1e-11j for n in range(1, 30)])),
+])  # fmt: skip
 def test_they_are_read_in_si(name, expected, source):
     for found, wanted in zip(READ[name][0](source.parent / f"{name}.csv"), expected, strict=True):
         np.testing.assert_allclose(found, wanted, rtol=1e-2 if name == "receptance" else 1e-12)
@@ -84,37 +81,24 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
-        (
-            "levels",
-            "wavelength (m), left (dB), right (m)\n0.1, 3, 3",
-            "the heading 'right (m)'; allowed: level",
-        ),
+        ("levels", "wavelength (m), left (dB), right (m)\n0.1, 3, 3", "heading 'right (m)'; allowed: level"),
         ("levels", "wavelength (m), left (dB), right (dB)\n0.1, 3, 3\n0.08, 2", "'0.08, 2' in line 3"),
-        ("levels", "wavelength (m), left (dB), right (dB)\n0.1, 3", "'0.1, 3' in line 2"),
         ("levels", "Site; A\nDate; 1 May\n100; 3", f"heading 'Date, 1 May'; allowed: {ASKED}"),
         ("levels", "frequency (Hz), level (dB)\n100, 3", "'frequency (Hz)'; allowed: wavelength in m"),
         ("levels", LEVELS + "0.1, 3\n0.063, 1", "a gap in the bands between 100 mm and 63 mm"),
         ("levels", LEVELS + "0.1, 3\n0.09, 1", "bands closer than one-third octaves between 100 mm and 90"),
-        ("levels", LEVELS + "0.1, 3\n0.1, 1", "bands closer than one-third octaves"),
         ("levels", LEVELS + "0.1, 3\n0, 1", "a wavelength of 0 m"),
         ("levels", LEVELS + "0.1, 3\n0.08", "'0.08' in line 3; allowed: a table with the columns wave"),
         ("levels", LEVELS + "0.1, 3\n0.08, nan", "'0.08, nan' in line 3"),
-        ("levels", LEVELS + "0.1, 3\n0.08, inf", "'0.08, inf' in line 3"),
         ("levels", "wavelength (kg), level (dB)\n0.1, 3", "'wavelength (kg)'; allowed: wavelength in m"),
         ("levels", "100, 3\n80, 2", f"no heading; allowed: {ASKED}"),
-        ("levels", "# from the lab (PDF)\n100, 3\n80, 2", f"no heading; allowed: {ASKED}"),
         ("levels", "wavelength, level (dB)\n100, 3", f"heading 'wavelength, level (dB)'; allowed: {ASKED}"),
-        (
-            "levels",
-            "level [dB], wavelength [mm]\n3, 100",
-            "'level [dB]' for the wavelength; allowed: columns",
-        ),
+        ("levels", "level [dB], wavelength [mm]\n3, 100", "'level [dB]' for the wavelength; allowed: colu"),
         ("levels", "wavelength (m), level (dB re 1 nm)\n0.1, 3", "the heading 'level (dB re 1 nm)'"),
         ("levels", "# nothing", "no line of numbers"),
         ("levels", "100 mm, 3\n80 mm, 2", "'100 mm, 3' in line 1"),
         ("modes", MODES + "0, 0.1, 300", "a frequency of 0; allowed: greater than 0 Hz"),
         ("modes", MODES + "2000, 0, 300", "a damping ratio of 0; allowed: greater than 0 and less than 1"),
-        ("modes", MODES + "2000, 1, 300", "a damping ratio of 1"),
         ("modes", MODES + "2000, 0.1, -3", "a modal mass of -3; allowed: greater than 0 kg"),
         ("modes", MODES + "2000, 0.1", "'2000, 0.1' in line 2"),
         ("modes", SHAPES + "2000, 0.1, 300, 1.5, 4, 0.5", "nodal diameters of 1.5; allowed: a whole number"),
@@ -123,24 +107,19 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("modes", SHAPES + "2000, 0.1, 300, 2, 4", "or with these and nodal diameters (1), axial velo"),
         ("modes", SHAPES + "2000, 0.1, 300, 2, 4, 1\n2100, 0.1, 300", "'2100, 0.1, 300' in line 3"),
         ("ratios", RATIOS + "100, 0.1\n100, 0.2", "do not rise; allowed: rising frequencies, all above 0 Hz"),
-        ("ratios", RATIOS + "0, 0.1\n100, 0.2", "frequencies that do not rise"),
         ("ratios", RATIOS + "100, 0\n200, 0.2", "a radiation ratio of 0; allowed: greater than 0"),
         ("receptance", RECEPTANCE + "100, 1, 1\n" * 3, "3 frequencies; allowed: at least 10"),
-        ("receptance", RECEPTANCE + "100, 1, 1\n" * 12, "frequencies that do not rise"),
         ("receptance", RECEPTANCE + "0, 1, 1\n" + TWELVE, "frequencies that do not rise; allowed: rising"),
         ("receptance", "f (Hz), imaginary (m/N), real (m/N)\n" + TWELVE, "'imaginary (m/N)' for the real"),
         ("rates", RATES + "100, 4\n125, 5\n", "2 frequencies; allowed: at least 3"),
         ("rates", RATES + "100, 4\n125, -5\n160, 4", "a decay rate of -5 dB/m; allowed: 0.01 to 200 dB/m"),
-        ("rates", RATES + "100, 4\n125, 0\n160, 4", "a decay rate of 0 dB/m"),
         ("rates", RATES + "100, 400\n125, 500\n160, 4", "a decay rate of 400 dB/m; allowed: 0.01"),
-        ("rates", RATES + "100, 4\n160, 5\n125, 4", "frequencies that do not rise"),
         ("rates", RATES + "100, 4\n125, 5\n126, 4", "twice the band of 126 Hz; allowed: centres"),
         ("rates", RATES + "100, 4\n110, 5\n120, 4", "a frequency of 110 Hz; allowed: centres of"),
         ("rates", "f (Hz), rate (dB/km)\n100, 4\n", "the heading 'rate (dB/km)'; allowed: vertical decay"),
         ("rates", "f (Hz), rate\n100, 4\n", "the heading 'f (Hz), rate'; allowed: a heading with the units"),
         ("rates", "f (Hz), lateral (dB/m), vertical (dB/m)\n100, 1, 4\n", "'lateral (dB/m)' for the vert"),
         ("mobility", MOBILITY + "100, 1e-5\n200, 1e-5\n", "2 frequencies; allowed: at least 3"),
-        ("mobility", MOBILITY + "100, 1e-5\n90, 1e-5\n300, 1", "frequencies that do not rise"),
         ("mobility", MOBILITY + "100, 1e-5\n200, -1e-5\n300, 1e-5", "a mobility of -1e-05 (m/s)/N"),
         ("mobility", MOBILITY + "100, 15\n200, 12\n300, 9", "a mobility of 15 (m/s)/N; allowed: 1e-09 to"),
         ("mobility", "f (Hz), size (kg)\n100, 1\n", "'size (kg)'; allowed: magnitude or real part in"),
@@ -151,7 +130,6 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("passage", PASSAGE + "12, 76", "begins at 60.0 and ends at 76.0 dB(A); allowed: one that begins"),
         ("passage", PASSAGE + "12, 1e3", "a level of 1e+03 dB re 20 uPa; allowed: -20 to 180 dB"),
         ("passage", "time (s), p (Pa)\n0, 1\n", "the heading 'p (Pa)'; allowed: level in dB(A)"),
-        ("bands", "f (Hz), L (dB)\n100, 60\n200, 70", "2 frequencies; allowed: at least 3"),
         ("bands", "f (Hz), L (dB)\n100, 60\n200, 70\n201, 60", "twice the band of 201 Hz"),
         ("bands", "t (s), L (dB)\n1, 60\n2, 70\n3, 60", "the heading 't (s)'; allowed: frequency in Hz"),
     ],
@@ -214,19 +192,11 @@ OMEGA = 2.0 * np.pi * np.array([100.0, 200.0, 400.0])
 TRUE = np.array([2e-5 + 1e-5j, 1e-5 - 2e-5j, 3e-5 + 0j])
 
 
-@pytest.mark.parametrize(
-    ("unit", "numbers"),
-    [
-        ("(m/s)/N", TRUE),
-        ("m/(N s)", TRUE),
-        ("m/(Ns)", TRUE),
-        ("mm/s/kN", 1e6 * TRUE),
-        ("m/s^2/N", 1j * OMEGA * TRUE),
-        ("(m/s²)/N", 1j * OMEGA * TRUE),
-        ("m/N", TRUE / (1j * OMEGA)),
-        ("m/kN", 1e3 * TRUE / (1j * OMEGA)),
-    ],
-)
+@pytest.mark.parametrize(("unit", "numbers"), [
+    ("(m/s)/N", TRUE), ("m/(N s)", TRUE), ("m/(Ns)", TRUE), ("mm/s/kN", 1e6 * TRUE),
+    ("m/s^2/N", 1j * OMEGA * TRUE), ("(m/s²)/N", 1j * OMEGA * TRUE),
+    ("m/N", TRUE / (1j * OMEGA)), ("m/kN", 1e3 * TRUE / (1j * OMEGA)),
+])  # fmt: skip
 def test_a_mobility_is_read_in_its_three_forms(unit, numbers, tmp_path):
     rows = zip((100, 200, 400), numbers, strict=True)
     text = "".join(f"{f}; {y.real:.12g}; {y.imag:.12g}\n" for f, y in rows)

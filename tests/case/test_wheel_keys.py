@@ -30,9 +30,8 @@ def outline_file(tmp_path, outline, heading="radius (mm), axial place (mm)"):
 def test_a_named_section_and_its_outline_in_millimetres_have_the_same_modes(tmp_path):
     named = wheel_on_rail(section="curved-web").rolling
     path = outline_file(tmp_path, named.outline)
-    (tmp_path / "case.toml").write_text(
-        'kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n[wheel]\nsection = "outline.csv"\n'
-    )
+    surface = 'kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'
+    (tmp_path / "case.toml").write_text(f'{surface}[wheel]\nsection = "outline.csv"\n')
     drawn = load_case(tmp_path / "case.toml").rolling
     assert drawn.section == path
     assert drawn.outline == pytest.approx(named.outline, rel=1e-12)
@@ -43,9 +42,8 @@ def test_a_named_section_and_its_outline_in_millimetres_have_the_same_modes(tmp_
 
 def test_dimensions_override_the_named_section():
     thick = wheel_on_rail(section="straight-web", web_thickness="40 mm")
-    assert thick.rolling.outline == pytest.approx(
-        WheelSection.named("straight-web", web_thickness=0.04).outline(0.46)
-    )
+    drawn = WheelSection.named("straight-web", web_thickness=0.04).outline(0.46)
+    assert thick.rolling.outline == pytest.approx(drawn)
     told = {each["key"]: each["value"] for each in thick.parameters()}
     assert told["wheel.web_thickness"] == "40 mm"
     assert told["wheel.web_thickness_rim"] == f"{1e3 * SECTIONS['straight-web']['web_thickness_rim']:g} mm"
@@ -57,9 +55,8 @@ def test_dimensions_override_the_named_section():
 def test_damping_is_that_of_the_nodal_diameters_and_of_dampers():
     modes = wheel_on_rail(section="curved-web", modal_damping=[2e-3, 2e-2, 3e-4], added_damping=5e-3)
     found = modes.rolling.standing_modes(400.0)
-    assert found.damping_ratios == pytest.approx(
-        [(2e-3, 2e-2, 5.3e-3)[min(n, 2)] for n in found.nodal_diameters]
-    )
+    expected = [(2e-3, 2e-2, 5.3e-3)[min(n, 2)] for n in found.nodal_diameters]
+    assert found.damping_ratios == pytest.approx(expected)
 
 
 def test_modes_go_up_to_a_quarter_beyond_the_highest_frequency():
@@ -99,10 +96,8 @@ test_what_does_not_fit_is_refused = refusals(
     ({"section": "curved-web", "modes": MODES}, "both section and modes"),
     ({"section": "curved"}, 'Did you mean "curved-web"?'),
     ({"section": "rigid", "web_thickness": "20 mm"}, "only together with section"),
-    ({"section": "rigid", "added_damping": 0.01}, "only together with section"),
     ({"section": "curved-web", "radius": "0.15 m"}, "allowed: bore, hub and rim one outside"),
     ({"section": "curved-web", "mass": "200 kg"}, "that of the drawn wheel"),
-    ({"section": "curved-web", "added_damping": 0.95}, "at most 0.9"),
     ({"section": rectangle(0.3)}, "a running circle of 300 mm"),
     ({"section": rectangle(0.46), "web_bend": "1 mm"}, "only together with"),
     ({"section": rectangle(0.46)[[0, 2, 1, 3]]}, "that touch"),
