@@ -1,4 +1,4 @@
-"""Checks of the contact: Hertz, Love, the program CONTACT, peers, hardness, and traps."""
+"""Checks of the contact: Hertz, Love, the program CONTACT, peers, and hardness."""
 
 import json
 from functools import partial
@@ -280,7 +280,7 @@ def plastic_peer():
         yield row("volume of the marks", found["volume"], mark.sum() * half_space.cell_area, "µm³")
 
 
-# --- hardness, first touch, hard starts -------------------------------------------------------
+# --- hardness ---------------------------------------------------------------------------------
 
 
 def hardness():
@@ -289,18 +289,6 @@ def hardness():
     source = "mean pressure of full plasticity is the hardness"
     what = "flat window pressed far: force"
     yield Check(what, cap * (n * spacing) ** 2, contact.force, "N", source=source, tolerance=1e-12)
-    rough = HalfSpace((64, 64), spacing, 100e9, hardness=cap)
-    heights = 1e-6 * np.random.default_rng(3).standard_normal((64, 64))
-    load = 0.97 * cap * (64 * spacing) ** 2
-    pressed = rough.solve(-heights, load=load)
-    what = "rough window under 97 % of what it carries (trap: ContactMechanics does not converge): load met"
-    yield Check(what, load, pressed.force, "N", source="equilibrium", tolerance=1e-9)
-    row = partial(Check, body="the same", absolute=True)
-    above = (pressed.pressure > cap * (1 + 1e-12)).sum()
-    yield row("cells above the hardness", 0.0, above, source="0 ≤ p ≤ H", tolerance=0.0)
-    gap = pressed.gap[(pressed.pressure > 0) & (pressed.pressure < cap)].max()
-    what = "gap of the cells that are elastic"
-    yield row(what, 0.0, gap, "µm", source="complementarity", tolerance=1e-5)
 
 
 def full_plasticity():
@@ -332,47 +320,3 @@ def scratch_hardness():
     what = "groove of a ball rolled far beyond yield: width, of 40 cells"
     source = "scratch hardness, ASTM G171; tolerance: half a row"
     yield Check(what, width, 2 * np.sqrt(-top / slope), "mm", source=source, tolerance=0.025)
-
-
-def shakedown():
-    """A smooth ball above yield rolls itself a groove that carries it at the hardness."""
-    n, spacing, load, cap = 41, 8e-6, 2.0, 0.18e9
-    gap = ball_on_cells(n, spacing, 25e-3)
-    surface = HalfSpace((n, n), spacing, 115e9, cap).run_in(np.zeros((120, n)), gap, load)
-    elastic = HalfSpace((n, n), spacing, 115e9)
-    peak = max(elastic.solve(gap - surface.heights[m : m + n], load=load).pressure.max() for m in (30, 40))
-    what = "ball with Hertz's 0.201 GPa on steel of 0.18 GPa, run in to shakedown: largest elastic pressure"
-    source = "shakedown: p ≤ H; tolerance: 1/1000 of the approach"
-    yield Check(what, cap, peak, "GPa", source=source, tolerance=0.01)
-
-
-def first_touch():
-    """One node touches: the load to approach curve starts as that of a single cell."""
-    gap = np.full((16, 16), 1e-6)
-    gap[5, 9] = 0.2e-6
-    h, modulus = 2e-6, 100e9
-    half_space = HalfSpace((16, 16), h, modulus)
-    force = float(0.05e-6 * h * modulus / (4 * mp.log(1 + mp.sqrt(2)) / mp.pi))
-    row = partial(Check, source="Love's self term", tolerance=1e-10)
-    found = half_space.solve(gap, approach=0.25e-6)
-    yield row("one node touches, at an approach: force", force, found.force, "N")
-    found = half_space.solve(gap, load=force)
-    yield row("one node touches, under that load: approach", 0.25e-6, found.approach, "µm")
-    apart = half_space.solve(gap, approach=0.2e-6).force
-    source = "complementarity"
-    yield Check("at first touch: force", 0.0, apart, "N", source=source, tolerance=0.0, absolute=True)
-
-
-def cold_start():
-    """White noise pressed under a load from nothing: projected conjugate gradients may cycle there."""
-    h = 1e-6
-    x = (np.arange(96) - 48) * h
-    rough = 0.3e-6 * np.random.default_rng(11).standard_normal((96, 96))
-    gap = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * 5e-3) - rough
-    half_space = HalfSpace((96, 96), h, 115e9, hardness=6e9)
-    contact = half_space.solve(gap, load=2.0, rtol=1e-9)
-    what = "white noise, capped, from a cold start (trap: cycling): load met"
-    yield Check(what, 2.0, contact.force, "N", source="equilibrium", tolerance=1e-9)
-    again = half_space.solve(gap, approach=contact.approach, rtol=1e-9).force
-    what, source = "the same at the approach found: force", "uniqueness of the solution"
-    yield Check(what, 2.0, again, "N", source=source, tolerance=1e-6)

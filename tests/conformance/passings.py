@@ -15,7 +15,6 @@ from asperity.radiation.pass_by import (
     pass_by_levels,
     pressure_level,
     squared_pressure,
-    time_weighted,
 )
 from asperity.radiation.sound_path import PorousGround
 from asperity.reference.grounds import GROUNDS
@@ -53,15 +52,6 @@ def spread():
         expected = mp.quad(integrand, [-mp.inf, *sorted((-along, 0)), mp.inf])
         what = f"spread over {length:g} m, {along:g} m along the rail: mean of 1/d²"
         yield row(what, expected, divergence(length, 7.5, along))
-
-
-def weighting():
-    """Time weighting F falls by 10 lg(e)/0.125 s."""
-    values = np.repeat([1.0, 0.0], [100, 500])
-    found = pressure_level(time_weighted(values, 5e-3))
-    expected, slope = 10 * mp.log10(mp.e) / mp.mpf("0.125"), (found[200] - found[201]) / 5e-3
-    source = "IEC 61672-1, time constant 125 ms: 34.7 dB/s"
-    yield Check("decay of time weighting F", expected, slope, "dB/s", source=source, tolerance=1e-9)
 
 
 def ground():

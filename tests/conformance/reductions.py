@@ -8,11 +8,7 @@ from ledger import Check
 from scipy.integrate import cumulative_trapezoid
 
 from asperity import HalfSpace, Hertz
-from asperity.laws import HertzLaw, Linear, Printed, Shifted
-from asperity.laws.layout import force
-from asperity.reduction.filter import punch_taps, response
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.texture import StateTexture, areal_texture
+from asperity.laws import Linear
 from asperity.reference.materials import material
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
@@ -41,40 +37,6 @@ def filter_of_the_half_space():
         what = f"ball over a sine of ka = {q:g}: force over stiffness times height"
         source = "transform of the flat-punch pressure, sin q/q; tolerance: 16 cells in a"
         yield Check(what, mp.sinc(q), found, source=source, tolerance=tolerance, absolute=True)
-
-
-def punch():
-    a, dx = 100e-6, 1e-6
-    heights = np.zeros((801, 401))
-    x = (np.arange(801) - 400) * dx
-    source = "sin q/q; tolerance: 100 cells in a"
-    for q in (1.0, 2.5):
-        heights[:] = np.cos(q / a * x)[:, None] * 1e-9
-        texture = areal_texture(heights, (dx, dx), [0.0, 1e-6], [(a, a), (a, a)], start=x[0])
-        found = -texture.at(np.array([0.0]))[0, 0] / 1e-9
-        what = f"`areal` on a sine of ka = {q:g}: height under the patch"
-        yield Check(what, mp.sinc(q), found, source=source, tolerance=2e-3, absolute=True)
-    taps = punch_taps(np.array([a]), 2e-6)
-    for q in (0.0, 1.0, 2.0, 4.0):
-        found, expected = response(taps, 2e-6, np.array([q / (2 * np.pi * a)]))[0, 0], float(mp.sinc(q))
-        what = f"taps of Hertz's patch at ka = {q:g}: response"
-        found = np.copysign(found, expected)
-        yield Check(what, expected, found, source="sin q/q", tolerance=5e-3, absolute=True)
-
-
-def laws():
-    curve, bump = ForceCurve.hertz(2.4e10), 0.2e-6
-    lifted = StateTexture.unfiltered(np.full(8, bump), 1e-3, 0.0)
-    hertz, follows = (mp.mpf("2.4e10") * mp.mpf(s) ** mp.mpf("1.5") for s in ("1.5e-6", "1.3e-6"))
-    power, pit = "F = K s^1.5", "over a pit of 0.2 µm"
-    printed, linear = hertz / mp.mpf("1.5e-6") * mp.mpf("1.3e-6"), 50.0 + 5e7 * 0.3e-6
-    for what, law, expected, source, tolerance in (
-        ("`hertz` on a smooth path", HertzLaw(2.4e10, None), hertz, power, 1e-12),
-        (f"`shifted` {pit}", Shifted(curve, lifted), follows, power, 1e-9),
-        (f"`printed` {pit}", Printed(curve, lifted, 0.0), printed, "thesis Eq. 2.1, k_c(r)(r − h̃)", 1e-9),
-        (f"`linear` {pit}", Linear(50.0, 5e7, 1e-6, lifted), linear, "P + k(s − s₀ − h)", 1e-12),
-    ):
-        yield Check(what, expected, force(law, [3e-3], 1.5e-6)[0], "N", source=source, tolerance=tolerance)
 
 
 def moving_force():
