@@ -1,7 +1,13 @@
-"""One body rolls on one contact: the records of `roll_bodies` without the dimension for contacts."""
+"""One body rolls on one contact: the records of `roll_bodies` without the dimension for contacts.
+
+With laws that Python steps, and a checkpoint in memory.
+"""
 
 from types import SimpleNamespace
 
+import numpy as np
+
+from asperity.kernels.pointforce import evaluate_all
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body
 from asperity.structures.rail_poles import RailBetween
@@ -30,3 +36,44 @@ def roll_wheel(rail, wheel, law, **path):
     between = RailBetween(rail, {})
     own = {"positions": [0.0], "speed": between.kernel.speed, "time_step": between.kernel.time_step}
     return first_contact(roll_bodies(between, [wheel.body], [law], **own, **path))
+
+
+class Shelf:
+    """A checkpoint in memory, which holds what was saved last."""
+
+    arrays = None
+
+    def load(self):
+        return self.arrays
+
+    def save(self, arrays):
+        self.arrays = {name: np.array(value) for name, value in arrays.items()}
+
+
+class Stepped:
+    """A law that Python steps, with the force of another one."""
+
+    name = "stepped"
+
+    def __init__(self, law):
+        self.law, self.damping = law, law.damping
+
+    def prepare(self, positions):
+        self.prepared, self.accepted, self.warned = self.law.prepare(positions), 0, 0
+        return self
+
+    def evaluate(self, step, approach):
+        force, slope, _ = evaluate_all(self.prepared, np.array([approach]), step)
+        return force[0], slope[0]
+
+    def accept(self, step):
+        self.accepted += 1
+
+    def state(self):
+        return {"accepted": np.array(self.accepted)}
+
+    def restore(self, state):
+        self.accepted = int(state["accepted"])
+
+    def warn_of_flaws(self):
+        self.warned += 1

@@ -6,11 +6,11 @@ from numpy.testing import assert_allclose
 
 from asperity import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
-from asperity.errors import InputError
 from asperity.reduction import filter
 from asperity.reduction.filter import FLOOR, design_fir, filter_spectra
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
+from refusals import refusals
 
 MODULUS, RADIUS, DELTA = 115e9, 25e-3, 1.2e-6
 HERTZ = Hertz(MODULUS, RADIUS, RADIUS)
@@ -217,10 +217,9 @@ def test_closed_form_of_smooth_bodies():
     assert found.normalise == "tangent"
 
 
-@pytest.mark.parametrize(
-    ("forces", "heights", "message"),
-    [(20, 21, "a whole number of heights a force"), (10, 20, "at least 16"), (20, 20, "a flat surface")],
+test_bad_input = refusals(
+    (20, 21, "a whole number of heights a force"),
+    (10, 20, "at least 16"),
+    (20, 20, "a flat surface"),
+    of=lambda forces, heights: filter_spectra(np.ones((1, forces)), np.ones((1, heights)), 1.0),
 )
-def test_bad_input(forces, heights, message):
-    with pytest.raises(InputError, match=message):
-        filter_spectra(np.ones((1, forces)), np.ones((1, heights)), 1.0)

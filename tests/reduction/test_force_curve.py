@@ -1,14 +1,13 @@
 """The force curve and the force table."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from asperity.errors import InputError
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
+from refusals import refusals
 
 K = 3.2e10
 
@@ -107,28 +106,23 @@ def table(forces, *rest):
     ForceTable(np.array(forces), [0.0, 1.0][: len(forces)], 0.0, 1e-6, *rest)
 
 
-@pytest.mark.parametrize(
-    ("make", "arguments", "message"),
-    [
-        (samples, ([0.0, 1e-6], [0.0, 1.0]), "at least two positive"),
-        (samples, ([0.0, 1e-6, 2e-6], [0.0, 2.0, 1.0]), "strictly increasing forces"),
-        (samples, ([0.0, 0.0, 2e-6], [0.0, 1.0, 2.0]), "strictly increasing approaches"),
-        (samples, ([0.0, 1e-6, 2e-6], [-1.0, 1.0, 2.0]), "none negative"),
-        (samples, ([0.0, 1e-6], [0.0, 1.0, 2.0]), "two lists of one length"),
-        (samples, ([0.0, 1e-6, 2e-6], [0.0, np.nan, 2.0]), "finite numbers"),
-        (ForceCurve.hertz, (0.0,), "Hertz constant"),
-        (ForceCurve.linear, (1.0, np.nan), "contact stiffness"),
-        (ForceCurve.hertz(K).inverse, (-1.0,), "only pushes"),
-        (table, ([np.ones(8)],), "at least two states"),
-        (table, (-np.ones((2, 8)),), "zero or more"),
-        (table, ([np.ones(8), np.zeros(8)],), "forces that rise"),
-        (
-            table,
-            (np.ones((2, 8)), np.zeros(7)),
-            "first touches of the force table: received 7 numbers; allowed: 8 finite approaches",
-        ),
-    ],
+test_messages = refusals(
+    (samples, ([0.0, 1e-6], [0.0, 1.0]), "at least two positive"),
+    (samples, ([0.0, 1e-6, 2e-6], [0.0, 2.0, 1.0]), "strictly increasing forces"),
+    (samples, ([0.0, 0.0, 2e-6], [0.0, 1.0, 2.0]), "strictly increasing approaches"),
+    (samples, ([0.0, 1e-6, 2e-6], [-1.0, 1.0, 2.0]), "none negative"),
+    (samples, ([0.0, 1e-6], [0.0, 1.0, 2.0]), "two lists of one length"),
+    (samples, ([0.0, 1e-6, 2e-6], [0.0, np.nan, 2.0]), "finite numbers"),
+    (ForceCurve.hertz, (0.0,), "Hertz constant"),
+    (ForceCurve.linear, (1.0, np.nan), "contact stiffness"),
+    (ForceCurve.hertz(K).inverse, (-1.0,), "only pushes"),
+    (table, ([np.ones(8)],), "at least two states"),
+    (table, (-np.ones((2, 8)),), "zero or more"),
+    (table, ([np.ones(8), np.zeros(8)],), "forces that rise"),
+    (
+        table,
+        (np.ones((2, 8)), np.zeros(7)),
+        "first touches of the force table: received 7 numbers; allowed: 8 finite approaches",
+    ),
+    of=lambda make, arguments: make(*arguments),
 )
-def test_messages(make, arguments, message):
-    with pytest.raises(InputError, match=message):
-        make(*arguments)

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.reduction.texture import LongConvolution, StateTexture, areal_texture, punch_weights
+from refusals import refusals
 
 
 @pytest.mark.parametrize("axes", [(40e-6, 40e-6), (60e-6, 25e-6), (3e-6, 90e-6), (1e-6, 1e-6)])
@@ -71,17 +72,12 @@ def strip(rows, columns, *axes):
     areal_texture(np.zeros((rows, columns)), (1.0, 1.0), [0.0], [axes])
 
 
-@pytest.mark.parametrize(
-    ("make", "arguments", "message"),
-    [
-        (StateTexture, (np.zeros((2, 8)), [0.0], 0.0, 1e-6), r"\(2, 8\) values for 1 states"),
-        (StateTexture, (np.zeros((2, 8)), [1e-6, 0.0], 0.0, 1e-6), "strictly increasing"),
-        (StateTexture, (np.full((1, 8), np.nan), [0.0], 0.0, 1e-6), "missing points"),
-        (StateTexture, (np.zeros((1, 8)), [0.0], 0.0, 0.0), r"spacing of the state texture \(m\)"),
-        (strip, (50, 40, 5.0, 5.0), "an odd number"),
-        (strip, (50, 9, 5.0, 5.0), "widest patch, 10 m.*Enlarge contact.window"),
-    ],
+test_messages = refusals(
+    (StateTexture, (np.zeros((2, 8)), [0.0], 0.0, 1e-6), r"\(2, 8\) values for 1 states"),
+    (StateTexture, (np.zeros((2, 8)), [1e-6, 0.0], 0.0, 1e-6), "strictly increasing"),
+    (StateTexture, (np.full((1, 8), np.nan), [0.0], 0.0, 1e-6), "missing points"),
+    (StateTexture, (np.zeros((1, 8)), [0.0], 0.0, 0.0), r"spacing of the state texture \(m\)"),
+    (strip, (50, 40, 5.0, 5.0), "an odd number"),
+    (strip, (50, 9, 5.0, 5.0), "widest patch, 10 m.*Enlarge contact.window"),
+    of=lambda make, arguments: make(*arguments),
 )
-def test_messages(make, arguments, message):
-    with pytest.raises(InputError, match=message):
-        make(*arguments)

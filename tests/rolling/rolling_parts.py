@@ -1,4 +1,4 @@
-"""What tests of rolling share: rough paths, differences relative to the largest value, a checkpoint."""
+"""What tests of rolling share: rough paths, and differences relative to the largest value."""
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -15,15 +15,3 @@ def rough(rms, spacing, start, points=4000, seed=2):
 
 def same(found, expected, rel=1e-9):
     assert_allclose(found, expected, rtol=0.0, atol=rel * np.abs(expected).max())
-
-
-class Shelf:
-    """A checkpoint in memory, which holds what was saved last."""
-
-    arrays = None
-
-    def load(self):
-        return self.arrays
-
-    def save(self, arrays):
-        self.arrays = {name: np.array(value) for name, value in arrays.items()}

@@ -7,13 +7,14 @@ import pytest
 from numpy.testing import assert_allclose
 from rolling_parts import rough, same
 
-from asperity.errors import ExtrapolationWarning, InputError
-from asperity.kernels.pointforce import evaluate
+from asperity.errors import ExtrapolationWarning
 from asperity.laws import HertzLaw, Linear
 from asperity.rolling.mechanism import Edge, Mechanism, Side, roll_mechanism
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body, chain
 from asperity.structures.modal import ModalStructure
+from one_contact import Stepped
+from refusals import refusals
 
 SPEED, STEP, TIME = 1.0, 1e-5, 0.02
 MASS, ABOVE, SPRING, LOAD = 0.02, 0.5, 4e6, 8.0
@@ -80,18 +81,6 @@ def test_two_structures_swing_against_each_other_with_their_reduced_mass():
     assert_allclose(swing, k * 1e-6 * np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
 
 
-def test_two_bodies_that_touch_are_one_of_both():
-    """Two free masses pressed together; a wave under the contact raises its force at once."""
-    none = np.zeros((2, 2))
-    pair = Body(np.diag([0.2, 0.8]), none, none, np.array([[1.0, -1.0]]), np.array([3.0, -3.0]), np.zeros(1))
-    edge = Edge(Linear(0.0, 1e6), along, heights=lambda first, stop: 1e-6 * (np.arange(first, stop) > 9))
-    run = roll_mechanism(Mechanism([], [pair], [edge]), 3.0, time_step=STEP, duration=TIME)
-    omega, time = np.sqrt(1e6 * (1 / 0.2 + 1 / 0.8)), STEP * np.arange(run.contact_force.shape[1])
-    assert_allclose(run.contact_force[0, 10:] - 3.0, np.cos(omega * (time[10:] - 9.5 * STEP)), atol=0.02)
-    centre = 0.2 * run.bodies[0][0] + 0.8 * run.bodies[0][1]
-    assert_allclose(centre, centre[0], atol=1e-15)
-
-
 def test_a_law_beyond_its_data_is_warned_of():
     class Short:
         name, damping = "short", 0.0
@@ -104,39 +93,10 @@ def test_a_law_beyond_its_data_is_warned_of():
         roll_mechanism(Mechanism([], [ball], [Edge(Short(), along)]), LOAD, time_step=STEP, duration=1e-3)
 
 
-class Solved:
-    """A law that Python evaluates in every step, the same as another."""
-
-    name, damping = "solved", BELOW.damping
-
-    def prepare(self, positions):
-        return Stepped(BELOW.prepare(positions))
-
-
-class Stepped:
-    def __init__(self, law):
-        self.law, self.warned = law, False
-
-    def evaluate(self, step, approach):
-        return evaluate.py_func(self.law, step, approach)
-
-    def accept(self, step):
-        pass
-
-    def state(self):
-        return {}
-
-    def restore(self, state):
-        pass
-
-    def warn_of_flaws(self):
-        pass
-
-
 def test_laws_that_are_solved_in_every_step_go_beside_others():
     """The same law looked up; heights of an edge raise both."""
     runs = []
-    for law in (BELOW, Solved()):
+    for law in (BELOW, Stepped(BELOW)):
         made = between(STEP)
         edge = Edge(law, along, heights=lambda first, stop: 1e-7 * np.sin(np.arange(first, stop) / 30.0))
         made = replace(made, edges=[edge, made.edges[1]])
@@ -148,13 +108,7 @@ def test_laws_that_are_solved_in_every_step_go_beside_others():
 BALL = Body.rigid(MASS, LOAD)
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: Mechanism([], [BALL], []), "edges.*0 for 1 contacts.*one for each contact of a body"),
-        (lambda: Mechanism([], [BALL], [Edge(BELOW, along, (Side(0, along),))]), "structure of a contact"),
-    ],
+test_what_is_no_mechanism_is_refused = refusals(
+    (lambda: Mechanism([], [BALL], []), "edges.*0 for 1 contacts.*one for each contact of a body"),
+    (lambda: Mechanism([], [BALL], [Edge(BELOW, along, (Side(0, along),))]), "structure of a contact"),
 )
-def test_what_is_no_mechanism_is_refused(make, message):
-    with pytest.raises(InputError, match=f"(?s){message}"):
-        make()

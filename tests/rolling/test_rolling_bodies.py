@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from rolling_parts import Shelf, rough, same
+from rolling_parts import rough, same
 
-from asperity.kernels.pointforce import evaluate
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
@@ -13,7 +12,7 @@ from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body, carriage, chain
 from asperity.structures.modal import ModalStructure
-from one_contact import first_contact
+from one_contact import Shelf, Stepped, first_contact
 
 STEEL = material("steel")
 BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)
@@ -150,34 +149,11 @@ def test_evaluations_for_each_contact_do_not_grow_with_their_number():
     assert each[1] < 1.3 * each[0] < 8.0
 
 
-class Stepped:
-    """A law that Python steps, and that can be interrupted."""
-
-    name, damping = "stepped", 2.0
-
-    def __init__(self, law, fails_at=-1):
-        self.law, self.fails_at = law, fails_at
-
-    def prepare(self, positions):
-        self.prepared, self.accepted, self.warned = self.law.prepare(positions), 0, 0
-        return self
-
+class Interrupted(Stepped):
     def evaluate(self, step, approach):
-        if step == self.fails_at:
+        if step == 57:
             raise KeyboardInterrupt
-        return evaluate(self.prepared, step, approach)
-
-    def accept(self, step):
-        self.accepted += 1
-
-    def state(self):
-        return {"accepted": np.array(self.accepted)}
-
-    def restore(self, state):
-        self.accepted = int(state["accepted"])
-
-    def warn_of_flaws(self):
-        self.warned += 1
+        return super().evaluate(step, approach)
 
 
 def test_laws_that_python_steps_stand_beside_compiled_ones_and_go_on_amid_a_step():
@@ -190,7 +166,7 @@ def test_laws_that_python_steps_stand_beside_compiled_ones_and_go_on_amid_a_step
     same(found.contact_force, expected.contact_force, 2e-5)
     assert (whole.accepted, whole.warned) == (100, 1)
     with pytest.raises(KeyboardInterrupt):
-        roll_bodies(BEAM, bodies, [*laws[:2], Stepped(laws[2], 57)], checkpoint=shelf, **path)
+        roll_bodies(BEAM, bodies, [*laws[:2], Interrupted(laws[2])], checkpoint=shelf, **path)
     again = roll_bodies(BEAM, bodies, [*laws[:2], resumed], checkpoint=shelf, **path)
     assert int(shelf.arrays["law.2.accepted"]) == resumed.accepted == 100
     for name in ("contact_force", "relative_displacement", "over_displacement", "acceleration"):

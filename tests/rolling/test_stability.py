@@ -14,14 +14,11 @@ from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling import steps
-from asperity.rolling.assembly import alternating, body_loads, system_of
-from asperity.rolling.ground import Path, ground_of
 from asperity.rolling.roll import roll_bodies
-from asperity.rolling.steps import alternating_of_modes, modal_coefficients, resolved_step
 from asperity.structures.beam import Beam
-from asperity.structures.body import Ball, Body, carriage
+from asperity.structures.body import Ball, carriage
 from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.rail_poles import RailBetween, rail_poles
+from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 from one_contact import roll_ball, roll_wheel
@@ -116,54 +113,11 @@ def test_no_step_of_a_wheel_grows(poles, mass, stiffness, damping, modes):
     assert not grows(run.contact_force, 65e3, 0.1)
 
 
-def of_body(body, h):
-    """Its alternating compliance at its contact."""
-    ground = ground_of(None, Path(np.zeros((1, 2)), 1.0, h), np.zeros(0))
-    return alternating(system_of(ground, [body], body_loads([body]), h, 1.0))[0]
-
-
-def test_what_alternating_forces_meet_is_that_of_masses_springs_and_long_runs(poles):
-    # of a free mass that of Newmark's β = 1/6 at the highest frequency: −h²/12m, as of a slow mode
-    h, mass = 1e-4, 0.3
-    slow = alternating_of_modes(modal_coefficients([1e-3], [0.0], h))[0] / mass
-    assert slow == pytest.approx(-(h**2) / 12 / mass, rel=1e-6, abs=0.0)
-    assert of_body(Body.rigid(mass, 1.0), h) == pytest.approx(slow, rel=1e-6, abs=0.0)
-    # a mode far above the frequency of the steps answers statically
-    stiff = alternating_of_modes(modal_coefficients([1e7], [0.5], 1e-3))[0]
-    assert stiff == pytest.approx(1.0 / 1e14, rel=1e-3, abs=0.0)
-    # modes that are stepped for long
-    a, shape = (
-        modal_coefficients(2 * np.pi * np.array([90.0, 1300.0, 2700.0]), [0.3] * 3, 2e-4),
-        [1, -0.7, 0.4],
-    )
-    q, v, force = np.zeros(3), np.zeros(3), 1.0
-    for _ in range(4000):
-        p = np.array(shape) * force
-        q, v = a[0] * q + a[1] * v + (a[2] - a[3]) * p, a[4] * q + a[5] * v + (a[6] - a[7]) * p
-        force = -force
-    assert np.square(shape) @ alternating_of_modes(a) == pytest.approx(force * (shape @ q), rel=1e-9, abs=0.0)
-    # the mode of a wheel by itself, as an oscillator, and a rail
-    heavy = Body.rigid(1e30, 65e3).with_modes([3000.0], [0.2], [20.0])
-    mode = alternating_of_modes(modal_coefficients([2 * np.pi * 3000.0], [0.2], RAIL_STEP))[0] / 20.0
-    assert of_body(heavy, RAIL_STEP) == pytest.approx(mode, rel=1e-6)
-    ground = ground_of(RailBetween(poles, {}), Path(np.zeros((1, 2)), 56.0, RAIL_STEP), np.zeros(0))
-    least = min(row @ (-1.0) ** np.arange(row.size) for row in poles.kernel.weights)
-    assert (ground.alternating, ground.thrown) == (pytest.approx(least, rel=1e-12, abs=0.0), 0.0)
-    assert ground.limit == ("the passing of sleepers v/L", pytest.approx(56.0 / 0.6), 20.0)
-
-
 def test_the_contact_resonance_is_that_of_a_mass_on_springs_in_series():
     h, mass, stiffness, soft = 1e-5, 0.5, np.array([2e7]), 3e-8
     found = steps.contact_resonance(stiffness, h**2 / (6 * mass) + soft, soft - h**2 / (12 * mass), h)
     expected = np.sqrt(1.0 / (1.0 / stiffness + soft) / mass) / (2 * np.pi)
     np.testing.assert_allclose(found, expected, rtol=1e-12)
-
-
-def test_modes_too_fast_for_the_step_answer_statically():
-    natural, ratios = np.array([1e3, 4e4]), np.full(2, 0.01)
-    coefficients = resolved_step(natural, ratios, 1e-4)
-    np.testing.assert_array_equal(coefficients[:, 0], modal_coefficients(natural, ratios, 1e-4)[:, 0])
-    assert coefficients[:, 1].tolist() == [0.0, 0.0, 0.0, 1 / 1.6e9, 0.0, 0.0, 0.0, 0.0]
 
 
 @pytest.mark.parametrize(

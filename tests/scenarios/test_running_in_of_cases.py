@@ -15,6 +15,7 @@ from asperity.schema import contact
 from asperity.studies.member import kept
 from asperity.studies.table import USUAL
 from asperity.surfaces.synthesis import self_affine
+from refusals import refusals
 
 BALL = {
     "kind": "ball-on-beam",
@@ -181,21 +182,17 @@ NUMBER = r'a whole number at least 1 and at most 100, or "shakedown"'
 SOFT = {name: value for name, value in BALL["contact"].items() if name != "hardness"}
 
 
-@pytest.mark.parametrize(
-    ("case", "message"),
-    [
-        *((ball(running_in=passes), NUMBER) for passes in (0, 101, 1.5, True, "often", [1])),
-        (ball(running_in="shake-down"), 'Did you mean "shakedown"'),
-        (BALL | {"contact": SOFT | {"running_in": 2}}, r"contact.running_in.*only together with hardness"),
-        (
-            ball(running_in=1) | {"laws": ["hertz"], "surface": {"spectrum": "iso3095"}},
-            r"contact\.running_in.*only together with a surface that asperities are known of",
-        ),
-    ],
+test_what_cannot_run_in_is_refused = refusals(
+    *((ball(running_in=passes), NUMBER) for passes in (0, 101, 1.5, True, "often", [1])),
+    (ball(running_in="shake-down"), 'Did you mean "shakedown"'),
+    (BALL | {"contact": SOFT | {"running_in": 2}}, r"contact.running_in.*only together with hardness"),
+    (
+        ball(running_in=1) | {"laws": ["hertz"], "surface": {"spectrum": "iso3095"}},
+        r"contact\.running_in.*only together with a surface that asperities are known of",
+    ),
+    of=lambda case: prepare_case(as_case(case)),
+    error=(CaseError, InputError),
 )
-def test_what_cannot_run_in_is_refused(case, message):
-    with pytest.raises((CaseError, InputError), match=message):
-        prepare_case(as_case(case))
 
 
 def test_the_plan_says_how_often(tmp_path, capsys):

@@ -8,16 +8,15 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from asperity.errors import ComputationError, ExtrapolationWarning, InputError
-from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table
+from asperity.errors import ComputationError, InputError
+from asperity.laws import HertzLaw, Linear, Printed, Shifted
 from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.roll import contact_losses
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
-from one_contact import roll_ball
+from one_contact import Shelf, Stepped, roll_ball
 from refusals import refusals
 
 STEEL = material("steel")
@@ -44,36 +43,6 @@ def rough_texture(rms, seed=3, shortest=2e-4, spacing=1e-5, points=4000, start=0
 
 
 # --- moving force and moving mass -------------------------------------------------------------
-
-
-def fryba(beam, force, speed, t, x):
-    """Deflection under a moving constant force: Fryba, Vibration of Solids and Structures, Eq. 1.41."""
-    length, n = beam.length, np.arange(1, len(beam.natural_frequencies) + 1)[:, None]
-    first = (np.pi / length) ** 2 * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
-    alpha, drive = speed * np.pi / length / first, np.pi * speed / length
-    bracket = np.sin(n * drive * t) - alpha / n * np.sin(n**2 * first * t)
-    total = np.sum(np.sin(n * np.pi * x / length) * bracket / (n**2 * (n**2 - alpha**2)), axis=0)
-    return 2 * force * length**3 / (np.pi**4 * beam.bending_stiffness) * total
-
-
-def moving_force(alpha, time_step):
-    """Roll a soft linear spring, so that the force stays what it is: a moving constant force."""
-    beam = replace(BEAM, loss_factor=0.0)
-    critical = np.pi / beam.length * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
-    path = {"speed": alpha * critical, "start": 0.0, "duration": 1 / (alpha * critical), "sensors": [0.5]}
-    run = rolled(Linear(BALL.static_load, stiffness=1e-3), beam, time_step=time_step, **path)
-    assert_allclose(run.contact_force, BALL.static_load, rtol=1e-6)
-    return beam, alpha * critical, run
-
-
-def test_deflection_under_a_moving_force_is_fryba_s_series():
-    errors = []
-    for time_step in (4e-5, 2e-5):
-        beam, speed, run = moving_force(0.5, time_step)
-        series = fryba(beam, BALL.static_load, speed, run.time[::25], run.position[::25])
-        errors.append(np.abs(run.over_displacement[::25] - series).max() / series.max())
-    assert errors[1] < 1e-4
-    assert 1.8 < np.log2(errors[0] / errors[1]) < 2.2
 
 
 def moving_mass(beam, ball, speed, times):
@@ -112,32 +81,6 @@ def test_stiff_contact_converges_to_the_moving_mass():
 
 
 # --- texture ----------------------------------------------------------------------------------
-
-BUMP = 2e-9  # m, small against the approach
-
-
-def bump_law(name):
-    x = np.arange(0.29, 0.34, 1e-5)
-    inside = np.abs(x - 0.315) < 0.01
-    line = -np.where(inside, 0.5 * BUMP * (1 + np.cos(np.pi * (x - 0.315) / 0.01)), 0.0)  # away from contact
-    texture = StateTexture.unfiltered(line, x[1] - x[0], 0.29)
-    if name == "printed":
-        return Printed(HERTZ, texture, datum=0.0)
-    if name == "table":
-        approaches = WORKING + np.linspace(-0.2e-6, 0.2e-6, 9)
-        return Table(ForceTable(HERTZ.force(approaches[:, None] - line), approaches, 0.29, x[1] - x[0]))
-    return {"shifted": Shifted, "areal": Areal}[name](HERTZ, texture)
-
-
-@pytest.mark.parametrize(
-    ("name", "followed"), [("shifted", 1.0), ("areal", 1.0), ("table", 1.0), ("printed", 2 / 3)]
-)
-def test_body_follows_a_slow_bump(name, followed):
-    stiff = Beam(1.0, bending_stiffness=1e6, mass_per_length=100.0, highest_frequency=5e3)
-    run = rolled(bump_law(name), stiff, speed=0.05, duration=0.4, time_step=5e-5, sensors=[])
-    rise = run.relative_displacement[0] - run.relative_displacement.min()
-    assert_allclose(rise / BUMP, followed, rtol=0.01)
-    assert_allclose(run.position[run.relative_displacement.argmin()], 0.315, atol=2e-4)
 
 
 def test_ball_leaves_a_step_on_a_parabola():
@@ -184,19 +127,6 @@ def test_energy_balance_closes_and_the_better_the_finer(support):
     assert_allclose(load, sum(others), atol=1.01 * coarse.residual * coarse.throughput)
     assert coarse.shares["damping of the structure"] > 0.0
     assert replace(coarse, throughput=0.0).residual == 0.0  # of nothing
-
-
-class Shelf:
-    """A checkpoint in memory."""
-
-    def __init__(self):
-        self.arrays, self.saves = None, 0
-
-    def load(self):
-        return self.arrays
-
-    def save(self, arrays):
-        self.arrays, self.saves = arrays, self.saves + 1
 
 
 def test_a_checkpoint_of_another_run_is_refused():
@@ -263,30 +193,15 @@ test_bad_paths_are_refused = refusals(
 )
 
 
-def test_continuation_beyond_the_data_is_named():
-    s = np.linspace(0.0, 1.05 * WORKING, 6)
-    law = Shifted(ForceCurve.from_samples(s, HERTZ.force(s)), rough_texture(0.1e-6))
-    with pytest.warns(ExtrapolationWarning, match=r"let contact\.approaches reach higher"):
-        rolled(law)
-
-
-class Broken:
+class Broken(Stepped):
     """A law whose force is no number in the seventh step."""
 
-    name, damping = "broken", 0.0
-    prepare, accept, restore = (lambda self, *_: self for _ in range(3))
-    state, warn_of_flaws = dict, lambda self: None
-
     def evaluate(self, step, approach):
-        return (
-            (np.nan, 0.0)
-            if step == 7
-            else (K * max(approach, 0.0) ** 1.5, 1.5 * K * max(approach, 0.0) ** 0.5)
-        )
+        return (np.nan, 0.0) if step == 7 else super().evaluate(step, approach)
 
 
 def test_forces_that_are_none_are_told_with_their_place():
     shelf = Shelf()
     with pytest.raises(ComputationError, match=r"step 7, time 7e-05 s, position 0.30007 m.*smaller"):
-        rolled(Broken(), checkpoint=shelf)
-    assert shelf.saves == 0
+        rolled(Broken(HertzLaw(K)), checkpoint=shelf)
+    assert shelf.arrays is None

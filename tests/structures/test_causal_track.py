@@ -85,13 +85,6 @@ def test_it_is_passive_and_not_too_soft_at_rest(rail, pad, ballast):
         assert (causal.receptance(frequency, x, x).imag <= 1e-18).all()
 
 
-@pytest.mark.xfail(strict=True, reason="the direction of waves that hardly decay is lost to round-off")
-def test_a_rail_that_its_ballast_alone_damps_is_passive():
-    track = replace(NORDBORG, rail_loss_factor=0.0, pad_loss_factor=0.0, ballast_loss_factor=1e-6)
-    frequency = np.geomspace(1.0, 2e4, 200)
-    assert (causal_track(track).receptance(frequency, 0.0, 0.0).imag <= 1e-18).all()
-
-
 def test_losses_next_to_nothing_end_the_fit():
     track = replace(NORDBORG, rail_loss_factor=0.0, pad_loss_factor=0.0, ballast_loss_factor=4.57e-270)
     assert max(causal_track(track).relaxations.ballast.strengths) < 1e-200
@@ -99,13 +92,6 @@ def test_losses_next_to_nothing_end_the_fit():
 
 def test_the_least_static_stiffness_falls_with_the_loss_factor_to_a_bound():
     assert [least_static(eta) for eta in (0.0, 0.25, 2.0)] == pytest.approx([1.0, 1.0 / 1.5, LEAST_STATIC])
-
-
-def test_the_rail_keeps_its_loss_factor_and_nearly_its_stiffness():
-    frequency = np.geomspace(20.0, 5000.0, 50)
-    found = causal_track(Track.named("x2000")).relaxations.rail.at(2.0 * np.pi * frequency)
-    np.testing.assert_allclose(found.imag, 0.02, rtol=0.08)
-    assert np.abs(found.real - 1.0).max() < 0.05
 
 
 def test_what_is_causal_stays_as_it_is_and_what_is_not_keeps_its_nominal_track():

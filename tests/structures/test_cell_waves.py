@@ -53,17 +53,6 @@ def test_it_is_the_sum_over_very_many_supports() -> None:
         np.testing.assert_allclose(found, superposed(free, supports[:, n], at, pairs), rtol=1e-9)
 
 
-def test_the_mirror_image_answers_alike() -> None:
-    track, omega = Track.named("x2000", **TIMOSHENKO), np.geomspace(60.0, 2e5, 60).astype(complex)
-    draw, waves = np.random.default_rng(3), track.rail.waves(omega)
-    supports = track.support.stiffness(omega) * draw.uniform(0.3, 2.0, (5, 1))
-    lengths = draw.uniform(0.5, 0.7, 5)
-    cell = cell_waves(*waves, supports, lengths)
-    mirrored = cell_waves(*waves, np.roll(supports[::-1], 1, axis=0), lengths[::-1])
-    for x, x0 in [(0.2, 0.2), (1.4, 0.3), (-3.0, 4.4)]:
-        assert mirrored.receptance(-x, -x0) == pytest.approx(cell.receptance(x, x0), rel=1e-12, abs=1e-30)
-
-
 def test_a_stretch_of_it_answers_like_one_bay() -> None:
     cell = drawn(Track.named("x2000"), np.geomspace(60.0, 2e5, 30) - 10j, 5)
     length = cell.spacing / cell.bays
@@ -80,22 +69,6 @@ def test_a_stretch_of_it_answers_like_one_bay() -> None:
     assert cell.carried(9, 1) == pytest.approx(
         np.prod([cell.bay(n).multipliers for n in range(1, 9)], axis=0), rel=1e-6, abs=0.0
     )
-
-
-def test_power_into_the_rail_is_what_its_supports_dissipate() -> None:
-    omega, count = 2.0 * np.pi * np.geomspace(60.0, 1500.0, 25), 4
-    track = Track.named("x2000", rail_loss_factor=0.0, **TIMOSHENKO)
-    draw, waves = np.random.default_rng(1), drawn(track, omega.astype(complex), count)
-    supports = track.support.stiffness(omega) * draw.uniform(0.3, 2.0, (count, 1))
-    force, cells = 0.37, 300
-    moved = np.array(
-        [
-            [waves.receptance(x + c * waves.spacing, force) for x in waves.edges[:-1]]
-            for c in range(-cells, cells)
-        ]
-    )
-    dissipated = np.sum(supports.imag * np.abs(moved) ** 2, axis=(0, 1))
-    assert dissipated == pytest.approx(-waves.receptance(force, force).imag, rel=1e-9, abs=0.0)
 
 
 def test_waves_lost_between_two_supports_are_refused() -> None:

@@ -131,49 +131,6 @@ def test_layers_below_the_sleeper_and_what_bends_count_sideways_too():
     assert_allclose(slab.support(omega)[0, 0], LOSSY.pad_stiffness / 3.0 * (1 + 0.15j), rtol=1e-12)
 
 
-def test_power_sent_into_the_track_is_dissipated_in_rail_and_supports():
-    """Im(u* f) = Σ u* Im K u + η ∫ EI |v''|² + GJ |φ'|², Euler-Bernoulli, force at mid-span."""
-    rail = EULER
-    track, bay, reach, half = LateralTrack(LOSSY, rail), LOSSY.sleeper_spacing, 120, 0.3
-    omega, force = 2.0 * np.pi * np.array([120.0, 600.0, 1500.0]), rail.head
-    waves = track.waves(omega)
-
-    def answer(x):
-        return np.einsum("abf,b->af", waves.receptance(x, half), force)
-
-    sent = -np.imag(force @ answer(half))
-    at = np.array([answer(n * bay) for n in range(1, reach)])
-    supports = 2.0 * np.einsum("naf,abf,nbf->f", at.conj(), track.support(omega).imag, at).real
-    amplitude = waves.coefficients * np.einsum("ajf,a->jf", waves.incoming(half), force)
-    k, node, weight = waves.wavenumbers, *np.polynomial.legendre.leggauss(40)
-
-    def energy(begin, end, decay):
-        total = np.zeros(3)
-        for x, share in zip(0.5 * (begin + end) + 0.5 * (end - begin) * node, weight, strict=True):
-            bent = [-(k**2) * np.sin(k * z) for z in (bay - x, x)]
-            turned = [-k * np.cos(k * (bay - x)), k * np.cos(k * x)]
-            v, phi = (
-                np.einsum("ijf,if->jf", waves.weights[axis], far)
-                + waves.multipliers * np.einsum("ijf,if->jf", waves.weights[axis], near)
-                for axis, (far, near) in enumerate((bent, turned))
-            )
-            squares = [abs(np.sum(amplitude * decay * each, axis=0)) ** 2 for each in (v, phi)]
-            total += (
-                0.5
-                * (end - begin)
-                * share
-                * np.array([rail.bending_stiffness, rail.torsional_stiffness])
-                @ squares
-            )
-        return total
-
-    bays = [(half if n == 0 else 0.0, bay, waves.multipliers**n) for n in range(reach)]
-    bending = 2.0 * LOSSY.rail_loss_factor * sum(energy(*each) for each in bays)
-    assert_allclose(supports + bending, sent, rtol=1e-9)
-    assert np.all(bending > 1e-3 * sent)
-    assert np.all(supports > 1e-3 * sent)
-
-
 def test_a_vertical_force_in_the_middle_does_not_move_the_rail_sideways():
     found = LateralTrack(UIC60).at_contact(FREQUENCIES, 0.3, 0.3, 0.0)
     assert np.all(found[0] == 0.0)
@@ -182,15 +139,6 @@ def test_a_vertical_force_in_the_middle_does_not_move_the_rail_sideways():
     twist = LateralTrack(UIC60).waves(2.0 * np.pi * FREQUENCIES).receptance(0.3, 0.3)
     assert_allclose(off[0, 0], 1e-4 * twist[1, 1], rtol=1e-12)
     assert_allclose(off[1, 0], 0.01 * (twist[0, 1] + RAIL.head_height * twist[1, 1]), rtol=1e-12)
-
-
-def test_rigid_supports_hold_the_rail_and_softer_pads_let_its_head_move():
-    held = LateralTrack(UIC60, pad_stiffness=1e14, pad_roll_stiffness=1e14, ballast_stiffness=1e14)
-    assert np.abs(held.waves(2.0 * np.pi * FREQUENCIES).receptance(0.0, 0.0)).max() < 1e-12
-    soft, stiff = (
-        abs(LateralTrack(UIC60, pad_stiffness=each).receptance(10.0, 0.3, 0.3)[0]) for each in (5e7, 1e8)
-    )
-    assert soft > 1.02 * stiff
 
 
 test_bad_questions_are_refused = refusals(

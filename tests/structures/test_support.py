@@ -48,66 +48,6 @@ def test_nothing_moves_on_rigid_ground():
     assert not Chain((PAD,)).sleeper_square(OMEGA).any()
 
 
-def beam_elements(omega, below, count=240):
-    """Receptance of the seat, and mean square over the length, of a whole sleeper of finite elements."""
-    length, half = SLEEPER["length"] / count, 0.5 * SLEEPER["length"]
-    size = 2 * count + 2
-    at = [[12, 6 * length, -12, 6 * length], [6 * length, 4 * length**2, -6 * length, 2 * length**2]]
-    at += [[-12, -6 * length, 12, -6 * length], [6 * length, 2 * length**2, -6 * length, 4 * length**2]]
-    bend = SLEEPER["bending_stiffness"] / length**3 * np.array(at)
-    mass = np.array([[156, 22 * length, 54, -13 * length], [22 * length, 4 * length**2, 13 * length, 0]])
-    mass[1, 3] = -3 * length**2
-    mass = np.vstack([mass, [[54, 13 * length, 156, -22 * length], [0, 0, 0, 4 * length**2]]])
-    mass[3] = [-13 * length, -3 * length**2, -22 * length, 4 * length**2]
-    mass = mass * length / 420.0
-    matrix, spread = np.zeros((size, size), complex), np.zeros((size, size))
-    for n in range(count):
-        here = slice(2 * n, 2 * n + 4)
-        matrix[here, here] += bend + (below - SLEEPER["mass"] * omega**2) / half * mass
-        spread[here, here] += mass
-    force = np.zeros(size)
-    seats = [round((half + side * 0.5 * SLEEPER["seat_distance"]) / length) for side in (-1, 1)]
-    force[[2 * seat for seat in seats]] = 1.0
-    moved = np.linalg.solve(matrix, force)
-    seat = moved[2 * seats[0]]
-    return seat, (moved.conj() @ spread @ moved).real / SLEEPER["length"] / abs(seat) ** 2
-
-
-def test_a_bending_sleeper_is_a_beam_of_finite_elements():
-    """Seats at nodes of 260 elements of 10 mm."""
-    sleeper = BendingSleeper(**SLEEPER)
-    for omega in OMEGA[:6]:
-        below = BALLAST.stiffness(omega)
-        seat, spread = beam_elements(omega, below, 260)
-        assert 1.0 / sleeper.on(omega, below) == pytest.approx(seat, rel=2e-6, abs=0.0)
-        assert float(sleeper.spread(omega, below)) == pytest.approx(spread, rel=2e-6)
-    assert 1.0 / sleeper.resting(150e6) == pytest.approx(
-        beam_elements(0.0, 150e6, 260)[0].real, rel=1e-6, abs=0.0
-    )
-
-
-def test_a_free_sleeper_resonates_where_free_beams_do():
-    """Symmetric modes of a free beam: k l = 4.7300, 10.9956 (roots of cos cosh = 1)."""
-    mass = 2.0 * SLEEPER["mass"] / SLEEPER["length"]
-    for root in (4.730040744862704, 10.995607838001671):
-        k = root / SLEEPER["length"]
-        omega = k**2 * np.sqrt(SLEEPER["bending_stiffness"] / mass)
-        stiffness = BendingSleeper(**SLEEPER).on(omega * np.array([1.0, 1.01]), np.full(2, 1e-3j))
-        assert abs(stiffness[0]) < 1e-8 * abs(stiffness[1])
-
-
-def test_a_stiff_sleeper_is_a_point_mass():
-    """The difference falls as the stiffness grows."""
-    below, rigid = BALLAST.stiffness(LOWER), RigidMass(150.0).on(LOWER, BALLAST.stiffness(LOWER))
-    errors = []
-    for stiffness in (1e16, 1e18):
-        sleeper = BendingSleeper(**(SLEEPER | {"bending_stiffness": stiffness}))
-        errors.append(np.abs(sleeper.on(LOWER, below) / rigid - 1.0).max())
-        assert sleeper.spread(LOWER, below) == pytest.approx(1.0, abs=10 * errors[-1] + 1e-11)
-    assert errors[1] < 1e-9
-    assert errors[0] / errors[1] == pytest.approx(100.0, rel=0.05)
-
-
 def test_a_sleeper_is_right_at_any_complex_frequency():
     """Causal: the receptance is analytic, so that its mean on a circle is its value in the middle."""
     middle, sleeper = 4000.0 - 300.0j, BendingSleeper(**SLEEPER)

@@ -67,35 +67,6 @@ def test_reciprocity_and_mirror_symmetry(x, x0, frequency):
         assert abs(here - rail.receptance(frequency, x + 4.2, x0 + 4.2)) < 1e-9 * scale
 
 
-def test_the_track_takes_power_from_the_force():
-    frequency = np.geomspace(5.0, 10e3, 400)
-    for name in TRACKS:
-        rail = Track.named(name)
-        for x in (0.0, 0.11, 0.3):
-            assert np.all(rail.receptance(frequency, x, x).imag < 0.0)
-
-
-def finely_supported(make, spacing):
-    """The same stiffnesses, dampings and masses per length on supports at another distance."""
-    names = ("pad_stiffness", "pad_damping", "sleeper_mass", "ballast_stiffness", "ballast_damping")
-    share = spacing / SPACING
-    return make(sleeper_spacing=spacing, **{name: share * getattr(make(), name) for name in names})
-
-
-@pytest.mark.parametrize(("make", "order"), [(track, 4.0), (timoshenko, 2.0)])
-@pytest.mark.parametrize("frequency", [30.0, 200.0, 400.0, 900.0])
-def test_close_supports_become_a_winkler_foundation(make, order, frequency):
-    """The ripple of bending falls with the fourth power of the distance, that of shear with the second."""
-    errors = []
-    for spacing in (0.08, 0.04):
-        rail = finely_supported(make, spacing)
-        omega = 2.0 * math.pi * frequency
-        expected = free_rail(rail, omega, supports_by_hand(rail, omega) / spacing)(0.0)
-        errors.append(abs(rail.receptance(frequency, 0.0, 0.0) / expected - 1.0))
-    assert errors[1] < 1e-3
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
-
-
 def test_static_deflection_is_the_limit_of_slow_motion(make):
     rail = make(rail_loss_factor=0.0)
     for x in (0.0, 0.17, 0.3, 0.6, -1.1):
@@ -141,13 +112,6 @@ def test_waves_of_an_undamped_track_run_only_above_cut_on():
     assert np.all(rail.receptance(running, 0.1, 0.1).imag < 0.0)
     largest = np.abs(rail.waves(2.0 * np.pi * running).multipliers).max(axis=0)
     np.testing.assert_allclose(largest, 1.0, rtol=1e-6)
-
-
-def test_critical_speed_and_deflection_of_the_continuous_foundation():
-    foundation, heavy = 100e6 / SPACING, MASS + 150.0 / SPACING
-    assert track().critical_speed == pytest.approx((4.0 * foundation * BENDING / heavy**2) ** 0.25, rel=1e-12)
-    at_rest = 65e3 * (foundation / (4.0 * BENDING)) ** 0.25 / (2.0 * foundation)
-    assert finely_supported(track, 0.05).static_deflection(65e3) == pytest.approx(at_rest, rel=1e-6)
 
 
 def test_named_sets_name_a_source_for_every_value():
@@ -254,23 +218,6 @@ def test_a_relaxing_stiffness_is_a_spring_and_exponentials_in_time():
     stress = 0.5 / (1j * omega) + np.sum([1.0, 3.0] / (1j * omega[..., None] + decay), axis=-1)
     np.testing.assert_allclose(mixed.at(omega) / (1j * omega), stress, rtol=1e-12)
     np.testing.assert_allclose(relaxing(omega, (10.0, 200.0)) @ [0.5, 1.0, 3.0], mixed.at(omega), rtol=1e-14)
-
-
-strengths = st.lists(st.floats(0.0, 10.0), min_size=3, max_size=3).map(tuple)
-
-
-@given(st.floats(0.0, 2.0), strengths, st.floats(1.0, 5e3))
-def test_it_grows_as_kramers_and_kronig_ask_and_never_gives_energy_back(static, strengths, frequency):
-    """Re K(ω) - K(0) = (2ω²/π) P∫ Im K(x)/(x (ω² - x²)) dx; over the logarithm of x, pole taken off."""
-    relaxation, omega = Relaxation(static, strengths, (5.0, 70.0, 900.0)), 2.0 * np.pi * frequency
-    assert relaxation.at(omega).imag >= 0.0
-    neper = np.linspace(1e-6, 25.0, 20001)
-    pair = [
-        relaxation.at(y).imag / (1.0 - (y / omega) ** 2)
-        for y in (omega * np.exp(neper), omega / np.exp(neper))
-    ]
-    grown = 2.0 / np.pi * np.trapezoid(sum(pair), neper)
-    assert relaxation.at(omega).real - static == pytest.approx(grown, rel=1e-3, abs=1e-4)
 
 
 test_bad_parameters_and_questions_are_refused = refusals(

@@ -9,10 +9,8 @@ import pytest
 from asperity import Track
 from asperity.scenes.track import loss_factor_error
 from asperity.structures.causal_track import causal_track
-from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.support import BendingSleeper, RigidMass, Spring, TunedDamper
-from asperity.structures.track import decay_rate
 from asperity.structures.track_parameters import Bays
 from asperity.structures.wheel import Wheel
 from refusals import refusals
@@ -140,21 +138,6 @@ def test_a_damper_is_a_mass_on_a_spring():
         assert 1.0 / (found + 2e8 - 40.0 * omega**2) == pytest.approx(inverse[0, 0], rel=1e-12, abs=0.0)
 
 
-def test_spread_dampers_split_the_cut_on_as_two_masses_do():
-    """All of a long rail in step: mass of a bay on its foundation, with the damper's mass on its spring."""
-    loss = DAMPERS | {"rail_damper_loss_factor": 1e-9, "rail_damper_frequency": 300.0}
-    lossless = {"pad_damping": None, "ballast_damping": None, "rail_loss_factor": 0.0}
-    track = euler(continuous=True, ballast_stiffness=math.inf, **lossless, **loss)
-    rail, damper, pad = 60.2 * 0.6, 15.0, 180e6
-    spring = damper * (2.0 * np.pi * 300.0) ** 2
-    own = [[(pad + spring) / rail, -spring / rail], [-spring / damper, spring / damper]]
-    for frequency in np.sqrt(np.linalg.eigvals(own)) / (2.0 * np.pi):
-        just = np.array([0.999, 1.001]) * frequency
-        below, above = decay_rate(track, just)
-        assert below > 0.1
-        assert above < 1e-3
-
-
 def test_a_damper_answers_after_the_rail_only():
     assert Track.named("nordborg", rail_loss_factor=0.0, **DAMPERS).is_causal
 
@@ -216,16 +199,6 @@ def test_every_layer_relaxes_in_time():
     assert (causal.receptance(np.geomspace(1.0, 2e4, 200), [0.0, 0.3], [0.0, 0.3]).imag < 0.0).all()
     error = loss_factor_error(track, Wheel(600.0, 65e3), 1.2e9, 5000.0)
     assert np.abs(error.force).max() < 0.8
-
-
-@pytest.mark.parametrize(
-    "keys", [{"continuous": True, "ballast_stiffness": math.inf}, {}], ids=["bed", "bays"]
-)
-def test_the_kernel_of_a_contact_at_rest_adds_up_to_the_static_deflection(keys):
-    track = causal_track(timoshenko(pad_table=PAD, **keys, **DAMPERS))
-    kernel = moving_kernel(track, 0.0, 1e-4, duration=0.25, positions=2)
-    found = kernel.weights.sum(axis=1)
-    np.testing.assert_allclose(found, [track.static_deflection(1.0, x) for x in (0.0, 0.3)], rtol=2e-3)
 
 
 def test_named_frequencies_and_critical_speed_are_those_of_the_nominal_chain():

@@ -77,14 +77,16 @@ def test_a_force_over_a_sleeper_is_followed_where_bays_are_not_its_mirror_image(
     assert np.abs(here - beside).max() < 1e-6 * np.abs(here).max()
 
 
-def test_a_kernel_at_rest_is_the_receptance_of_its_bay() -> None:
-    kernel = moving_kernel(in_bays(EULER), 0.0, STEP, positions=4)
+@pytest.mark.parametrize("distance", [0.0, 1.8, -1.8])
+def test_a_kernel_at_rest_is_the_receptance_of_its_bay(distance: float) -> None:
+    kernel = moving_kernel(in_bays(EULER), 0.0, STEP, positions=4, distance=distance)
     frequency = np.array([60.0, 400.0, 1300.0])
     transform = kernel.weights @ np.exp(-2j * np.pi * frequency * kernel.lag[:, None])
     for row in (0, 5, 15, 23):
         x = row * kernel.period / 24
-        expected = kernel.track.receptance(frequency, x, x) * np.sinc(frequency * STEP) ** 2
-        assert transform[row] == pytest.approx(expected, rel=0.01)
+        near, expected = (kernel.track.receptance(frequency, x + d, x) for d in (0.0, distance))
+        off = transform[row] / np.sinc(frequency * STEP) ** 2 - expected
+        assert np.all(np.abs(off) < 0.01 * np.abs(near))
 
 
 def test_poles_stand_for_all_bays_and_contacts_feel_each_other_across_them() -> None:
@@ -94,16 +96,6 @@ def test_poles_stand_for_all_bays_and_contacts_feel_each_other_across_them() -> 
     assert poles.residues.shape == (18, 60 // 2 + np.sum(poles.poles.imag == 0) // 2)
     between = rail_between(poles, [0.0, 2.5])
     assert between.between(2.5).kernel.weights.shape == kernel.weights.shape
-
-
-def test_a_force_at_rest_is_felt_at_the_other_place_alike() -> None:
-    """Reciprocity, of kernels in time: what is ahead of one place is behind the other."""
-    track, apart = in_bays(EULER), 12 * 0.6 / 4
-    ahead, behind = (
-        moving_kernel(track, 0.0, STEP, duration=0.03, positions=4, distance=d).weights
-        for d in (apart, -apart)
-    )
-    assert np.abs(np.roll(behind, -12, axis=0) - ahead).max() < 1e-9 * np.abs(ahead).max()
 
 
 def test_more_bays_than_memory_holds_are_refused() -> None:
