@@ -12,9 +12,9 @@ from asperity.results import read_result, save
 from asperity.scenes.report import CHAPTERS, figures_of, page_of
 
 TABLES = {
-    "ball-on-beam": {"statistics", "practice", "reference", "contact_loss", "energy_balance"},
-    "wheel-on-rail": {"statistics", "practice", "contact_loss", "sound_power_table"},
-    "bodies": {"statistics", "practice", "contact_loss", "where_contacts_are", "energy_balance"},
+    "ball-on-beam": {"statistics", "reference", "contact_loss", "energy_balance"},
+    "wheel-on-rail": {"statistics", "contact_loss", "sound_power_table"},
+    "bodies": {"statistics", "contact_loss", "where_contacts_are", "energy_balance"},
 }
 UNITS = r"m|1/m|m\^3|m/N|rad|m/\(N s\)|Pa|N|N/m|1|s|Hz|m/s|N\^2/Hz|\(m/s\)\^2/Hz|\(m/s\^2\)\^2/Hz"
 LEVELS = r"dB|dB/m|dB re 1 N|dB re 1 µm|dB re 1 pW|dB\(A\) re 20 µPa|dB\(A\) re 1 pW"

@@ -17,7 +17,7 @@ from asperity.reporting.chart import envelope, smooth_on_log_axis
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
 from asperity.reporting.headline import deciding_bands, force_answers, lights
 from asperity.reporting.page import literature
-from asperity.reporting.tables import practice_table, reference_table, uncertainty_table
+from asperity.reporting.tables import reference_table, uncertainty_table
 from asperity.scenes.figures.motion import acceleration_answers
 from asperity.scenes.report import page_of, report
 from asperity.spectra import a_weighting, nominal_frequency
@@ -260,20 +260,13 @@ def test_long_lines_keep_their_extremes_and_their_level():
 # --- tables of level differences
 
 
-@pytest.mark.parametrize(
-    ("make", "name", "law"),
-    [
-        (reference_table, "force_level_difference_to_reference", "printed"),
-        (practice_table, "force_level_difference_to_linear_filtered", "table"),
-    ],
-)
-def test_level_differences_are_tabulated(tree, make, name, law):
-    table, found = make(tree), tree[f"spectra/{name}"].sel(law=law).values
-    column, bands = table.head.index(law), tree["spectra/band"].values
+def test_level_differences_are_tabulated(tree):
+    table, found = reference_table(tree), tree["spectra/force_level_difference_to_reference"]
+    column, bands = table.head.index("printed"), tree["spectra/band"].values
     assert [row[0].text for row in table.rows[:-2]] == [nominal_band(band) for band in bands]
     shown = [read_number(row[column].text) for row in table.rows[:-2]]
-    np.testing.assert_allclose(shown, found, atol=0.051)
-    assert "minus that of " + ("table" if make is reference_table else "linear-filtered") in table.title
+    np.testing.assert_allclose(shown, found.sel(law="printed").values, atol=0.051)
+    assert "minus that of table" in table.title
 
 
 def test_bands_that_say_little_are_marked_and_not_summed_up():

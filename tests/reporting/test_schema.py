@@ -165,7 +165,6 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
             elsewhere |= chapter.name == "contacts" and not several
             elsewhere |= chapter.name in (*OF_BEARINGS, "creep")  # of a wheel that is said to creep
             elsewhere |= part.name == "what_helps"  # where it is asked
-            elsewhere |= part.name == ("force_piece" if track else "force_peak")
             elsewhere |= part.name in ("pass_by_bands", "bays")  # of what was measured, and where they differ
             assert (part.name in drawn) != elsewhere, part.name
 

@@ -7,7 +7,7 @@ import asperity
 from asperity.case.cases import as_case
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
-from asperity.reporting.tables import condition_table, passes_table
+from asperity.reporting.tables import condition_table
 from asperity.reporting.texture_figures import RUNNING_IN
 from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
@@ -96,19 +96,18 @@ def test_stiffness_and_forces_are_of_what_is_left(untouched, run_in):
 
 
 def test_the_report_says_before_and_after_and_nothing_of_untouched_surfaces(untouched, run_in):
-    condition, passes = condition_table(run_in), passes_table(run_in)
+    condition = condition_table(run_in)
     assert condition.rows[0][0].text == "rms height on the track, as wide as the nominal patch"
     assert condition.rows[0][3].text.startswith("−")
     assert "of the area that carried pressure has yielded" in condition.note
-    assert len(passes.rows) == run_in["contact"].sizes["running_in_pass"]
-    assert "the next is elastic" in passes.note
+    assert "last pass changed nothing" in condition.note
     marks = RUNNING_IN.laid_out(run_in).panels[0].marks
     assert [line.label for line in marks] == ["before running-in", "after"]
     columns = ["distance [m]", "before running-in [m]", "after running-in [m]"]
     assert list(RUNNING_IN.collect(run_in).columns) == columns
     assert "Lowered by" in RUNNING_IN.said(run_in)
     assert not RUNNING_IN.drawable(untouched)
-    assert condition_table(untouched) is passes_table(untouched) is None
+    assert condition_table(untouched) is None
     assert "line_untouched" not in untouched["surface"]
     assert "yielded_share" not in untouched["contact"].attrs
 
@@ -171,7 +170,7 @@ def test_the_rail_takes_the_lowering_and_what_still_yields_is_said(runs):
     assert lowering.min() >= 0.0
     assert lowering.max() > 50e-9
     assert (tree["contact"].sizes["running_in_pass"], tree["contact"].attrs["shaken_down"]) == (1, 0)
-    assert "still lowered places" in passes_table(tree).note
+    assert "still lowered places" in condition_table(tree).note
     prepared, found = run_in_of(RAIL)
     parts, line = found.textures.parts, found.textures.line
     np.testing.assert_allclose(parts["rail"] + parts["wheel"], line, atol=1e-15)

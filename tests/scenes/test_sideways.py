@@ -155,8 +155,6 @@ def test_the_chapter_says_where_how_loud_and_whether_it_slips(runs, off):
         row = dict(zip(table.head, (cell.text for cell in table.rows[0]), strict=True))
         assert row["law"] == "linear"
         assert row["beyond friction"] == "0.0 %"
-        assert float(row["rail up and down"]) > float(row["rail sideways"]) > 80.0
-    assert float(row["wheel, both forces"]) > 100.0
 
 
 def test_tread_and_head_answer_each_at_its_own_place(runs):

@@ -3,7 +3,6 @@
 import asyncio
 import importlib.util
 import json
-import os
 import socket
 
 import numpy as np
@@ -107,8 +106,6 @@ def server(tmp_path, monkeypatch):
     found = routes.Server(tmp_path)
 
     async def told(question, **arguments):
-        if "folder" in arguments:
-            (tmp_path / "comparisons" / arguments["folder"][-16:]).mkdir(parents=True)
         return {"toml": "kind = 'x'", "changed": "", "asked": question}
 
     for questions in (found.contacts, found.files):
@@ -194,17 +191,6 @@ def test_damaged_facts_of_a_run_are_left_out(server, facts):
     status, words = ask(server, "/ask/runs")
     assert status == 200
     assert json.loads(words)[0]["id"] == folder.name
-
-
-def test_the_latest_comparisons_are_kept_alone(server, monkeypatch):
-    monkeypatch.setattr(routes, "MOST_COMPARISONS", 2)
-    runs = [run_of(server).name for _ in range(4)]
-    for number, other in enumerate(runs[1:]):
-        query = f"run={runs[0]}&run={other}"
-        page = json.loads(ask(server, f"/ask/compare?{query}")[1])["page"]
-        assert ask(server, f"/{page}?{query}")[0] == 404  # nothing was written here but its folder
-        os.utime(server.comparisons / page.split("/")[1], (number, number))
-    assert len(list(server.comparisons.iterdir())) == 2
 
 
 def test_surfaces_that_no_run_uses_can_be_deleted(server):

@@ -99,7 +99,7 @@ def figures_page(
 SUMMARY_FIGURES = 3
 """That a summary shows, of each chapter the first of these that it has."""
 ON_SHEET = (
-    "load_zone", "ball_turn", "radiated_power_bands", "sound_power_bands", "sound_power", "pass_by_level",
+    "load_zone", "ball_turn", "radiated_power_bands", "sound_power_bands", "pass_by_level",
     "acceleration_sensors", "body_acceleration", "force_bands", "roughness", "texture_psd", "texture_path",
     "texture_sample",
 )  # fmt: skip
@@ -154,7 +154,7 @@ def _sections(
     return found
 
 
-def _answers(tree: DataTree, chapters: Sequence[Chapter], verdict: str) -> headline.Answers:
+def answers_of(tree: DataTree, chapters: Sequence[Chapter], verdict: str = "") -> headline.Answers:
     """What the chapters say first, together; what no chapter says is the verdict of the run."""
     found = [told for chapter in chapters if chapter.answers and (told := chapter.answers(tree))]
     return headline.Answers(
@@ -207,7 +207,7 @@ def page(
         title=data.stated(tree, provenance.TITLE) or kind or "Rolling contact",
         summary=summary,
         on_sheet={figure.name for figure in on_sheet},
-        answers=_answers(tree, chapters, verdict),
+        answers=answers_of(tree, chapters, verdict),
         verdict=verdict if data.present(tree, force) else "",  # of a bearing it stands at the top
         validity=headline.validity(checks),
         lights=checks,

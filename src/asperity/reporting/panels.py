@@ -263,16 +263,3 @@ def main_limits(lines: Sequence[figure.Series], pulling: Collection[str]) -> tup
         bottom, top = min(bottom, 0.0), max(top, 0.0)
     margin = 0.04 * (top - bottom) or 1e-12
     return bottom - margin, top + margin
-
-
-def beyond_limits(
-    lines: Sequence[figure.Series], limits: tuple[float, float], unit: str, axis: str = "The axis"
-) -> str:
-    """Sentence that names the laws which leave the axis, with their extremes; empty if none does."""
-    left = [
-        f"{line.law} ({data.engineering(low, unit)} to {data.engineering(high, unit)})"
-        for line in lines
-        for low, high in [(float(np.nanmin(line.values)), float(np.nanmax(line.values)))]
-        if low < limits[0] or high > limits[1]
-    ]
-    return f" {axis} suits the main law; beyond it: {', '.join(left)}." if left else ""

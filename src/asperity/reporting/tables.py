@@ -177,51 +177,25 @@ def condition_table(tree: DataTree) -> ReportTable | None:
         "change": number_cells(change, lambda each: f"{each:+.1f} %".replace("-", "−")),
     }
     share = data.number(tree, contact.YIELDED_SHARE) or 0.0
+    last = "changed nothing" if data.number(tree, contact.SHAKEN_DOWN) else "still lowered places"
     note = (
         f"{data.in_percent(share)} of the area that carried pressure has yielded. Before: the first "
         "contact, with the pressure capped at the hardness. All else in this report is of the surface after "
-        "running-in."
+        f"running-in, whose last pass {last} beyond 1/1000 of the smooth bodies' approach."
     )
     return table("running_in_statistics", "Running-in", columns, note)
 
 
-def passes_table(tree: DataTree) -> ReportTable | None:
-    """What each pass lowered."""
-    if not data.present(tree, contact.RUNNING_IN_PASS, contact.RUNNING_IN_LOWERING):
-        return None
-    columns = {
-        "pass": number_cells(data.values(tree, contact.RUNNING_IN_PASS), "{:.0f}"),
-        "largest lowering": number_cells(data.values(tree, contact.RUNNING_IN_LOWERING), "m"),
-        "share of the touched area that yields": number_cells(
-            data.values(tree, contact.RUNNING_IN_YIELDING), data.in_percent
-        ),
-    }
-    done = "The last pass changed nothing beyond 1/1000 of the smooth bodies' approach: the next is elastic."
-    more = "The last pass still lowered places by more than 1/1000 of the smooth bodies' approach."
-    note = done if data.number(tree, contact.SHAKEN_DOWN) else more
-    return table("running_in_passes", "Passes of running-in", columns, note)
-
-
 # --- the laws
-
-
-def practice_table(tree: DataTree) -> ReportTable | None:
-    """Level differences to the linear law of practice per one-third octave."""
-    entry = spectra.FORCE_LEVEL_DIFFERENCES[spectra.PRACTICE]
-    return _differences_table(tree, "practice", entry, data.differences(tree).get(entry))
 
 
 def reference_table(tree: DataTree) -> ReportTable | None:
     """Level differences to the reference law per one-third octave."""
     entry = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
     compared = data.stored_variable(tree, entry)
-    solved = None if compared is None else str(compared.attrs["reference"])
-    return _differences_table(tree, "reference", entry, solved)
-
-
-def _differences_table(tree: DataTree, name: str, entry: Entry, to: str | None) -> ReportTable | None:
+    to = "" if compared is None else str(compared.attrs["reference"])
     laws = [law for law in data.laws(tree, entry) if law != to]
-    if to is None or not laws or not data.present(tree, spectra.BAND):
+    if not laws or not data.present(tree, spectra.BAND):
         return None
     faint = data.doubtful(tree, spectra.BAND_TIME_PRODUCT)
     ends = text_cells(("mean", "largest size"), "total")
@@ -239,7 +213,7 @@ def _differences_table(tree: DataTree, name: str, entry: Entry, to: str | None) 
             " In grey and in brackets: bands whose bandwidth times averaging time is below "
             f"{LEAST_PRODUCT:g}, or that hold the start; they say little, and are not in the last two rows."
         )
-    return table(name, f"Contact force level minus that of {to}, in dB", columns, note)
+    return table("reference", f"Contact force level minus that of {to}, in dB", columns, note)
 
 
 LOSSES: dict[Entry, tuple[str, str | Writer]] = {

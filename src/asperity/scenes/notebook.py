@@ -1,24 +1,19 @@
 """A result that shows itself in a notebook: verdict, warnings, numbers, and its figures."""
 
 import base64
-from collections.abc import Callable
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import chart, data, panels
-from asperity.reporting.figure import Of
-from asperity.schema import Entry, bearing, provenance, rolling, spectra
+from asperity.reporting import data
+from asperity.schema import bearing, provenance, rolling
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-LOAD_ZONE = "load_zone"
-"""Figure that stands for the run of a bearing."""
-COLUMNS = 350
-"""Stretches in which a long force is drawn by its extremes."""
+MAIN = ("force_bands", "load_zone")
+"""Figures that stand for a run, the second for that of a bearing."""
 
 
 class Result(DataTree):  # type: ignore[no-untyped-call]
@@ -42,8 +37,7 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         ----------
         name : str, optional
             A figure of the report by the name of its file, as ``"force_bands"``, or by its title or the
-            beginning of it, as ``"contact force levels"``; by default the force of the main law in time
-            beside the force levels of all laws.
+            beginning of it, as ``"contact force levels"``; by default this one, of a bearing its load zone.
 
         Returns
         -------
@@ -67,25 +61,23 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         from asperity.reporting.paper import draw
         from asperity.scenes.report import figures_of
 
-        if name is None and data.present(self, rolling.CONTACT_FORCE, rolling.TIME):
-            return draw(_overview(self))
-        of_bearing = name is None and data.present(self, bearing.BALL_LOAD)
-        (figure,) = chosen_figures(figures_of(self), [LOAD_ZONE if of_bearing else name])
+        figures = figures_of(self)
+        main = next((figure.name for figure in figures if figure.name in MAIN), None)
+        (figure,) = chosen_figures(figures, [main if name is None else name])
         return draw(figure.laid_out(self))
 
     def _repr_html_(self) -> str:
         tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]
-        rolled = data.present(self, rolling.CONTACT_FORCE, rolling.TIME)
-        if data.stated(self, provenance.VERDICT) is None or not (
-            rolled or data.present(self, bearing.BALL_LOAD)
-        ):
+        rolled = data.present(self, rolling.CONTACT_FORCE) or data.present(self, bearing.BALL_LOAD)
+        if data.stated(self, provenance.VERDICT) is None or not rolled:
             return tree
         title, verdict = (
             escape(str(data.stated(self, each))) for each in (provenance.TITLE, provenance.VERDICT)
         )
-        drawn = f"{_picture(self)}\n{_numbers(self)}" if rolled else ""
+        image = base64.b64encode(self.plot()._repr_png_()).decode()  # type: ignore[attr-defined]
         return (
-            f"<div><p><strong>{title}.</strong> {verdict}</p>\n{_warnings(self)}\n{drawn}\n"
+            f"<div><p><strong>{title}.</strong> {verdict}</p>\n{_warnings(self)}\n{_numbers(self)}\n"
+            f'<img alt="main figure" width="840" src="data:image/png;base64,{image}">\n'
             f"<details><summary>All data</summary>{tree}</details></div>"
         )
 
@@ -101,47 +93,10 @@ def _warnings(tree: DataTree) -> str:
 
 
 def _numbers(tree: DataTree) -> str:
-    """Mean and rms of the force, and its losses, by law."""
-    heads = ["law", "mean force", "rms about it", "largest", "time without contact", "longest loss"]
-    rows = [f"<tr>{''.join(f'<th>{name}</th>' for name in heads)}</tr>"]
-    losses: dict[Entry, Callable[[float], str]] = {
-        rolling.CONTACT_LOSS_SHARE: "{:.2%}".format,
-        rolling.LONGEST_LOSS: lambda s: data.engineering(s, "s") if s > 0 else "–",
-    }
-    for law in data.laws(tree, rolling.CONTACT_FORCE):
-        force = data.of_law(tree, rolling.CONTACT_FORCE, law)
-        cells = [law, *(data.engineering(float(f(force)), "N") for f in (np.nanmean, np.nanstd, np.nanmax))]
-        for entry, write in losses.items():
-            known = law in data.laws(tree, entry) and not data.law_entry(tree, law).may_pull
-            cells.append(write(float(data.of_law(tree, entry, law))) if known else "–")
-        rows.append(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>")
-    return f"<table>{''.join(rows)}</table>"
+    """The numbers with which the page of the result begins."""
+    from asperity.reporting.page import answers_of
+    from asperity.scenes.report import chapters
 
-
-def _picture(tree: DataTree) -> str:
-    from asperity.reporting.paper import draw  # half a second
-
-    image = base64.b64encode(draw(_overview(tree))._repr_png_()).decode()
-    main = escape(data.laws(tree, rolling.CONTACT_FORCE)[0])
-    return f'<img alt="contact force of {main}" width="840" src="data:image/png;base64,{image}">'
-
-
-def _overview(tree: DataTree) -> chart.Chart:
-    """Force of the main law in time, and the force levels of all laws."""
-    main, time = next(Of(rolling.CONTACT_FORCE, "{law}")(tree)), data.values(tree, rolling.TIME)
-    size, unit = data.force_unit(float(np.nanmax(np.abs(main.values))))
-    second, symbol = data.time_unit(float(time[-1] - time[0]))
-    starts, low, high = chart.envelope(main.values / size, COLUMNS)
-    look: dict[str, Any] = {"colour": data.law_entry(tree, main.law).colour}
-    shown: chart.Mark = chart.Line(time / second, main.values / size, width=1.0, **look)
-    if len(starts) < len(time):
-        shown = chart.Area(time[starts] / second, low, high, opacity=1.0, **look)
-    low_end, high_end = panels.main_limits([main], ())
-    up = chart.Axis(f"contact force / {unit}", low_end / size, high_end / size)
-    drawn = [chart.Panel(chart.Axis(f"time / {symbol}"), up, (shown,), main.law, height=3.0)]
-    if data.present(tree, spectra.FORCE_LEVEL):
-        band = data.values(tree, spectra.BAND)
-        levels = panels.styled(tree, band, Of(spectra.FORCE_LEVEL, "{law}")(tree))
-        axis = panels.levels_axis("force level / dB re 1 N", [line.y for line in levels])
-        drawn.append(chart.Panel(panels.band_axis(band), axis, tuple(levels), height=3.0, beside=True))
-    return chart.Chart(tuple(drawn))
+    cells = ((each.name, each.value, each.note) for each in answers_of(tree, chapters()).numbers)
+    rows = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in cells)
+    return f"<table>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"

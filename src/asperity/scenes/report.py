@@ -49,7 +49,7 @@ CHAPTERS = (
     Chapter(
         "noise",
         "Rolling noise",
-        (noise.RADIATED, *noise.NOISE),
+        (noise.RADIATED, noise.STANDARD_BANDS),
         (noise.radiated_table, noise.wheel_table, noise.sound_power_table),
         noise.noise_answers,
     ),
@@ -87,13 +87,13 @@ CHAPTERS = (
         "contact",
         "Contact",
         (contact_figures.PRESSURE, texture_figures.RUNNING_IN),
-        (tables.population_table, tables.condition_table, tables.passes_table),
+        (tables.population_table, tables.condition_table),
     ),
     Chapter(
         "laws",
         "How the contact laws work",
         (contact_figures.LOADING, contact_figures.FILTER, contact_figures.PRINTED_FILTER),
-        (tables.practice_table, tables.reference_table),
+        (tables.reference_table,),
     ),
     Chapter(
         "uncertainty",

@@ -23,8 +23,6 @@ from asperity.serving.worker_processes import Jobs, Questions, Refused
 CONTACT_SECONDS, FILE_SECONDS = 60.0, 120.0
 """Time that a contact, and a file, may take, s."""
 MOST_COMPARED = 4
-MOST_COMPARISONS = 20
-"""Comparisons that are kept; others are written again when they are asked for."""
 LONGEST_SIZE = 19  # digits of a number of bytes
 REPORT_POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
@@ -41,7 +39,6 @@ class Server:
 
     def __init__(self, folder: Path) -> None:
         self.surfaces, self.runs = folder / "surfaces", folder / "runs"
-        self.comparisons = folder / "comparisons"
         self.jobs = Jobs()
         self.contacts, self.files = Questions(CONTACT_SECONDS), Questions(FILE_SECONDS)
 
@@ -59,9 +56,8 @@ class Server:
             await self.files.end()
 
     async def _prepare(self) -> None:
-        """Have those who answer import what they need before they are asked, the contact first."""
+        """Have who presses import and compile what is needed before it is asked."""
         await self.contacts.ask("prepare to press")
-        await self.files.ask("prepare to show")
 
     def app(self) -> Starlette:
         """The addresses, without token and guard."""
@@ -84,7 +80,6 @@ class Server:
             ("POST", "/runs/{run}/go-on", self.go_on),
             ("POST", "/runs/{run}/delete", self.delete),
             ("GET", "/runs/{run}/{name:path}", self.send_file),
-            ("GET", "/comparisons/{run}/{name}", self.send_comparison_file),
         )
         return Starlette(
             routes=[Route(path, handler, methods=[method]) for method, path, handler in addresses],
@@ -234,34 +229,15 @@ class Server:
             await self.files.ask("report", path=str(result))
         return _handed_out(folder, name)
 
-    # --- runs beside each other
-
-    def _compared(self, request: Request) -> tuple[str, dict[str, Any]]:
-        """What is kept of the runs that a question names, and their paths and names, in their order."""
+    async def compare(self, request: Request) -> Response:
+        """Show runs beside each other, the first as the reference."""
         found = [stored_runs.folder_of(self.runs, each) for each in request.query_params.getlist("run")]
         folders = [folder for folder in found if folder is not None]
         if not 2 <= len(folders) <= MOST_COMPARED:
             raise HTTPException(400, f"Two to {MOST_COMPARED} runs can be compared.")
-        identifier = stored_runs.identifier_of_runs([folder.name for folder in folders])
+        paths = [str(folder / stored_runs.RESULT) for folder in folders]
         names = [str(stored_runs.told_of(folder)["name"]) for folder in folders]
-        return identifier, {"paths": [str(folder / stored_runs.RESULT) for folder in folders], "names": names}
-
-    async def compare(self, request: Request) -> Response:
-        """Show runs beside each other."""
-        identifier, runs = self._compared(request)
-        told = await self.files.ask("compare", **runs)
-        return JSONResponse(told | {"page": f"comparisons/{identifier}/{stored_runs.COMPARISON}"})
-
-    async def send_comparison_file(self, request: Request) -> Response:
-        """Send the page of a comparison, written when it is asked for with its runs; or its table."""
-        wanted, root = request.path_params["run"], self.comparisons
-        if "run" in request.query_params:
-            identifier, runs = self._compared(request)
-            if identifier == wanted:
-                await self.files.ask("comparison", **runs, folder=str(root / identifier))
-                for folder in stored_runs.kept_in(root)[MOST_COMPARISONS:]:
-                    stored_runs.remove_kept(folder)
-        return _handed_out(stored_runs.folder_of(root, wanted), request.path_params["name"])
+        return JSONResponse(await self.files.ask("compare", paths=paths, names=names))
 
 
 async def _told(request: Request, error: Exception) -> Response:
@@ -296,10 +272,9 @@ def _form(found: dict[str, Any]) -> dict[str, Any]:
     return {"kind": found.get("kind"), "values": values}
 
 
-def _handed_out(folder: Path | None, name: str) -> Response:
-    """A file of a run or a comparison, to be looked at or taken away."""
-    file = None if folder is None else stored_runs.file_of_run(folder, name)
-    if folder is None or file is None:
+def _handed_out(folder: Path, name: str) -> Response:
+    """A file of a run, to be looked at or taken away."""
+    if (file := stored_runs.file_of_run(folder, name)) is None:
         raise HTTPException(404, "There is no such file.")
     policy = {"content-security-policy": REPORT_POLICY} if file.suffix in (".html", ".svg") else {}
     if file.suffix in (".html", ".wav", ".svg", ".png"):

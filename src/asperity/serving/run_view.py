@@ -14,7 +14,7 @@ from asperity.reporting import chart, data, page, payload, tables
 from asperity.reporting.comparison_page import compared_sections, summary
 from asperity.results import read_result
 from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
-from asperity.scenes.report import compare, comparison_of, report
+from asperity.scenes.report import comparison_of, report
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.serving.stored_runs import SOUNDS
@@ -120,40 +120,15 @@ def told_blocks(blocks: Sequence[page.PageFigure | tables.ReportTable]) -> dict[
 # --- several runs
 
 
-def numbered_names(names: Sequence[str]) -> list[str]:
-    """Names of runs, each once: those that stand there already are numbered."""
-    found: list[str] = []
-    for name in names:
-        number, own = 1, name
-        while own in found:
-            number += 1
-            own = f"{name} ({number})"
-        found.append(own)
-    return found
-
-
 def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
     """A sentence, and what the page of the comparison shows below it."""
-    found = comparison_of(paths, numbered_names(names))
+    told = [name if names.count(name) == 1 else f"{name} ({n})" for n, name in enumerate(names, 1)]
+    found = comparison_of(paths, told)
     blocks = [block for section in compared_sections(found) for block in section.blocks]
     return {"summary": summary(found), **told_blocks(blocks)}
-
-
-# --- what is written when it is asked for
-
-
-def write_comparison_page(paths: list[str], names: list[str], folder: str) -> dict[str, Any]:
-    """Write the page of a comparison, with its table, into a folder."""
-    compare(*paths, names=numbered_names(names), path=folder)
-    return {}
 
 
 def write_report(path: str) -> dict[str, Any]:
     """Write the report of a run, with the numbers of its figures, beside its result."""
     report(read_result(path), Path(path).parent)
-    return {}
-
-
-def prepare_to_show() -> dict[str, Any]:
-    """Nothing: what shows runs is imported by now."""
     return {}

@@ -116,8 +116,7 @@ export async function compare() {
   find("comparison").hidden = false;
   try {
     const found = await ask(`ask/compare?${asked}`);
-    const page = make("a", { href: `${found.page}?${asked}`, target: "_blank", rel: "noopener", textContent: "The whole comparison as a page" });
-    find("comparison-words").replaceChildren(make("p", { textContent: found.summary }), make("p", {}, page));
+    find("comparison-words").replaceChildren(make("p", { textContent: found.summary }));
     showBlocks(find("comparison-blocks"), found);
   } catch (error) {
     find("comparison-words").replaceChildren(make("p", { className: "alert", textContent: error.message }));

@@ -1,7 +1,6 @@
 """What the page keeps on disk: runs and surfaces, each in a folder of its own that is named at random."""
 
 import asyncio
-import hashlib
 import json
 import re
 import secrets
@@ -18,7 +17,6 @@ from asperity.files import amount, require_space, write_bytes
 from asperity.text_files import read_text
 
 CASE, RESULT, REPORT, SOUNDS = "case.toml", "run.nc", "report.html", "sounds"
-COMPARISON = "comparison.html"
 OUTCOME = "outcome.json"
 _FACTS = "run.json"
 _IDENTIFIER = re.compile(r"[0-9a-f]{16}")
@@ -36,11 +34,6 @@ _DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)
 
 
 # --- folders
-
-
-def identifier_of_runs(identifiers: list[str]) -> str:
-    """Name of what is kept of several runs in this order."""
-    return hashlib.sha256(",".join(identifiers).encode()).hexdigest()[:16]
 
 
 def folder_of(root: Path, identifier: str) -> Path | None:

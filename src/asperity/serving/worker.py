@@ -123,11 +123,9 @@ _QUESTIONS = {
     "press": "worker.press_form",
     "prepare to press": "worker.prepare_to_press",
     "examine": "worker.examined",
-    "prepare to show": "run_view.prepare_to_show",
     "view": "run_view.viewed_run",
     "compare": "run_view.compared_runs",
     "report": "run_view.write_report",
-    "comparison": "run_view.write_comparison_page",
 }
 """Module and function that answer each: what shows runs is imported by who is asked for it."""
 

@@ -78,59 +78,21 @@ FORCE_BANDS = Figure(
     _bands,
     _bands_caption,
 )
-FORCE_SPECTRUM = Figure(
-    "force_psd",
-    "Contact force against frequency",
-    Of(spectra.FREQUENCY),
-    (Of(spectra.FORCE_PSD, "{law}"),),
-    panels.draw_spectrum("contact force PSD / dB re 1 N²/Hz"),
-    lambda tree: (
-        f"Contact force of all laws, one-sided PSD, {panels.DRAWN}; thick: the main law, "
-        f"{data.laws(tree, spectra.FORCE_PSD)[0]}. Ticks stand at the one-third octaves."
-        + panels.shaded_words(tree)
-    ),
-    worth=lambda tree: "track" not in tree.children,
-)
-
-WIDEST = 20.0
-"""Widest stretch, Hz, over which lines are averaged for drawing: narrower than what the track imprints."""
 
 
-def _lines_per_point(frequency: chart.Numbers) -> int:
-    return max(1, int(WIDEST / (frequency[1] - frequency[0]) + 1e-9)) if len(frequency) > 1 else 1
+def _spectrum(tree: DataTree, lines: Lines) -> list[chart.Panel]:
+    """Power spectral densities over frequency, with the track's marks behind."""
+    at, levels = panels.narrow_levels(tree, lines, lines.lines)
+    drawn = panels.styled(tree, at, [series for series in levels if series.law])
+    drawn += [chart.Line(at, series.values, **REFERENCE_STYLE) for series in levels if not series.law]
+    ends = panels.frequency_range(tree)
+    behind = (*track.sleeper_tones(tree, *ends), *track.split_rules(tree, *ends))
+    return [panels.spectrum_panel(tree, "contact force PSD / dB re 1 N²/Hz", drawn, behind)]
 
 
-def _linear_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
-    """Power spectral densities on a linear frequency axis, with the track's marks."""
-    high = float(
-        data.values(tree, spectra.BAND if data.present(tree, spectra.BAND) else spectra.FREQUENCY)[-1]
-    )
-    count = _lines_per_point(lines.at)
-    kept = np.flatnonzero((lines.at > 0) & (lines.at <= high))
-    kept = kept[: len(kept) // count * count]
-
-    def thinned(numbers: chart.Numbers) -> chart.Numbers:
-        return np.asarray(numbers[kept].reshape(-1, count).mean(axis=1))
-
-    at, levels = (
-        thinned(lines.at),
-        [replace(s, values=chart.decibels(thinned(s.values))) for s in lines.lines],
-    )
-    laws = [s for s in levels if s.law]
-    axis = panels.levels_axis("contact force PSD / dB re 1 N²/Hz", [s.values for s in laws])
-    behind = (*panels.shaded_bands(tree), *track.sleeper_tones(tree, high), *track.split_rules(tree, high))
-    drawn = [  # hundreds of lines side by side
-        replace(line, width=1.5 if line.law == laws[0].law else 0.9) for line in panels.styled(tree, at, laws)
-    ]
-    drawn += [chart.Line(at, s.values, **REFERENCE_STYLE) for s in levels if not s.law]
-    frequency = chart.Axis("frequency / Hz", 0.0, high, linked="frequency")
-    yield chart.Panel(frequency, axis, (*behind, *drawn), height=4.6)
-
-
-def _linear_spectrum_caption(tree: DataTree) -> str:
-    count = _lines_per_point(data.values(tree, spectra.FREQUENCY))
-    drawn = f"drawn as mean power of {count} lines" if count > 1 else "every line"
-    text = [f"One-sided PSD, {drawn}; thick: the main law, {data.laws(tree, spectra.FORCE_PSD)[0]}."]
+def _spectrum_caption(tree: DataTree) -> str:
+    main = data.laws(tree, spectra.FORCE_PSD)[0]
+    text = [f"Contact force of all laws, one-sided PSD, {panels.DRAWN}; thick: the main law, {main}."]
     if data.present(tree, REFERENCE_PSD.entry):
         text.append(
             "Dashed: the linear contact in the frequency domain, F = −h/(α_W + α_C + α_R), at rest, with "
@@ -148,19 +110,19 @@ def _linear_spectrum_caption(tree: DataTree) -> str:
     return " ".join(text) + panels.shaded_words(tree)
 
 
-LINEAR_SPECTRUM = replace(
-    FORCE_SPECTRUM,
-    columns=(*FORCE_SPECTRUM.columns, REFERENCE_PSD),
-    draw=_linear_spectrum,
-    caption=_linear_spectrum_caption,
-    worth=lambda tree: "track" in tree.children,
+FORCE_SPECTRUM = Figure(
+    "force_psd",
+    "Contact force against frequency",
+    Of(spectra.FREQUENCY),
+    (Of(spectra.FORCE_PSD, "{law}"), REFERENCE_PSD),
+    _spectrum,
+    _spectrum_caption,
 )
 
 
 # --- in time
 
 COLUMNS = 700  # stretches of an envelope
-PIECE = 2000  # time steps of the short piece, at most
 AROUND = 400  # time steps that are shown around the largest force
 AROUND_PEAK = 0.024
 """Length of the piece around the largest force, s."""
@@ -180,17 +142,6 @@ def lost(tree: DataTree, law: str, force: chart.Numbers) -> chart.Flags:
 def _main_flight(tree: DataTree) -> chart.Flags:
     """Time steps at which the main law has lost contact."""
     return lost(tree, data.laws(tree, rolling.CONTACT_FORCE)[0], _main_force(tree))
-
-
-def piece(tree: DataTree) -> slice:
-    """Short piece of the run: around the main law's longest loss of contact, else in the middle."""
-    flight = _main_flight(tree)
-    count = len(flight)
-    middle = count // 2
-    if flight.any():
-        first, last = max(panels.stretches(flight).tolist(), key=lambda stretch: stretch[1] - stretch[0])
-        middle = (first + last + 1) // 2
-    return _around(middle, min(PIECE, max(count // 5, min(count, 200))), count)
 
 
 def _around(middle: int, length: int, count: int) -> slice:
@@ -233,16 +184,6 @@ def _bars(tree: DataTree, series: Series, time: chart.Numbers, row: int) -> char
     return chart.Boxes(*ends, colour=data.law_entry(tree, series.law).colour, law=series.law)
 
 
-def _forces_words(tree: DataTree, lines: Lines) -> str:
-    """Say what the bars below the forces are, where there are any, and which laws leave the force axis."""
-    pulling, bars = data.pulling(tree), ""
-    if flown := [s.law for s in lines.lines if lost(tree, s.law, s.values).any()]:
-        shaded = ", shaded above where the main law has none" if lines.lines[0].law in flown else ""
-        held = " and ".join(s.law for s in lines.lines if s.law in pulling)
-        bars = f" Bars below: no contact (F ≤ 0){shaded}" + (f"; {held} cannot lose it." if held else ".")
-    return bars + panels.beyond_limits(lines.lines, panels.main_limits(lines.lines, pulling), "N")
-
-
 def _whole(tree: DataTree) -> Lines:
     return Lines(next(Of(rolling.TIME)(tree)), list(FORCES(tree)))
 
@@ -278,19 +219,19 @@ def _whole_run(tree: DataTree, _: Lines) -> chart.Chart:
     return chart.Chart(tuple(_forces(tree, whole, width=0.9)), places)
 
 
+_WORDS = (
+    "The axis suits the main law. Bars below, if any: no contact (F ≤ 0), shaded above for the main law; "
+    "a law that pulls cannot lose it."
+)
+
+
 def _whole_caption(tree: DataTree) -> str:
-    whole = _whole(tree)
+    count = min(COLUMNS, len(data.values(tree, rolling.TIME)))
     return (
         "Every time step; compression positive. Where steps lie too close to draw, a line spans lowest and "
-        f"highest force.{_forces_words(tree, whole)} The CSV file holds lowest and "
-        f"highest force in each of {min(COLUMNS, len(whole.at))} stretches, run.nc every time step."
+        f"highest force. {_WORDS} The CSV file holds lowest and highest force in each of {count} stretches, "
+        "run.nc every time step."
     )
-
-
-def _piece_caption(tree: DataTree) -> str:
-    around = "around the main law's longest loss of contact"
-    where = around if _main_flight(tree).any() else "in the middle of the run"
-    return f"A short piece {where}, every time step.{_forces_words(tree, FORCE_PIECE.collect(tree))}"
 
 
 def _peak_caption(tree: DataTree) -> str:
@@ -299,27 +240,17 @@ def _peak_caption(tree: DataTree) -> str:
     where = f"{data.engineering(force[peak], 'N')} at {data.values(tree, rolling.TIME)[peak]:.4f} s"
     if data.present(tree, rolling.POSITION):
         where += f", {data.values(tree, rolling.POSITION)[peak]:.3f} m along the rail"
-    words = _forces_words(tree, FORCE_PEAK.collect(tree))
-    return f"Around the largest force of the main law, {law}: {where}. Every time step.{words}"
+    return f"Around the largest force of the main law, {law}: {where}. Every time step. {_WORDS}"
 
 
-FORCE_PIECE = Figure(
-    "force_piece",
-    "Contact force, a short piece",
+FORCE_PEAK = Figure(
+    "force_peak",
+    "Contact force around its largest value",
     Of(rolling.TIME),
     (FORCES,),
     _forces,
-    _piece_caption,
-    rows=piece,
-    worth=lambda tree: "track" not in tree.children,
-)
-FORCE_PEAK = replace(
-    FORCE_PIECE,
-    name="force_peak",
-    title="Contact force around its largest value",
-    caption=_peak_caption,
+    _peak_caption,
     rows=around_peak,
-    worth=lambda tree: "track" in tree.children,
 )
 FORCE_ENVELOPE = Figure(
     "force_envelope",
@@ -330,8 +261,7 @@ FORCE_ENVELOPE = Figure(
     _whole_caption,
     further=(rolling.CONTACT_FORCE, rolling.TIME),
 )
-FORCE = (FORCE_ENVELOPE, FORCE_PIECE, FORCE_PEAK, FORCE_SPECTRUM, LINEAR_SPECTRUM, FORCE_BANDS)
-"""Of a track the force around its largest value, and marks of it in the spectrum."""
+FORCE = (FORCE_ENVELOPE, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS)
 
 
 # --- of each of several contacts

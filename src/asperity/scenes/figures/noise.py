@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from xarray import DataTree
 from asperity.reference.cnossos import CNOSSOS
 from asperity.reference.grounds import HARD
 from asperity.reporting import chart, data, headline, panels
-from asperity.reporting.chart import INK, MUTED, Axis, Boxes, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
@@ -78,32 +77,6 @@ def _of_parts(
 # --- by CNOSSOS-EU
 
 
-def _totals(tree: DataTree) -> Iterator[Series]:
-    """A-weighted sound power: one row, one column per source and law."""
-    for law in data.laws(tree, STANDARD_A):
-        for source, level in zip(parts_of(tree, STANDARD_A), data.of_law(tree, STANDARD_A, law), strict=True):
-            yield Series(f"{source}, {law}", STANDARD_A.units, np.array([level]), places={"law": law})
-
-
-def _bars(tree: DataTree, lines: Lines) -> list[Panel]:
-    """A-weighted sound power as bars, by source and law."""
-    laws, found = data.laws(tree, STANDARD_A), parts_of(tree, STANDARD_A)
-    levels = np.array([[series.values[0] for series in lines.lines if series.law == law] for law in laws])
-    lowest, top = float(np.nanmin(levels)), float(np.nanmax(levels))
-    base, thickness = 5 * np.floor((lowest - 5) / 5), 0.82 / len(laws)
-    marks: list[Mark] = []
-    for row, (law, level, hatch) in enumerate(zip(laws, levels, cycle(chart.HATCHES), strict=False)):
-        known = np.isfinite(level)
-        at = (np.arange(len(found)) + (row - (len(laws) - 1) / 2) * thickness)[known]
-        edges = np.full(len(at), base), level[known], at - 0.43 * thickness, at + 0.43 * thickness
-        marks.append(Boxes(*edges, law, data.law_entry(tree, law).colour, hatch=hatch, law=law))
-        places = zip(at.tolist(), level[known].tolist(), strict=True)
-        marks += [Note(f"{x:.1f}", x, y, colour=INK, law=law) for y, x in places]
-    along = Axis("A-weighted sound power level / dB(A) re 1 pW", base, top + 0.07 * (top - base))
-    height = 0.7 + len(found) * (0.3 + 0.2 * len(laws))
-    return [Panel(along, panels.words_axis(found, down=True), tuple(marks), height=height)]
-
-
 def _bare_law(tree: DataTree) -> str:
     """Law of which the shares of track and wheel are drawn: that of the bare roughness."""
     bare = data.variable_of(tree, STANDARD).attrs.get("reference")
@@ -123,34 +96,22 @@ def _standard_bands(tree: DataTree, lines: Lines) -> list[Panel]:
     return [panels.band_panel(tree, lines, _POWER, [*totals, *shares], product, of=totals)]
 
 
-NOISE = (
-    Figure(
-        "sound_power",
-        "A-weighted sound power by CNOSSOS-EU",
-        None,
-        (_totals,),
-        _bars,
-        "Sum of the A-weighted bands below. The axis does not start at zero: compare the ends of the "
-        "bars, not their lengths.",
-        (STANDARD_A,),
+STANDARD_BANDS = Figure(
+    "sound_power_bands",
+    "Sound power by CNOSSOS-EU in one-third octaves",
+    Of(schema.NOISE_BAND, "band centre"),
+    (
+        _weighting(schema.NOISE_BAND),
+        panels.products(schema.NOISE_BAND_TIME_PRODUCT),
+        Of(STANDARD, "{source}, {law}"),
     ),
-    Figure(
-        "sound_power_bands",
-        "Sound power by CNOSSOS-EU in one-third octaves",
-        Of(schema.NOISE_BAND, "band centre"),
-        (
-            _weighting(schema.NOISE_BAND),
-            panels.products(schema.NOISE_BAND_TIME_PRODUCT),
-            Of(STANDARD, "{source}, {law}"),
-        ),
-        _standard_bands,
-        lambda tree: (
-            "A-weighted one-third octaves. The linear law: the roughness that was rolled and the transfer "
-            "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare "
-            "texture. The other laws add their difference of the contact force level to linear, band by "
-            "band, which holds what the contact filters. Grey: the shares of track and wheel by "
-            f"{_bare_law(tree)}.{panels.shaded_words(tree, schema.NOISE_BAND_TIME_PRODUCT)}"
-        ),
+    _standard_bands,
+    lambda tree: (
+        "A-weighted one-third octaves. The linear law: the roughness that was rolled and the transfer "
+        "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare "
+        "texture. The other laws add their difference of the contact force level to linear, band by "
+        "band, which holds what the contact filters. Grey: the shares of track and wheel by "
+        f"{_bare_law(tree)}.{panels.shaded_words(tree, schema.NOISE_BAND_TIME_PRODUCT)}"
     ),
 )
 

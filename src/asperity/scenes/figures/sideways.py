@@ -1,7 +1,6 @@
-"""What moves sideways: lateral force and friction, receptances and decay, and its part of the noise."""
+"""What moves sideways: lateral force and friction, receptances and decay."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from xarray import DataTree
@@ -13,11 +12,8 @@ from asperity.reporting.tables import ReportTable, number_cells, table, text_cel
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import over_bands
 from asperity.schema import spectra
-from asperity.spectra import a_weighting
 
-FORCE, POWER, POWER_A = schema.LATERAL_FORCE_LEVEL, schema.LATERAL_POWER_LEVEL, schema.LATERAL_POWER_LEVEL_A
-RAIL, VERTICAL, BOTH, WHOLE = schema.SIDEWAYS_RADIATORS
-UP = "rail up and down"
+FORCE = schema.LATERAL_FORCE_LEVEL
 
 
 def _force(tree: DataTree, lines: Lines) -> Iterator[Panel]:
@@ -72,23 +68,6 @@ def _answers(tree: DataTree, lines: Lines) -> Iterator[Panel]:
         yield Panel(along, axis, tuple(rates), height=2.6)
 
 
-def _power(tree: DataTree, lines: Lines) -> list[Panel]:
-    """A-weighted sound power of the main law: sideways, and beside it what moves up and down alone."""
-    main, weighting = data.laws(tree, POWER)[0], a_weighting(lines.at)
-    looks: dict[str, tuple[Any, ...]] = {
-        RAIL: (chart.VERMILLION, (), 1.8, "o"),
-        VERTICAL: (chart.BLUE, (1.5, 1.5), 1.3),
-        BOTH: (chart.BLUE, (), 1.8, "^"),
-        UP: (chart.VERMILLION, (1.5, 1.5), 1.3),
-        WHOLE: (INK, (), 1.8),
-    }
-    drawn = [
-        Line(lines.at, series.values + weighting, series.label, *looks[series.label])
-        for series in lines.of(POWER, schema.RADIATED_POWER_LEVEL, law=main)
-    ]
-    return [panels.band_panel(tree, lines, "sound power level / dB(A) re 1 pW", drawn)]
-
-
 SIDEWAYS = (
     Figure(
         "lateral_force",
@@ -105,20 +84,6 @@ SIDEWAYS = (
         (Of(schema.LATERAL_FORCE_PSD, "{law}"),),
         panels.draw_spectrum("PSD of the lateral force / dB re 1 N²/Hz"),
         f"One-sided power spectral density, {panels.DRAWN}.",
-    ),
-    Figure(
-        "lateral_power",
-        "Sound power of what moves sideways",
-        Of(schema.SIDEWAYS_BAND, "band centre"),
-        (
-            Of(POWER, "{radiator}, {law}", "{radiator}"),
-            Of(schema.RADIATED_POWER_LEVEL, f"{UP}, {{law}}", UP, one={"radiator": min}),  # the rail
-        ),
-        _power,
-        "A-weighted one-third octaves. The rail radiates sideways over its height, beside its motion up and "
-        "down (dotted); the modes of the wheel answer to both forces at once, beside the vertical one alone "
-        "(dotted). The total holds rail and sleepers up and down, too.",
-        any_of=(POWER,),
     ),
     Figure(
         "lateral_receptance",
@@ -147,25 +112,18 @@ SIDEWAYS = (
 
 
 def sideways_table(tree: DataTree) -> ReportTable | None:
-    """Lateral force, slip, and sound power with and without what moves sideways, per law."""
-    laws = data.laws(tree, POWER_A)
+    """Lateral force and slip, per law."""
+    laws = data.laws(tree, FORCE)
     if not laws:
         return None
-    radiators = data.words(tree, schema.SIDEWAYS_RADIATOR)
-    own = [dict(zip(radiators, data.of_law(tree, POWER_A, law), strict=True)) for law in laws]
-    known = data.laws(tree, schema.RADIATED_POWER_LEVEL_A) == laws
-    up = data.stored_variable(tree, schema.RADIATED_POWER_LEVEL_A) if known else None
     columns = {
         "law": text_cells(laws),
         "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), "{:.3g}"),
         "beyond friction": text_cells(map(data.in_percent, data.values(tree, schema.SLIP_SHARE)), "number"),
     }
-    levels = {UP: [float(up.sel(law=law, radiator="rail")) for law in laws]} if up is not None else {}
-    levels |= {name: [each[name] for each in own] for name in schema.SIDEWAYS_RADIATORS}
-    columns |= {name: number_cells(level, "{:.1f}") for name, level in levels.items()}
     note = (
-        "Sound power in dB(A) re 1 pW, over the bands that were computed. Beyond friction: share of the "
-        "time in which a lateral force of this rms, normally distributed, is more than the coefficient of "
-        "friction times the static load; where it is not small, the contact slips, and the force is less."
+        "Beyond friction: share of the time in which a lateral force of this rms, normally distributed, is "
+        "more than the coefficient of friction times the static load; where it is not small, the contact "
+        "slips, and the force is less. Sound power with what moves sideways: under rolling noise."
     )
     return table("sideways_table", "Sideways", columns, note)

@@ -42,18 +42,18 @@ def pinned_pinned_split(tree: DataTree) -> tuple[float, float] | None:
     return (low, high) if low and high else None
 
 
-def split_rules(tree: DataTree, high: float) -> list[Mark]:
-    """Frequencies f_pp ∓ v/2L below another, with their name at the top."""
+def split_rules(tree: DataTree, low: float, high: float) -> list[Mark]:
+    """Frequencies f_pp ∓ v/2L between two others, with their name at the top."""
     split = pinned_pinned_split(tree)
-    if split is None or not 0.0 < split[0] < split[1] < high:
+    if split is None or not low < split[0] < split[1] < high:
         return []
     return [Rules(np.array(split)), Note("f_pp ∓ v/2L", split[1], 0.97, y_share=True)]
 
 
-def sleeper_tones(tree: DataTree, high: float) -> list[Mark]:
-    """Short rules at n v/L up to a frequency."""
+def sleeper_tones(tree: DataTree, low: float, high: float) -> list[Mark]:
+    """Short rules at n v/L between two frequencies."""
     tone = data.number(tree, schema.SLEEPER_PASSING_FREQUENCY)
-    return [_short(tone * np.arange(1, np.floor(high / tone) + 1))] if tone else []
+    return [_short(tone * np.arange(np.ceil(low / tone), np.floor(high / tone) + 1))] if tone else []
 
 
 def sleeper_times(tree: DataTree, start: float, end: float, unit: float) -> list[Mark]:
@@ -248,23 +248,15 @@ def _kernels(tree: DataTree) -> list[Series]:
 
 
 def _kernel(tree: DataTree, lines: Lines) -> list[Panel]:
-    """Response under the load to an impulse at some start positions: at first, and until it is quiet."""
+    """Response under the load to an impulse at some start positions, until it is quiet."""
     size = np.abs([s.values for s in lines.lines]).max(axis=0)
-    quiet = float(lines.at[min(np.flatnonzero(size > size.max() / 100)[-1] + 1, len(lines.at) - 1)])
-    later = _kernel_panel(tree, lines, quiet, "until it stays below 1 % of its largest value")
-    return [
-        _kernel_panel(tree, lines, min(6e-3, quiet), "the first milliseconds"),
-        replace(later, beside=True, share=1.25),
-    ]
-
-
-def _kernel_panel(tree: DataTree, lines: Lines, end: float, title: str) -> Panel:
-    shown = lines.at <= end
+    shown = slice(0, int(np.flatnonzero(size > size.max() / 100)[-1]) + 2)
     of_panel = [replace(s, values=s.values[shown] * 1e6) for s in lines.lines]
     drawn = panels.styled(tree, lines.at[shown] * 1e3, of_panel, width=1.2)
-    time = Axis("time since the impulse / ms", 0.0, 1e3 * end)
-    zero = panels.zero(width=0.8)
-    return Panel(time, Axis("moving kernel / (µm/(N s))"), (zero, *drawn), title, height=3.9)
+    time, up = Axis("time since the impulse / ms", 0.0), Axis("moving kernel / (µm/(N s))")
+    return [
+        Panel(time, up, (panels.zero(width=0.8), *drawn), "until it stays below 1 % of its largest value")
+    ]
 
 
 def _kernel_caption(tree: DataTree) -> str:
