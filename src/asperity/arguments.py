@@ -19,7 +19,7 @@ LONGEST = 60  # characters of a received value that a message repeats
 LONGEST_WORD = 100  # characters of a word for which one like it is sought
 MOST_NAMES = 10  # of what is in a file, that a message lists
 SHAKEDOWN = "shakedown"  # stands for a number of passes: until one changes nothing any more
-FORMS = {"plane": 1, "quadratic": 2}  # words for polynomials of these degrees
+FORMS = {"plane": 1, "quadratic": 2, "quartic": 4}  # words for polynomials of these degrees
 MOST_PASSES = 100  # of running-in
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from asperity import BallOnBeam
 from asperity.errors import CaseError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import band_limit, fit_form, level, remove_form, resample
+from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.spectra import texture_direction
 from asperity.surfaces.steps import inscribed, rotated
 from refusals import refusals
@@ -30,56 +30,38 @@ ROUGH = HeightMap(np.random.default_rng(2).standard_normal((64, 48)) * UM, (UM, 
 FLAT = HeightMap(np.zeros((20, 20)), (UM, UM))
 
 
-@pytest.mark.parametrize(("word", "degree"), [("plane", 1), ("quadratic", 2)])
+@pytest.mark.parametrize(("word", "degree"), [("plane", 1), ("quadratic", 2), ("quartic", 4)])
 def test_a_form_has_one_word_in_cases_and_in_python_and_its_degree_is_understood(word, degree):
     """A case writes the word, whichever it was given."""
     assert np.array_equal(ROUGH.levelled(word).heights, ROUGH.levelled(degree).heights)
     cases = [BallOnBeam(surface={"file": ROUGH, "form": form}) for form in (word, degree)]
     assert [case.surface.form for case in cases] == [word, word]
     for form in (True, 0, 3, "sphere", 2.0, None):
-        with pytest.raises(CaseError, match=r'surface\.form: .*allowed: "plane", "quadratic"'):
+        with pytest.raises(CaseError, match=r'surface\.form: .*allowed: "plane", "quadratic", "quartic"'):
             BallOnBeam(surface={"file": ROUGH, "form": form})
 
 
-@pytest.mark.parametrize("degree", [0, 1, 2])
+@pytest.mark.parametrize("degree", [0, 1, 2, 4])
 def test_level_removes_its_polynomial_exactly_with_points_missing(degree):
     slope = (degree > 0) * np.array([0.01, -0.02])
     bow = (degree > 1) * np.array([30.0, -50.0, 20.0])
+    steep = (degree > 2) * 3e8
     surface = make_map(
-        lambda x, y: 5 * UM + slope[0] * x + slope[1] * y + bow[0] * x * x + bow[1] * x * y + bow[2] * y * y
+        lambda x, y: (
+            5 * UM
+            + slope[0] * x
+            + slope[1] * y
+            + bow[0] * x * x
+            + bow[1] * x * y
+            + bow[2] * y * y
+            + steep * x * x * y * (x - y)
+        )
     )
     left = level(with_holes(surface), degree).heights
     assert 0.05 < np.isnan(left).mean() < 0.15
     assert_allclose(left[np.isfinite(left)], 0.0, atol=1e-19)
     line = level(surface.line(), degree).heights
     assert_allclose(line, 0.0, atol=1e-19)
-
-
-def cap(radius, x, y):
-    """A ball about a place of the map, or a hollow."""
-    square = (x - 40 * UM) ** 2 + (y - 90 * UM) ** 2
-    return 7 * UM + np.sign(radius) * (np.sqrt(radius**2 - square) - abs(radius))
-
-
-def roller(radius, x, y):
-    """A cylinder that lies in a direction of the plane."""
-    return np.sqrt(radius**2 - (x * np.cos(0.4) + y * np.sin(0.4) - 70 * UM) ** 2)
-
-
-@pytest.mark.parametrize(
-    ("form", "shape", "radius"),
-    [("sphere", cap, 25e-3), ("sphere", cap, -2e-3), ("sphere", cap, 0.2e-3), ("cylinder", roller, 1e-3)],
-)
-def test_a_form_is_found_and_removed(form, shape, radius):
-    surface = with_holes(make_map(lambda x, y: shape(radius, x, y)))
-    assert_allclose(fit_form(surface, form).radius, radius, rtol=1e-6)
-    assert np.nanmax(np.abs(remove_form(surface, form).heights)) < 1e-13
-    if form == "sphere":
-        circle = make_map(lambda x, y: shape(radius, x, 90 * UM + 0 * y)).line()
-        assert_allclose(fit_form(circle).radius, radius, rtol=1e-6)
-        assert np.abs(remove_form(circle).heights).max() < 1e-13
-    paraboloid = np.nanmax(np.abs(remove_form(surface, "polynomial", degree=2).heights))
-    assert (paraboloid > 1e-8) == (abs(radius) < 0.5e-3)  # a steep cap is none
 
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
@@ -182,32 +164,19 @@ def test_planes_turn_exactly_and_nothing_lies_beyond_the_points():
     assert rotated(wave(10.0, shape=(101, 101)), np.pi / 4).shape == (71, 71)  # sides of 100/√2 steps
 
 
-def test_points_beside_a_missing_one_are_missing_and_no_others():
-    surface = wave(0.0)
-    heights = np.array(surface.heights)
-    heights[80, 60] = np.nan
-    turned = rotated(HeightMap(heights, surface.spacing), np.radians(30))
-    whole = rotated(surface, np.radians(30))
-    gone = np.isnan(turned.heights)
-    assert 1 <= gone.sum() <= 5  # four cells of the map hold less than five points of its own spacing
-    assert_allclose(turned.heights[~gone], whole.heights[~gone], atol=0.05)
-
-
 LINE = Profile(np.zeros(100), UM)
 
 
 test_what_is_wrong_is_said = refusals(
     (lambda: level(LINE, 3), "degree: received 3"),
     (lambda: level(Profile([1.0, 2.0, np.nan], 1.0), 2), "2 valid points"),
-    (lambda: remove_form(FLAT, "sphere"), "no curvature"),
-    (lambda: remove_form(FLAT, "cone"), "form: received 'cone'"),
-    (lambda: remove_form(FLAT, "polynomial", degree=13), "degree: received 13"),
     (lambda: band_limit(LINE, shortest=UM), "shortest wavelength: received 1e-06; allowed: at least two"),
     (lambda: band_limit(LINE, longest=10 * UM, shortest=20 * UM), "shortest < longest"),
     (lambda: resample(ROUGH, 60 * UM), "spacing"),
     (lambda: resample(with_holes(ROUGH), 4 * UM), "Use fill first"),
     (lambda: rotated(HeightMap(np.eye(90, 2), UM), np.pi / 4), "received 45 degrees on a map of 90 x 2"),
     (lambda: rotated(FLAT, np.inf), "a finite angle"),
+    (lambda: rotated(with_holes(ROUGH), 0.1), "complete heights, or quarter turns"),
 )
 
 

@@ -367,7 +367,7 @@ class Recipe(Section):
     crop: tuple[float, ...] | None = key(
         ListOf(POSITION), None, "x, y and both lengths of the piece of a map that is kept"
     )
-    form: str | None = key(Choice(steps.FORMS), None, "form that is removed")
+    form: str | None = key(Choice(tuple(FORMS)), None, "form that is removed")
     longest: float | None = key(LENGTH, None, "nesting index of the L-filter: longer waves are removed")
     shortest: float | None = key(LENGTH, None, "nesting index of the S-filter: shorter waves are removed")
     direction: float | None = key(ANGLE, None, "direction of rolling, from x towards y")

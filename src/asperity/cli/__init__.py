@@ -133,7 +133,7 @@ def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     # decimal commas
     asperity surface track.csv --decimal , --height-unit um --pixel '1 mm'
     # filtered, kept
-    asperity surface beam.x3p --form sphere --shortest '8 um' --store recipe.toml
+    asperity surface beam.x3p --form quartic --shortest '8 um' --store recipe.toml
     """
     from asperity.cli.surface import show_surface
 

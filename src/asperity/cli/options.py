@@ -141,7 +141,7 @@ SURFACE = [
     click.Option(
         ["--crop"], metavar="LENGTHS", help="Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides)."
     ),
-    click.Option(["--form"], metavar="FORM", help="Remove plane, quadratic, sphere or cylinder."),
+    click.Option(["--form"], metavar="FORM", help="Remove plane, quadratic or quartic."),
     click.Option(["--longest"], metavar="LENGTH", help="Nesting index of the L-filter (ISO 16610-21, -61)."),
     click.Option(["--shortest"], metavar="LENGTH", help="Nesting index of the S-filter, likewise Gaussian."),
     click.Option(["--recipe"], type=PATH, help="Do what a stored recipe says; options are stronger."),

@@ -26,27 +26,17 @@ SAME_COHERENCE = 1.05
 """Wavenumbers within this ratio share one lateral coherence."""
 
 
-def band_levels_of(
-    surface: Profile | HeightMap,
-    *,
-    segment: float | None = None,
-    shortest: float | None = None,
-    longest: float | None = None,
-) -> tuple[Array, Array]:
+def band_levels_of(surface: Profile | HeightMap) -> tuple[Array, Array]:
     """One-third-octave levels, dB re 1 µm, with their wavelengths, m; of a map the mean power along x.
 
-    Complete heights, m; the mean of each line is removed. Segments, m, are Hann-windowed with 50 % overlap,
-    the whole length by default. `shortest` and `longest` lie in the last and the first band; by default all
-    bands that the segment resolves and the spacing holds. The exact band centres fall; an empty band has a
-    level of minus infinity.
+    Complete heights, m, under a Hann window; the mean of each line is removed. The bands are those that the
+    length resolves and the spacing holds. The exact band centres fall; an empty band has a level of minus
+    infinity.
     """
-    spacing = float(np.atleast_1d(surface.spacing)[0])
-    points = None if segment is None else round(segment / spacing)
-    wavenumber, density = psd(surface.heights.T, spacing, segment=points)
+    wavenumber, density = psd(surface.heights.T, float(np.atleast_1d(surface.spacing)[0]))
     if density.ndim == 2:
         density = density.mean(axis=0)
-    low, high = (None if limit is None else 1.0 / limit for limit in (longest, shortest))
-    centres, levels = band_levels(wavenumber, density, MICROMETRE, low=low, high=high)
+    centres, levels = band_levels(wavenumber, density, MICROMETRE)
     return 1.0 / centres, levels
 
 

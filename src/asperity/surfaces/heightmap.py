@@ -57,8 +57,8 @@ class Heights:
         Parameters
         ----------
         degree : str or int
-            ``"plane"`` (of a line: its mean line) or ``"quadratic"``, as in a case, or the total degree of
-            the polynomial in x and y: 1, 2, or 0, which removes the mean.
+            ``"plane"`` (of a line: its mean line), ``"quadratic"`` or ``"quartic"``, as in a case, or the
+            total degree of the polynomial in x and y: 1, 2, 4, or 0, which removes the mean.
 
         Returns
         -------

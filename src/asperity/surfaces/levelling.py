@@ -1,15 +1,15 @@
 """From raw heights to the roughness that is meant: levelling, wavelength band, form, grid."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import reduce
 from itertools import product
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import scipy
 
-from asperity.arguments import FORMS, Array, NDArray, real, require, shown
-from asperity.errors import ComputationError, ShortRecordWarning
+from asperity.arguments import FORMS, Array, real, require, shown
+from asperity.errors import ShortRecordWarning
 
 if TYPE_CHECKING:
     from asperity.surfaces.heightmap import Heights
@@ -25,13 +25,14 @@ MIRRORED = 8
 def level(surface: S, degree: int | str = "plane") -> S:
     """Remove a least-squares polynomial, by the word of a case or by its degree; missing points stay missing.
 
-    ``"plane"`` or 1 is the mean plane or line, ``"quadratic"`` or 2 a paraboloid, 0 the mean.
+    ``"plane"`` or 1 is the mean plane or line, ``"quadratic"`` or 2 a paraboloid, ``"quartic"`` or 4 what a
+    steep cap needs, 0 the mean.
     """
-    degrees: dict[Any, int] = {**FORMS, 0: 0, 1: 1, 2: 2}
-    allowed = '"plane" (or 1), "quadratic" (or 2) or 0, the mean'
+    degrees: dict[Any, int] = {0: 0} | FORMS | {each: each for each in FORMS.values()}
+    allowed = "0, the mean, or " + ", ".join(f'"{word}" (or {each})' for word, each in FORMS.items())
     offered = isinstance(degree, int | str | np.integer) and degree in degrees
-    require(offered, "degree", shown(degree), allowed, "Use remove_form for more.")
-    return replace(surface, heights=surface.heights - polynomial(surface.heights, degrees[degree]))
+    require(offered, "degree", shown(degree), allowed)
+    return replace(surface, heights=surface.heights - _polynomial(surface.heights, degrees[degree]))
 
 
 def band_limit(surface: S, longest: float | None = None, shortest: float | None = None) -> S:
@@ -122,114 +123,12 @@ def _resample_axis(heights: Array, old_step: float, new_step: float, axis: int) 
     return np.moveaxis(spline((np.arange(count) + 0.5) * new_step), -1, axis)
 
 
-@dataclass(frozen=True, eq=False)
-class Form:
-    """Least-squares form of a surface."""
-
-    kind: str  # ``"sphere"``, ``"cylinder"`` or ``"polynomial"``
-    heights: Array  # of the form, m, with the shape of the surface
-    radius: float  # of curvature, m, positive for a hill and negative for a hollow; NaN for a polynomial
-
-
-FormName = Literal["sphere", "cylinder", "polynomial"]
-
-
-def remove_form(surface: S, form: FormName = "sphere", *, degree: int = 2) -> S:
-    """Remove the form that `fit_form` finds, m; missing points stay missing."""
-    return replace(surface, heights=surface.heights - fit_form(surface, form, degree=degree).heights)
-
-
-def fit_form(surface: "Heights", form: FormName = "sphere", *, degree: int = 2) -> Form:
-    """Fit a form by least squares of the height differences, m.
-
-    A cylinder lies in any direction of the plane and may be tilted slightly along its axis; for a profile,
-    sphere and cylinder both mean a circle. `degree` is the total degree of the polynomial. The differences
-    are taken along z, not along the normal: the same for a cap that is shallow against its radius, as
-    measured patches are.
-    """
-    heights = surface.heights
-    if form == "polynomial":
-        return Form("polynomial", polynomial(heights, degree), float("nan"))
-    require(form in ("sphere", "cylinder"), "form", repr(form), "'sphere', 'cylinder' or 'polynomial'")
-    x, y, scale = _coordinates(surface)
-    valid, is_line = np.isfinite(heights), heights.ndim == 1
-    terms = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1)
-    if is_line:
-        terms[..., [2, 4, 5]] = 0.0
-    _check_count(valid, 3 if is_line else 6)
-    q = np.asarray(np.linalg.lstsq(terms[valid], heights[valid], rcond=None)[0], dtype=np.float64)
-    if is_line or form == "sphere":
-        start, sag = _sphere_start(q, is_line), _sphere
-    else:
-        start, sag = _cylinder_start(q), _cylinder
-    # refined in coordinates divided by the scale, by differences relative to the range of the heights
-    unit = float(np.ptp(heights[valid])) or 1.0
-    curved, remedy = abs(start[1]) > 1e-9 * unit, "Use level for a flat one."
-    require(curved, "surface", "no curvature", "a curved surface", remedy)
-    z = heights[valid] / scale
-    start = np.array([start[0] / scale, start[1] / scale, *start[2:]])
-
-    def residual(p: Array) -> Array:
-        return (sag(p, x[valid], y[valid]) - z) * (scale / unit)
-
-    steps = np.maximum(np.abs(start), 1e-12)
-    fit = scipy.optimize.least_squares(residual, start, x_scale=steps, xtol=1e-15, ftol=1e-14, gtol=1e-15)
-    if not fit.success:
-        raise ComputationError(f"fit of the form: {fit.message}", "a polynomial form")
-    return Form(form, sag(fit.x, x, y) * scale, -1.0 / (float(fit.x[1]) / scale))
-
-
-def _sphere_start(q: Array, line: bool) -> Array:
-    curvature = 2.0 * q[3] if line else q[3] + q[5]
-    x0, y0 = (-q[1] / curvature, -q[2] / curvature) if curvature else (0.0, 0.0)
-    return np.array([q[0] - curvature * (x0 * x0 + y0 * y0) / 2.0, curvature, x0, y0][: 3 if line else 4])
-
-
-def _sphere(p: Array, x: Array, y: Array) -> Array:
-    y0 = p[3] if p.size > 3 else 0.0
-    square = (x - p[2]) ** 2 + (y - y0) ** 2
-    return p[0] + p[1] * square / (1.0 + np.sqrt(np.maximum(1.0 - p[1] ** 2 * square, 0.0)))
-
-
-def _cylinder_start(q: Array) -> Array:
-    values, vectors = np.linalg.eigh([[2.0 * q[3], q[4]], [q[4], 2.0 * q[5]]])
-    across = int(np.abs(values).argmax())
-    cosine, sine = vectors[:, across]
-    curvature = float(values[across])
-    offset = -(q[1] * cosine + q[2] * sine) / curvature if curvature else 0.0
-    tilt = -q[1] * sine + q[2] * cosine
-    return np.array([q[0] - curvature * offset**2 / 2.0, curvature, offset, np.arctan2(sine, cosine), tilt])
-
-
-def _cylinder(p: Array, x: Array, y: Array) -> Array:
-    across = x * np.cos(p[3]) + y * np.sin(p[3]) - p[2]
-    along = -x * np.sin(p[3]) + y * np.cos(p[3])
-    bow = p[1] * across**2 / (1.0 + np.sqrt(np.maximum(1.0 - (p[1] * across) ** 2, 0.0)))
-    return p[0] + bow + p[4] * along
-
-
-def _coordinates(surface: "Heights") -> tuple[Array, Array, float]:
-    """Centred x and y, broadcast to the heights and divided by half the longest side, with that half side."""
-    along = surface.x - surface.x.mean()
-    across = np.arange(surface.heights[0].size) * float(np.atleast_1d(surface.spacing)[-1])
-    x, y = np.meshgrid(along, across - across.mean(), indexing="ij")
-    x, y = x.reshape(surface.heights.shape), y.reshape(surface.heights.shape)
-    scale = float(max(x.max(), y.max()))
-    return x / scale, y / scale, scale
-
-
-def _check_count(valid: NDArray[np.bool_], coefficients: int) -> None:
-    received, allowed = f"{valid.sum()} valid points", f"at least {coefficients} for this fit"
-    require(valid.sum() >= coefficients, "surface", received, allowed)
-
-
-def polynomial(heights: Array, degree: int) -> Array:
-    """Heights, m, of the least-squares polynomial of a total degree, 0 to 12, through the valid points."""
-    whole = isinstance(degree, int | np.integer)
-    require(whole and 0 <= degree <= 12, "degree", degree, "a whole number from 0 to 12")
+def _polynomial(heights: Array, degree: int) -> Array:
+    """Heights, m, of the least-squares polynomial of a total degree through the valid points."""
     valid = np.isfinite(heights)
     powers = [p for p in product(range(degree + 1), repeat=heights.ndim) if sum(p) <= degree]
-    _check_count(valid, len(powers))
+    received, allowed = f"{valid.sum()} valid points", f"at least {len(powers)} for this form"
+    require(valid.sum() >= len(powers), "surface", received, allowed)
     # normal equations: a Legendre basis on the grid is nearly orthogonal, and long maps stay in memory
     bases = [np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, n), degree) for n in heights.shape]
     factors = [[basis[:, k] for basis, k in zip(bases, power, strict=True)] for power in powers]

@@ -35,29 +35,28 @@ def _complete(surface: HeightMap | Profile) -> Array:
     return surface.heights - surface.heights.mean()
 
 
-def psd_2d(surface: HeightMap, window: bool = True) -> tuple[Array, Array, Array]:
+def psd_2d(surface: HeightMap) -> tuple[Array, Array, Array]:
     """Two-sided areal spectrum C(qx, qy), m⁴, with the angular wavenumbers qx and qy, rad/m, rising.
 
     The heights are complete and levelled, m; the mean is removed. The double integral is Sq², weighted by the
-    squared Hann window, without which only a periodic surface is free of leakage.
+    squared Hann window.
     """
-    z, energy, (dx, dy) = _complete(surface), float(surface.heights.size), surface.spacing
-    if window:
-        weights = np.outer(*map(hann_window, z.shape))
-        z, energy = z * weights, float(np.sum(weights**2))
-    density = fft.fftshift(np.abs(fft.fft2(z)) ** 2) * (dx * dy / (4.0 * np.pi**2 * energy))
+    z, (dx, dy) = _complete(surface), surface.spacing
+    weights = np.outer(*map(hann_window, z.shape))
+    energy = float(np.sum(weights**2))
+    density = fft.fftshift(np.abs(fft.fft2(z * weights)) ** 2) * (dx * dy / (4.0 * np.pi**2 * energy))
     qx, qy = (2.0 * np.pi * fft.fftshift(fft.fftfreq(n, d)) for n, d in zip(z.shape, (dx, dy), strict=True))
     return qx, qy, density
 
 
-def psd_radial(surface: HeightMap, window: bool = True) -> tuple[Array, Array]:
+def psd_radial(surface: HeightMap) -> tuple[Array, Array]:
     """Areal spectrum C(q), m⁴, averaged over directions, after the angular wavenumber q, rad/m.
 
     The heights are complete and levelled, m. Wavenumbers are means over rings as wide as the coarser of the
     two wavenumber steps, up to the largest that both directions reach. For an isotropic surface 2π ∫ C q dq =
     Sq².
     """
-    qx, qy, density = psd_2d(surface, window)
+    qx, qy, density = psd_2d(surface)
     q, step = np.hypot(qx[:, None], qy[None, :]), max(qx[1] - qx[0], qy[1] - qy[0])
     rings = int(min(-qx[0], -qy[0]) / step)
     index = np.rint(q / step).astype(np.intp)
@@ -99,22 +98,15 @@ CORRELATION_THRESHOLD = 0.2
 def autocorrelation(surface: HeightMap) -> Array:
     """Normalised autocorrelation at lags up to half the map, zero lag in the middle.
 
-    Of shape (2 (nx//2) + 1, 2 (ny//2) + 1). The mean is removed, pairs with a missing point are left out. ISO
-    25178-2:2021 (autocorrelation function).
+    Of shape (2 (nx//2) + 1, 2 (ny//2) + 1). The heights are complete; the mean is removed. ISO 25178-2:2021
+    (autocorrelation function).
     """
-    valid = np.isfinite(surface.heights)
-    z = np.where(valid, surface.heights - np.nanmean(surface.heights), 0.0)
+    z = _complete(surface)
     require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
     rows, columns = z.shape
     products = LagSums(rows, columns, rows // 2)
     products.add(z)
-    if valid.all():
-        pairs = np.outer(*products.pairs()).astype(np.float64)
-    else:
-        counts = LagSums(rows, columns, rows // 2)
-        counts.add(valid.astype(np.float64))
-        pairs = np.rint(counts.sums())
-    mean = products.sums() / np.maximum(pairs, 1.0)
+    mean = products.means()
     return np.asarray(mean / mean[rows // 2, columns // 2])
 
 
@@ -159,23 +151,18 @@ class LagSums:
         return sum(self.rows) - len(self.rows) * lags, across
 
 
-def autocorrelation_lengths(
-    surface: HeightMap, threshold: float = CORRELATION_THRESHOLD
-) -> tuple[float, float]:
-    """Shortest and longest lag, m, at which the central lobe of the autocorrelation falls to a threshold.
+def autocorrelation_lengths(surface: HeightMap) -> tuple[float, float]:
+    """Shortest and longest lag, m, at which the central lobe of the autocorrelation falls to 0.2.
 
-    Sal and Sal/Str of ISO 25178-2:2021, over directions one degree apart, of levelled heights. If the lobe
-    reaches half the map in some direction, a `ShortRecordWarning` says so: the longest lag is then at least
-    the one returned.
+    Sal and Sal/Str of ISO 25178-2:2021, over directions one degree apart, of complete, levelled heights. If
+    the lobe reaches half the map in some direction, a `ShortRecordWarning` says so: the longest lag is then
+    at least the one returned.
     """
-    require(0.0 < threshold < 1.0, "threshold", threshold, "between 0 and 1")
-    return lengths_of(autocorrelation(surface), surface.spacing, threshold)
+    return lengths_of(autocorrelation(surface), surface.spacing)
 
 
-def lengths_of(
-    correlation: Array, spacing: tuple[float, float], threshold: float = CORRELATION_THRESHOLD
-) -> tuple[float, float]:
-    """Lags, m, at which the central lobe of an autocorrelation falls to a share of its value at zero lag.
+def lengths_of(correlation: Array, spacing: tuple[float, float]) -> tuple[float, float]:
+    """Lags, m, at which the central lobe of an autocorrelation falls to 0.2 of its value at zero lag.
 
     The correlation (odd, odd) holds mean products of heights, zero lag in the middle; lags and warning are as
     those of `autocorrelation_lengths`.
@@ -190,17 +177,17 @@ def lengths_of(
         lags = np.append(np.arange(0.0, limit, step.min() / 4.0), limit)
         points = direction[:, None] * lags / step[:, None] + middle[:, None]
         values = scipy.ndimage.map_coordinates(coefficients, points, order=3, mode="mirror", prefilter=False)
-        below = np.flatnonzero(values <= threshold)
+        below = np.flatnonzero(values <= CORRELATION_THRESHOLD)
         if below.size:
             k = int(below[0])
-            share = (values[k - 1] - threshold) / (values[k - 1] - values[k])
+            share = (values[k - 1] - CORRELATION_THRESHOLD) / (values[k - 1] - values[k])
             lengths.append(lags[k - 1] + share * (lags[k] - lags[k - 1]))
         else:
             lengths.append(limit)
             open_ended = True
     if open_ended:
         ShortRecordWarning.warn(
-            f"the autocorrelation stays above {threshold:g} up to half the map, {max(lengths):.4g} m: "
-            "Str is an upper bound; use a larger map or remove long wavelengths first"
+            f"the autocorrelation stays above {CORRELATION_THRESHOLD:g} up to half the map, "
+            f"{max(lengths):.4g} m: Str is an upper bound; use a larger map or remove long wavelengths first"
         )
     return float(min(lengths)), float(max(lengths))

@@ -71,16 +71,18 @@ def _statistics(
 def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:
     """Areal roughness parameters, ISO 25178-2:2021, from Sq to Std, and Sk, Spk, Svk, Smr1, Smr2.
 
-    Levelled heights, m; the mean is removed here, missing points are left out; for Std up to 5 % are filled.
+    Levelled heights, m; the mean is removed here, missing points are left out; for Sal, Str and Std up to 5 %
+    are filled.
     `bandwidth` is that of filtered data, m; by default from two samples to the longest side. Slopes are by
     the seven-point formula of ISO 4287:1997. If the autocorrelation does not fall to 0.2 inside the map,
     there is a warning, see `autocorrelation_lengths`.
     """
     square = _square_slope(surface)
     slopes = {"dq": np.sqrt(np.nanmean(square)), "dr": np.nanmean(np.sqrt(1.0 + square)) - 1.0}
-    (shortest, longest), whole = autocorrelation_lengths(surface), cleaning.nearly_complete(surface)
-    texture = {"al": shortest, "tr": shortest / longest}
-    texture["td"] = np.nan if whole is None else texture_direction(whole)
+    whole, texture = cleaning.nearly_complete(surface), dict.fromkeys(("al", "tr", "td"), np.nan)
+    if whole is not None:
+        shortest, longest = autocorrelation_lengths(whole)
+        texture = {"al": shortest, "tr": shortest / longest, "td": texture_direction(whole)}
     values = _amplitudes(*_powers(surface.heights)) | slopes | texture | stratified(surface.heights)
     return _statistics("S", values, bandwidth or (2.0 * min(surface.spacing), max(surface.size)))
 
@@ -315,7 +317,7 @@ def _sums(
 
 SIGNIFICANCE = 0.05
 TILES = (4, 4)
-"""Tiles that a map is cut into where nothing else is said."""
+"""Tiles that a map is cut into."""
 MOST_POINTS = 192
 """Points along a side on which the test is made: short waves add little to the mean square of a tile."""
 FEWEST_POINTS = 8
@@ -338,9 +340,7 @@ class Homogeneity:
         return self.p_value > SIGNIFICANCE
 
 
-def homogeneity(
-    surface: HeightMap, tiles: tuple[int, int] = TILES, *, surrogates: int = 39, seed: int = 0
-) -> Homogeneity:
+def homogeneity(surface: HeightMap, *, surrogates: int = 39, seed: int = 0) -> Homogeneity:
     """Test whether the mean square of tiles varies more than on a stationary surface.
 
     The surrogates are pieces of a stationary surface with the spectrum and the height distribution of the map
@@ -351,33 +351,32 @@ def homogeneity(
     58 (1992) 77: surrogate data). Finds patches and trends of roughness larger than a tile; a change of the
     spectrum at equal mean square goes unseen.
     """
-    several = len(tiles) == 2 and min(tiles) >= 1 and max(tiles) > 1
-    fit = several and all(n >= 2 * count for n, count in zip(surface.shape, tiles, strict=True))
-    require(fit, "tiles", tiles, f"two or more tiles of 2 points or more in {surface.shape}")
-    require(surrogates >= 19, "surrogates", surrogates, "at least 19, for 5 % significance")
-    coarse = _coarse(levelling.level(surface), tiles)
-    measured, (nx, ny) = _tile_mean_squares(levelling.level(coarse), tiles), coarse.shape
+    allowed = f"2 points or more in each of {TILES[0]} × {TILES[1]} tiles"
+    fit = all(n >= 2 * count for n, count in zip(surface.shape, TILES, strict=True))
+    require(fit, "surface", f"{surface.shape} points", allowed)
+    coarse = _coarse(levelling.level(surface))
+    measured, (nx, ny) = _tile_mean_squares(levelling.level(coarse)), coarse.shape
     variation = float(measured.std() / measured.mean())
     long = synthesis.from_map(coarse, (nx * surrogates, ny), seed).heights
     pieces = (HeightMap(long[k * nx : (k + 1) * nx], coarse.spacing) for k in range(surrogates))
-    squares = [_tile_mean_squares(levelling.level(piece), tiles) for piece in pieces]
+    squares = [_tile_mean_squares(levelling.level(piece)) for piece in pieces]
     chance = np.array([s.std() / s.mean() for s in squares])
     p_value = (1.0 + float(np.sum(chance >= variation))) / (surrogates + 1.0)
-    tile_rms = np.sqrt(_tile_mean_squares(levelling.level(surface), tiles))
+    tile_rms = np.sqrt(_tile_mean_squares(levelling.level(surface)))
     return Homogeneity(tile_rms, variation, float(np.median(chance)), p_value)
 
 
-def _coarse(surface: HeightMap, tiles: tuple[int, int]) -> HeightMap:
+def _coarse(surface: HeightMap) -> HeightMap:
     """The surface on fewer points where it has more than the test needs."""
-    room = min(n / (FEWEST_POINTS * count) for n, count in zip(surface.shape, tiles, strict=True))
+    room = min(n / (FEWEST_POINTS * count) for n, count in zip(surface.shape, TILES, strict=True))
     step = max(1.0, min(max(surface.shape) / MOST_POINTS, room))
     return levelling.resample(surface, (step * surface.spacing[0], step * surface.spacing[1]))
 
 
-def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> Array:
-    px, py = (n // k for n, k in zip(surface.shape, tiles, strict=True))
-    kept = surface.heights[: px * tiles[0], : py * tiles[1]]
-    return np.mean(kept.reshape(tiles[0], px, tiles[1], py) ** 2, axis=(1, 3))
+def _tile_mean_squares(surface: HeightMap) -> Array:
+    px, py = (n // k for n, k in zip(surface.shape, TILES, strict=True))
+    kept = surface.heights[: px * TILES[0], : py * TILES[1]]
+    return np.mean(kept.reshape(TILES[0], px, TILES[1], py) ** 2, axis=(1, 3))
 
 
 def more_than_chance(p_values: Sequence[float]) -> bool:

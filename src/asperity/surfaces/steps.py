@@ -3,19 +3,16 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 import scipy
 
-from asperity.arguments import FORMS as POLYNOMIALS
-from asperity.arguments import Array, require
+from asperity.arguments import require
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import FormName, remove_form
 from asperity.surfaces.readers.hints import spell
 
 S = TypeVar("S", HeightMap, Profile, HeightMap | Profile)
-FORMS = (*POLYNOMIALS, "sphere", "cylinder")
 
 QUARTER = 0.5 * math.pi
 ROUNDING = 1e-9
@@ -36,9 +33,8 @@ def stepped(
     """Cut a piece, remove a form, filter, and turn into the direction of rolling; None leaves a step out.
 
     `crop` is x, y and the two lengths of the piece of a map, position and length of that of a line, m; `form`
-    one of "plane", "quadratic", "sphere", "cylinder"; `longest` and `shortest` are the nesting
-    indices, m, of the L- and S-filter, see `levelling.band_limit`; `direction` is the angle, rad, of
-    `rotated`.
+    a polynomial by its word; `longest` and `shortest` are the nesting indices, m, of the L- and S-filter, see
+    `levelling.band_limit`; `direction` is the angle, rad, of `rotated`.
     """
     is_map = isinstance(surface, HeightMap)
     if direction is not None:
@@ -53,9 +49,7 @@ def stepped(
             allowed = "two of a line: where the piece begins, and its length"
             require(len(crop) == 2, spell("crop"), count, allowed)
             done = done.crop(*crop)
-    if form in ("sphere", "cylinder"):
-        done = remove_form(done, cast(FormName, form))
-    elif form is not None:
+    if form is not None:
         done = done.levelled(form)
     if longest is not None or shortest is not None:
         done = done.band_limited(longest, shortest)
@@ -69,8 +63,8 @@ def rotated(surface: HeightMap, direction: float) -> HeightMap:
 
     Quarter turns move points and change none. Other directions keep the largest rectangle inside the area
     that was measured, about its middle, on the finer of the two spacings: heights are interpolated, none is
-    made up beyond the points. Waves shorter than four points are damped; resample first to keep them. Points
-    next to a missing one are missing.
+    made up beyond the points. Waves shorter than four points are damped; resample first to keep them. For
+    these the map is complete.
 
     A texture that varies most at an angle Std does so at Std − direction afterwards.
     """
@@ -79,6 +73,9 @@ def rotated(surface: HeightMap, direction: float) -> HeightMap:
     if abs(turns - round(turns)) < ROUNDING:
         swapped = surface.spacing[::-1] if round(turns) % 2 else surface.spacing
         return replace(surface, heights=np.rot90(surface.heights, -round(turns)), spacing=swapped)
+    received = f"{surface.missing_share:.2%} missing points"
+    complete, remedy = surface.missing_share == 0.0, "Use fill first."
+    require(complete, "map to turn", received, "complete heights, or quarter turns", remedy)
     lengths, step = (surface.x[-1], surface.y[-1]), min(surface.spacing)
     sides = inscribed(lengths[0], lengths[1], direction)
     counts = [math.floor(side / step * (1 + ROUNDING)) + 1 for side in sides]
@@ -89,7 +86,9 @@ def rotated(surface: HeightMap, direction: float) -> HeightMap:
     cos, sin = math.cos(direction), math.sin(direction)
     x = 0.5 * lengths[0] + along[:, None] * cos - across * sin
     y = 0.5 * lengths[1] + along[:, None] * sin + across * cos
-    return replace(surface, heights=_interpolated(surface, x, y), spacing=(step, step))
+    kx, ky = (min(ORDER, n - 1) for n in surface.shape)  # the spline needs more points than its degree
+    spline = scipy.interpolate.RectBivariateSpline(surface.x, surface.y, surface.heights, kx=kx, ky=ky)
+    return replace(surface, heights=spline.ev(x, y), spacing=(step, step))
 
 
 def inscribed(length: float, width: float, angle: float) -> tuple[float, float]:
@@ -105,16 +104,3 @@ def inscribed(length: float, width: float, angle: float) -> tuple[float, float]:
         return sides if width <= length else (sides[1], sides[0])
     both = cos**2 - sin**2
     return (length * cos - width * sin) / both, (width * cos - length * sin) / both
-
-
-def _interpolated(surface: HeightMap, x: Array, y: Array) -> Array:
-    """Heights at places, m, inside a map; the spline needs more points than its degree."""
-    missing = np.isnan(surface.heights)
-    heights = surface.filled().heights if missing.any() else surface.heights
-    kx, ky = (min(ORDER, n - 1) for n in surface.shape)
-    turned = scipy.interpolate.RectBivariateSpline(surface.x, surface.y, heights, kx=kx, ky=ky).ev(x, y)
-    if missing.any():
-        index = np.stack([x / surface.spacing[0], y / surface.spacing[1]])
-        near = scipy.ndimage.map_coordinates(missing.astype(np.float64), index, order=1, mode="nearest")
-        turned[near > ROUNDING] = np.nan
-    return np.asarray(turned)
