@@ -194,7 +194,7 @@ REFUSED = [
 ]  # fmt: skip
 
 
-DOCUMENTED = {"check", "study", "surface", "compare", "report", "figures", "listen", "cite"}
+DOCUMENTED = {"check", "study", "surface", "listen", "cite"}
 PARTS = {
     "InputError": {"what", "received", "allowed", "remedy"},
     "CaseError": {"errors"},

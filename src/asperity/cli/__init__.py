@@ -140,12 +140,12 @@ def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     return show_surface(file, picture, **choices)
 
 
-@_begin("Modes of a wheel by the drawing of its section.", long_work=True)
+@_begin("Modes of a wheel by the drawing of its section.", document=False, long_work=True)
 @click.argument("section")
 @click.option("--highest", metavar="FREQUENCY", help="Upper end of the spectra. [default: 5 kHz]")
 @click.option("--picture", type=PATH, help="Draw the section to a file, .svg, .pdf or .png.")
 @output("Table of the modes, which wheel.modes of a case names.", "table", "FILE")
-def wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> Document:
+def wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> None:
     """Find the modes of a wheel by its SECTION: a named one, an outline (CSV), or a case with a drawn wheel.
 
     An outline is a closed polygon in a file with the columns 'radius (mm), axial place (mm)', the latter from
@@ -162,7 +162,7 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
     """
     from asperity.cli.wheel import show_wheel
 
-    return show_wheel(section, highest, table, picture)
+    show_wheel(section, highest, table, picture)
 
 
 @_begin("What a ball bearing carries, its tones, and what its signal says.", params=options.BEARING)
@@ -198,7 +198,7 @@ def bearing(
     return show_bearing(bearing, signal, picture, options, **hints)
 
 
-@_begin("Creep force over creepage of what rolls in a case.", long_work=True)
+@_begin("Creep force over creepage of what rolls in a case.", document=False, long_work=True)
 @click.argument("case", type=PATH)
 @click.option("--direction", type=click.Choice(["longitudinal", "lateral", "spin"]),
               help="Creepage that grows; spin makes a lateral force. [default: longitudinal]")  # fmt: skip
@@ -209,7 +209,7 @@ def bearing(
 )
 @click.option("--table", type=PATH, help="Write it to a file, CSV.")
 @output("Draw it to a file, .svg, .pdf or .png.", "picture", "FILE")
-def creep(case: Path, picture: Path | None, **choices: Any) -> Document:
+def creep(case: Path, picture: Path | None, **choices: Any) -> None:
     """Find the creep force of what rolls in a CASE under its working load, in steady rolling.
 
     The smooth contact and the samples of the case, with Kalker's linear theory and FASTSIM beside them.
@@ -225,7 +225,7 @@ def creep(case: Path, picture: Path | None, **choices: Any) -> Document:
     """
     from asperity.cli.creep import show_creep
 
-    return show_creep(case, picture=picture, **choices)
+    show_creep(case, picture=picture, **choices)
 
 
 # --- compute
@@ -414,13 +414,13 @@ def serve(port: int, directory: Path) -> None:
     say("Ended; runs and surfaces are kept.", err=True)
 
 
-@_look("Write the report of a run again, or a summary of one page.", name="report")
+@_look("Write the report of a run again, or a summary of one page.", name="report", document=False)
 @options.run_argument
 @click.option(
     "--summary", is_flag=True, help="Result, three figures, validity and origin on one sheet of A4."
 )
 @output("Folder of the report. [default: that of the run]")
-def report_again(run: Path, summary: bool, directory: Path | None) -> Document:
+def report_again(run: Path, summary: bool, directory: Path | None) -> None:
     """Write the report of a RUN (run.nc, or its folder) again, or a summary of it on one sheet of paper.
 
     Examples
@@ -432,10 +432,10 @@ def report_again(run: Path, summary: bool, directory: Path | None) -> Document:
     """
     from asperity.cli.results import report_again as write_report
 
-    return write_report(run, directory, summary=summary)
+    write_report(run, directory, summary=summary)
 
 
-@_look("Draw the figures of a run to files, for a paper.")
+@_look("Draw the figures of a run to files, for a paper.", document=False)
 @options.run_argument
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
@@ -446,7 +446,7 @@ def report_again(run: Path, summary: bool, directory: Path | None) -> Document:
     help="Of the files; words stay words in SVG and PDF.",
 )
 @output("Folder of the figures. [default: figures, beside the run]")
-def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | None) -> Document:
+def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | None) -> None:
     """Draw the figures of a RUN (run.nc, or its folder) to files: all of them, or those with a NAME.
 
     A name is that of a CSV file, which holds the numbers of the figure, or its title in the report.
@@ -462,10 +462,10 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
     """
     from asperity.cli.results import draw_figures
 
-    return draw_figures(run, directory, format, names)
+    draw_figures(run, directory, format, names)
 
 
-@_look("What differs between runs: cases, levels, force, stiffness.")
+@_look("What differs between runs: cases, levels, force, stiffness.", document=False)
 @click.argument("runs", nargs=-1, type=PATH, required=True)
 @options.law_option(
     "Compare this law alone, the first as the main one. May be repeated. [default: all that runs have]"
@@ -475,7 +475,7 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
     default=Path("comparison"),
     show_default=True,
 )
-def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> Document:
+def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> None:
     """Compare RUNS (run.nc, or their folders) with the first of them: one page and one table.
 
     What differs in the cases; levels and their differences in each one-third octave and in dB(A); force, loss
@@ -490,7 +490,7 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> D
     """
     from asperity.cli.results import compare_runs
 
-    return compare_runs(runs, directory, laws)
+    compare_runs(runs, directory, laws)
 
 
 @_look("Write what a run sounds like, as WAV files.")

@@ -35,8 +35,8 @@ def show_creep(
     picture: Path | None,
     table: Path | None,
     states: bool,
-) -> dict[str, Any]:
-    """Print a creep curve, or state functions, of a case, draw and write them; return their numbers."""
+) -> None:
+    """Print a creep curve, or state functions, of a case, draw and write them."""
     if picture is not None:
         ends = picture.suffix.lower().lstrip(".") in FORMATS
         require(ends, "picture", f"'{picture}'", f"a name that ends in .{', .'.join(FORMATS)}")
@@ -59,24 +59,22 @@ def show_creep(
             law = friction_of(prepared.case) if friction is None else Friction(friction)
             curve = creep_of(prepared, law, direction or "longitudinal", count, progress)
             found = _told_curve(curve, prepared, str(source))
-    title, columns, chart, numbers = found
-    files = dict[str, Path]()
+    title, columns, chart = found
     if table is not None:
-        files["table"] = write_columns(columns, table)
+        write_columns(columns, table)
         say(f"Table: {table.resolve()}")
     if picture is not None:
-        files["picture"] = write_chart(chart, title, picture)
+        write_chart(chart, title, picture)
         say(f"Picture: {picture.resolve()}")
-    return numbers | {"files": files}
 
 
-Told = tuple[str, dict[str, Any], Chart, dict[str, Any]]
-"""Title, columns of the table, chart, and numbers for programs."""
+Told = tuple[str, dict[str, Any], Chart]
+"""Title, columns of the table, and chart."""
 
 
 def _told_curve(curve: CreepCurve, prepared: PreparedCase, source: str) -> Told:
-    shape, columns, (smooth, *rough) = prepared.shape, _columns(curve), curve.slopes
-    load, friction = engineering(shape.load, "N"), f"{curve.limit / shape.load:.4g}"
+    given, columns, (smooth, *rough) = prepared.shape.load, _columns(curve), curve.slopes
+    load, friction = engineering(given, "N"), f"{curve.limit / given:.4g}"
     title = f"{source}: {load}, friction {friction}, {curve.direction}"
     _say_columns(f"{title}: creep force over friction", columns)
     at, linear = f"At the smallest {NAMES[curve.direction]}", "of Kalker's linear force"
@@ -84,12 +82,7 @@ def _told_curve(curve: CreepCurve, prepared: PreparedCase, source: str) -> Told:
     if rough:
         words += f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {len(rough)} samples)"
     say(f"{words}.")
-    numbers = {
-        "load": shape.load, "semi_axes": shape.semi_axes, "limit": curve.limit, "direction": curve.direction,
-        "creepage": curve.creepage, "smooth": curve.force[0], "rough": curve.force[1:],
-        "slip_share": curve.slip_share, "linear": curve.linear, "fastsim": curve.fastsim,
-    }  # fmt: skip
-    return title, columns, _chart(curve), numbers
+    return title, columns, _chart(curve)
 
 
 def _told_states(states: TractionStates, source: str) -> Told:
@@ -102,12 +95,10 @@ def _told_states(states: TractionStates, source: str) -> Told:
     }
     _say_columns(title, {"approach / µm": 1e6 * states.approaches, "load / N": load} | told)
     columns = {"approach [m]": states.approaches, "load [N]": load}
-    numbers = {"approach": states.approaches, "load": states.load}
     for name, (unit, values) in states.quantities.items():
         rough, smooth = values.mean(axis=1)
         columns |= {f"rough {name} [{unit}]": rough, f"smooth {name} [{unit}]": smooth}
         columns |= {f"ratio of {name} [1]": change[name][0], f"scatter of {name} [1]": change[name][1]}
-        numbers[name.replace(" ", "_")] = values
     for group in (STIFFNESSES, CREEPS):
         marks: list[Mark] = []
         for name, colour in zip(group, (BLUE, VERMILLION, GREEN, MUTED), strict=False):
@@ -116,7 +107,7 @@ def _told_states(states: TractionStates, source: str) -> Told:
             marks.append(Line(load, mean, name, colour))
         axes = Axis("load / N", log=True), Axis("rough over smooth")
         panels.append(Panel(*axes, tuple(marks), beside=bool(panels)))
-    return title, columns, Chart(tuple(panels)), numbers
+    return title, columns, Chart(tuple(panels))
 
 
 def _say_columns(title: str, columns: Mapping[str, Any]) -> None:

@@ -22,7 +22,7 @@ def _folder_beside(run: Path, folder: Path | None, name: str = "") -> Path:
     return folder or (run if run.is_dir() else run.parent) / name
 
 
-def report_again(run: Path, folder: Path | None, *, summary: bool) -> dict[str, Any]:
+def report_again(run: Path, folder: Path | None, *, summary: bool) -> None:
     """Write the page of a run, or its summary alone; by default beside it."""
     target = _folder_beside(run, folder)
     refuse_unwritable(target, "folder of the report", "Choose another folder with -o.")
@@ -30,26 +30,18 @@ def report_again(run: Path, folder: Path | None, *, summary: bool) -> dict[str, 
     what, write = ("summary", write_summary) if summary else ("report", write_page)
     with together(target, last=(name := f"{what}.html")) as new:
         write(tree, new / name)
-    files = {what: target / name}
-    say_files(files)
-    return {"run": run.resolve(), "files": files}
+    say_files({what: target / name})
 
 
-def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[str]) -> dict[str, Any]:
+def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[str]) -> None:
     """Draw figures of a run, by default into ``figures`` beside it, all or none."""
     target = _folder_beside(run, folder, "figures")
     refuse_unwritable(target, "folder of the figures", "Choose another folder with -o.")
     tree = read_result(run)
     drawn = chosen_figures(figures_of(tree), names)
     with together(target, last="") as new:
-        files = [target / path.name for path in write_figures(tree, drawn, new, format)]
+        files = write_figures(tree, drawn, new, format)
     say(f"Figures: {target.absolute()}, {', '.join(path.name for path in files) or 'none'}")
-    return {
-        "run": run.resolve(),
-        "file_format": format,
-        "titles": {figure.name: figure.title for figure in drawn},
-        "files": {figure.name: path for figure, path in zip(drawn, files, strict=True)},
-    }
 
 
 def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: bool) -> dict[str, Any]:
@@ -61,7 +53,7 @@ def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: b
     return {"run": run.resolve(), "matched": matched, "files": {path.name: path for path in files}}
 
 
-def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> dict[str, Any]:
+def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> None:
     """Compare runs into a page and a table, and say in short what differs."""
     folder = target.parent if target.suffix.lower() == ".html" else target
     refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
@@ -78,29 +70,9 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
         if np.isfinite(changes[r, k]).any()
     ]
     say_table(f"A-weighted, less {names[0]}, in dB", ["run", "law", *found.levels.values()], rows, width=120)
-    say(sentence := summary(found))
+    say(summary(found))
     page, numbers = write_comparison(found, target)
-    files = {"page": page, "table": numbers}
-    say_files(files)
-    columns = {
-        "level": "",
-        "difference": "_difference",
-        "a_weighted": "_a",
-        "a_weighted_difference": "_a_difference",
-    }
-    return {
-        "runs": [{"name": name, "path": path.resolve()} for name, path in zip(names, paths, strict=True)],
-        "summary": sentence,
-        "cases": found.keys,
-        "laws": table["law"].values,
-        "bands": table["band"].values if "band" in table else [],
-        "levels": {
-            name: {"meaning": title, "units": table[name].attrs["units"]}
-            | {column: table[f"{name}{ending}"].values for column, ending in columns.items()}
-            for name, title in found.levels.items()
-        },
-        "files": files,
-    }
+    say_files({"page": page, "table": numbers})
 
 
 def show_cache(*, clear: bool = False) -> dict[str, Any]:

@@ -19,7 +19,7 @@ FORMATS = (".png", ".pdf", ".svg")
 COLUMNS = ("Hz", "n", "damping", "modal mass/kg", "axial", "radial")
 
 
-def show_wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> dict[str, Any]:
+def show_wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> None:
     """Print the modes of a wheel, and write and draw them where that is asked for.
 
     `section` is a named one, the path of an outline, or that of a case whose wheel is drawn; `highest` the
@@ -42,15 +42,12 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
     say("  {:>8} {:>3} {:>9} {:>14} {:>7} {:>7}".format(*COLUMNS))
     for frequency, ratio, mass, n, axial, radial in rows:
         say(f"  {frequency:8.1f} {n:3.0f} {ratio:9.2g} {mass:14.4g} {axial:7.2f} {radial:7.2f}")
-    files = {}
     if table is not None:
-        files["table"] = modes.write(table)
+        modes.write(table)
         say(f"Table, for wheel.modes: {table.resolve()}")
     if picture is not None:
-        files["picture"] = write_chart(_chart(wheel.outline), f"Section of a wheel, {section}", picture)
+        write_chart(_chart(wheel.outline), f"Section of a wheel, {section}", picture)
         say(f"Picture: {picture.resolve()}")
-    names = ("frequency", "damping_ratio", "modal_mass", "nodal_diameters", "axial", "radial")
-    return {"mass": wheel.drawn_mass, "modes": dict(zip(names, rows.T, strict=True)), "files": files}
 
 
 def _case_of(section: str) -> Any:
