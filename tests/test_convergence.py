@@ -20,7 +20,7 @@ from asperity.scenes.report import CHAPTERS
 from asperity.schema import Entry, convergence
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import LongStrip
-from command_line import call, words_of
+from command_line import call
 from small_cases import COARSE
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
@@ -269,12 +269,9 @@ class TestKept:
 
 
 @SILENT
-def test_the_command_line_expects_it_and_does_it(tmp_path, monkeypatch):
+def test_the_command_line_does_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "case.toml").write_text(as_case(BALL | {"laws": ["hertz"]}).to_toml())
-    plan = words_of(call("check", "case.toml", "--converge").stdout)
-    _, expected = plan.split("runs more, each about as long or a few times that:")
-    assert all(name in expected for name in NAMES[:-1])
     words = ("run", "case.toml", "--converge", "-o", "out", "--no-report")
     assert "Of its settings" in call(*words).stdout
     result = asperity.open_result("out")

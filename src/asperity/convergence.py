@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import xarray
@@ -25,8 +25,6 @@ from asperity.schema import Entry, Values, contact, convergence, group, provenan
 from asperity.spectra import band_levels, level_of, nominal_frequency, psd
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
-
-Taken = TypeVar("Taken")
 
 FORMAT = 1
 """Raise it when kept levels no longer mean what they meant."""
@@ -86,31 +84,6 @@ def settings_for(prepared: PreparedCase, states: np.ndarray) -> list[Setting]:
     return [*first, *plan.own_settings(prepared.case), *last]
 
 
-def unchangeable(prepared: PreparedCase, states: np.ndarray) -> dict[str, str]:
-    """Why each setting that is to be computed anew cannot be changed; empty of those that can.
-
-    States of the case (k,), m.
-    """
-    found: dict[str, str] = {}
-    with PhysicsWarning.ignored():
-        for setting in settings_for(prepared, states):
-            if setting.name != convergence.PATH_LENGTH:
-                taken = _first_way(setting, lambda way: changed_case(prepared, way))
-                found[setting.name] = taken if isinstance(taken, str) else ""
-    return found
-
-
-def _first_way(setting: Setting, take: Callable[[Way], Taken]) -> tuple[Way, Taken] | str:
-    """The first way of changing a setting that can be computed, and what it gives; else why there is none."""
-    limit = setting.limit
-    for way in setting.ways:
-        try:
-            return way, take(way)
-        except AsperityError as error:
-            limit = limit or brief(error)
-    return limit
-
-
 def _named(setting: Setting, progress: Progress) -> Progress:
     """Say for which setting a piece of work is done."""
 
@@ -127,10 +100,15 @@ def _compared(prepared: PreparedCase, result: DataTree, setting: Setting, progre
     if setting.name == convergence.PATH_LENGTH:
         whole, half = halves(result, prepared.case.time_step, prepared.case.numerics.highest_frequency)
         return Comparison(setting.name, setting.ways[0].words, "", _over(half, whole, base))
-    taken = _first_way(setting, lambda way: _both(prepared, base, setting, way, progress))
-    if isinstance(taken, str):
-        return Comparison(setting.name, "", taken, xarray.full_like(base, np.nan))
-    return Comparison(setting.name, taken[0].words, "", _over(*taken[1], base))
+    limit = setting.limit
+    for way in setting.ways:
+        try:
+            finer, coarser = _both(prepared, base, setting, way, progress)
+        except AsperityError as error:
+            limit = limit or brief(error)
+        else:
+            return Comparison(setting.name, way.words, "", _over(finer, coarser, base))
+    return Comparison(setting.name, "", limit, xarray.full_like(base, np.nan))
 
 
 def _both(

@@ -23,7 +23,7 @@ longest = "0.2 mm"
 """
 OPTIONS = [
     *("--crop", "10 um, 20 um, 180 um, 160 um", "--form", "quadratic"),
-    *("--longest", "0.1 mm", "--shortest", "8 um", "--direction", "30"),
+    *("--longest", "0.1 mm", "--shortest", "8 um", "--direction", "30 deg"),
 ]
 
 

@@ -180,19 +180,6 @@ def test_a_check_shows_the_track_the_run_in_and_what_loss_factors_do_to_the_forc
     assert "loss factors" not in call("check", "viscous.toml").stdout
 
 
-def test_a_check_reads_what_is_measured():
-    np.save("map[dim] :x:.npy", np.random.default_rng(0).normal(size=(64, 64)))  # names are no markup
-    Path("measured.toml").write_text(MAP.replace("map.npy", "map[dim] :x:.npy"))
-    shown = call("check", "measured.toml").stdout
-    assert "64 × 64 points, 0.512 × 0.512 mm" in shown
-    assert "map[dim] :x:.npy" in shown
-    np.save("wheel.npy", np.zeros((2890, 10)))
-    keys = 'line = "wheel.npy"\nline_unit = "um"\nline_spacing = "1 mm"\nline_distance = "5 mm"\n'
-    Path("lines.toml").write_text(RAIL + keys)
-    words = "measured line of [wheel] 10 parallel lines, each of 2890 points, 2.89 m, 1 mm apart"
-    assert words in words_of(call("check", "lines.toml").stdout)
-
-
 def test_a_second_check_says_the_same_and_computes_nothing_until_a_file_changes(monkeypatch):
     heights = np.random.default_rng(0).normal(size=(64, 64))
     np.save("map.npy", heights)

@@ -149,8 +149,6 @@ def test_help_lists_every_command_with_a_whole_sentence():
         ("new w", {"wheel-on-rail", "what-helps"}),
         ("new --law sh", {"shifted", "shifted-unfiltered"}),
         ("compare --law dir", {"direct"}),
-        ("study absent.toml --vary track.n", {"track.name="}),
-        ("study case.toml --vary beam.support=free,cl", {"beam.support=free,clamped"}),
         ("run --device ", {"cpu", "gpu"}),
         ("com", {"compare", "completion"}),
     ],

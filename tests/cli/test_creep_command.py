@@ -50,7 +50,6 @@ def test_states_of_a_rough_case_are_told_written_and_drawn():
     [
         (("--friction", "0"), "--friction: received 0"),
         (("--points", "1"), "--points: received 1; allowed: a whole number from 2 to 1000"),
-        (("-o", "creep.doc"), "a name that ends in .svg, .pdf, .png"),
         (("--states",), "surface: received none, or as a line alone; allowed: a rough surface with samples"),
         (("--states", "--friction", "0.2"), "--states: received --direction or --friction with it"),
         (("--states", "--direction", "spin"), "--states: received --direction or --friction with it"),

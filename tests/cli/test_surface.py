@@ -103,13 +103,13 @@ def test_spectra_of_a_surface_are_written():
     assert across[2:].max() < 1e-12 * density.max()  # each line across is level, at a height of its own
 
 
-@pytest.mark.parametrize(("angle", "std"), [("90", 90), ("30 deg", 150), ("0.5235987756 rad", 150)])
+@pytest.mark.parametrize(("angle", "std"), [("90 deg", 90), ("0.5235987756 rad", 150)])
 def test_a_map_is_turned(angle, std):
     """What varies along x varies at 180° less the angle of the direction in which it is rolled over."""
     ridges = np.tile(np.repeat(noise(60), 3)[:, None], (1, 140))
     said = surface(ridges, "--map", "--direction", angle).stdout
     assert abs(int(re.search(r"Std +(\d+)°", said)[1]) - std) <= 2
-    if angle == "90":
+    if angle == "90 deg":
         assert "a map of 140 × 180 points" in said
 
 

@@ -57,7 +57,6 @@ def test_a_case_brings_dimensions_and_damping():
         (("rigid.toml",), "a wheel that is not drawn"),
         (("metres.csv",), "Is the unit of the coordinates right?"),
         (("straight-web", "--highest", "4"), 'as "5 kHz"'),
-        (("straight-web", "--picture", "section.doc"), "a name that ends in .png, .pdf, .svg"),
     ],
 )
 def test_what_is_no_section_is_refused(words, told):

@@ -115,7 +115,7 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
 
 @_begin("What is in a measured file: size, statistics, spectrum, picture.", params=options.SURFACE)
 @click.argument("file", type=PATH)
-@output("The picture. [default: NAME-surface.png here, with array and index in its name]", "picture", None)
+@options.picture("The picture. [default: NAME-surface.png here, with array and index in its name]")
 def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture.
 
@@ -143,7 +143,7 @@ def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
 @_begin("Modes of a wheel by the drawing of its section.", document=False, long_work=True)
 @click.argument("section")
 @click.option("--highest", metavar="FREQUENCY", help="Upper end of the spectra. [default: 5 kHz]")
-@click.option("--picture", type=PATH, help="Draw the section to a file, .svg, .pdf or .png.")
+@options.picture("Draw the section to a file, .svg, .pdf or .png.", "--picture")
 @output("Table of the modes, which wheel.modes of a case names.", "table", "FILE")
 def wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> None:
     """Find the modes of a wheel by its SECTION: a named one, an outline (CSV), or a case with a drawn wheel.
@@ -167,7 +167,7 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
 
 @_begin("What a ball bearing carries, its tones, and what its signal says.", params=options.BEARING)
 @click.argument("bearing", metavar="NAME|FILE")
-@output("Picture of the load zone, or of the envelope spectrum.", "picture", None)
+@options.picture("Picture of the load zone, or of the envelope spectrum.")
 def bearing(
     bearing: str,
     picture: Path | None,
@@ -208,7 +208,7 @@ def bearing(
     "--states", is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."
 )
 @click.option("--table", type=PATH, help="Write it to a file, CSV.")
-@output("Draw it to a file, .svg, .pdf or .png.", "picture", "FILE")
+@options.picture("Draw it to a file, .svg, .pdf or .png.")
 def creep(case: Path, picture: Path | None, **choices: Any) -> None:
     """Find the creep force of what rolls in a CASE under its working load, in steady rolling.
 
@@ -234,10 +234,9 @@ def creep(case: Path, picture: Path | None, **choices: Any) -> None:
 @_compute("Is a case valid, what will it compute, and how long?", long_work=True)
 @click.argument("case", type=PATH)
 @options.run_folder
-@options.converge
 @options.device
 @options.overwrite("the run of another case")
-def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -> Document:
+def check(case: Path, directory: Path | None, overwrite: bool) -> Document:
     """Check a CASE: show its values, what will be computed, and how long that takes.
 
     Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
@@ -247,8 +246,6 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
     --------
     # values (those that differ from the default in bold), work, time
     asperity check case.toml
-    # and the time of computing it with finer settings
-    asperity check case.toml --converge
     # the expected seconds, for a script
     asperity check case.toml --json | jq .work.seconds
     """
@@ -260,7 +257,7 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
     refuse_full(loaded, target)
     if not overwrite:
         refuse_other(loaded, target)
-    return show_plan(loaded, str(case), converge=converge)
+    return show_plan(loaded, str(case))
 
 
 @_compute("Compute a case: results, report and CSVs.", long_work=True)
@@ -301,7 +298,6 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     "--vary",
     multiple=True,
     metavar="KEY=VALUES",
-    shell_complete=options.completed_sweep,
     help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
     "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
 )
@@ -564,7 +560,7 @@ def cache(clear: bool) -> Document:
 @_around("Let the shell complete commands, files, kinds and laws.", document=False)
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 def completion(shell: str) -> None:
-    """Print what makes a SHELL complete commands, options, files, kinds of case, keys and laws.
+    """Print what makes a SHELL complete commands, options, files, kinds of case and laws.
 
     It works in shells that are opened after one of the lines below.
 

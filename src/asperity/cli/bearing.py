@@ -9,22 +9,21 @@ import numpy as np
 from asperity import diagnostics
 from asperity.arguments import Array, require
 from asperity.case.bearing import BearingKeys, read_bearing, read_signal
-from asperity.errors import InputError
 from asperity.reference.bearings import PRINTED_BY
 from asperity.reporting.figure import write_chart
 from asperity.scenes.figures.bearing import envelope_chart, load_zone_chart
-from asperity.structures import bearing_statics, body
+from asperity.structures import bearing_statics
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
-from asperity.units import factor, quantity
+from asperity.units import quantity
 
 WIDTH = 122
 NOT_IN_IT = "a film of lubricant, friction, rings that bend or tilt, shoulders of the grooves"
 FAINT = 0.1
 """Share of the clearest fault below which another one is not told apart from what modulates it."""
 TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "band", "lines", "faults",
-        "verdict", "band_velocities")  # fmt: skip
+        "verdict")  # fmt: skip
 """Names of what is said to programs."""
 NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
 MEANINGS = {
@@ -145,18 +144,14 @@ def _heard(
     array: str | None,
     column: int | None,
     band: str | None,
-    unit: str | None,
-    slip: str,
 ) -> dict[str, Any]:
     allowed = "the speed at which it was recorded"
     require(keys.speed, "speed", "nothing", allowed, 'Give it, as in --speed "1800 1/min".')
-    nominal, most = float(keys.speed or 0.0), quantity(slip, "")
+    nominal = float(keys.speed or 0.0)
     given = None if rate is None else quantity(rate, "Hz")
     with spelled(on_command_line):
         values, sampled = read_signal(signal, given, array=array, column=column)
-    lines = diagnostics.find_lines(
-        diagnostics.amplitude_spectrum(values, sampled), nominal, slip=most, harmonics=3
-    )
+    lines = diagnostics.find_lines(diagnostics.amplitude_spectrum(values, sampled), nominal, harmonics=3)
     speed = nominal * (1.0 + lines.deviation) if lines.found else nominal
     name, length = f"{signal.name}{f', {array}' if array else ''}", values.size / sampled
     origin = "by its lines" if lines.found else "as given: it has no clear lines"
@@ -166,21 +161,19 @@ def _heard(
     spectrum = diagnostics.envelope_spectrum(values, sampled, within)
     tones = {part: turning.tone(part) for part in PARTS}
     families = {part: (tone, turning.modulation(part)) for part, tone in tones.items()}
-    found = diagnostics.explained_lines(spectrum, families | {"turns": (speed, 0.0)}, slip=most)
+    found = diagnostics.explained_lines(spectrum, families | {"turns": (speed, 0.0)})
     faults = _faults(found)
-    _say_lines(found, faults, speed, unit, within)
+    _say_lines(found, faults, speed, within)
     there = [f"lines of the {NAMES[each]} at {found[each].frequency[0]:.1f} Hz" for each in faults]
     verdict = f"There are {' and '.join(there)}." if there else "No lines of rings or balls stand out."
     say(verdict)
-    velocities = None if unit is None else _say_velocities(values, sampled, unit)
     if picture is not None:
         marked = {part: np.stack([found[part].frequency, found[part].amplitude], axis=1) for part in faults}
-        chart = envelope_chart(spectrum, tones, marked, unit or "unit of the file", speed)
+        chart = envelope_chart(spectrum, tones, marked, "unit of the file", speed)
         write_chart(chart, f"{name}: {verdict}", picture)
     names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
     told = {part: {name: getattr(found[part], name) for name in names} for part in PARTS}
-    heard = {"speed": speed, "band": within, "lines": told, "faults": faults, "verdict": verdict}
-    return heard | {"band_velocities": velocities}
+    return {"speed": speed, "band": within, "lines": told, "faults": faults, "verdict": verdict}
 
 
 def _band(values: Array, rate: float, band: str | None, least: float) -> tuple[float, float] | None:
@@ -203,7 +196,6 @@ def _say_lines(
     found: dict[str, diagnostics.LineFamily],
     faults: list[str],
     speed: float,
-    unit: str | None,
     band: tuple[float, float] | None,
 ) -> None:
     rows = []
@@ -221,7 +213,7 @@ def _say_lines(
     columns = [
         "of",
         "expected / Hz",
-        f"amplitude, {unit}" if unit else "amplitude",
+        "amplitude",
         "over median",
         "found / Hz",
         "orders",
@@ -230,20 +222,3 @@ def _say_lines(
     ]
     where = "all frequencies" if band is None else f"{band[0]:g} to {band[1]:g} Hz"
     say_table(f"Lines in the envelope of {where}", [*columns, "side bands / line"], rows, width=WIDTH)
-
-
-def _say_velocities(values: Array, rate: float, unit: str) -> Array:
-    """Rms velocities in the bands of ISO 15242-2 of a signal in a unit of velocity or acceleration."""
-    size, kind = body.GRAVITY, "acceleration"
-    if unit != "g":
-        try:
-            size = factor(unit, "m/s^2")
-        except InputError:
-            size, kind = factor(unit, "m/s"), "velocity"
-    found = diagnostics.band_velocities(values * size, rate, quantity=kind)
-    told = [
-        f"{low:g} to {high:g} Hz: " + ("beyond its sampling" if math.isnan(rms) else f"{1e6 * rms:.4g} µm/s")
-        for (low, high), rms in zip(diagnostics.ISO_BANDS, found, strict=True)
-    ]
-    say(f"Rms velocity of this record in the bands of ISO 15242-2: {'; '.join(told)}")
-    return found

@@ -16,7 +16,7 @@ from asperity.progress import progress_bar
 from asperity.reduction.traction import TractionStates
 from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Area, Axis, Chart, Line, Mark, Panel
 from asperity.reporting.data import engineering
-from asperity.reporting.figure import FORMATS, write_chart, write_columns
+from asperity.reporting.figure import write_chart, write_columns
 from asperity.scenarios.creep import creep_of, friction_of, states_of
 from asperity.scenarios.preparing import PreparedCase
 from asperity.terminal import say, say_table
@@ -37,9 +37,6 @@ def show_creep(
     states: bool,
 ) -> None:
     """Print a creep curve, or state functions, of a case, draw and write them."""
-    if picture is not None:
-        ends = picture.suffix.lower().lstrip(".") in FORMATS
-        require(ends, "picture", f"'{picture}'", f"a name that ends in .{', .'.join(FORMATS)}")
     alone = (direction is None and friction is None) or not states
     remedy = "In states nothing slips, and all directions are computed: leave the other away."
     require(alone, "--states", "--direction or --friction with it", "one without the other", remedy)

@@ -1,20 +1,33 @@
 """Options that several commands have, and what a shell completes in their words."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 import click
 
-from asperity.case import PRESETS
+from asperity.errors import InputError
 
 PATH = click.Path(path_type=Path)
+PICTURES = (".svg", ".pdf", ".png")
 Completion = Callable[[click.Context, click.Parameter, str], list[str]]
 
 
 def output(help: str, name: str = "directory", metavar: str | None = "FOLDER", **more: Any) -> Any:
     """Where results go."""
     return click.option("-o", "--output", name, type=PATH, metavar=metavar, help=help, **more)
+
+
+def picture(help: str, *names: str) -> Any:
+    """The file of a picture, whose ending says in which format it is drawn."""
+    words = names or ("-o", "--output")
+    return click.option(*words, "picture", type=PATH, metavar="FILE", help=help, callback=_drawable)
+
+
+def _drawable(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
+    if path is not None and path.suffix.lower() not in PICTURES:
+        raise InputError("picture", f"'{path}'", f"a name that ends in {', '.join(PICTURES)}")
+    return path
 
 
 run_argument = click.argument("run", type=PATH)
@@ -91,37 +104,6 @@ def law_option(help: str) -> Any:
     return click.option("--law", "laws", multiple=True, metavar="LAW", shell_complete=completion, help=help)
 
 
-def completed_sweep(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
-    """Complete ``KEY=`` of a case, and the words of a key that takes words, behind its last comma."""
-    key, mark, values = begun.partition("=")
-    words_of = _keys(context.params.get("study"))
-    if not mark:
-        return [f"{name}=" for name in words_of if name.startswith(key)]
-    before, comma, last = values.rpartition(",")
-    words = words_of.get(key.strip(), ())
-    return [f"{key}={before}{comma}{word}" for word in words if word.startswith(last.strip())]
-
-
-def _keys(case: Path | None) -> Mapping[str, Collection[str]]:
-    """Keys of the kind of a case, of all kinds where that cannot be told, with the words they take."""
-    from asperity.case.any_case import entries
-    from asperity.case.cases import case_class
-    from asperity.case.toml import read_toml
-    from asperity.errors import InputError
-
-    try:
-        text = Path(case or "").read_text(encoding="utf-8")
-        kind = str(read_toml(text, "case", str(case)).get("kind"))
-    except (OSError, UnicodeError, InputError):
-        kind = ""
-    found: dict[str, Collection[str]] = {}
-    for name in [kind] if kind in PRESETS else PRESETS:
-        for entry in entries(case_class(name)):
-            found[entry.dotted] = getattr(entry.key.one, "known", getattr(entry.key.one, "words", ()))
-    found.pop("kind")  # one in a study
-    return found
-
-
 SURFACE = [
     click.Option(["--array"], help="Name of the array, where the file holds several."),
     click.Option(
@@ -135,7 +117,7 @@ SURFACE = [
     click.Option(
         ["--direction", "--rotate", "direction"],
         metavar="ANGLE",
-        help="Roll in this direction, from x towards y, as '30 deg'; a bare number is in degrees.",
+        help="Roll in this direction, from x towards y, as '30 deg'.",
     ),
     click.Option(["--fill"], is_flag=True, help="Fill points without a height."),
     click.Option(
@@ -166,12 +148,6 @@ BEARING = [
     click.Option(["--column"], type=int, help="Number of its column, from 1, where there are several."),
     click.Option(
         ["--band"], help="Frequencies of the envelope: 'all', or as '2 kHz, 4 kHz'. [default: found]"
-    ),
-    click.Option(
-        ["--unit"], help="Of the signal, as 'g', 'm/s^2', 'um/s': says velocities in ISO bands, too."
-    ),
-    click.Option(
-        ["--slip"], default="2 %", show_default=True, help="How far lines may be from pure rolling."
     ),
 ]
 """What a bearing carries, and where its signal is."""

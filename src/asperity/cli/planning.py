@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity.case import scene, surface
 from asperity.case.any_case import AnyCase, ReadyCase
 from asperity.cli.running import described_scan, name_of_run, prepared_case
-from asperity.errors import Grade, PhysicsWarning
+from asperity.errors import Grade
 from asperity.progress import duration, progress_bar
 from asperity.store import Store, content_key
 from asperity.terminal import say, say_table
@@ -25,12 +24,12 @@ Rows = list[tuple[str, str]]
 """Names, and values with their units."""
 
 
-def show_plan(case: AnyCase, source: str, *, converge: bool = False) -> dict[str, Any]:
-    """Print the values of a case, and what will be computed from it, with convergence if it is asked for.
+def show_plan(case: AnyCase, source: str) -> dict[str, Any]:
+    """Print the values of a case, and what will be computed from it.
 
     Returns what a program wants to know of it. An `InputError` says that the case cannot be computed.
     """
-    found = _kept_plan(case, source, converge=converge)
+    found = _kept_plan(case, source)
     for warning in found["warnings"]:
         say(f"{warning['grade'].capitalize()}: {warning['message']}", err=True)
     items = case.parameters()
@@ -46,20 +45,20 @@ def show_plan(case: AnyCase, source: str, *, converge: bool = False) -> dict[str
     return {"case": source, "kind": case.kind, "parameters": items, **found}
 
 
-def _kept_plan(case: AnyCase, source: str, *, converge: bool) -> dict[str, Any]:
+def _kept_plan(case: AnyCase, source: str) -> dict[str, Any]:
     """The plan of an earlier check, if case, files, program and processors are the same; else a new one."""
     store, name = Store(), name_of_run(case)
-    key = content_key("plan", name, converge, processors(), os.environ.get(THREADS, ""))
+    key = content_key("plan", name, processors(), os.environ.get(THREADS, ""))
     if name and (kept := store.get(key)) is not None:
         found: dict[str, Any] = json.loads(kept["plan"].tobytes())
         return found
-    found = planned(prepared_case(case, source), converge=converge)
+    found = planned(prepared_case(case, source))
     store.put(key, {"plan": np.frombuffer(json.dumps(found).encode(), dtype=np.uint8)})
     return found
 
 
-def planned(prepared: ReadyCase, *, converge: bool = False) -> dict[str, Any]:
-    """What will be computed from a case, with convergence if it is asked for: rows, seconds and warnings."""
+def planned(prepared: ReadyCase) -> dict[str, Any]:
+    """What will be computed from a case: rows, seconds and warnings."""
     from asperity.scenarios.preparing import PreparedCase, expect
     from asperity.scenes.validity import foreseen
 
@@ -67,7 +66,7 @@ def planned(prepared: ReadyCase, *, converge: bool = False) -> dict[str, Any]:
     if isinstance(prepared, PreparedCase):
         with progress_bar() as progress:
             work = expect(prepared, progress)
-            rows = plan(prepared, work) + (_convergence(prepared, work) if converge else [])
+            rows = plan(prepared, work)
             case, choice = (prepared.case, prepared.shape, prepared.textures), _law_choice(prepared)
             faults = [] if work.tried is None else foreseen(*case, work.tried, choice)
         caught += [(each.grade, each.message) for each in faults if each.grade]
@@ -101,14 +100,12 @@ def plan(prepared: PreparedCase, work: Work) -> Rows:
     points = round((last - first) / contact.spacing) + 1
     run_in = f", and {settling:g} s before it" if settling else ""
     rows = [
-        *_measured(case),
         ("textures", prepared.textures.origin),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
         ("time", f"{case.rolled_time:g} s{run_in}, {work.steps} steps of {case.time_step * 1e6:.4g} µs"),
         *planned_rows(prepared),
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
-        *_running_in(prepared),
     ]
     if work.tried is not None:  # a sample
         rows.append(
@@ -133,55 +130,3 @@ def _law_choice(prepared: PreparedCase) -> LawChoice | None:
     from asperity.scenarios.law_choice import law_choice
 
     return law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)
-
-
-def _measured(case: scene.Case) -> Rows:
-    """Say what is in the measured files."""
-    from asperity.cli.surface import described
-    from asperity.scenarios.records import read_lines, read_maps
-    from asperity.surfaces.heightmap import HeightMap
-    from asperity.surfaces.measured_lines import lines_of
-
-    rows = []
-    with PhysicsWarning.ignored():  # said before
-        if case.surface.file is not None:
-            rows.append(("measured map", described(list(read_maps(case.surface)))))
-        for name in case.section_names:
-            section = getattr(case, name)
-            if isinstance(section, surface.MeasuredLine) and section.line is not None:
-                lines = read_lines(section, name)
-                words = described([lines])
-                if isinstance(lines, HeightMap):
-                    words = described(lines_of(lines), side_by_side=True)
-                rows.append((f"measured line of [{name}]", words))
-    return rows
-
-
-def _running_in(prepared: PreparedCase) -> Rows:
-    """How often the body rolls before the record, so that asperities yield."""
-    from asperity.scenarios.running_in import running_in_passes, running_in_positions
-
-    passes, hardness = prepared.case.contact.running_in, prepared.case.contact.hardness
-    if passes is None or hardness is None:
-        return []
-    count, positions = (
-        running_in_passes(prepared.case),
-        running_in_positions(prepared.shape, prepared.textures),
-    )
-    often = f"{'to shakedown, about ' * isinstance(passes, str)}{count} pass{'es' * (count != 1)}"
-    under = f"under {prepared.shape.load:.3g} N at {hardness / 1e9:.3g} GPa"
-    words = f"{often} over {positions} positions {under}; if interrupted, it goes on after its last pass"
-    return [("running in", words)]
-
-
-def _convergence(prepared: PreparedCase, work: Work) -> Rows:
-    """Which settings will be made finer, in one run more each, and which cannot be."""
-    from asperity.convergence import unchangeable
-
-    states = np.zeros(0) if work.tried is None else work.tried.approaches
-    reasons = unchangeable(prepared, states)
-    finer = [name for name, reason in reasons.items() if not reason]
-    unchanged = [f"{name} ({reason})" for name, reason in reasons.items() if reason]
-    words = f"{len(finer)} runs more, each about as long or a few times that: {', '.join(finer)}"
-    words += f"; not changed: {', '.join(unchanged)}" if unchanged else ""
-    return [("convergence", words)]

@@ -3,7 +3,6 @@
 import math
 import re
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
 from dataclasses import asdict, replace
 from functools import partial
 from itertools import zip_longest
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, shown
+from asperity.arguments import Array
 from asperity.case import surface as recipes
 from asperity.errors import InputError
 from asperity.files import write_bytes
@@ -29,13 +28,11 @@ from asperity.surfaces.spectra import psd_1d, psd_radial
 from asperity.surfaces.steps import stepped
 from asperity.terminal import say
 from asperity.text_files import write_csv
-from asperity.units import quantity
 
 Surfaces = Sequence[HeightMap | Profile]
 Spectra = dict[str, tuple[Array, Array]]
 """Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""
 AREAL = "areal"
-FORMATS = (".png", ".pdf", ".svg")
 
 
 def show_surface(
@@ -51,8 +48,8 @@ def show_surface(
 
     The ending of `picture` names its format; by default its name is made of those of file, array and map, in
     the working folder. `psd` says whether the spectra go to a CSV file beside the picture. Options are the
-    keys of a recipe as they are typed, lengths with their units, angles with theirs or in degrees; `recipe`
-    is a file with others, `store` the one to write them all to.
+    keys of a recipe as they are typed, with their units; `recipe` is a file with others, `store` the one to
+    write them all to.
     """
     typed = _typed(recipe, options)
     steps = recipes.Recipe.read(typed, Origin("options"))
@@ -60,8 +57,6 @@ def show_surface(
     if picture is None:
         chosen = [re.sub(r"[^\w.]+", "-", str(part)) for part in (array, index) if part is not None]
         picture = Path("-".join([file.stem, *chosen, "surface.png"]))
-    if picture.suffix.lower() not in FORMATS:
-        raise InputError("picture", f"'{picture}'", f"a name that ends in {', '.join(FORMATS)}")
     if picture.resolve() == file.resolve():
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
     with spelled(on_command_line):
@@ -98,23 +93,12 @@ def _typed(recipe: Path | None, options: dict[str, Any]) -> dict[str, Any]:
     """Keys of a recipe from a file with the options that are given beside it, or these alone."""
     given = {name: value for name, value in options.items() if value is not None}
     given = {name: value for name, value in given.items() if value is not False or name == "lines"}
-    if "direction" in given:
-        given["direction"] = _angle(given["direction"])
     if "crop" in given:
         given["crop"] = [part.strip() for part in given["crop"].split(",")]
     if recipe is None:
         return given
     recipes.read_recipe(recipe)
     return recipes.typed_recipe(recipe) | given
-
-
-def _angle(text: str) -> str:
-    """An angle with its unit; a bare number is in degrees."""
-    for angle in (text, f"{text} deg"):
-        with suppress(InputError):
-            if math.isfinite(quantity(angle, "rad")):
-                return angle
-    raise InputError("--direction", shown(text), "an angle, as 30 (degrees) or '0.5 rad'")
 
 
 def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...]:

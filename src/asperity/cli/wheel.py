@@ -15,7 +15,6 @@ from asperity.reporting.figure import write_chart
 from asperity.structures.wheel_modes import with_running_circle
 from asperity.terminal import say
 
-FORMATS = (".png", ".pdf", ".svg")
 COLUMNS = ("Hz", "n", "damping", "modal mass/kg", "axial", "radial")
 
 
@@ -25,8 +24,6 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
     `section` is a named one, the path of an outline, or that of a case whose wheel is drawn; `highest` the
     upper end of the spectra, with its unit, that of the case by default.
     """
-    if picture is not None and picture.suffix.lower() not in FORMATS:
-        raise InputError("picture", f"'{picture}'", f"a name that ends in {', '.join(FORMATS)}")
     case = _case_of(section)
     if highest is not None:
         case = case.with_(numerics={"highest_frequency": highest})

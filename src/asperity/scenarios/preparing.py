@@ -284,9 +284,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     steps = round((case.settled_time + case.rolled_time) / case.time_step)
     solutions = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
     if case.contact.running_in is not None:
-        solutions["running in"] = running_in.running_in_passes(case) * running_in.running_in_positions(
-            shape, textures
-        )
+        solutions["running in"] = running_in.running_in_solutions(case, shape, textures)
     contacts = len(prepared.scene.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
     seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.scene.points)

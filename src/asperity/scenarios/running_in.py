@@ -94,16 +94,12 @@ def _passes(surfaces: Sequence[RunInHeights], conditions: Array) -> Values:
     }
 
 
-def running_in_passes(case: Case) -> int:
-    """Passes of a case, as far as they are known."""
-    return passes_of(case.contact.running_in) or EXPECTED_PASSES
-
-
-def running_in_positions(shape: Geometry, textures: Textures) -> int:
-    """Positions of a pass over samples and path."""
+def running_in_solutions(case: Case, shape: Geometry, textures: Textures) -> int:
+    """Contacts to solve in all passes over samples and path, as far as their number is known."""
     rolled = [*textures.strips, *([] if textures.path is None else [textures.path])]
     spare = [max(strip.shape[0] - shape.body.shape[0], 0) for strip in rolled]
-    return sum(rows // table_stride(shape) + 1 for rows in spare)
+    passes = passes_of(case.contact.running_in) or EXPECTED_PASSES
+    return passes * sum(rows // table_stride(shape) + 1 for rows in spare)
 
 
 def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures) -> str:
