@@ -209,11 +209,10 @@ def test_a_fault_off_the_raceway_is_refused_before_the_run(fault, message):
 @pytest.mark.parametrize("what", ["optimisation", "what helps", "convergence", "page"])
 def test_what_is_not_there_for_a_bearing_says_so(what):
     import asperity
-    from asperity.optimising.definition import assignment_of
     from asperity.serving.worker import read_case_file
 
     asked = {
-        "optimisation": lambda: assignment_of(CASE, {}),
+        "optimisation": lambda: asperity.optimise(CASE),
         "what helps": lambda: asperity.what_helps(CASE),
         "convergence": lambda: asperity.run(CASE, converge=True),
         "page": lambda: read_case_file(as_case(CASE).to_toml(), "."),

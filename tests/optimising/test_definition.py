@@ -6,7 +6,7 @@ import pytest
 import asperity
 from asperity.case.toml import read_toml
 from asperity.errors import InputError
-from asperity.optimising.definition import Aim, assignment_template, bands_of, load_assignment, with_texture
+from asperity.optimising.definition import Aim, aim_template, bands_of, load_aim, with_texture
 from asperity.parameters import FROM_PYTHON
 from refusals import refusals
 from small_cases import COARSE, WHEEL
@@ -20,7 +20,7 @@ ON_PLANE = {"kind": "bodies", "over": "plane", "surface": CASE["surface"]}
 
 
 def test_the_template_is_an_aim():
-    data = read_toml(assignment_template(), "optimisation", "template")
+    data = read_toml(aim_template(), "optimisation", "template")
     assert data.pop("case") == "case.toml"
     assert Aim.read(data, FROM_PYTHON).rms_at_least == pytest.approx(0.5e-6)
 
@@ -54,7 +54,7 @@ def test_files_that_say_too_little_or_too_much(tmp_path, text, match):
     (tmp_path / "case.toml").write_text(asperity.BallOnBeam(**CASE).to_toml())
     (tmp_path / "aim.toml").write_text(text)
     with pytest.raises(InputError, match=match):
-        load_assignment(tmp_path / "aim.toml")
+        load_aim(tmp_path / "aim.toml")
 
 
 def test_bands_are_those_of_the_spectrum_that_are_heard():

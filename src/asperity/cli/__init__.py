@@ -103,13 +103,13 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     asperity new optimisation > aim.toml
     """
     from asperity.case.cases import not_a_kind, template
-    from asperity.optimising.definition import assignment_template
+    from asperity.optimising.definition import aim_template
     from asperity.studies.definition import TEMPLATE
     from asperity.studies.effects import ready_list
 
     if kind not in templates():
         raise not_a_kind(kind, templates())
-    others = {"study": lambda: TEMPLATE, "what-helps": ready_list, "optimisation": assignment_template}
+    others = {"study": lambda: TEMPLATE, "what-helps": ready_list, "optimisation": aim_template}
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 

@@ -12,8 +12,8 @@ from asperity.case import any_case, toml
 from asperity.case.content import content, file_digest
 from asperity.errors import InputError
 from asperity.laws import spec_of
-from asperity.optimising.definition import load_assignment
-from asperity.optimising.running import Optimised, optimise
+from asperity.optimising.definition import load_aim
+from asperity.optimising.running import Optimised, optimised
 from asperity.progress import progress_bar
 from asperity.reporting import data, page, study_figures
 from asperity.results import save
@@ -28,7 +28,6 @@ FILES = {
     "texture": "texture.csv",
     "table": "bands.csv",
     "page": "bands.html",
-    "trials": "trials.csv",
     "before": "before/run.nc",
     "after": "after/run.nc",
 }
@@ -41,14 +40,14 @@ def run_optimisation(
 
     `overwrite` says whether a texture in the folder may be replaced, and `report` whether the runs get pages.
     """
-    assignment = load_assignment(path)
+    case, aim = load_aim(path)
     written = {what: directory / name for what, name in FILES.items()}
     files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
-    asked = json.dumps([content(each, file_digest) for each in (assignment.case, assignment.aim)])
+    asked = json.dumps([content(each, file_digest) for each in (case, aim)])
     if not overwrite:
         _refuse_other(asked, written["case"])
     with files.alone_in(directory), progress_bar() as progress:
-        found = optimise(assignment, progress)
+        found = optimised(case, aim, progress)
         bands = _bands(found)
         with files.together(directory, last=FILES["case"]) as new:
             _write(found, bands, new, report=report)
@@ -96,13 +95,6 @@ def _write(found: Optimised, bands: study_figures.TextureBands, directory: Path,
     texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
     write_csv(directory / FILES["texture"], ["wavelength (m)", "level (dB re 1 um)"], texture)
     write_csv(directory / FILES["table"], *_table(bands, found.measure.units))
-    heading = ["trial", f"level [{found.measure.units}]", "lateral"]
-    heading += [f"{wavelength:.6g} m [dB re 1 um]" for wavelength in found.after.changed_wavelength]
-    trials = [
-        [number, each.level, "" if each.lateral is None else each.lateral, *each.levels.tolist()]
-        for number, each in enumerate(found.trials)  # textures that the search went on from, in their order
-    ]
-    write_csv(directory / FILES["trials"], heading, trials)
     for what, tree in (("before", found.result_before), ("after", found.result_after)):
         run = save(tree, directory / FILES[what])
         if report:
@@ -112,7 +104,7 @@ def _write(found: Optimised, bands: study_figures.TextureBands, directory: Path,
 
 def _bands(found: Optimised) -> study_figures.TextureBands:
     """Numbers of the bands: of those that were changed."""
-    changed, aim = found.after.changed, found.assignment.aim
+    changed, aim = found.after.changed, found.aim
     trees = {"before": found.result_before, "after": found.result_after}
     return study_figures.TextureBands(
         found.after.changed_wavelength,
@@ -151,7 +143,7 @@ def _page(found: Optimised, bands: study_figures.TextureBands, *, report: bool) 
     columns = dict(zip(titles, np.transpose(rows), strict=True))
     name = "Texture and response in bands"
     figure = page.PageFigure("bands", name, caption, chart, FILES["table"], columns)
-    offered = {"texture (CSV)": "texture", "case": "case", "trials (CSV)": "trials"}
+    offered = {"texture (CSV)": "texture", "case": "case"}
     links = {words: FILES[what] for words, what in offered.items()}
     if report:
         links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}

@@ -1,9 +1,9 @@
 """What an optimisation asks: a case, limits, and the texture by its one-third octaves of wavelength."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -230,30 +230,14 @@ def _for_each(name: str, values: tuple[float, ...] | None, otherwise: Array) -> 
     return np.broadcast_to(np.array(values), otherwise.shape)
 
 
-@dataclass(frozen=True, eq=False)
-class Assignment:
-    """A case and what its texture shall be."""
-
-    case: scene.Case
-    aim: Aim
-
-
-def load_assignment(path: str | os.PathLike[str]) -> Assignment:
-    """Read a assignment from a TOML file: ``case``, a path or a section, and the keys of `Aim`."""
+def load_aim(path: str | os.PathLike[str]) -> tuple[scene.Case, Aim]:
+    """Read a case, and what its texture shall be, from TOML: ``case``, a path or a section, and `Aim`."""
     remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
     keys, base, origin = cases.read_with_case(path, "optimisation", remedy)
-    return Assignment(
-        cases.of_bodies(cases.case_of(base, origin), "optimisation"), Aim.read(keys, Origin.file(path))
-    )
+    case = cases.of_bodies(cases.case_of(base, origin), "optimisation")
+    return case, Aim.read(keys, Origin.file(path))
 
 
-def assignment_of(
-    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case, keys: Mapping[str, Any]
-) -> Assignment:
-    """Make a assignment of a case in any of its forms and the keys of `Aim`."""
-    return Assignment(cases.of_bodies(cases.as_case(case), "optimisation"), Aim(**keys))
-
-
-def assignment_template() -> str:
-    """A commented assignment."""
+def aim_template() -> str:
+    """A commented case and aim."""
     return _HEAD + any_case.commented(Aim, {"rms_at_least": '"0.5 um"'})

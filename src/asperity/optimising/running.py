@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asperity.arguments import Array, shown
-from asperity.case import content, scene
+from asperity.arguments import Array
+from asperity.case import cases, content, scene
 from asperity.errors import InputError, PhysicsWarning
 from asperity.optimising.allocation import Limits, Trial, rms_of, search
-from asperity.optimising.definition import Assignment, Bands, assignment_of, bands_of, with_texture
+from asperity.optimising.definition import Aim, Bands, bands_of, with_texture
 from asperity.progress import Progress, shown_progress
 from asperity.running import run
 from asperity.scenarios.preparing import prepare
@@ -36,8 +36,8 @@ class Optimised:
 
     Attributes
     ----------
-    assignment : Assignment
-        The case, and what its texture should be.
+    aim : Aim
+        What the texture should be.
     measure : Measure
         What it was judged by.
     limits : Limits
@@ -55,7 +55,7 @@ class Optimised:
         Both textures, rolled over with ``aim.verify`` and ``aim.law``.
     """
 
-    assignment: Assignment
+    aim: Aim
     measure: plan.Measure
     limits: Limits
     before: Bands
@@ -82,14 +82,13 @@ class Optimised:
     @property
     def changes(self) -> dict[str, float]:
         """By how much the level of the quantity changes, dB, by law."""
-        aim = self.assignment.aim
-        laws = dict.fromkeys((aim.verify, aim.law))
+        laws = dict.fromkeys((self.aim.verify, self.aim.law))
         return {law: self.level(True, law) - self.level(False, law) for law in laws}
 
     @property
     def active(self) -> list[str]:
         """Limits that the texture found lies on."""
-        limits, levels, aim = self.limits, self.after.levels[self.after.changed], self.assignment.aim
+        limits, levels, aim = self.limits, self.after.levels[self.after.changed], self.aim
         found = []
         if aim.limit is not None and abs(self.trials[-1].level - aim.limit) < 2 * AT_A_BOUND:
             found.append("limit")
@@ -107,7 +106,7 @@ class Optimised:
     @property
     def sentence(self) -> str:
         """What came of it, for people."""
-        aim, (first, last) = self.assignment.aim, (self.before, self.after)
+        aim, (first, last) = self.aim, (self.before, self.after)
         rms = [1e6 * rms_of(bands.levels[bands.changed]) for bands in (first, last)]
         told = [f"{law} {change:+.1f} dB" for law, change in self.changes.items()]
         lay = f", lay {first.lateral:.3g} to {last.lateral:.3g}" if aim.lateral and first.lateral else ""
@@ -124,7 +123,7 @@ class Optimised:
 
 
 def optimise(
-    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case | Assignment,
+    case: str | os.PathLike[str] | Mapping[str, Any] | scene.Case,
     progress: Progress | None = None,
     **aim: Any,
 ) -> Optimised:
@@ -132,8 +131,8 @@ def optimise(
 
     Parameters
     ----------
-    case : path, mapping, case object or Assignment
-        The case, as `asperity.run` takes it; or a whole assignment.
+    case : path, mapping or case object
+        The case, as `asperity.run` takes it.
     progress : callable, optional
         ``progress(done, total, message)``, called during long work.
     **aim
@@ -166,18 +165,13 @@ def optimise(
     >>> found.changes["linear"] < 0.0
     True
     """
-    if isinstance(case, Assignment):
-        if aim:
-            raise InputError("aim", shown(next(iter(aim))), "a assignment alone, or a case with an aim")
-        assignment = case
-    else:
-        assignment = assignment_of(case, aim)
+    given = cases.of_bodies(cases.as_case(case), "optimisation")
     with shown_progress(progress) as told:
-        return _optimised(assignment, told)
+        return optimised(given, Aim(**aim), told)
 
 
-def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
-    case, aim = assignment.case, assignment.aim
+def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
+    """Find the texture of a case by an aim, as `optimise` does."""
     measures = plan.measures_of(case)
     if aim.quantity not in measures:
         raise InputError("quantity", f'"{aim.quantity}" of {case.kind}', " or ".join(measures))
@@ -193,7 +187,7 @@ def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
         progress(number, number + 1, f"texture {number}: {words}")
 
     def roll(levels: Array, lateral: float | None) -> Trial:
-        return _rolled(assignment, measure, before.with_changed(levels, lateral), progress)
+        return _rolled(case, aim, measure, before.with_changed(levels, lateral), progress)
 
     start = roll(before.levels[before.changed], before.lateral)
     lay = None if aim.lateral is None else (aim.lateral[0], aim.lateral[1])
@@ -202,14 +196,13 @@ def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
     laws = tuple(dict.fromkeys((aim.verify, aim.law, *measure.beside)))
     found = with_texture(case, after)
     results = [run(each.with_(laws=laws), progress) for each in (with_texture(case, before), found)]
-    return Optimised(assignment, measure, limits, before, after, tuple(trials), settled, found, *results)
+    return Optimised(aim, measure, limits, before, after, tuple(trials), settled, found, *results)
 
 
-def _rolled(assignment: Assignment, measure: plan.Measure, bands: Bands, progress: Progress) -> Trial:
+def _rolled(base: scene.Case, aim: Aim, measure: plan.Measure, bands: Bands, progress: Progress) -> Trial:
     """Roll over a texture with the law of the search; what came of it is kept by all that it depends on."""
-    aim = assignment.aim
     laws = tuple(dict.fromkeys((aim.law, *measure.beside)))
-    case = with_texture(assignment.case, bands).with_(laws=laws)
+    case = with_texture(base, bands).with_(laws=laws)
 
     def rolled() -> dict[str, Array]:
         # those of the texture found are told
