@@ -167,15 +167,9 @@ def test_a_check_shows_the_track_the_run_in_and_what_loss_factors_do_to_the_forc
     lossy = f'{RAIL}[track]\nname = "nordborg-loss-factor"\nballast_loss_factor = 2.0\n'
     Path("lossy.toml").write_text(lossy)
     outcome = call("check", "lossy.toml")
-    for text in (
-        "40 Hz +0.4",
-        "630 Hz −1.0",
-        "else below 0.05",
-        "rail 0.99, pads 1.10, ballast 0.40; the load at mid-span rests",
-        "mm down, nominally 0.343 mm",
-    ):
+    for text in ("40 Hz +0.4", "630 Hz −1.0", "else below 0.05"):
         assert text in words_of(outcome.stdout)
-    assert "Nothing that answers after a force only has the loss factor 2 of the ballast" in outcome.stderr
+    assert "Nothing that answers after a force only has one loss factor at all" in outcome.stderr
     Path("viscous.toml").write_text(f'{RAIL}[track]\nname = "nordborg"\nrail_loss_factor = 0.0\n')
     assert "loss factors" not in call("check", "viscous.toml").stdout
 

@@ -46,7 +46,7 @@ def rules_of(tree, name, *, short=False, panel=0):
     return [at for mark in marks_of(tree, name, Rules, panel) if mark.short == short for at in mark.at]
 
 
-LINEAR, KERNEL = "linear, frequency domain", "kernel(start=0 m) [m/(N s)]"
+LINEAR = "linear, frequency domain"
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,6 @@ LINEAR, KERNEL = "linear, frequency domain", "kernel(start=0 m) [m/(N s)]"
         ("roughness", "wheel [dB re 1 µm]", "spectra/roughness_level", {"part": "wheel"}),
         ("receptance", "receptance_midspan [m/N]", "track/receptance_midspan", {}),
         ("receptance", "receptance_support phase [rad]", "track/receptance_support_phase", {}),
-        ("moving_kernel", KERNEL, "track/moving_kernel", {"start_position": 0.0}),
         ("sound_power_bands", "wheel, linear [dB re 1 pW]", "spectra/sound_power_level",
          {"law": "linear", "source": "wheel"}),
         ("pass_by_level", "total, areal [dB(A) re 20 µPa]", "pass_by/pass_by_level",
@@ -157,7 +156,6 @@ def test_hostile_names_stay_text(other):
     tree = of_laws(other, HOSTILE, "linear")
     names = {"part": [HOSTILE, "b", "c"], "source": [HOSTILE, "b", "total"]}
     tree["spectra"] = tree["spectra"].to_dataset().assign_coords(names)
-    tree["track"].attrs["kernel_method"] = HOSTILE
     del tree["surface"], tree["contact"]
     reader = Reader(page_of(tree))
     assert not reader.open

@@ -9,7 +9,7 @@ import pytest
 
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.reference import cnossos
-from asperity.scenarios.scene import force_transfer, linear_force_psd
+from asperity.scenarios.scene import force_transfer, mean_square_transfer
 from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
 from asperity.structures.track import Track, decay_rate
 from asperity.structures.wheel import Wheel
@@ -37,7 +37,7 @@ def roughness_psd(speed):
 def in_bands(track, speed=30.0):
     """Sound power levels of rail and sleepers in bands, dB re 1 pW, of one wheel."""
     lines, texture = FREQUENCY.ravel(), roughness_psd(speed).ravel()
-    force = linear_force_psd(lines, texture, speed, WHEEL, track, STIFFNESS, positions=6)
+    force = mean_square_transfer(lines, WHEEL, track, STIFFNESS, positions=6) * texture / speed
 
     def spread(x):
         return np.abs(force_transfer(lines, WHEEL, track, STIFFNESS, x)) ** 2

@@ -186,10 +186,8 @@ class TestTrack:
         assert float(errors.band[0]) == pytest.approx(5.01, abs=0.01)
         assert set(np.round(wheel["spectra/band"].values)) <= set(np.round(errors.band.values))
         assert 0.01 < float(np.abs(errors).max()) < 0.2  # x2000: the rail alone has a loss factor
-        assert (list(track["layer"].values), list(track["loss_factor"].values)) == (["rail"], [0.02])
         assert track.attrs["static_deflection_in_time"] > track.attrs["static_deflection"]
         assert "else below 0.05" in numerics(wheel)["loss factors in time"]
-        assert "of the nominal one: rail 0.9" in numerics(wheel)["stiffness at rest"]
         monkeypatch.setattr("asperity.scenes.track.DOUBTFUL", 0.01)
         again = asperity.run(EVERY["wheel-on-rail"].with_(laws=["linear"]))
         assert "LossFactorWarning" in warned(again) - warned(wheel)
@@ -197,7 +195,7 @@ class TestTrack:
     def test_viscous_tracks_have_nothing_to_tell(self):
         track = Track.named("nordborg", rail_loss_factor=0.0)
         viscous = loss_factor_error(track, Wheel(600.0, 65e3), 1.2e9, 2e3)
-        assert (relaxed(viscous), list(described_losses(viscous, 65e3))) == ({}, [])
+        assert (relaxed(viscous), list(described_losses(viscous))) == ({}, [])
 
     def test_the_limit_of_decay_rates(self):
         limits = iso_3095_decay_rate([100.0, 250.0, 500.0, 800.0, 2000.0, 9000.0])
@@ -206,7 +204,7 @@ class TestTrack:
     def test_poles_follow_the_scattered_kernel(self, runs, wheel):
         scatter = changed("wheel-on-rail", laws=["shifted"], numerics={"poles": None, "kernel": "scatter"})
         scattered, poles = runs(scatter), wheel["rolling/contact_force"].sel(law="shifted")
-        assert scattered["track"].attrs["kernel_method"] == "scatter"
+        assert numerics(scattered)["track in time"] == "scattered from the moving kernel"
         difference = np.abs(poles.values - scattered["rolling/contact_force"].values[0]).max()
         assert difference < 0.005 * float(poles.std())
 

@@ -31,7 +31,6 @@ def test_the_linear_law_is_its_reference_in_frequency(run):
     level, reference = spectra["force_level"].sel(law="linear"), spectra["linear_reference_level"]
     high = (level["band"] > 1200.0).values
     assert np.abs((level - reference).values[high]).max() < 0.35
-    assert run[1]["track"].attrs["kernel_fit_error"] < 2e-3
 
 
 def test_what_there_is_not_is_left_out(run):
@@ -56,8 +55,6 @@ def test_power_and_pads_are_drawn(run):
     shares = {line.label for line in drawn["power_shares"].collect(tree).lines}
     layers = {"rail", "pad"} if name == "embedded" else {"rail", "pad", "ballast", "rail damper"}
     assert shares == layers
-    losses = drawn["loss_factors"].collect(tree)
-    assert bool(losses.of(schema.MEASURED_LOSS_FACTOR)) == (name == "blocks")
     assert drawn["loss_factors"].laid_out(tree).panels
     scene = drawn["scene"].laid_out(tree).panels[0]
     pads = [mark for mark in scene.marks if getattr(mark, "fill", "") == "#5b6670"]

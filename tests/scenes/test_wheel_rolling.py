@@ -10,7 +10,7 @@ from asperity.laws import HertzLaw, Linear
 from asperity.radiation.passing import passed_points
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
-from asperity.scenarios.scene import linear_force_psd
+from asperity.scenarios.scene import mean_square_transfer
 from asperity.spectra import band_levels, psd
 from asperity.structures.moving_kernel import ZONES, HatResponse, moving_kernel
 from asperity.structures.track import Track
@@ -52,7 +52,7 @@ def in_bands(force, texture, run, segment, low, high, speed=SPEED, wheel=WHEEL, 
     frequency, found = psd(force, step, segment=segment)
     _, density = psd(texture.at(run.position)[:, 0], speed * step, segment=segment)
     expected = np.zeros_like(found)
-    expected[1:] = linear_force_psd(frequency[1:], density[1:], speed, wheel, track, STIFFNESS)
+    expected[1:] = mean_square_transfer(frequency[1:], wheel, track, STIFFNESS) * density[1:] / speed
     return band_levels(frequency, np.stack([found, expected]), low=low, high=high)
 
 

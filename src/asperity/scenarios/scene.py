@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, Complex, require
+from asperity.arguments import Array, ArrayLike, Complex
 from asperity.case.scene import Case
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal, receptances_between
@@ -168,15 +168,8 @@ def scene_of(case: Case) -> Scene:
 # Vibration (Elsevier, 2009).
 
 
-class AtContact(Protocol):
-    """What rolls, as the linear reference knows it."""
-
-    def receptance(self, frequency: ArrayLike, /) -> Complex:
-        """Displacement per force at the contact point, m/N."""
-
-
 def force_transfer(
-    frequency: ArrayLike, wheel: AtContact, track: Any, stiffness: float, x: ArrayLike
+    frequency: ArrayLike, wheel: BodyAtContact | Wheel, track: Any, stiffness: float, x: ArrayLike
 ) -> Complex:
     """Contact force per height of the texture, the wheel at given positions on the rail: (n, f), N/m.
 
@@ -185,8 +178,6 @@ def force_transfer(
     load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
-    require((f >= 0.0).all(), "frequency (Hz)", float(np.min(f, initial=0.0)), "zero or above")
-    require(stiffness > 0.0, "contact stiffness (N/m)", stiffness, "a positive number")
     positions, moving = np.atleast_1d(np.asarray(x, dtype=float)), f > 0.0
     transfer = np.zeros((positions.size, f.size), dtype=complex)
     carried = wheel.receptance(f[moving]) + 1.0 / stiffness
@@ -195,39 +186,12 @@ def force_transfer(
 
 
 def mean_square_transfer(
-    frequency: ArrayLike, wheel: AtContact, track: Any, stiffness: float, positions: int = 12
+    frequency: ArrayLike, wheel: BodyAtContact | Wheel, track: Any, stiffness: float, positions: int = 12
 ) -> Array:
     """Mean square over a bay of the contact force per height of the texture, |F/z|², (f,), (N/m)².
 
     As `force_transfer`, at the midpoints of `positions` equal parts of half a bay, which is its own mirror
     image; of bays that differ, all along their cell.
     """
-    require(positions >= 1, "positions in a bay", positions, "one or more")
     x = track.places(positions)
     return np.mean(np.abs(force_transfer(frequency, wheel, track, stiffness, x)) ** 2, axis=0)
-
-
-def linear_force_psd(
-    frequency: ArrayLike,
-    texture_psd: ArrayLike,
-    speed: float,
-    wheel: AtContact,
-    track: Any,
-    stiffness: float,
-    positions: int = 12,
-) -> Array:
-    """One-sided power spectral density of the linear contact force, (f,), N²/Hz.
-
-    The mean of |F/z|² times W(f/v)/v, where W is the one-sided PSD per cycle/m of the texture that the
-    contact feels (wheel and rail added, filtered where a filter belongs), (f,), m³, at the wavenumbers
-    frequency/speed; frequency in Hz, speed in m/s; the rest as in `mean_square_transfer`.
-
-    Without motion: at each position the structures answer as if the wheel stood there. Valid while the speed
-    is far below that of waves in the rail, and away from the pinned-pinned frequency, whose peak motion
-    splits and lowers; without the tones of the sleepers.
-    """
-    f, texture = np.atleast_1d(np.asarray(frequency, dtype=float)), np.atleast_1d(np.asarray(texture_psd))
-    require(0.0 < speed < np.inf, "speed (m/s)", speed, "a finite positive number")
-    one = f"one value per frequency, {f.shape}"
-    require(f.shape == texture.shape, "texture_psd", f"shape {texture.shape}", one)
-    return mean_square_transfer(f, wheel, track, stiffness, positions) * texture / speed

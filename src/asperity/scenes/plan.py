@@ -63,7 +63,7 @@ def _rows_of_track(prepared: preparing.PreparedCase, track: Track) -> list[tuple
         ("track", frequencies),
         *_rows_of_bays(case, track),
         *case.track.described_tables,
-        *described_losses(losses, prepared.shape.load),
+        *described_losses(losses),
         ("rail motion recorded at", points),
         ("sound power", f"of {known}"),
     ]

@@ -152,7 +152,7 @@ def _numerics(
     if len(computed.scene.offsets) > 1:
         yield "contacts", f"{len(computed.scene.offsets)}"
     yield from _of_structure(computed)
-    yield from track.described_losses(losses, computed.shape.load) if losses else ()
+    yield from track.described_losses(losses) if losses else ()
     for name, run in runs.items():
         yield f"energy residual, {name}", f"{run.energy.residual:.1e}"
     yield from choice.rows() if choice else ()

@@ -95,30 +95,14 @@ DECAY_RATE = _track("decay_rate(frequency)", "dB/m", "decay rate, eigenvalue")
 DECAY_RATE_EN15461 = _track("decay_rate_en15461(frequency)", "dB/m", "decay rate as measured by EN 15461")
 _LIMIT, _NONE = "lower limit, ISO 3095:2013", "the standard sets no limit at these frequencies"
 DECAY_RATE_LIMIT = _track("decay_rate_limit(frequency)", "dB/m", _LIMIT, missing=_NONE)
-START_POSITION = _track("start_position", "m", "place of the impulse, from a sleeper")
-LAG = _track("lag", "s", "time since the impulse")
-_KERNEL = "displacement of the rail under the wheel"
-MOVING_KERNEL = _track("moving_kernel(start_position, lag)", "m/(N s)", _KERNEL)
 
 POWER_PART = _track("power_part", "1", "part of the track that dissipates")
 _SHARE = "share that the part dissipates of the power of a harmonic force on the rail at mid-span"
 POWER_SHARE = _track("power_share(power_part, frequency)", "1", _SHARE)
 
 TRACK_BAND = _losses("band", "Hz", _BAND)
-LAYER = _losses("layer", "1", "part of the track with a loss factor")
 _FORCE = "level of the linear contact force in time over that of constant loss factors"
 LOSS_FACTOR_FORCE_ERROR = _losses("loss_factor_force_error(band)", "dB", _FORCE)
-_RAIL = "level of the rail's receptance in time over that of constant loss factors"
-LOSS_FACTOR_RAIL_ERROR = _losses("loss_factor_rail_error(band)", "dB", _RAIL)
-_TABLE = "of this layer it is measured over frequency"
-LOSS_FACTOR = _losses("loss_factor(layer)", "1", "constant loss factor", missing=_TABLE)
-_measured = partial(Entry, "track", condition="where the pad is measured over frequency")
-MEASURED_STIFFNESS = _measured(
-    "measured_stiffness(band)", "1", "measured stiffness of the pad over the nominal"
-)
-MEASURED_LOSS_FACTOR = _measured("measured_loss_factor(band)", "1", "measured loss factor of the pad")
-RELAXED_STIFFNESS = _losses("relaxed_stiffness(layer, band)", "1", "stiffness in time over the nominal one")
-RELAXED_LOSS_FACTOR = _losses("relaxed_loss_factor(layer, band)", "1", "loss factor in time")
 
 _bays = partial(Entry, "track", condition="where bays differ")
 BAY = _bays("bay", "1", "bay of the cell, the first behind the sleeper at zero")
@@ -145,10 +129,6 @@ _STATIC = "of the rail at mid-span under the wheel's load, nominal stiffnesses"
 STATIC_DEFLECTION = _fact("static_deflection", "m", _STATIC)
 _STATIC = "the same, with what stands for the loss factors in time"
 STATIC_DEFLECTION_IN_TIME = _fact("static_deflection_in_time", "m", _STATIC)
-KERNEL_METHOD = _fact("kernel_method", "text", "how the rail was carried on: poles or scatter")
-_poles = partial(Attribute, "track", condition="where poles were used")
-KERNEL_POLES = _poles("kernel_poles", "1", "poles of the moving kernel")
-KERNEL_FIT_ERROR = _poles("kernel_fit_error", "1", "relative error of the poles")
 
 # --- texture, linear reference and noise over a track
 

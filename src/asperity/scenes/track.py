@@ -12,12 +12,13 @@ from asperity.arguments import Array, ArrayLike
 from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
 from asperity.reference.tracks import iso_3095_decay_rate
-from asperity.scenarios.scene import AtContact, Scene, linear_force_psd
+from asperity.scenarios.scene import BodyAtContact, Scene, mean_square_transfer
 from asperity.scenes import compute, noise, schema, validity
 from asperity.schema import Entry, Values
-from asperity.structures import rail_poles, stiffness_table, track_parameters, track_power
+from asperity.structures import track_power
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
+from asperity.structures.wheel import Wheel
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
@@ -62,7 +63,9 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
     """One-sided PSDs (f,) of the force of the linear contact, N²/Hz, and of the texture passed, m²/Hz.
 
     In the frequency domain, of several contacts their mean; the track is the nominal one, with constant loss
-    factors.
+    factors. Without motion: at each position the structures answer as if the wheels stood there. Valid while
+    the speed is far below that of waves in the rail, and away from the pinned-pinned frequency, whose peak
+    motion splits and lowers; without the tones of the sleepers.
     """
     case, textures, scene, track = computed.case, computed.textures, computed.scene, computed.track
     position, frequency = computed.first.positions[0], computed.frequency
@@ -76,8 +79,7 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
     force, above = np.zeros_like(texture), frequency > 0.0
     lines, speed, stiffness = frequency[above], case.speed, computed.stiffness
     if len(scene.offsets) == 1:
-        seen = texture[above] * speed
-        force[above] = linear_force_psd(lines, seen, speed, scene.first, track, stiffness)
+        force[above] = mean_square_transfer(lines, scene.first, track, stiffness) * texture[above]
         return force, texture
     turning = textures.parts.get("wheel", np.zeros_like(textures.line))
     path, own = passed(textures.followed - turning), passed(turning)
@@ -105,7 +107,7 @@ def coupled_force_psd(
     The contacts pass the same path one after the other, and each has a texture of its own: of these are the
     PSDs (f,), m²/Hz. With T_ij = F_i/z_j that of a contact i is |Σ T_ij exp(iω d_j/v)|² S_path
     + Σ |T_ij|² S_own, sums over j, d_j ahead of the first, as a mean over the places (p,) of the run, m.
-    Frequencies (f,), Hz, above zero; speed, m/s. As `linear_force_psd` without motion; of the contacts those
+    Frequencies (f,), Hz, above zero; speed, m/s. Of the contacts those
     `MOST_COUPLED` that are numbered first.
     """
     count = min(len(scene.offsets), MOST_COUPLED)
@@ -159,25 +161,18 @@ OF_TRACK = (
     schema.CRITICAL_SPEED,
 )
 """What a track says of itself under these names."""
-KERNEL_STARTS = 6
-KERNEL_LAG = 0.25
-"""Longest lag of the moving kernel that is kept in a result, s."""
 
 
 def track_group(computed: compute.Computed, losses: "LossFactorError") -> Values:
-    """Lay out what the wheel rolls on: receptances, decay rates, moving kernel, loss factors and numbers.
+    """Lay out what the wheel rolls on: receptances, decay rates, loss factors and numbers.
 
     None of it depends on what has rolled.
     """
-    track, rail, load = computed.track, computed.rail, computed.shape.load
-    kernel = rail.kernel
+    track, in_time, load = computed.track, computed.rail.kernel.track, computed.shape.load
     frequency = np.geomspace(LOWEST_FREQUENCY, computed.case.numerics.highest_frequency, FREQUENCIES)
     half = float(track.mid_spans[0])
     midspan, support = track.receptance(frequency, [half, 0.0], [half, 0.0])
-    positions, taps = kernel.weights.shape
-    rows = np.arange(0, positions, max(1, positions // KERNEL_STARTS))
-    kept = slice(0, min(taps, round(KERNEL_LAG / kernel.time_step)))
-    laid_out: Values = {
+    return {
         schema.TRACK_FREQUENCY: frequency,
         schema.RECEPTANCE_MIDSPAN: np.abs(midspan),
         schema.RECEPTANCE_MIDSPAN_PHASE: np.angle(midspan),
@@ -188,21 +183,13 @@ def track_group(computed: compute.Computed, losses: "LossFactorError") -> Values
         schema.DECAY_RATE: decay_rate(track, frequency),
         schema.DECAY_RATE_EN15461: decay_rate_en15461(track, frequency),
         schema.DECAY_RATE_LIMIT: iso_3095_decay_rate(frequency),
-        schema.START_POSITION: rows * track.period / positions,
-        schema.LAG: kernel.lag[kept],
-        schema.MOVING_KERNEL: kernel.weights[rows, kept] / kernel.time_step,
         **facts(track),
         schema.STATIC_DEFLECTION: track.static_deflection(load, half),
-        schema.STATIC_DEFLECTION_IN_TIME: kernel.track.static_deflection(load, half),
-        schema.KERNEL_METHOD: "scatter",
+        schema.STATIC_DEFLECTION_IN_TIME: in_time.static_deflection(load, half),
         **relaxed(losses),
         **power_shares(track, frequency),
         **_bays(track, frequency),
     }
-    if isinstance(rail.direct, rail_poles.RailPoles):
-        laid_out |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.direct.fit_error}
-        laid_out |= {schema.KERNEL_POLES: rail.direct.count}
-    return laid_out
 
 
 def facts(track: Track) -> Values:
@@ -247,7 +234,6 @@ DOUBTFUL = 0.75
 """Error of a band, dB, from which on it is warned of."""
 LEAST_SHOWN = 0.05
 """Errors below this, dB, are not listed."""
-PARTS = ("rail", *track_parameters.LAYERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +243,6 @@ class LossFactorError:
     track: Track  # with constant loss factors
     bands: Array  # (b,), centres of one-third octaves, Hz
     force: Array  # (b,), level of the contact force over that with constant loss factors, dB
-    rail: Array  # (b,), level of the rail's displacement under a given force over that, dB
 
     @property
     def worst(self) -> int:
@@ -265,7 +250,9 @@ class LossFactorError:
         return int(np.argmax(np.abs(self.force)))
 
 
-def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest: float) -> LossFactorError:
+def loss_factor_error(
+    track: Track, wheel: BodyAtContact | Wheel, stiffness: float, highest: float
+) -> LossFactorError:
     """Compare a track with the causal one that stands for it in time; the error of a causal one is zero.
 
     Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to that of `highest`, Hz. In
@@ -275,16 +262,12 @@ def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest:
     bands, low, high = spectra.third_octave_bands(LOWEST, highest)
     steps = (np.arange(LINES) + 0.5) / LINES
     frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
-    places = track.regular.places(POSITIONS)
 
-    def levels(rail: Track) -> Array:
-        moved = rail.receptance(frequency, places, places)
-        force = 1.0 / (wheel.receptance(frequency) + 1.0 / stiffness + moved)  # as `force_transfer`
-        squares = np.mean(np.abs(np.stack([force, moved])) ** 2, axis=1)
-        return 10.0 * np.log10(squares.reshape(2, -1, LINES).mean(axis=-1))
+    def level(rail: Track) -> Array:
+        square = mean_square_transfer(frequency, wheel, rail, stiffness, POSITIONS)
+        return 10.0 * np.log10(square.reshape(-1, LINES).mean(axis=-1))
 
-    force, rail = levels(causal_track(track.regular)) - levels(track.regular)
-    return LossFactorError(track, bands, force, rail)
+    return LossFactorError(track, bands, level(causal_track(track.regular)) - level(track.regular))
 
 
 def error_of_losses(computed: compute.Computed) -> LossFactorError:
@@ -299,25 +282,9 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
     if error.track.is_causal:
         return []
     level, frequency = error.force[error.worst], error.bands[error.worst]
-    table = error.track.pad_table
-    factors = {part: getattr(error.track, f"{part}_loss_factor") or 0.0 for part in PARTS}
-    layer = max(factors, key=factors.__getitem__)
-    if table is not None and (largest := float(table_of(table, error.bands)[1].max())) > factors[layer]:
-        layer, factors = "pad", {"pad": largest}
-    words = layer.replace("_", " ")
-    meaning = "Nothing that answers after a force only has the loss factor "
-    meaning += f"{factors[layer]:g} of the {words} at all frequencies"
-    remedy = "Give the rail a smaller one."
-    if layer == "pad" and table is not None:
+    meaning = "Nothing that answers after a force only has one loss factor at all frequencies"
+    if error.track.pad_table is not None:
         meaning = "The springs and dampers that stand in time for the table of the pad miss it"
-        remedy = (
-            "Losses need a stiffness that rises with frequency, as steeply: is the table that of one pad?"
-        )
-    elif layer != "rail":
-        stiffness = getattr(error.track, f"{layer}_stiffness")
-        damping = 1e-3 * stiffness * factors[layer] / (2.0 * np.pi * frequency)
-        exact = f"{damping:.3g} kN s/m dissipate as much at {frequency:.3g} Hz"
-        remedy = f"Give {layer}_damping, which is exact: {exact}."
     if off := [
         spectra.nominal_frequency(error.bands[i]) for i in np.flatnonzero(np.abs(error.force) > DOUBTFUL)
     ]:
@@ -329,48 +296,22 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
             f"up to {DOUBTFUL:g} dB",
             Grade.WARNING if off else None,
             f"{meaning}.",
-            remedy,
+            "Give dampings, which are exact, or smaller loss factors; is a table that of one pad?",
             category=LossFactorWarning,
         )
     ]
 
 
 def relaxed(error: LossFactorError) -> Values:
-    """Lay out the stiffnesses that relax, and the errors in bands; nothing without loss factors."""
-    relaxations = causal_track(error.track).relaxations
-    parts = {name: getattr(relaxations, name, None) for name in PARTS}
-    layers = {name: part.at(2.0 * np.pi * error.bands) for name, part in parts.items() if part is not None}
-    if not layers:
+    """Lay out the errors in bands; nothing without loss factors."""
+    if error.track.is_causal:
         return {}
-    stiffness = np.array(list(layers.values()))
-    measured: Values = {}
-    if error.track.pad_table is not None:
-        entries = schema.MEASURED_STIFFNESS, schema.MEASURED_LOSS_FACTOR
-        measured = dict(zip(entries, table_of(error.track.pad_table, error.bands), strict=True))
-    return measured | {
-        schema.TRACK_BAND: error.bands,
-        schema.LAYER: list(layers),
-        schema.LOSS_FACTOR_FORCE_ERROR: error.force,
-        schema.LOSS_FACTOR_RAIL_ERROR: error.rail,
-        schema.LOSS_FACTOR: [getattr(error.track, f"{name}_loss_factor") or np.nan for name in layers],
-        schema.RELAXED_STIFFNESS: stiffness.real,
-        schema.RELAXED_LOSS_FACTOR: stiffness.imag / stiffness.real,
-    }
+    return {schema.TRACK_BAND: error.bands, schema.LOSS_FACTOR_FORCE_ERROR: error.force}
 
 
-def table_of(table: stiffness_table.StiffnessTable, bands: Array) -> tuple[Array, Array]:
-    """Stiffness over the nominal one and loss factor of a table (b,) in the middle of bands, Hz."""
-    measured = table.at(2.0 * np.pi * bands)
-    return measured.real, measured.imag / measured.real
-
-
-def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str, str]]:
-    """Say how far the force is off in each band, and how much softer the track is at rest under a load, N.
-
-    Names and values; nothing where the track has no loss factors.
-    """
-    nominal, track = error.track, causal_track(error.track)
-    if nominal.is_causal or track.relaxations is None:
+def described_losses(error: LossFactorError) -> Iterator[tuple[str, str]]:
+    """Say how far the force is off in each band: name and value; nothing where there are no loss factors."""
+    if error.track.is_causal:
         return
     off = [
         f"{spectra.nominal_frequency(band)} {validity.signed_level(level)}"
@@ -379,10 +320,3 @@ def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str,
     ]
     shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]
     yield "loss factors in time", f"error of the contact force, dB: {', '.join(shown)}"
-    own = track.relaxations
-    relaxing = {"pads" if name == "pad" else name: part for name, part in vars(own).items() if part}
-    shares = ", ".join(f"{name.replace('_', ' ')} {part.static:.2f}" for name, part in relaxing.items())
-    half = float(track.mid_spans[0])
-    rest, was = (1e3 * each.static_deflection(load, half) for each in (track, nominal))
-    down = f"the load at mid-span rests {rest:.3g} mm down, nominally {was:.3g} mm"
-    yield "stiffness at rest", f"of the nominal one: {shares}; {down}"

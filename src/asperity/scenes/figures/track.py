@@ -1,8 +1,7 @@
-"""Figures of the track: receptances, decay rate, moving kernel, loss factors; and what it marks in others."""
+"""Figures of the track: receptances, decay rate, loss factors; and what it marks in others."""
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from xarray import DataTree
@@ -233,46 +232,6 @@ _POWER_CAPTION = (
 )
 
 
-# --- the rail under the moving wheel
-
-KERNELS = 6
-"""Start positions of the moving kernel that are drawn, at most."""
-
-
-def _kernels(tree: DataTree) -> list[Series]:
-    """Moving kernels of start positions that are spread over the bay."""
-    name, label = "kernel(start={start_position:.9g} m)", "start {start_position:.2f} m"
-    every = list(Of(schema.MOVING_KERNEL, name, label)(tree))
-    shown = np.unique(np.linspace(0, len(every), min(KERNELS, len(every)), endpoint=False).astype(int))
-    return [every[n] for n in shown]
-
-
-def _kernel(tree: DataTree, lines: Lines) -> list[Panel]:
-    """Response under the load to an impulse at some start positions, until it is quiet."""
-    size = np.abs([s.values for s in lines.lines]).max(axis=0)
-    shown = slice(0, int(np.flatnonzero(size > size.max() / 100)[-1]) + 2)
-    of_panel = [replace(s, values=s.values[shown] * 1e6) for s in lines.lines]
-    drawn = panels.styled(tree, lines.at[shown] * 1e3, of_panel, width=1.2)
-    time, up = Axis("time since the impulse / ms", 0.0), Axis("moving kernel / (µm/(N s))")
-    return [
-        Panel(time, up, (panels.zero(width=0.8), *drawn), "until it stays below 1 % of its largest value")
-    ]
-
-
-def _kernel_caption(tree: DataTree) -> str:
-    method = data.stated(tree, schema.KERNEL_METHOD)
-    poles, error = (data.number(tree, a) for a in (schema.KERNEL_POLES, schema.KERNEL_FIT_ERROR))
-    used = " The run used the kernel itself." if method else ""
-    if method == "poles" and poles:
-        fitted = "" if error is None else f", fitted with a relative error of {error:.1e}"
-        used = f" The run used {poles:.0f} common poles instead{fitted}."
-    return (
-        "Displacement of the rail, positive downwards, at the place that the wheel has reached a time after "
-        "an impulse of 1 N s at the start position, counted from a sleeper: the rail seen from the moving "
-        f"wheel.{used}"
-    )
-
-
 TRACK = (
     Figure(
         "receptance",
@@ -315,64 +274,21 @@ TRACK = (
         _POWER_CAPTION,
         further=(schema.POWER_SHARE,),
     ),
-    Figure(
-        "moving_kernel",
-        "Response of the rail under the moving wheel",
-        Of(schema.LAG),
-        (_kernels,),
-        _kernel,
-        _kernel_caption,
-        further=(schema.MOVING_KERNEL, schema.START_POSITION),
-    ),
 )
 
 
 # --- loss factors: what stands for them in time, and what that does to the contact force
 
-_FORCE, _RAIL = schema.LOSS_FACTOR_FORCE_ERROR, schema.LOSS_FACTOR_RAIL_ERROR
-_DOTTED: dict[str, Any] = {"dashes": (1.5, 1.5), "width": 1.0}
-
-
-def _of_layers(tree: DataTree) -> list[Series]:
-    """Stiffness and loss factor of each part of the track, layer by layer."""
-    layers, entry = data.words(tree, schema.LAYER), schema.LOSS_FACTOR
-    found = [*Of(schema.RELAXED_STIFFNESS, "{layer}, stiffness over nominal", "{layer}")(tree)]
-    found += Of(schema.RELAXED_LOSS_FACTOR, "{layer}, loss factor", "{layer}")(tree)
-    for measured in (schema.MEASURED_STIFFNESS, schema.MEASURED_LOSS_FACTOR):
-        if data.present(tree, measured):
-            name = f"pad, {measured.name.replace('_', ' ')}"
-            found.append(Series(name, "1", data.values(tree, measured), measured, "pad", {"layer": "pad"}))
-    for layer, factor in zip(layers, data.values(tree, entry), strict=True):
-        if not np.isfinite(factor):
-            continue
-        constant = np.full(len(data.values(tree, schema.TRACK_BAND)), factor)
-        name, told = f"{layer}, constant loss factor", {"layer": layer}
-        found.append(Series(name, entry.units, constant, entry, layer, told))
-    found.sort(key=lambda series: layers.index(series.label))
-    return [replace(series, look=_LAYERS[layers.index(series.label)]) for series in found]
+_FORCE = schema.LOSS_FACTOR_FORCE_ERROR
 
 
 def _loss(tree: DataTree, lines: Lines) -> Iterator[Panel]:
-    """Errors of force and receptance per one-third octave; stiffness and loss factor of each part."""
-    bands = panels.band_axis(lines.at)
+    """Errors of the force per one-third octave."""
     (error,) = (s.values for s in lines.of(_FORCE))
     edges = lines.at / panels.EDGE, lines.at * panels.EDGE, np.fmin(error, 0.0), np.fmax(error, 0.0)
-    errors: list[Mark] = [chart.Boxes(*edges, "contact force", chart.BLUE, hatch="/")]
-    for s in lines.of(_RAIL):
-        errors.append(Line(lines.at, s.values, "receptance of the rail", MUTED, (6, 1.5), 1.2))
-    errors.append(panels.zero(colour=INK, width=0.8))
-    yield Panel(bands, Axis("error / dB"), tuple(errors), height=2.4)
-    nominal = Rules(np.ones(1), "y", **_DOTTED)
-    constants = [Rules(s.values[:1], "y", colour=s.look[0], **_DOTTED) for s in lines.of(schema.LOSS_FACTOR)]
-    of_layers = {
-        "stiffness / nominal": (schema.RELAXED_STIFFNESS, schema.MEASURED_STIFFNESS, [nominal]),
-        "loss factor": (schema.RELAXED_LOSS_FACTOR, schema.MEASURED_LOSS_FACTOR, constants),
-    }
-    for label, (entry, measured, rules) in of_layers.items():
-        drawn = panels.styled(tree, lines.at, lines.of(entry))
-        drawn += [Line(lines.at, s.values, "", s.look[0], **_DOTTED) for s in lines.of(measured)]
-        axis = panels.log_axis(label, [*(mark.at for mark in rules), *(line.y for line in drawn)])
-        yield Panel(bands, axis, (*rules, *drawn), height=1.9)
+    boxes = chart.Boxes(*edges, "contact force", chart.BLUE, hatch="/")
+    zero = panels.zero(colour=INK, width=0.8)
+    yield Panel(panels.band_axis(lines.at), Axis("error / dB"), (boxes, zero), height=2.4)
 
 
 def _loss_caption(tree: DataTree) -> str:
@@ -386,12 +302,11 @@ def _loss_caption(tree: DataTree) -> str:
             f"{data.engineering(rest, 'm')}, by {data.engineering(nominal, 'm')} on the nominal stiffnesses."
         )
     return (
-        "Nothing that answers after a force only has one stiffness and one loss factor (dotted, as what was "
-        "measured) at all frequencies: the stiffness grows where it dissipates. In time, springs and Maxwell "
-        "elements stand for them, chosen for the contact force. Above: level of the linear contact force "
-        "over that with constant loss factors, for a wheel at rest, mean over a bay; dashed: of the rail's "
-        "displacement under a given force. Receptances, decay rates and the linear contact in the frequency "
-        f"domain have constant loss factors.{softer}"
+        "Nothing that answers after a force only has one stiffness and one loss factor at all frequencies, "
+        "or any measured table: the stiffness grows where it dissipates. In time, springs and Maxwell "
+        "elements stand for them, chosen for the contact force. Drawn: level of the linear contact force "
+        "over that with constant loss factors, for a wheel at rest, mean over a bay. Receptances, decay "
+        f"rates and the linear contact in the frequency domain have constant loss factors.{softer}"
     )
 
 
@@ -399,12 +314,7 @@ LOSS_FACTORS = Figure(
     "loss_factors",
     "Loss factors in time",
     Of(schema.TRACK_BAND, "band centre"),
-    (
-        Of(_FORCE, "contact force, error"),
-        Of(_RAIL, "receptance of the rail, error", optional=True),
-        _of_layers,
-    ),
+    (Of(_FORCE, "contact force, error"),),
     _loss,
     _loss_caption,
-    further=(schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR),
 )
