@@ -79,7 +79,7 @@ GIVEN = {
     "wheel-on-rail": (
         """speed = "200 km/h" | laws = ["direct", "table"] | start = "3 m" | duration = "0.5 s"
         settling = "0 s"
-        [surface] spectrum = "levels.csv" | level = "+3 dB" | lateral = "inf" | accept_levels = true
+        [surface] spectrum = "levels.csv" | level = "+3 dB" | lateral = "inf"
         corrugation = "25 um" | corrugation_wavelength = "40 mm" | corrugation_bandwidth = 0.3
         joint_depth = "1 mm" | joint_length = "0.8 m" | joint_position = "9 m"
         [wheel] radius = "0.4 m" | mass = "500 kg" | load = "50 kN" | transverse_radius = "2 m"

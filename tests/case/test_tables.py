@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from case_texts import case_text, refusal_of_table
+from case_texts import refusal_of_table
 
 from asperity import WheelOnRail
 from asperity.case import measured, tables
-from asperity.case.cases import parse_case
 from asperity.errors import CaseError
 from refusals import refusals
 
@@ -88,6 +87,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("levels", LEVELS + "0.1, 3\n0.063, 1", "a gap in the bands between 100 mm and 63 mm"),
         ("levels", LEVELS + "0.1, 3\n0.09, 1", "bands closer than one-third octaves between 100 mm and 90"),
         ("levels", LEVELS + "0.1, 3\n0, 1", "a wavelength of 0 m"),
+        ("levels", LEVELS + "0.1, -95\n0.08, -96", "levels up to -95 dB re 1 um"),
         ("levels", LEVELS + "0.1, 3\n0.08", "'0.08' in line 3; allowed: a table with the columns wave"),
         ("levels", LEVELS + "0.1, 3\n0.08, nan", "'0.08, nan' in line 3"),
         ("levels", "wavelength (kg), level (dB)\n0.1, 3", "'wavelength (kg)'; allowed: wavelength in m"),
@@ -151,18 +151,6 @@ test_a_table_that_is_no_text_or_too_large = refusals(
     (b"#" * (32 * 2**20 + 1), "more than 32 MiB"),
     of=bytes_of_levels,
 )
-
-
-def test_levels_in_another_unit_ask_for_it(source):
-    (source.parent / "levels.csv").write_text(LEVELS + "0.1, -95\n0.08, -96\n")
-    text = case_text("wheel-on-rail", '[surface] spectrum = "levels.csv" | [wheel] roughness = "levels.csv"')
-    with pytest.raises(CaseError) as caught:
-        parse_case(text, source)
-    keys = [error.partition(":")[0] for error in caught.value.errors]
-    assert keys == ["surface.spectrum", "wheel.roughness"]
-    asked = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
-    assert asked in caught.value.errors[0]
-    assert parse_case(text.replace("[surface]", "[surface]\naccept_levels = true"), source)
 
 
 def test_modes_say_how_they_move_the_wheel(tmp_path):

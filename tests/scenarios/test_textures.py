@@ -231,9 +231,8 @@ def test_rail_and_wheel_add_up_and_the_wheel_repeats_with_its_circumference():
     np.testing.assert_array_equal(wheel[turn:], wheel[:-turn])
     assert found.start + found.before * 1e-3 == pytest.approx(case.start)
     assert not found.parts["rail"].any()
-    accepted = {"smooth": True, "accept_levels": True}
     bump = Profile(1e-6 * np.exp(-(((np.arange(turn) - 500) / 20.0) ** 2)), 1e-3)
-    found = textures("wheel-on-rail", wheel={"roughness": None, "line": bump}, surface=accepted)
+    found = textures("wheel-on-rail", wheel={"roughness": None, "line": bump}, surface={"smooth": True})
     assert np.argmax(found.parts["wheel"][found.before :]) == pytest.approx(
         500, abs=1
     )  # its first point first

@@ -74,11 +74,7 @@ class TestRail:
         with pytest.raises(InputError, match=r"surface\.line_distance: received no distance for 3 lines"):
             laid(tmp_path, lines, LINES)
 
-    def test_what_is_doubtful_is_refused_until_it_is_asked_for(self, tmp_path):
-        metres = LINES.replace('"um"', '"m"')
-        with pytest.raises(InputError, match="Is the unit right"):
-            laid(tmp_path, turn(6000), metres)
-        assert laid(tmp_path, turn(6000), metres + "accept_levels = true").line.std() > 0.1
+    def test_gaps_are_refused_until_they_are_to_be_filled(self, tmp_path):
         gap = np.where(np.arange(6000) == 3000, np.nan, turn(6000))
         with pytest.raises(InputError, match="missing points inside"):
             laid(tmp_path, gap, LINES)

@@ -7,10 +7,9 @@ from scipy import fft, stats
 from scipy.special import k1
 
 from asperity import spectra
-from asperity.errors import InputError
 from asperity.reference import cnossos
-from asperity.surfaces.bands import band_levels_of, check_levels, from_bands, strip_from_bands
-from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.bands import band_levels_of, from_bands, strip_from_bands
+from asperity.surfaces.heightmap import HeightMap
 from refusals import refusals
 
 MM, UM = 1e-3, 1e-6
@@ -135,18 +134,3 @@ def test_levels_of_a_line_and_of_a_strip():
     strip = HeightMap(np.stack([line.heights, 2 * line.heights], axis=1), (MM, MM))
     _, both = band_levels_of(strip)
     assert_allclose((both - found)[held], 10 * np.log10(2.5))
-
-
-@pytest.mark.parametrize(("factor", "extreme"), [(1e6, "125 dB"), (1e3, "65 dB"), (1e-3, "-")])
-def test_levels_ask_for_the_unit(factor, extreme):
-    line = from_bands(40000, MM, *rail(13, 29), seed=1)
-    check_levels([line])
-    message = rf"levels of the wheel: received {extreme}.*between -60 and \+60 dB.*Is the unit right"
-    with pytest.raises(InputError, match=message):
-        check_levels([line, Profile(factor * line.heights, MM)], "wheel")
-
-
-def test_smooth_lines_and_short_waves_that_a_record_cannot_hold_are_not_asked_about():
-    check_levels([Profile(np.zeros(2000), MM)])
-    x = np.arange(4000) * 10 * MM
-    check_levels([Profile(UM * np.sin(2 * np.pi * x / 0.2), 10 * MM)])

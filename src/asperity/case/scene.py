@@ -43,7 +43,7 @@ OVER_DEFECTS = ("direct", "linear-filtered", "linear")
 """Laws that are rolled where a case names none, and where it rolls over a flat or a joint."""
 SMOOTH = "hertz-filtered"
 """Main law of those where there is no sample of the surface."""
-OF_A_TRACK = ("surface.accept_levels", "numerics.kernel", "numerics.poles")
+OF_A_TRACK = ("numerics.kernel", "numerics.poles")
 """Keys that mean nothing where no track is rolled over, beside those of the noise."""
 LAW = Choice(names)
 

@@ -46,7 +46,6 @@ ADDED_LEVEL = "-120 dB to 120 dB: a million times is another texture"
 
 
 DEFECTS = (
-    "accept_levels",
     "corrugation",
     "corrugation_wavelength",
     "corrugation_bandwidth",
@@ -220,9 +219,6 @@ class Surface(MeasuredLine, MeasuredMap):
         goes_with="spectrum",
     )
     level: float = key(LEVEL, "+0 dB", "level added to the spectrum", ADDED_LEVEL, goes_with="spectrum")
-    accept_levels: bool = key(
-        Flag(), False, "take levels beyond 60 dB re 1 um, which no rail has, as they are"
-    )
     continuation: str | None = optional(
         Choice(("refuse", "mirror", "repeat")),
         "mirror",

@@ -107,17 +107,11 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
             raise InputError(
                 name_of(table), received, "every one-third octave of wavelength, each once", remedy
             )
+    if abs(level.max()) > LARGEST_LEVEL:
+        received = f"levels up to {level.max():.3g} dB re 1 um"
+        allowed = f"a highest level between -{LARGEST_LEVEL:g} and {LARGEST_LEVEL:g} dB re 1 um"
+        raise InputError(name_of(table), received, allowed, "Is the unit right?")
     return wavelength, level
-
-
-def check_band_levels(levels: Array, name: str) -> None:
-    """Ask for the unit where levels, dB re 1 µm, are those of no wheel or rail: beyond 60 dB."""
-    worst = levels[np.argmax(np.abs(levels))]
-    if abs(worst) > LARGEST_LEVEL:
-        received = f"a level of {worst:.3g} dB re 1 um"
-        allowed = f"-{LARGEST_LEVEL:g} to {LARGEST_LEVEL:g} dB re 1 um"
-        remedy = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
-        raise InputError(name, received, allowed, remedy)
 
 
 @contextmanager

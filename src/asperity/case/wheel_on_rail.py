@@ -3,8 +3,6 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
-import numpy as np
-
 from asperity.case.body import OF_SEVERAL, Rolling
 from asperity.case.creep import CreepKeys
 from asperity.case.form import section
@@ -13,7 +11,6 @@ from asperity.case.scene import Case, time_step_on_grid
 from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.sideways import SidewaysKeys
 from asperity.case.surface import Surface
-from asperity.case.tables import check_band_levels, read_levels
 from asperity.errors import InputError
 from asperity.parameters import Choice, key
 from asperity.structures.body import GRAVITY
@@ -107,28 +104,14 @@ class WheelOnRail(Case, defaults=DEFAULTS):
         return self.track.model()
 
     def own_problems(self) -> Iterator[InputError]:
-        """Numbers that ask for their unit, and a path that is long enough."""
+        """A load that asks for its unit, and a path that is long enough."""
         weight = GRAVITY * self.wheel.contact_mass
         if self.wheel.contact_load < weight * (1.0 - 1e-9):
             received, mass = written(self.wheel.contact_load, "N", "kN"), self.wheel.contact_mass
             allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {mass:g} kg on the contact"
             remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
             yield InputError("wheel.load", received, allowed, remedy)
-        yield from self._problems_of_levels()
         yield from self._problem_of_length()
-
-    def _problems_of_levels(self) -> Iterator[InputError]:
-        """Band levels that no wheel or rail has ask for their unit."""
-        for name, table, level in (
-            ("surface.spectrum", self.surface.spectrum, self.surface.level),
-            ("wheel.roughness", self.wheel.roughness, self.wheel.roughness_level),
-        ):
-            if table is not None and not self.surface.accept_levels:
-                levels = np.zeros(1) if isinstance(table, str) else read_levels(table)[1]
-                try:
-                    check_band_levels(levels + level, name)
-                except InputError as error:
-                    yield error
 
     def _problem_of_length(self) -> Iterator[InputError]:
         """A path is longer than what looks at it."""

@@ -119,8 +119,10 @@ def _problem_of_heights(case: Case, shape: Geometry, textures: Textures) -> Inpu
     if slope <= STEEPEST:
         received = f"heights of {1e6 * rough:.3g} um rms within the window"
         allowed = f"up to {ROUGHEST:g} approaches of the bodies, {1e6 * approach:.3g} um each"
-    key = next((key for key in _UNITS if getattr(case.surface, key) is not None), "")
-    return InputError(f"surface.{key}".rstrip("."), received, allowed, _UNITS.get(key, ""))
+    of_wheel, of_rail = (np.std(np.diff(textures.parts[part])) for part in ("wheel", "rail"))
+    section, name = (case.rolling, case.ROLLING) if of_wheel > of_rail else (case.surface, "surface")
+    key = next((key for key in _UNITS if getattr(section, key, None) is not None), "")
+    return InputError(f"{name}.{key}".rstrip("."), received, allowed, _UNITS.get(key, ""))
 
 
 def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[InputError]:

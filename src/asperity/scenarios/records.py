@@ -18,7 +18,7 @@ from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces import measured_lines, synthesis
-from asperity.surfaces.bands import check_levels, from_bands, strip_from_bands
+from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.readers import read_surface, read_surfaces
@@ -242,12 +242,10 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
 def lines_across(surface: Surface, grid: Grid) -> Record:
     """Lay measured lines out along the path, and across it, m; the record begins where the run-in begins.
 
-    Refused are a record shorter than the path that is not to be continued, and unlikely levels.
+    Refused is a record shorter than the path that is not to be continued.
     """
     profiles, origin = processed(surface, "surface", degree=1)
     lines = measured_lines.common_length([resample(profile, grid.spacing) for profile in profiles])
-    if not surface.accept_levels:
-        check_levels([Profile(line, grid.spacing) for line in lines], "rail's lines")
     if lines.shape[1] < grid.rows:
         origin += f", {surface.continuation}ed"
     how = cast(synthesis.Continuation, surface.continuation or "refuse")
@@ -255,12 +253,11 @@ def lines_across(surface: Surface, grid: Grid) -> Record:
     return Record(Rows(_across(extended, surface, grid)), origin, areal=False, lines=tuple(profiles))
 
 
-def lines_around(rolling: body.Rolling, name: str, grid: Grid, *, check: bool) -> Record:
+def lines_around(rolling: body.Rolling, name: str, grid: Grid) -> Record:
     """Lay measured lines around what rolls out as one turn that closes on itself, m.
 
     `grid` holds one turn of the path's grid; the rows returned are those of the record, if it is nearly as
-    long. `check` says whether unlikely levels are refused. Lines that do not go round are left out, with a
-    warning.
+    long. Lines that do not go round are left out, with a warning.
     """
     measured, origin = processed(rolling, name, degree=0)
     profiles = [p for p in measured if len(p.heights) * p.spacing >= (1.0 - FULL_TURN) * grid.length]
@@ -283,8 +280,6 @@ def lines_around(rolling: body.Rolling, name: str, grid: Grid, *, check: bool) -
     if lines.shape[1] * spacing > (1.0 + FULL_TURN) * grid.length:
         lines = lines[:, : round(grid.length / spacing)]
     fine = np.array([resample(Profile(line, spacing), grid.spacing).heights for line in lines])
-    if check:
-        check_levels([Profile(line, grid.spacing) for line in fine], f"{name}'s lines")
     heights = _across(synthesis.close(fine.T, round(JOIN / grid.spacing)).T, rolling, grid)
     return Record(Rows(heights), origin, areal=False, lines=tuple(profiles))
 

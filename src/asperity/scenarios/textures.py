@@ -291,8 +291,7 @@ def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
     turn = replace(grid, rows=round(rolling.circumference / grid.spacing))
     if rolling.line is not None:
         if rolling.line_distance is not None or (surface.IN_STRIPS and len(rolling.offsets) == 1):
-            check = surface.IN_STRIPS and not surface.accept_levels
-            return records.lines_around(rolling, case.ROLLING, turn, check=check)
+            return records.lines_around(rolling, case.ROLLING, turn)
         return records.line_around(rolling, case.ROLLING, contact, turn)
     if rolling.roughness is None:
         return Record(Rows(np.zeros((turn.rows, 1))), "", areal=False)

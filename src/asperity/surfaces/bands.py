@@ -1,6 +1,5 @@
 """One-third-octave levels in wavelength, dB re 1 µm: those of surfaces, and surfaces that have given ones."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -16,12 +15,8 @@ from asperity.threads import thread_count
 
 MICROMETRE = 1e-6
 """Reference of roughness levels, m (ISO 3095:2013, EN 15610:2009)."""
-LIKELY_LEVELS = (-60.0, 60.0)
-"""Levels outside of these, dB re 1 µm, ask whether the unit of the heights is right."""
-EMPTY = 120.0
-"""A band this far below the highest holds rounding errors, dB."""
 LIKELY_WAVELENGTHS = (3.15e-3, 0.4)
-"""Wavelengths whose levels are checked, m: the bands of ISO 3095:2013."""
+"""Wavelengths of the bands of ISO 3095:2013, m."""
 SAME_COHERENCE = 1.05
 """Wavenumbers within this ratio share one lateral coherence."""
 
@@ -44,27 +39,6 @@ def likely_band(wavelength: Array) -> NDArray[np.bool_]:
     """Which bands of a wavelength, m, lie between those of 3.15 mm and 0.4 m."""
     shortest, longest = LIKELY_WAVELENGTHS
     return (wavelength > shortest / HALF_BAND) & (wavelength < longest * HALF_BAND)
-
-
-def check_levels(surfaces: Sequence[Profile | HeightMap], what: str = "heights") -> None:
-    """Ask for the unit where levels are far from those of wheels and rails.
-
-    That is beyond ±60 dB re 1 µm in a band between 3.15 mm and 0.4 m that the record resolves. Empty bands,
-    120 dB below the highest, do not count. The heights are complete and without form, m.
-    """
-    lowest, highest = LIKELY_LEVELS
-    for surface in surfaces:
-        wavelength, level = band_levels_of(surface)
-        step = float(np.atleast_1d(surface.spacing)[0])
-        inside = likely_band(wavelength) & np.isfinite(level) & (wavelength >= 4.0 * step)
-        inside &= level > level.max() - EMPTY
-        for index in (np.argmax, np.argmin) if inside.any() else ():
-            k = index(level[inside])
-            extreme, at = level[inside][k], wavelength[inside][k]
-            received = f"{extreme:.0f} dB re 1 µm at a wavelength of {1e3 * at:.3g} mm"
-            allowed = f"levels between {lowest:g} and {highest:+g} dB"
-            remedy = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
-            require(lowest <= extreme <= highest, f"levels of the {what}", received, allowed, remedy)
 
 
 @dataclass(frozen=True, eq=False)
