@@ -1,6 +1,5 @@
 """Contents of files of heights, from the definitions of the formats (ISO 25178-71 and -72, npy, zip)."""
 
-import hashlib
 import io
 import struct
 import warnings
@@ -67,10 +66,7 @@ def x3p_xml(
     height=("", ""),
     axes=("I", "I"),
     link=True,
-    points_md5="",
-    valid_md5=None,
-    datums=(),
-    dimension=None,
+    mask=False,
     rotation="",
     preamble="",
 ):
@@ -81,11 +77,8 @@ def x3p_xml(
         return _tag(name, inner + _tag("Increment", increment) + _tag("Offset", offset))
 
     matrix = "".join(_tag(f"Size{a}", n) for a, n in zip("XYZ", sizes, strict=True))
-    data = _tag("PointDataLink", "bindata/data.bin") + _tag("MD5ChecksumPointData", points_md5)
-    if valid_md5 is not None:
-        data += _tag("ValidPointsLink", "bindata/valid.bin") + _tag("MD5ChecksumValidPoints", valid_md5)
-    record = dimension or _tag("MatrixDimension", matrix)
-    record += _tag("DataLink", data) * link + _tag("DataList", "".join(f"<Datum>{d}</Datum>" for d in datums))
+    data = _tag("PointDataLink", "bindata/data.bin") + _tag("ValidPointsLink", "bindata/valid.bin") * mask
+    record = _tag("MatrixDimension", matrix) + _tag("DataLink", data) * link
     drawn = axis("CX", axes[0], steps[0]) + axis("CY", axes[1], steps[1]) + axis("CZ", "A", *height, kind)
     return (
         f'<?xml version="1.0" encoding="UTF-8"?>{preamble}'
@@ -94,15 +87,11 @@ def x3p_xml(
     )
 
 
-def x3p(stored, *, kind="D", sizes=None, valid=None, data=None, compress=True, extra=(), **xml):
+def x3p(stored, *, kind="D", sizes=None, valid=None, compress=True, **xml):
     """X3P archive; `stored` (SizeZ, SizeY, SizeX) in the data type of the letter."""
     stored = np.asarray(stored, X3P_TYPES[kind])
-    members = {"bindata/data.bin": stored.tobytes() if data is None else data}
-    md5 = {"points_md5": hashlib.md5(members["bindata/data.bin"]).hexdigest().upper()}
+    main = x3p_xml(sizes or stored.shape[::-1], kind=kind, mask=valid is not None, **xml).encode()
+    members = {"main.xml": main, "bindata/data.bin": stored.tobytes()}
     if valid is not None:
         members["bindata/valid.bin"] = np.packbits(np.ravel(valid), bitorder="little").tobytes()
-        md5["valid_md5"] = hashlib.md5(members["bindata/valid.bin"]).hexdigest()
-    main = x3p_xml(sizes or stored.shape[::-1], kind=kind, **(md5 | xml)).encode()
-    checksum = f"{hashlib.md5(main).hexdigest()} *main.xml".encode()
-    members = {"main.xml": main, "md5checksum.hex": checksum} | members | dict(extra)
     return zipped(*members.items(), compress=compress)

@@ -69,7 +69,6 @@ MALFORMED = [  # file, its contents, or what is changed in an X3P file, and what
     ("a.sdf", sdf_ascii(WORDS, NumPoints=50000, NumProfiles=20000), r"points in \d+ bytes"),
     ("a.x3p", {"sizes": (50000, 20000, 1)}, r"points in \d+ bytes"),
     ("a.x3p", {"sizes": (10**9, 10**9, 10**9)}, r"points in \d+ bytes"),
-    ("a.x3p", {"sizes": (50000, 20000, 1), "link": False, "datums": ["1"]}, r"points in \d+ bytes"),
     ("a.npy", claiming((50000, 20000)), r"points in \d+ bytes"),
     ("a.npy", claiming((50000, 2000)), r"points in \d+ bytes"),
     ("a.npz", zipped(("a.npy", claiming((10**9,)))), r"points in \d+ bytes"),
@@ -80,19 +79,14 @@ MALFORMED = [  # file, its contents, or what is changed in an X3P file, and what
         r"bytes that unpack to \d+; allowed: at most 200 times",
     ),
     ("a.x3p", lambda: x3p(np.zeros((1, 2048, 2048))), "bytes that unpack to"),
-    *(
-        ("a.x3p", {"extra": {name: b"evil"}}, "a member named")
-        for name in ("../evil.bin", "/etc/evil", "a/../../evil", "C:/evil", "..\\evil")
-    ),
-    ("a.x3p", xml(x3p_xml((3, 4, 1)).replace("bindata", "../secret")), "1 x 4 x 3 points in 0 bytes"),
+    ("a.x3p", xml(x3p_xml((3, 4, 1)).replace("bindata", "../secret")), r"no member '\.\./secret/data\.bin'"),
     (
         "a.x3p",
-        xml(x3p_xml((3, 4, 1), valid_md5="")),
+        xml(x3p_xml((3, 4, 1), mask=True)),
         r"no member 'bindata/valid\.bin'; allowed: one of: main\.x",
     ),
-    ("a.npz", zipped(*2 * [("a.npy", npy(HEIGHTS))]), "two members of one name"),
-    ("a.npz", encrypted(), "the encrypted member"),
-    ("a.x3p", x3p([STORED])[:600], "a zip archive without its directory"),
+    ("a.npz", encrypted(), "encrypted, password required .* an intact npz file"),
+    ("a.x3p", x3p([STORED])[:400], "a zip archive without its directory"),
     *(
         ("a.x3p", xml(x3p_xml((3, 4, 1), preamble=text).encode(encoding)), "an XML document type or entity")
         for text in (LAUGHS, EXTERNAL)
@@ -136,8 +130,6 @@ MALFORMED = [  # file, its contents, or what is changed in an X3P file, and what
     ("a.sdf", sdf_ascii(WORDS, DataType=8), "allowed: 0 to 7"),
     ("a.sdf", sdf_ascii(WORDS, Compression=1), "compressed data"),
     # X3P
-    ("a.x3p", {"points_md5": "0" * 32}, "bindata/data.bin with the checksum"),
-    ("a.x3p", {"extra": {"md5checksum.hex": b"0" * 32}}, "main.xml with the checksum"),
     ("a.x3p", {"sizes": (4, 4, 1)}, "at least 128 bytes for so many points"),
     ("a.x3p", {"sizes": (4, 0, 1)}, "SizeY"),
     ("a.x3p", {"sizes": (4, -3, 1)}, "SizeY"),
@@ -148,11 +140,13 @@ MALFORMED = [  # file, its contents, or what is changed in an X3P file, and what
     ("a.x3p", {"steps": ("", "1e-6")}, "increment of CX in a.x3p: received nothing"),
     ("a.x3p", {"steps": ("1e-6", "")}, "spacing of the height map"),
     ("a.x3p", {"height": ("0", "")}, "increment of CZ"),
-    ("a.x3p", {"link": False}, "0 bytes"),
-    ("a.x3p", {"link": False, "datums": ["1"] * 13}, "13 points; allowed: the 12"),
-    ("a.x3p", {"link": False, "datums": ["1;2"] * 12}, "1 numbers apart by semicolons"),
+    ("a.x3p", {"link": False}, "no member ''"),
     ("a.x3p", {"rotation": f"<Rotation>{IDENTITY.replace('0', '0.1')}</Rotation>"}, "a rotation"),
-    ("a.x3p", {"axes": ("A", "I"), "sizes": (2, 1, 3)}, "3 layers of points"),
+    (
+        "a.x3p",
+        {"axes": ("A", "I")},
+        "a.x3p: received points with a CX each; allowed: a regular grid",
+    ),
     (
         "a.x3p",
         xml(x3p_xml((3, 4, 1), kind="Q")),
@@ -184,12 +178,6 @@ def test_a_malformed_file_ends_in_a_message(tmp_path, name, contents, message):
             r"size of a\.txt: received 8 bytes; allowed: at most 2 byt",
         ),
         ("MAX_XML_BYTES", "a.x3p", x3p([STORED]), r"more than 2 bytes in main\.xml"),
-        (
-            "MAX_MEMBERS",
-            "a.npz",
-            zipped(*((name, b"") for name in "abc")),
-            "received 3 members; allowed: at most 2",
-        ),
     ],
 )
 def test_a_file_beyond_a_limit(tmp_path, monkeypatch, limit, name, contents, message):
@@ -240,7 +228,7 @@ def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, sec
 @pytest.mark.filterwarnings("ignore::asperity.errors.MissingPointsWarning")
 @settings(max_examples=150)
 @given(flips=st.lists(st.tuples(st.integers(0, 10**6), st.integers(0, 7)), min_size=1, max_size=4))
-def test_flipped_bits_behind_the_checksums_of_x3p(tmp_path_factory, flips):
+def test_flipped_bits_behind_the_checksum_of_x3p(tmp_path_factory, flips):
     """A surface or an `InputError`; `faults` mutates whole files, of which sums reject nearly all."""
     main = bytearray(x3p_xml((3, 4, 1)).encode())
     for place, bit in flips:

@@ -21,10 +21,6 @@ STORED = HEIGHTS.T  # as images are
 NM = {"height_unit": "nm", "pixel": ("2 um", "3 um")}
 DATA = Path(__file__).parents[3] / "shared" / "data"
 IDENTITY = "".join(f"<r{i}{j}>{int(i == j)}</r{i}{j}>" for i in "123" for j in "123")
-ANY_ORDER = np.random.default_rng(1).permutation(12)
-POINTS = np.stack([2e-6 * (ANY_ORDER // 3), 3e-6 * (ANY_ORDER % 3), 1e-9 * HEIGHTS.flat[ANY_ORDER]], axis=1)
-LISTED = {"axes": ("A", "A"), "steps": ("", ""), "dimension": "<ListDimension>12</ListDimension>"}
-ABSOLUTE = {"axes": ("A", "I"), "steps": ("", ""), "sizes": (4, 1, 1)}
 
 
 def netcdf(*, x=(7.0, 9.0, 11.0, 13.0), lateral="um", unit="nm", **variables):
@@ -71,7 +67,6 @@ WHOLE = {
         for kind, zip_ in zip("ILFD", (True, False) * 2, strict=True)
     },
     "x3p, not rotated": ("a.x3p", x3p([1e-9 * STORED], rotation=f"<Rotation>{IDENTITY}</Rotation>"), {}),
-    "x3p of points": ("a.x3p", x3p([[[0.0]]], data=POINTS.tobytes(), **LISTED), {}),
     "netCDF": ("a.nc", netcdf(), {}),
     "netCDF image": ("a.nc", netcdf(z=("yx", STORED, {})), {}),
     "netCDF that falls": ("a.nc", netcdf(x=7 - 2.0 * np.arange(4), z=("xy", HEIGHTS[::-1], {})), {}),
@@ -82,14 +77,12 @@ WHOLE = {
 }
 PACKED = {"missing_value": np.int16(-999), "scale_factor": 0.5, "add_offset": 4.0}
 MARKERS = {1: 2**16 - 1, 2: 2**32 - 1, 3: np.nan, 5: -(2**15), 6: -(2**31), 7: np.nan}
-DATUMS = ["" if v < 0 else f"{v:g}e-9" for v in holed(-1).flat]
 HOLED = {
     **{f"sdf {code}": ("a.sdf", sdf_binary(holed(marker), code)) for code, marker in MARKERS.items()},
     "sdf in ASCII": ("a.sdf", sdf_ascii(words(holed(np.nan)))),
     "x3p mask": ("a.x3p", x3p([STORED], kind="I", height=("1e-9", ""), valid=holed(0, STORED + 1) > 0)),
     "x3p not a number": ("a.x3p", x3p([1e-9 * holed(np.nan)])),
     "x3p infinite": ("a.x3p", x3p([1e-9 * holed(np.inf)])),
-    "x3p datums": ("a.x3p", x3p([STORED], link=False, datums=DATUMS)),
     "netCDF": ("a.nc", netcdf(z=("xy", holed(-999, 2 * HEIGHTS - 8, (1, 2)).astype("i2"), PACKED))),
 }
 
@@ -145,7 +138,6 @@ def test_eight_bit_sdf_has_no_marker(write):
             2e-6,
         ),
         ("a.x3p", x3p([[1e-9 * HEIGHTS[:, 1]]], steps=("2e-6", "")), 2e-6),
-        ("a.x3p", x3p([[[0.0]]], data=POINTS[POINTS[:, 1] == 3e-6][:, ::2].tobytes(), **ABSOLUTE), 2e-6),
         ("a.nc", netcdf(z=("x", HEIGHTS[:, 1], {})), 2e-6),
     ],
 )
@@ -215,16 +207,6 @@ REFUSED = [  # file, its contents, hints, and what the message says
         (name, contents, {hint: value}, f"hints for .*received {hint}; allowed: no hints")
         for name, contents in (("a.sdf", sdf_binary(STORED, 5)), ("a.x3p", x3p([STORED])))
         for hint, value in (("height_unit", "um"), ("pixel", "1 um"), ("array", "a"))
-    ),
-    (
-        "a.x3p",
-        x3p(
-            [[[0.0]]],
-            data=np.array([(0, 5e-6), (1.3e-6, 7e-6), (2e-6, 4e-6), (3e-6, 1e-6)]).tobytes(),
-            **ABSOLUTE,
-        ),
-        {},
-        "coordinates that are not uniform",
     ),
 ]
 

@@ -115,22 +115,14 @@ def read_surface(
 
 
 def read_surfaces(
-    path: str | Path,
-    *,
-    array: str | None = None,
-    height_unit: Length | None = None,
-    pixel: Length | Sequence[Length] | None = None,
-    pixel_unit: Length | None = None,
-    decimal: str | None = None,
-    transpose: bool = False,
-    fill: bool = False,
-    spikes: bool = False,
+    path: str | Path, *, transpose: bool = False, fill: bool = False, spikes: bool = False, **hints: Any
 ) -> list[HeightMap]:
     """Read all samples of an ensemble of maps, as `read_surface` does: a list, of one for a single map.
 
-    In a 3-D array the sample is the first axis, then x, then y. A line is refused.
+    Hints are those of `read_surface`. In a 3-D array the sample is the first axis, then x, then y. A line is
+    refused.
     """
-    surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
+    surfaces = _read(path, checked_hints(**hints))
     maps = [surface for surface in surfaces if isinstance(surface, HeightMap)]
     remedy = "Read it with read_surface, or give a map."
     require(len(maps) == len(surfaces), str(path), "a line", "a height map", remedy)

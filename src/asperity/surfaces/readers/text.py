@@ -152,7 +152,6 @@ def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
 def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[str], Array]:
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
     header: list[str] = []
-    marked: dict[int, tuple[int, str]] = {}  # headings that are numbers but for marks in them, by fields
     values, columns, closed, characters = array("d"), 0, True, 0
     blanks = array("q")  # how many rows stand above each empty line
     for number, text in enumerate(lines, 1):
@@ -163,19 +162,18 @@ def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[st
         row = None if comment else dialect.numbers(text)
         if row is None:
             if columns and not comment:
-                raise _no_numbers(number, text, source)
+                received, allowed = (
+                    f"{text.strip()[:60]!r} in line {number}",
+                    "numbers or marks of missing ones",
+                )
+                raise InputError(source, received, allowed, "Correct or remove the line.")
             header.append(text)
-            unmarked = dialect.numbers(text.replace("_", "")) if any(map(str.isdigit, text)) else None
-            if unmarked and not comment:
-                marked.setdefault(len(unmarked), (number, text))
             characters += len(text)
             received = f"more than {amount(MAX_HEADER)} of text that is no number"
             require(characters <= MAX_HEADER, source, received, "heights as text", _CHECK)
             continue
         if not columns:
             columns = len(row)
-            if columns in marked:
-                raise _no_numbers(*marked[columns], source)
         if len(row) != columns:
             received = f"{len(row)} values in row {len(values) // columns + 1}"
             allowed = f"{columns}, as in the first row"
@@ -198,11 +196,6 @@ def _with_gaps(table: Array, blanks: array[int]) -> Array:
     spread = np.full((len(table) + int(gaps.sum()), 1), np.nan)
     spread[np.arange(len(table)) + np.cumsum(gaps)] = table
     return spread
-
-
-def _no_numbers(number: int, text: str, source: str) -> InputError:
-    received, allowed = f"{text.strip()[:60]!r} in line {number}", "numbers, NaN, BAD, NA, *** or nothing"
-    return InputError(source, received, allowed, "Correct or remove the line.")
 
 
 def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str) -> list[guards.Surface]:
