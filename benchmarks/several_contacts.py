@@ -35,13 +35,14 @@ from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
-from asperity.structures.body import Ball, Body
+from asperity.structures.body import GRAVITY, Body
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import RailBetween, RailPoles, rail_between, rail_poles
 from asperity.structures.track import Track
 
 STEEL = material("steel")
-BALL = Ball(0.025, STEEL)
+MASS = 0.514  # kg, of a steel ball of 25 mm radius
+LOAD = GRAVITY * MASS
 STIFFNESS, APART = 2.4e10, 0.1  # N/m^1.5, m
 COACH = np.array([0.0, 2.5, 17.5, 20.0])  # wheels of a coach, m
 COACHES, REACH = 26.0, 9.0  # m
@@ -65,7 +66,7 @@ def seconds_per_step(run: Callable[[Clock], object]) -> float:
 def balls(count: int, beam: Beam, law: HertzLaw, steps: int) -> tuple[float, float]:
     """Time of a step and contact, s: all at once, and one after another."""
     path = {"speed": 1.0, "duration": steps * 1e-5, "time_step": 1e-5}
-    bodies, at = [Body.rigid(BALL.mass, BALL.static_load)] * count, APART * np.arange(count)
+    bodies, at = [Body.rigid(MASS, LOAD)] * count, APART * np.arange(count)
     together = seconds_per_step(
         lambda clock: roll_bodies(
             beam, bodies, [law] * count, positions=at, start=0.3, progress=clock, **path
@@ -128,7 +129,7 @@ def by_integrator(
 ) -> np.ndarray:
     """Contact forces (n, t) of the same balls by `solve_ivp`."""
     natural = 2 * np.pi * beam.natural_frequencies
-    modes, n, load = len(natural), len(at), BALL.static_load
+    modes, n, load = len(natural), len(at), LOAD
     grid = law.texture
     places = grid.start + grid.spacing * np.arange(grid.heights.shape[1])
     height = CubicSpline(places, grid.heights[0], bc_type="natural")
@@ -143,7 +144,7 @@ def by_integrator(
         force, shapes = forces(t, y)
         half = modes + n
         modal = force @ shapes - 2 * beam.damping_ratios * natural * y[half : half + modes]
-        return np.concatenate([y[half:], modal - natural**2 * y[:modes], (force - load) / BALL.mass])
+        return np.concatenate([y[half:], modal - natural**2 * y[:modes], (force - load) / MASS])
 
     shapes = beam.shapes(0.3 + at)[0]
     q = load * shapes.sum(axis=0) / natural**2
@@ -158,7 +159,7 @@ def against_integrator(steps: int = 2000, count: int = 4) -> None:
     """One problem by both."""
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)
     law = HertzLaw(STIFFNESS, rough(8e-9, 2e-5, 0.25, 0.8))
-    at, bodies = 0.1 * np.arange(count), [Body.rigid(BALL.mass, BALL.static_load)] * count
+    at, bodies = 0.1 * np.arange(count), [Body.rigid(MASS, LOAD)] * count
 
     def rolled(h: float) -> np.ndarray:
         return roll_bodies(
@@ -182,13 +183,13 @@ def against_integrator(steps: int = 2000, count: int = 4) -> None:
         for _ in range(5):
             forces = rolled(h)
         ours = (time.process_time() - began) / 5
-        reached = float(np.abs(forces[:, ::refined] - fine).max() / BALL.static_load)
+        reached = float(np.abs(forces[:, ::refined] - fine).max() / LOAD)
         print(f"| asperity, steps of {1e6 * h:g} µs | {reached:.1e} | {ours:.3f} | 1 |")
         for tolerance in 10.0 ** -np.arange(3, 9):
             began = time.process_time()
             found = by_integrator(beam, law, at, 1e-5 * np.arange(steps + 1), tolerance)
             theirs = time.process_time() - began
-            error = float(np.abs(found - fine).max() / BALL.static_load)
+            error = float(np.abs(found - fine).max() / LOAD)
             if error <= reached:
                 what = f"solve_ivp, LSODA, rtol {tolerance:.0e}"
                 print(f"| {what} | {error:.1e} | {theirs:.2f} | {theirs / ours:.0f} |")

@@ -9,7 +9,6 @@ import numpy as np
 
 from asperity.kernels.pointforce import evaluate_all
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.body import Body
 from asperity.structures.rail_poles import RailBetween
 
 OF_CONTACTS = (
@@ -26,9 +25,8 @@ def first_contact(every):
 
 
 def roll_ball(beam, ball, law, **path):
-    """A ball over a beam, as `roll_bodies`."""
-    body = Body.rigid(ball.mass, ball.static_load)
-    return first_contact(roll_bodies(beam, [body], [law], positions=[0.0], **path))
+    """One body over a beam, as `roll_bodies`."""
+    return first_contact(roll_bodies(beam, [ball], [law], positions=[0.0], **path))
 
 
 def roll_wheel(rail, wheel, law, **path):

@@ -7,7 +7,6 @@ __version__ = "0.1.0"
 
 _HOME = {
     "ArchardWear": "contact.wear",
-    "Ball": "structures.body",
     "BallBearing": "structures.ball_bearing",
     "Beam": "structures.beam",
     "Contact": "contact.halfspace",

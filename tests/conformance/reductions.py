@@ -11,7 +11,7 @@ from asperity import HalfSpace, Hertz
 from asperity.laws import Linear
 from asperity.reference.materials import material
 from asperity.structures.beam import Beam
-from asperity.structures.body import Ball
+from asperity.structures.body import Body
 from one_contact import roll_ball
 
 STEEL = material("steel")
@@ -41,13 +41,13 @@ def filter_of_the_half_space():
 
 def moving_force():
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, loss_factor=0.0, highest_frequency=5e3)
-    ball = Ball(0.025, STEEL)
+    load = 5.0
     critical = np.pi / beam.length * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
-    static = ball.static_load * beam.length**3 / (48 * beam.bending_stiffness)
+    static = load * beam.length**3 / (48 * beam.bending_stiffness)
     for alpha in (0.1, 0.25, 0.5, 0.75):
         speed = alpha * critical
         run = roll_ball(
-            replace(beam), ball, Linear(ball.static_load, stiffness=1e-3), speed=speed, start=0.0,
+            replace(beam), Body.rigid(0.5, load), Linear(load, stiffness=1e-3), speed=speed, start=0.0,
             duration=1 / speed, time_step=2e-5, sensors=[0.5],
         )  # fmt: skip
         velocity = cumulative_trapezoid(run.acceleration[0], run.time, initial=0.0)

@@ -16,7 +16,7 @@ from asperity.reference.materials import material
 from asperity.rolling import steps
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
-from asperity.structures.body import Ball, carriage
+from asperity.structures.body import Body, carriage
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
@@ -31,7 +31,7 @@ STEPS, LOAD, RAIL_STEP = 1500, 5.0, 50e-6
 def ringing(mass, law, time_step, over=BEAM):
     """A ball creeps along: what comes after the beginning of its texture rings freely."""
     path = {"speed": 1e-3, "start": 0.3, "duration": (STEPS - 2) * time_step, "time_step": time_step}
-    return roll_ball(over, Ball(0.025, STEEL, LOAD, mass), law, **path)
+    return roll_ball(over, Body.rigid(mass, LOAD), law, **path)
 
 
 def bump(spacing, start, height):
@@ -179,13 +179,12 @@ def test_a_beam_that_bends_too_far_is_told_whatever_becomes_of_the_motion():
     static = 20.0 * 30.0**3 / (48.0 * soft.bending_stiffness)
     said = f"up to {static:.3g} m under the contact, 43 % of its length"
     with pytest.warns(LargeDeflectionWarning, match=said):
-        roll_ball(
-            soft, Ball(0.025, STEEL, 20.0), HertzLaw(1e10), speed=1.0, start=15.0, duration=1e-3, **path
-        )
-    ball = Ball(0.025, STEEL, LOAD, 0.5)
+        roll_ball(soft, Body.rigid(0.514, 20.0), HertzLaw(1e10), speed=1.0, start=15.0, duration=1e-3, **path)
     cliff = StateTexture.unfiltered(np.repeat([0.0, -0.5], 50), 1e-5, 0.3)  # a step of 0.5 m
     with (
         pytest.warns(LargeDeflectionWarning),
         pytest.raises(ComputationError, match=r"the motion runs away: at step \d+.*under a load of 5 N"),
     ):
-        roll_ball(BEAM, ball, HertzLaw(1e12, cliff), speed=1.0, start=0.3, duration=9e-4, **path)
+        roll_ball(
+            BEAM, Body.rigid(0.5, LOAD), HertzLaw(1e12, cliff), speed=1.0, start=0.3, duration=9e-4, **path
+        )

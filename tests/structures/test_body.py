@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from asperity.reference.materials import material
-from asperity.structures.body import GRAVITY, Ball, Body, bogie, carriage, chain
+from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
 from refusals import refusals
 
 F = np.array([0.7, 4.0, 31.0, 250.0])
 S = 2j * np.pi * F
-STEEL, BOGIE = material("steel"), (600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3)
+BOGIE = (600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3)
 
 
 def two_masses(lower, upper, spring, damper):
@@ -23,12 +22,6 @@ def bar_on(places, pressing=(981.0, 0.0)):
     """A rigid bar of 100 kg and 10 kg m², on contacts at places from its centre of mass, m."""
     contacts, none = np.stack([np.ones(len(places)), places], axis=1), np.zeros((2, 2))
     return Body(np.diag([100.0, 10.0]), none, none, contacts, np.array(pressing), np.array(places))
-
-
-def test_a_ball_has_its_weight_or_a_given_load():
-    assert Ball(0.025, STEEL).static_load == pytest.approx(0.5138 * 9.80665, rel=1e-3)
-    assert Ball(0.025, STEEL, load=30.0).static_load == 30.0
-    assert Ball(0.025, STEEL, given_mass=2.0).weight == pytest.approx(2.0 * 9.80665)
 
 
 @pytest.mark.parametrize(
@@ -84,9 +77,6 @@ def test_each_wheel_has_its_own_modes():
 
 
 test_bodies_that_cannot_be_are_refused = refusals(
-    (lambda: Ball(0.0, STEEL), "ball radius"),
-    (lambda: Ball(0.025, STEEL, load=-1.0), "ball load"),
-    (lambda: Ball(0.025, STEEL, given_mass=0.0), "ball mass"),
     (lambda: bar_on([1.0]), r"too few: it falls or tilts.*more contacts"),
     (lambda: bar_on([-1.0, 1.0], [981.0]), r"pressing of a body.*shape \(2,\)"),
     (lambda: Body.rigid(0.0, 1.0), "one without inertia; allowed: positive masses"),

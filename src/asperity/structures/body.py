@@ -1,4 +1,4 @@
-"""Rigid and suspended bodies on their contacts: a ball, a mass, a chain, a bogie, a carriage."""
+"""Rigid and suspended bodies on their contacts: a mass, a chain, a bogie, a carriage."""
 
 from __future__ import annotations
 
@@ -6,68 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, real
 from asperity.errors import InputError
-from asperity.reference.materials import Material
 
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall, CGPM 1901
-
-
-@dataclass(frozen=True)
-class Ball:
-    """Rigid solid ball.
-
-    Parameters
-    ----------
-    radius : float
-        m.
-    material : Material
-        Gives the mass.
-    load : float, optional
-        Constant force that presses the ball down, N; its weight if not given.
-    given_mass : float, optional
-        Mass, kg, instead of that of a solid ball.
-
-    Raises
-    ------
-    InputError
-        If radius, load or mass is not a finite positive number.
-
-    Examples
-    --------
-    >>> from asperity import Ball, material
-    >>> ball = Ball(25e-3, material("steel"))
-    >>> round(ball.mass, 3), round(ball.static_load, 2)  # kg, N
-    (0.514, 5.04)
-    """
-
-    radius: float
-    material: Material
-    load: float | None = None
-    given_mass: float | None = None
-
-    def __post_init__(self) -> None:
-        positive("ball radius (m)", self.radius)
-        for what, value in (("ball load (N)", self.load), ("ball mass (kg)", self.given_mass)):
-            if value is not None:
-                positive(what, value)
-
-    @property
-    def mass(self) -> float:
-        """Mass, kg."""
-        if self.given_mass is not None:
-            return self.given_mass
-        return 4.0 / 3.0 * np.pi * self.radius**3 * self.material.density
-
-    @property
-    def weight(self) -> float:
-        """Weight under standard gravity, N."""
-        return self.mass * GRAVITY
-
-    @property
-    def static_load(self) -> float:
-        """The given load, or else the weight, N."""
-        return self.weight if self.load is None else self.load
 
 
 CARRIED = 1e-9
