@@ -178,7 +178,6 @@ def fit_modes(
     every frequency, also outside of the band. Relative errors count the same at all points. Modes that
     contribute nothing are left out.
     """
-    check_range(frequency, receptance, rigid)
     flexible, weights = receptance - rigid, 1.0 / np.abs(receptance)
     at = frequency if answering is None else answering
     none, masses = np.zeros(0), partial(_modal_masses, at, flexible, weights)
@@ -197,7 +196,6 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
     that all modal masses are positive. Errors count relative to each response, but for responses far below
     the others.
     """
-    check_range(frequency, receptance, rigid)
     flexible = receptance - rigid
     level = np.sqrt(np.mean(np.abs(receptance) ** 2, axis=(1, 2)))
     weights = 1.0 / np.hypot(np.abs(receptance), FLOOR * level[:, None, None])
@@ -210,13 +208,13 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
 
 
 def checked_record(
-    what: str, frequency: ArrayLike, receptance: ArrayLike, places: int, forces: int, highest: float = np.inf
+    frequency: ArrayLike, receptance: ArrayLike, places: int, forces: int
 ) -> tuple[Array, Complex]:
-    """Take frequencies (n,), Hz, up to the highest, and receptances (n, places, forces) that make sense.
+    """Take frequencies (n,), Hz, and receptances (n, places, forces) that make sense.
 
     Without the last axes where there is one force, or one place as well.
     """
-    allowed = "frequencies above 0 Hz and rising"
+    what, allowed = "receptance", "frequencies above 0 Hz and rising"
     f = finite_array(what, frequency, allowed, shape=(None,), rising=True, above=0.0)
     given = np.asarray(receptance, dtype=complex)
     received = f"shapes {f.shape} and {given.shape}"
@@ -225,26 +223,12 @@ def checked_record(
     allowed = f"n frequencies, and (n, {places}, {forces}): one value for each of them, place and force"
     require(given.shape == (f.size, places, forces), what, received, allowed)
     require(np.isfinite(given).all(), what, "values that are not finite", "finite values")
-    f, given = f[f <= highest], given[f <= highest]
-    up_to = f" up to {highest:g} Hz" if np.isfinite(highest) else ""
-    few = f.size < FEWEST_FREQUENCIES
-    require(not few, what, f"{f.size} frequencies{up_to}", f"at least {FEWEST_FREQUENCIES}")
+    enough = f.size >= FEWEST_FREQUENCIES
+    require(enough, what, f"{f.size} frequencies", f"at least {FEWEST_FREQUENCIES}")
     moves = np.abs(given).any(axis=(1, 2)).all()
     require(moves, what, "nothing but zeros at a frequency", "a response", "Leave it out.")
+    check_range(f, given)
     return f, given
-
-
-def refuse_other_time_factor(what: str, at_forces: Complex) -> None:
-    """Refuse receptances (n, e, e) of forces at their own places whose imaginary part is positive."""
-    point = np.einsum("nii->ni", at_forces)
-    sine = point.imag / np.maximum(np.abs(point), np.finfo(float).tiny)
-    if sine.sum() > 3.0 * np.linalg.norm(sine):  # more than noise of random sign
-        raise InputError(
-            what,
-            "an imaginary part under the forces that is mostly positive",
-            "the time factor e^{+iωt}, whose imaginary part is negative where there are losses",
-            "Conjugate the values; divide a mobility by iω first.",
-        )
 
 
 def level_error(fitted: Complex, given: Complex) -> float:
@@ -267,16 +251,15 @@ def judge_fit(what: str, error: float, modes: str) -> None:
         )
 
 
-def check_range(frequency: Array, *receptances: Complex) -> None:
+def check_range(frequency: Array, receptance: Complex) -> None:
     """Refuse what cannot be computed with, m/N at rising frequencies, Hz; zeros are nothing."""
-    for each in receptances:
-        size = np.abs(each).reshape(len(frequency), -1).max(axis=1)
-        size = size[size > 0.0]
-        low, high = float(size.min(initial=1.0)), float(size.max(initial=1.0))
-        if not (low > 1.0 / LARGEST and high < LARGEST and SLOWEST < frequency[0] < frequency[-1] < LARGEST):
-            received = f"{low:.2g} to {high:.2g} m/N at {frequency[0]:.2g} to {frequency[-1]:.2g} Hz"
-            allowed = f"{1.0 / LARGEST:g} to {LARGEST:g} m/N from {SLOWEST:g} to {LARGEST:g} Hz"
-            raise InputError("receptance", received, allowed, "Check the units, and the mass.")
+    size = np.abs(receptance).reshape(len(frequency), -1).max(axis=1)
+    size = size[size > 0.0]
+    low, high = float(size.min(initial=1.0)), float(size.max(initial=1.0))
+    if not (low > 1.0 / LARGEST and high < LARGEST and SLOWEST < frequency[0] < frequency[-1] < LARGEST):
+        received = f"{low:.2g} to {high:.2g} m/N at {frequency[0]:.2g} to {frequency[-1]:.2g} Hz"
+        allowed = f"{1.0 / LARGEST:g} to {LARGEST:g} m/N from {SLOWEST:g} to {LARGEST:g} Hz"
+        raise InputError("receptance", received, allowed, "Check the units, and the mass.")
 
 
 def warn_of_short_band(what: str, frequency: Array, highest: float) -> None:

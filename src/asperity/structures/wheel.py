@@ -6,7 +6,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, positive
 from asperity.errors import InputError
-from asperity.structures import modal, modal_fit
+from asperity.structures import modal
 from asperity.structures.body import Body, no_modes, resonances
 
 
@@ -27,8 +27,6 @@ class Wheel:
         ζ, share of critical damping, above 0 and below 1.
     modal_masses : array_like (p,), optional
         m, with the vertical mode shape at the contact point scaled to one, kg.
-    fit_error : float
-        Of a fitted wheel: root mean square of the level difference to the given receptance, dB.
 
     Raises
     ------
@@ -55,7 +53,6 @@ class Wheel:
     natural_frequencies: Array = field(default_factory=no_modes)
     damping_ratios: Array = field(default_factory=no_modes)
     modal_masses: Array = field(default_factory=no_modes)
-    fit_error: float = 0.0
 
     def __post_init__(self) -> None:
         positive("wheel mass (kg)", self.mass)
@@ -63,63 +60,6 @@ class Wheel:
         names = ("natural_frequencies", "damping_ratios", "modal_masses")
         for name, values in zip(names, resonances(*(getattr(self, name) for name in names)), strict=True):
             object.__setattr__(self, name, values)
-
-    @classmethod
-    def from_receptance(
-        cls,
-        mass: float,
-        load: float,
-        frequency: ArrayLike,
-        receptance: ArrayLike,
-        *,
-        highest_frequency: float = np.inf,
-    ) -> "Wheel":
-        """Wheel given by its measured or computed receptance.
-
-        The mass is taken off; what is left is fitted by modes with positive modal masses, so the
-        wheel cannot create energy. Modes above the band are represented by their stiffness.
-
-        Parameters
-        ----------
-        mass : float
-            Mass of the whole wheel, kg: that of its rigid motion.
-        load : float
-            N.
-        frequency : array_like (n,)
-            Hz, above zero and rising; fine enough for a few points in each resonance.
-        receptance : array_like (n,) of complex
-            Vertical displacement per vertical force at the contact point, m/N, e^{+iωt}.
-        highest_frequency : float, optional
-            The fit goes up to here, Hz; the whole record by default. Take twice what matters: with 2 % of
-            noise, a mode just above the end takes decibels from the band at it.
-
-        Returns
-        -------
-        Wheel
-            With its `fit_error`.
-
-        Raises
-        ------
-        InputError
-            If the record is short, disordered or not finite, if it creates energy (the other time
-            factor), or if it is no receptance in m/N of a wheel of this mass: a fit error above 6 dB.
-
-        Warns
-        -----
-        UnconvergedWarning
-            If the fit error is above 1 dB.
-        CoarseSamplingWarning
-            If frequencies are too far apart for a mode.
-        """
-        what = "receptance of the wheel"
-        f, record = modal_fit.checked_record(what, frequency, receptance, 1, 1, highest_frequency)
-        modal_fit.refuse_other_time_factor(what, record)
-        given = record[:, 0, 0]
-        modes = modal_fit.fit_modes(f, given, cls(mass, load).receptance(f))
-        modal_fit.warn_of_wide_lines(f, *modes[:2])
-        error = modal_fit.level_error(cls(mass, load, *modes).receptance(f), given)
-        modal_fit.judge_fit(what, error, f"modes on a mass of {mass:.4g} kg")
-        return cls(mass, load, *modes, error)
 
     @property
     def body(self) -> Body:
