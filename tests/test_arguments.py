@@ -50,9 +50,9 @@ NUMBERS = {
     "start of a piece": lambda v: MAP.crop(v, (4e-6, 4e-6)),
     "size of a piece": lambda v: MAP.crop((0.0, 0.0), v),
     "longest wavelength": lambda v: MAP.band_limited(longest=v),
-    "pad stiffness": lambda v: Track.named("x2000", pad_stiffness=v),
-    "sleeper mass": lambda v: Track.named("x2000", sleeper_mass=v),
-    "pad damping": lambda v: Track.named("x2000", pad_damping=v),
+    "pad_stiffness": lambda v: Track.named("x2000", pad_stiffness=v),
+    "sleeper_mass": lambda v: Track.named("x2000", sleeper_mass=v),
+    "pad_damping": lambda v: Track.named("x2000", pad_damping=v),
     "positions on the track": lambda v: TRACK.receptance(100.0, v, 0.0),
     "speed": lambda v: moving_kernel(TRACK, v, 1e-4),
     "time step": lambda v: moving_kernel(TRACK, 20.0, v),
@@ -69,7 +69,7 @@ ARRAYS = {
     "frequency": lambda v: TRACK.receptance(v, 0.0, 0.0),
 }
 NEEDED = ("half-space shape", "half-space spacing", "contact modulus", "stride of the scan",
-          "rtol of a contact", "pad stiffness")  # fmt: skip
+          "rtol of a contact", "pad_stiffness")  # fmt: skip
 
 
 def doors():

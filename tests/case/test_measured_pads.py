@@ -119,7 +119,7 @@ def test_bad_tables_are_refused_with_their_place(text, message, tmp_path):
         ('sleeper_bending_stiffness = "6 MN m^2"\nseat_distance = "2.6 m"', "received seat_distance = 2.6 m"),
         (
             'subgrade_stiffness = "90 MN/m"\nsubgrade_damping = "9 kN s/m"\nsubgrade_loss_factor = 0.1',
-            "damping is either viscous or by a loss factor",
+            "both subgrade_damping and subgrade_loss_factor",
         ),
     ],
 )  # fmt: skip
@@ -162,7 +162,7 @@ def test_sleepers_that_do_not_fit_are_told(tmp_path):
     free, bed = -1.0 / (140.0 * SEAT**2), 90e6 * (1.0 + 0.8j)
     with pytest.warns(UnconvergedWarning, match=r"on 115 kg.* of the sleeper in seat\.csv to 1\.6 dB"):
         sleepers(tmp_path, free, sleeper_mass=115.0).track.model()
-    with pytest.raises(CaseError, match=r"at 15 Hz, where the table has 9e\+07 N/m with loss factor 0\.8"):
+    with pytest.raises(CaseError, match=r"modes on 140 kg \(.* dB off at most.* meet to"):
         sleepers(tmp_path, 1.0 / (bed - 140.0 * SEAT**2), sleeper_measured="on-ballast")
     with pytest.raises(CaseError, match=r"from 15 to 3000 Hz, by which the sleeper would make energy"):
         sleepers(tmp_path, -1j * free)

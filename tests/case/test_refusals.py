@@ -80,7 +80,7 @@ wheel: [wheel] flat_length = "0.2 m" → received 200 mm; allowed: at most 130.1
 wheel: [wheel] flat_depth = "5 mm" → received 5 mm; allowed: at most 0.01 of the radius, 4.6 mm
 wheel: [wheel] flat_depth = "1 mm" | flat_position = "3 m" → received 3 m; allowed: less than the
 wheel: [wheel] load = "5 kN" → wheel.load: received 5 kN; allowed: at least 5.88399 kN, the weight of 600 kg
-wheel: [track] pad_damping = "18 kN s/m" | pad_loss_factor = 0.2 → track.pad_damping: received 18000 N s/m
+wheel: [track] pad_damping = "18 kN s/m" | pad_loss_factor = 0.2 → both pad_damping and pad_loss_factor
 wheel: [track] shear_stiffness = "240 MN" → track: received no rotary_inertia
 wheel: [track] pad_stiffness = "300 MN" → a stiffness greater than 0, with its unit, as "300 MN/m"
 wheel: [sideways] contact_place = "40 mm" → received 40 mm; allowed: at most 36 mm off the middle

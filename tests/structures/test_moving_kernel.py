@@ -228,18 +228,11 @@ test_bad_input_is_refused = refusals(
 )
 
 
-@pytest.mark.parametrize(
-    ("damping", "rail", "told", "remedy"),
-    [
-        (1e3, 0.01, r"cut off. It swings at 140 Hz: raise ballast_damping", {"ballast_damping": 30e3}),
-        (30e3, 0.0, r"cut off. It swings at 1200 Hz: raise rail_loss_factor", {"rail_loss_factor": 0.01}),
-    ],
-)
-def test_what_is_advised_lets_a_kernel_die_away(monkeypatch, damping, rail, told, remedy):
-    """Sleepers on light ballast, and the rail between them, swing on for long."""
+def test_a_kernel_that_has_not_died_away_is_told(monkeypatch):
+    """Sleepers on light ballast swing on for long."""
     monkeypatch.setattr("asperity.structures.moving_kernel.LONGEST", 0.3)
     monkeypatch.setattr("asperity.structures.moving_kernel.SHORTEST", 0.3)
-    light = replace(VISCOUS, pad_damping=30e3, ballast_damping=damping, rail_loss_factor=rail)
-    with pytest.warns(CoarseSamplingWarning, match=told):
+    light = replace(VISCOUS, pad_damping=30e3, ballast_damping=1e3, rail_loss_factor=0.01)
+    with pytest.warns(CoarseSamplingWarning, match="cut off. Raise the damping or the loss factors of rail"):
         moving_kernel(light, 28.0, 2e-4, positions=2)
-    moving_kernel(replace(light, **remedy), 28.0, 2e-4, positions=2)  # silent
+    moving_kernel(replace(light, ballast_damping=30e3), 28.0, 2e-4, positions=2)  # silent

@@ -221,13 +221,13 @@ def test_a_relaxing_stiffness_is_a_spring_and_exponentials_in_time():
 
 
 test_bad_parameters_and_questions_are_refused = refusals(
-    (lambda: track(bending_stiffness=0.0), "bending stiffness"),
-    (lambda: track(mass_per_length=-1.0), "mass per length"),
-    (lambda: track(pad_stiffness=math.nan), "pad stiffness"),
-    (lambda: track(ballast_stiffness=-1.0), "ballast stiffness"),
-    (lambda: track(sleeper_spacing=0.0), "sleeper spacing"),
-    (lambda: track(sleeper_mass=-1.0), "sleeper mass"),
-    (lambda: track(rail_loss_factor=-0.1), "rail loss factor"),
+    (lambda: track(bending_stiffness=0.0), "bending_stiffness of the track"),
+    (lambda: track(mass_per_length=-1.0), "mass_per_length of the track"),
+    (lambda: track(pad_stiffness=math.nan), "pad_stiffness of the track"),
+    (lambda: track(ballast_stiffness=-1.0), "ballast_stiffness of the track"),
+    (lambda: track(sleeper_spacing=0.0), "sleeper_spacing of the track"),
+    (lambda: track(sleeper_mass=-1.0), "sleeper_mass of the track"),
+    (lambda: track(rail_loss_factor=-0.1), "rail_loss_factor of the track"),
     (
         lambda: track(pad_damping=18e3, pad_loss_factor=0.2),
         "pad_damping = 18000 N s/m and pad_loss_factor = 0.2; allowed: one",

@@ -227,7 +227,7 @@ test_bad_supports_are_refused = refusals(
         "less than the length of the sleeper, 2.6 m",
     ),
     (lambda: timoshenko(rail_damper_mass=15.0), "received no rail_damper_frequency"),
-    (lambda: timoshenko(**(DAMPERS | {"rail_damper_loss_factor": 1.0})), "above 0 and below 1"),
+    (lambda: timoshenko(**(DAMPERS | {"rail_damper_loss_factor": 1.0})), "at most 0.9"),
     (lambda: timoshenko(rail_damper_frequency=800.0), "only together with rail_damper_mass"),
     (lambda: timoshenko(continuous=1), "true or false"),
     (lambda: replace(timoshenko(continuous=True), bays=Bays.equal(2)), "supports that are continuous"),

@@ -110,7 +110,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         ("pad_table", "pad_loss_factor"),
         ("sleeper_table", "sleeper_bending_stiffness"),
         ("bay_table", "bays"),
-        *(("bay_table", f"{each}") for each in LISTED),
+        *(("bay_table", each) for each in LISTED),
+        *((f"{layer}_damping", f"{layer}_loss_factor") for layer in LAYERS),
     )
 
     name: str = key(Choice(tuple(TRACKS)), "x2000", "named set of parameters")
@@ -302,22 +303,15 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         return self.model().sleeper_near(middle)
 
     def problems(self) -> Iterator[InputError]:
-        """Each damping viscous or by a loss factor; a preload that decides anything; bays above zero."""
+        """A preload that decides anything; bays above zero."""
         single = self.pad_table is not None and len(preloads_of(self._pad_rows)) < 2
         if self.pad_preload is not None and single:
             received = f"{written(self.pad_preload, 'N', 'kN')} for a table that is at no preload, or at one"
             yield InputError("pad_preload", received, "a preload for a table at several", "Remove it.")
-        told = self._told
         try:
             self._drawn_or_listed()
         except InputError as error:
             yield error.about(f"{error.what.split()[0]}_scatter")
-        for part in LAYERS:
-            viscous, loss = f"{part}_damping", f"{part}_loss_factor"
-            if viscous in told and loss in told:
-                received = f"{told[viscous]:g} N s/m and {loss} = {told[loss]:g}"
-                remedy = "Remove one: damping is either viscous or by a loss factor."
-                yield InputError(viscous, received, "one of them", remedy)
 
     def problems_of_run(self, speed: float, first: float, last: float) -> Iterator[InputError]:
         """A track that exists and is damped, slower passed than its waves run; points that are passed."""

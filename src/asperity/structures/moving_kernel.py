@@ -170,11 +170,10 @@ def moving_kernel(
     kept = make() if cache is None else made(cache, key, make)
     kernel = MovingKernel(track, speed, time_step, kept["weights"], distance)
     if duration is None and kernel.left_over > DIED_AWAY:
-        frequency, keys = _lacks_damping(kernel)
         CoarseSamplingWarning.warn(
             f"the moving kernel still has {100 * kernel.left_over:.2g} % of its largest value after "
-            f"{LONGEST:g} s, more than {100 * DIED_AWAY:g} %: what comes later is cut off. It swings at "
-            f"{frequency:.4g} Hz: raise {keys}."
+            f"{LONGEST:g} s, more than {100 * DIED_AWAY:g} %: what comes later is cut off. Raise the "
+            "damping or the loss factors of rail, pads and ballast."
         )
     return kernel
 
@@ -185,20 +184,6 @@ def _refuse_size(track: Track, length: float, lines: int) -> None:
         received = f"{track.cell_bays}, for a kernel of {length:.2g} s at {lines} frequencies"
         remedy = "Take fewer bays, a lower highest frequency, or more damping, so that the kernel is shorter."
         raise InputError("bays that differ", received, f"at most {MOST_LINES // lines} of them", remedy)
-
-
-def _lacks_damping(kernel: MovingKernel) -> tuple[float, str]:
-    """Frequency of what is left of a kernel, Hz, and the parameters of the track that damp it."""
-    half, track = kernel.weights[:, kernel.weights.shape[1] // 2 :], kernel.track
-    longest = half[np.argmax(np.abs(half[:, -half.shape[1] // 5 :]).max(axis=1))]
-    spectrum = np.abs(np.fft.rfft((longest - longest.mean()) * np.hanning(longest.size)))
-    frequency = float(np.argmax(spectrum) / (longest.size * kernel.time_step))
-    layers = ("ballast_damping or ballast_loss_factor", "pad_damping or pad_loss_factor")
-    lightest = dict(zip(track.cut_on_frequencies, layers, strict=False))
-    if np.isfinite(track.pinned_pinned_frequency):
-        lightest |= {track.pinned_pinned_frequency: "rail_loss_factor"}
-    nearest = min(lightest, key=lambda natural: abs(np.log(max(frequency, 1.0) / natural)))
-    return frequency, lightest[nearest]
 
 
 def _weights(

@@ -397,9 +397,5 @@ def measured_sleeper(
     off = 20.0 * np.log10(np.abs(fitted / receptance))
     worst = int(np.argmax(np.abs(off)))
     words = f"{len(own)} modes on {mass:.4g} kg"
-    if bed.any():
-        here, there = bed[0], 1.0 / receptance[0] + mass * omega[0] ** 2
-        of_each = (f"{k.real:.3g} N/m with loss factor {k.imag / k.real:.2g}" for k in (here, there))
-        words += " and {} at {:.3g} Hz, where the table has {}".format(next(of_each), frequency[0], *of_each)
     words += f" ({abs(off[worst]):.2g} dB off at most, at {frequency[worst]:.4g} Hz)"
     return replace(found, fit_error=modal_fit.level_error(fitted, receptance), fitted=words)

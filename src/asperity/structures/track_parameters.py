@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, not_negative, positive, real, require, shown, whole
+from asperity.arguments import Array, not_negative, require, shown, whole
 from asperity.errors import InputError
-from asperity.parameters import Flag, Key, Number, Quantity, keys_of, parameter
+from asperity.parameters import Flag, Number, Quantity, checked_parameters, keys_of, parameter
 from asperity.structures.stiffness_table import StiffnessTable
 from asperity.structures.support import MeasuredSleeper, Relaxation
 
@@ -154,7 +154,7 @@ class TrackParameters:
         _STIFFNESS, "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
     )
     sleeper_mass: float = parameter(
-        _MASS,
+        Quantity("kg", at_least=0),
         "150 kg",
         "mass of a sleeper under one rail: half a sleeper",
         "1 kg to 100 t: sleepers lie between",
@@ -251,8 +251,11 @@ class TrackParameters:
     bays: Bays | None = None
 
     def __post_init__(self) -> None:
+        checked_parameters(self)
         for name, key in keys_of(type(self), "").items():
-            self._check(name, key)
+            given = getattr(self, name) != getattr(type(self), name, 0.0)
+            if key.goes_with and given and getattr(self, key.goes_with) is None:
+                raise InputError(name, shown(getattr(self, name)), f"only together with {key.goes_with}")
         for element in LAYERS:
             viscous, factor = (getattr(self, f"{element}_{each}") for each in ("damping", "loss_factor"))
             if viscous is not None and factor is not None:
@@ -280,19 +283,3 @@ class TrackParameters:
                 if getattr(self, name) is None:
                     allowed = "rail_damper_mass with rail_damper_frequency and rail_damper_loss_factor"
                     raise InputError("rail damper", f"no {name}", allowed)
-            allowed = "above 0 and below 1, the most that one Maxwell element dissipates"
-            real("rail damper loss factor", self.rail_damper_loss_factor, allowed, above=0.0, below=1.0)
-
-    def _check(self, name: str, key: Key) -> None:
-        """Refuse a value that is out of range, or given without what it goes with."""
-        value, usual = getattr(self, name), getattr(type(self), name, 0.0)
-        what = name.replace("_", " ") + (f" ({key.kind.dimension})" if isinstance(key.kind, Quantity) else "")
-        if key.goes_with and value != usual and getattr(self, key.goes_with) is None:
-            raise InputError(what, shown(value), f"only together with {key.goes_with}")
-        if isinstance(key.kind, Flag):
-            key.kind(value)
-        elif (value is not None or usual is not None) and not (
-            value == np.inf and getattr(key.kind, "infinite", False)
-        ):
-            above_zero = getattr(key.kind, "above", None) == 0 and name != "sleeper_mass"
-            (positive if above_zero else not_negative)(what, value)
