@@ -14,7 +14,6 @@ from asperity.cli import main
 from asperity.contact.batched import choose_device, find_device, gpu, processor
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import ComputationError, InputError
-from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
@@ -149,29 +148,15 @@ def test_what_does_not_converge_is_told(monkeypatch):
     assert counts == (POSITIONS, 5 * POSITIONS, POSITIONS, 0)
 
 
-def test_convolution_is_the_double_sum():
-    rng = np.random.default_rng(0)
-    table, field = rng.standard_normal((6, 5)), rng.standard_normal((3, 6, 5))
-    found = convolve_padded(field, padded_spectrum(table, 6, 5), np)
-    i, j = np.arange(6), np.arange(5)
-    kernel = table[abs(i[:, None] - i)[:, None, :, None], abs(j[:, None] - j)[None, :, None, :]]
-    np.testing.assert_allclose(found, np.einsum("ijkl,bkl->bij", kernel, field), atol=1e-12)
-
-
 def no_device():
     raise RuntimeError("cudaErrorNoDevice: no CUDA-capable device is detected\nmore")
 
 
-@pytest.mark.parametrize(
-    ("cupy", "message"),
-    [
-        (None, r"no CuPy .*pip install 'asperity\[gpu\]'"),
-        (
-            SimpleNamespace(cuda=SimpleNamespace(runtime=SimpleNamespace(getDeviceCount=no_device))),
-            r"no usable CUDA device \(cudaErrorNoDevice: .* detected\); .*nvidia-smi",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("cupy", "message"), [
+    (None, r"no CuPy .*pip install 'asperity\[gpu\]'"),
+    (SimpleNamespace(cuda=SimpleNamespace(runtime=SimpleNamespace(getDeviceCount=no_device))),
+     r"no usable CUDA device \(cudaErrorNoDevice: .* detected\); .*nvidia-smi"),
+])  # fmt: skip
 def test_a_gpu_that_is_not_there_is_refused(monkeypatch, cupy, message):
     monkeypatch.setitem(sys.modules, "cupy", cupy)
     monkeypatch.setenv("ASPERITY_DEVICE", "cpu")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipk, hyp2f1
-from test_friction import body, displaced, ellipse
+from test_friction import body, displaced, ellipse, places
 
 from asperity import Friction, FrictionalHalfSpace
 from asperity.contact import tangential
@@ -19,17 +19,15 @@ from refusals import refusals
 def rough(nu=0.3, friction=0.3, bodies=None, shape=(40, 28)):
     smooth, solver, *_ = ellipse(0.8, nu, shape, friction, bodies=bodies)
     space = solver.half_space
-    longest, rms = 12 * max(space.spacing), 0.3 * smooth.approach
-    heights = self_affine(
-        shape, space.spacing, rms=rms, hurst=0.8, longest=longest, shortest=longest / 3, seed=2
-    )
+    waves = {"longest": 12 * max(space.spacing), "shortest": 4 * max(space.spacing)}
+    heights = self_affine(shape, space.spacing, rms=0.3 * smooth.approach, hurst=0.8, seed=2, **waves)
     return space.solve(smooth.undeformed_gap - heights.heights, load=smooth.force), solver
 
 
 def rigid(solver, found, by=None):
     """Over a shift, or rolled by a distance, whose spin is that a sixth of the distance ahead."""
     space, (xi, eta, spin) = solver.half_space, found.creepage
-    x, y = (d * (np.arange(n) - 0.5 * (n - 1)) for n, d in zip(space.shape, space.spacing, strict=True))
+    x, y = (places(n, d) for n, d in zip(space.shape, space.spacing, strict=True))
     across = eta + spin * (x[:, None] + (by or 0.0) / 6)
     return (by or 1.0) * np.array(np.broadcast_arrays(xi - spin * y[None], across))
 
@@ -59,15 +57,11 @@ def test_a_rough_contact_obeys_coulombs_law_in_steps_and_in_steady_rolling():
     without = rigid(solver, after, 1.5 * dx) - past
     slip = without + displaced(solver, after.traction)
     check_coulomb(after, slip, np.hypot(*without)[contact.pressure > 0].max())
-    assert after.slip[:, contact.pressure > 0] * 1.5 * dx == pytest.approx(
-        slip[:, contact.pressure > 0], abs=1e-17
-    )
+    touching = np.s_[:, contact.pressure > 0]
+    assert after.slip[touching] * 1.5 * dx == pytest.approx(slip[touching], abs=1e-17)
     steady = solver.roll(contact, (2e-4, 3e-4), 0.5)
-    slip = (
-        rigid(solver, steady, dx)
-        + displaced(solver, steady.traction)
-        - displaced(solver, steady.traction, dx)
-    )
+    moved = displaced(solver, steady.traction) - displaced(solver, steady.traction, dx)
+    slip = rigid(solver, steady, dx) + moved
     check_coulomb(steady, slip, np.hypot(*rigid(solver, steady, dx)).max())
 
 
@@ -78,9 +72,8 @@ def test_a_transient_ends_in_steady_rolling():
     for _ in range(160):
         state = solver.roll(contact, *motion, before=state)
     assert state.traction == pytest.approx(steady.traction, abs=5e-5 * steady.bound.max())
-    assert solver.roll(contact, *motion, speed=3.0).dissipated_power == pytest.approx(
-        3.0 * steady.work, rel=1e-9
-    )
+    power = solver.roll(contact, *motion, speed=3.0).dissipated_power
+    assert power == pytest.approx(3.0 * steady.work, rel=1e-9)
 
 
 def test_what_drives_steady_rolling_becomes_heat():
@@ -122,13 +115,9 @@ def test_spin_alone_is_symmetric():
     assert found.moment < 0.0
     with pytest.warns(OutOfRangeWarning, match="pivot on a place inside of it: 100 %"):
         turned = solver.shift(contact, rotation=1.0)
-    x, y = (
-        d * (np.arange(n) - 0.5 * (n - 1)) for n, d in zip((30, 24), solver.half_space.spacing, strict=True)
-    )
-    lever = np.hypot(x[:, None], y)
-    assert turned.moment == pytest.approx(
-        -(turned.bound * lever).sum() * solver.half_space.cell_area, rel=1e-3
-    )
+    x, y = (places(n, d) for n, d in zip((30, 24), solver.half_space.spacing, strict=True))
+    pivots = -(turned.bound * np.hypot(x[:, None], y)).sum() * solver.half_space.cell_area
+    assert turned.moment == pytest.approx(pivots, rel=1e-3)
 
 
 def test_full_sliding_carries_the_friction_of_the_law_and_of_the_map():
@@ -159,7 +148,7 @@ def test_falling_friction_drops_behind_its_peak_only_where_it_slips():
     assert small.bound[small.bound > 0] == pytest.approx(expected, rel=2e-3)
 
 
-SOFT, HARD = body(1e8, 0.1), body(1e10, 0.3)
+SOFT, HARD, UNIT = body(1e8, 0.1), body(1e10, 0.3), body(1e9, 0.3)
 
 
 def test_pressure_draws_the_surface_of_the_more_compressible_body_in():
@@ -171,9 +160,8 @@ def test_pressure_draws_the_surface_of_the_more_compressible_body_in():
     dx = solver.half_space.spacing[0]
     u = solver.displacement(np.zeros((21, 21)), pressure)
     expected = -0.8 * dx**2 / (4 * math.pi * 1e8 * 8 * dx)
-    assert [u[18, 10].real, u[18, 10].imag] == pytest.approx(
-        [expected, 0.0], rel=5e-3, abs=1e-3 * abs(expected)
-    )
+    found = [u[18, 10].real, u[18, 10].imag]
+    assert found == pytest.approx([expected, 0.0], rel=5e-3, abs=1e-3 * abs(expected))
 
 
 def test_unlike_bodies_settle_with_the_pressure():
@@ -226,24 +214,17 @@ def pressed_punch(beta, friction, n):
         r, b = 0.5 * (edge[1:] + edge[:-1])[:, None], np.maximum(edge, 1e-9)
         inner, outer = np.minimum(r / b, 1.0) ** 2, np.minimum(b / r, 1.0) ** 2
         press = np.where(r < b, b * hyp2f1(0.5, -0.5, 1, inner), b**2 / (2 * r) * hyp2f1(0.5, 0.5, 2, outer))
-        rub = np.where(
-            r < b,
-            0.5 * b * r * hyp2f1(1.5, -0.5, 2, inner),
-            b**4 / (8 * r**2) * hyp2f1(1.5, 0.5, 3, outer),
-        )
+        within, beyond = 0.5 * b * r * hyp2f1(1.5, -0.5, 2, inner), hyp2f1(1.5, 0.5, 3, outer)
+        rub = np.where(r < b, within, b**4 / (8 * r**2) * beyond)
         area = 0.5 * np.diff(edge**2)
         drawn = np.diff(0.5 * np.minimum(edge, r) ** 2, axis=1) / r  # what lies inside a place
         lifted = np.diff(0.5 * np.maximum(edge, r) ** 2, axis=1)  # traction outside of it, over its radius
         stick = np.arange(n) < n // 2
         slide = np.diag(np.where(stick, 0.0, friction / r[:, 0]))
         down, out = np.diff(press, axis=1), np.diff(rub, axis=1)
-        left = np.block(
-            [
-                [down - beta * lifted @ slide, -beta * lifted[:, stick]],
-                [(out @ slide - beta * drawn)[stick], out[np.ix_(stick, stick)]],
-            ]
-        )
-        found = np.linalg.solve(left, np.concatenate([np.ones(n), np.zeros(n // 2)]))
+        upper = [down - beta * lifted @ slide, -beta * lifted[:, stick]]
+        lower = [(out @ slide - beta * drawn)[stick], out[np.ix_(stick, stick)]]
+        found = np.linalg.solve(np.block([upper, lower]), np.concatenate([np.ones(n), np.zeros(n // 2)]))
         p, q = found[:n], friction * found[:n]
         q[stick] = found[n:] * r[stick, 0]
         return p, q, area
@@ -263,7 +244,6 @@ def test_the_stick_radius_of_a_punch_is_spences_where_the_coupling_is_weak():
     assert math.log((1 + c) / (1 - c)) / (2 * c) == pytest.approx(0.6 * ellipk(1 - c * c), rel=2e-3)
 
 
-@pytest.mark.parametrize(("nu", "ratio"), [(0.0, 0.6), (0.3, 0.9)])
 def flat_punch(n, nu, friction):
     """A rigid punch on n cells, pressed in one step, by how much friction stiffens it, and the ball's."""
     contact, solver, *_ = ellipse(1.0, nu, n, friction, bodies=(body(1e9, nu), body(1e15, 0.3)))
@@ -330,10 +310,7 @@ test_what_has_no_meaning_is_refused = refusals(
     (lambda s, c: Friction(0.3, 1.2), "kinetic share of friction: received 1.2; allowed: from 0 to 1"),
     (lambda s, c: Friction(0.3, 0.5, 0.0), "slip velocity of friction: received 0"),
     (lambda s, c: FrictionalHalfSpace(s.half_space, (SOFT, SOFT), 0.3), "modulus of the bodies: received"),
-    (
-        lambda s, c: FrictionalHalfSpace(s.half_space, (body(1e9, 0.3),) * 2, np.ones(3)),
-        "a map of shape (3,)",
-    ),
+    (lambda s, c: FrictionalHalfSpace(s.half_space, (UNIT,) * 2, np.ones(3)), "a map of shape (3,)"),
     (lambda s, c: s.roll(c, (math.inf, 0.0)), "creepage or shift: received inf"),
     (lambda s, c: s.roll(c, distance=0.0), "rolled distance: received 0"),
     (lambda s, c: s.roll(c, speed=-1.0), "rolling speed: received -1"),
@@ -345,10 +322,7 @@ test_what_has_no_meaning_is_refused = refusals(
     (lambda s, c: s.roll(c, start=c), "state before: received one on another grid"),
     (lambda s, c: s.roll(c, before=on_fewer_cells()), "state before: received one on another grid"),
     (lambda s, c: s.roll(None), "contact: received one on another half-space, or none"),
-    (
-        lambda s, c: FrictionalHalfSpace(s.half_space, ("steel",) * 2, 0.3),
-        "bodies: received ('steel', 'steel'); allowed: two materials",
-    ),
+    (lambda s, c: FrictionalHalfSpace(s.half_space, ("steel",) * 2, 0.3), "('steel', 'steel'); allowed: two"),
     (lambda s, c: FrictionalHalfSpace(s.half_space, (SOFT,), 0.3), "bodies: received ("),
     (lambda s, c: ellipse(1.0, 0.3, 24)[1].roll(c), "contact: received one on another half-space"),
     of=lambda ask: ask(*ellipse(1.0, 0.3, 24)[1::-1]),
@@ -357,7 +331,5 @@ test_what_has_no_meaning_is_refused = refusals(
 
 def test_large_creepages_are_warned_of_with_the_share_that_slips():
     contact, solver, *_ = ellipse(1.0, 0.3, 24)
-    with pytest.warns(
-        OutOfRangeWarning, match=r"creepage of 0\.2 is above 0\.05.*100 % of the contact slips"
-    ):
+    with pytest.warns(OutOfRangeWarning, match=r"of 0\.2 is above 0\.05.*100 % of the contact slips"):
         solver.roll(contact, (0.2, 0.0))

@@ -61,10 +61,8 @@ def test_spin_drives_sideways_and_then_pivots():
 
 
 def long_sample(rows, ny, spacing, rms):
-    longest = 8 * max(spacing)
-    return self_affine(
-        (rows, ny), spacing, rms=rms, hurst=0.8, longest=longest, shortest=longest / 3, seed=2
-    ).heights
+    waves = {"longest": 8 * max(spacing), "shortest": 8 / 3 * max(spacing)}
+    return self_affine((rows, ny), spacing, rms=rms, hurst=0.8, seed=2, **waves).heights
 
 
 def test_grooves_along_the_rolling_direction_stand_still_in_the_contact():

@@ -139,10 +139,8 @@ def test_a_closed_surface_has_no_beginning():
 def test_a_smooth_surface_is_worn_by_each_pass_as_by_steady_rolling():
     gap, rolling = wheel(24, 0.3, nu=0.3)
     steady = rolling.roll(rolling.half_space.solve(gap, load=LOAD), (2e-3, 0.0))
-    after, expected = (
-        worn(rolling, np.zeros((50, 24)), gap, LOAD, LINEAR, (2e-3, 0.0)),
-        wear_depth(rolling, steady, LINEAR),
-    )
+    after = worn(rolling, np.zeros((50, 24)), gap, LOAD, LINEAR, (2e-3, 0.0))
+    expected = wear_depth(rolling, steady, LINEAR)
     assert np.abs(after.depth[23:27] - expected).max() < 1e-4 * expected.max()
 
 
@@ -262,15 +260,12 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, rolling=ROLLING, **keywo
         (ArchardWear, {"hardness": 3e9, "velocities": (0.7, 0.2)}, "velocities: received numbers that"),
         (wear, {"rolling": ROLLING.half_space}, "bodies that roll: received HalfSpace; allowed: a half"),
         (wear, {"law": 1e-4}, r"law of wear: received float; allowed: an object with removal"),
-        (wear, {"law": EnergyWear}, r"law of wear: received type; allowed: an object with removal"),
         (wear, {"law": Nameless(), "cache": Store(".")}, "received one without fields to keep it by"),
         (wear, {"law": Given(None)}, "removal of Given: received None; allowed: depth over rolled distance"),
         (wear, {"law": Given((NOTHING + math.nan, NOTHING))}, "removal of Given: received nan"),
         (wear, {"law": Given((NOTHING[1:], NOTHING))}, r"removal of Given: received shape \(7, 8\)"),
         (wear, {"law": Given((NOTHING, NOTHING))}, "removal of Given: received regimes of float64"),
-        (wear, {"law": Given((NOTHING, 0))}, r"removal of Given: received regimes of int64, shape \(\)"),
         (wear, {"law": Given((NOTHING, NO_REGIME))}, "removal of Given: received regimes of int64"),
-        (wear_depth, ROLLED | {"law": Given(None)}, "removal of Given: received None"),
         (wear_depth, ROLLED | {"contact": None}, "contact: received none of these bodies; allowed: one that"),
         (wear_depth, ROLLED | {"rolling": wheel(8, 0.2)[1]}, "contact: received none of these bodies"),
         (wear, {"surface": RAIL[:, :6]}, "window of wear: received 8 × 8 cells on a surface of 9 × 6"),
@@ -282,7 +277,6 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, rolling=ROLLING, **keywo
         (wear, {"step": 0.0}, "step: received 0.0"),
         (wear, {"rtol": 1.0}, "rtol: received 1.0"),
         (wear, {"creepage": 0.01}, "creepage: received 0.01; allowed: two numbers"),
-        (wear, {"spin": "1"}, "creepage: received '1'"),
     ],
 )  # fmt: skip
 def test_what_has_no_meaning_is_refused(call, keywords, message):
@@ -297,7 +291,5 @@ def test_a_pass_that_removes_much_is_told():
 
 def test_a_contact_that_does_not_roll_wears_nothing():
     shifted = ROLLING.shift(ROLLING.half_space.solve(GAP, load=LOAD), (1e-6, 0.0))
-    with pytest.raises(
-        InputError, match="contact: received one that was shifted, or stands; allowed: one that"
-    ):
+    with pytest.raises(InputError, match="contact: received one that was shifted, or stands; allowed: one"):
         wear_depth(ROLLING, shifted, LINEAR)

@@ -12,16 +12,16 @@ SHORT = {"laws": ["hertz", "linear"], "duration": 5e-3, "surface": {"spectrum": 
 
 
 @pytest.mark.parametrize("name", [*NAMES, "laws.register"])
-def test_the_example_of_a_public_name_holds(name, tmp_path, monkeypatch):
-    """In the examples `case` stands for any case that is soon computed."""
+def test_the_examples_of_a_public_name_hold(name, tmp_path, monkeypatch):
+    """Those of its methods, too. In the examples `case` stands for any case that is soon computed."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
     thing = asperity.laws.register if name == "laws.register" else getattr(asperity, name)
-    doc = inspect.getdoc(thing)
-    assert "Examples\n--------" in doc
-    names = {"case": asperity.BallOnBeam(**SHORT)}
-    example = doctest.DocTestParser().get_doctest(doc, names, name, None, None)
-    assert len(example.examples) >= 2
+    assert "Examples\n--------" in inspect.getdoc(thing)
+    found = doctest.DocTestFinder().find(thing, name, globs={"case": asperity.BallOnBeam(**SHORT)})
+    assert len(found[0].examples) >= 2
     said = []
-    doctest.DocTestRunner().run(example, out=said.append)
+    for example in found:
+        example.globs |= {} if example is found[0] else vars(inspect.getmodule(thing))  # of methods
+        doctest.DocTestRunner().run(example, out=said.append)
     assert not said, "".join(said)

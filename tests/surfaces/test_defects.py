@@ -42,18 +42,6 @@ def test_fresh_flat_is_the_chord_of_the_wheel():
     assert_array_equal(geometry[np.abs(X) > length / 2], 0.0)
 
 
-def test_centre_over_a_fresh_flat_turns_about_its_ends():
-    length = flat_length(DEPTH, RADIUS)
-    centre = flat_trajectory(X, DEPTH, RADIUS)
-    assert_allclose(centre[200], -DEPTH)
-    exact = np.sqrt(RADIUS**2 - (length / 2 - np.abs(X)) ** 2) - RADIUS  # a point on the rim as pivot
-    inside = np.abs(X) <= length / 2
-    assert_allclose(centre[inside], exact[inside], atol=0.002 * DEPTH)
-    assert_array_equal(centre[~inside], 0.0)
-    slope = np.diff(centre) / np.diff(X)
-    assert_allclose(slope[200] - slope[199], length / RADIUS, rtol=0.03)  # the kink is the impact
-
-
 def test_worn_flat_is_a_rounded_one_over_its_chord_or_longer():
     """z = −d/2 (1 + cos 2πx/l): from l = π √(2 R d) on the wheel's curvature nowhere turns."""
     chord, longer = flat_length(DEPTH, RADIUS), 1.2 * np.pi * np.sqrt(2 * RADIUS * DEPTH)

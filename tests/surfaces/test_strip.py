@@ -260,9 +260,8 @@ def test_pieces_change_nothing_but_the_correlation_and_hold_every_row_once(surfa
     assert max(stop - first for first, stop in asked) <= 500 + 6
     expected = values(areal_statistics(part))
     for symbol, value in values(found.statistics).items():  # pairs across the ends of pieces are missing
-        assert value == pytest.approx(
-            expected[symbol], rel=0.05 if symbol in ("Sal", "Str") else 1e-9, abs=0.0
-        ), symbol
+        off = 0.05 if symbol in ("Sal", "Str") else 1e-9
+        assert value == pytest.approx(expected[symbol], rel=off, abs=0.0), symbol
     heights, width = part.heights - part.heights.mean(), np.diff(found.edges)
     counts, _ = np.histogram(heights, found.edges)
     np.testing.assert_allclose(found.density * heights.size * width, counts, atol=1.01)  # one beside an edge

