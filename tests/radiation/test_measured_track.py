@@ -28,15 +28,6 @@ def db(ratio):
     return 10.0 * np.log10(ratio)
 
 
-@pytest.mark.parametrize("magnitude", [False, True])
-def test_own_data_fed_back_change_nothing(magnitude):
-    own = HammerTest.of_track(BASE, BAND)
-    found = fed(own, own, magnitude=magnitude)
-    np.testing.assert_allclose(found.mobility, own.mobility, rtol=1e-9)
-    np.testing.assert_allclose(found.louder(own, others(own)), 1.0, rtol=1e-9)
-    np.testing.assert_allclose(found.longer(own), 1.0, rtol=1e-9)
-
-
 def test_the_decay_rate_says_the_sum_over_both_sides_of_the_rail():
     """Against the integral of the responses; most off at 1.06 kHz, where distances miss a standing wave."""
     band = BAND[[0, 4, 8, 10, 11, 14]]
@@ -56,13 +47,6 @@ def test_the_decay_rate_of_a_band_is_that_of_its_summed_responses():
         moved = BASE.receptance(lines, 0.3 + distances, np.full(len(distances), 0.3)) * lines
         summed = np.sqrt(np.sum(np.abs(moved) ** 2, axis=1))
         assert rate == pytest.approx(float(decay_rate_of_responses(distances, summed)), rel=1e-9)
-
-
-def test_a_doubled_decay_rate_takes_three_decibels_and_half_the_length():
-    own = HammerTest.of_track(BASE, BAND)
-    found = own.measured((BAND[3:7], 2.0 * own.decay_rate[3:7]), None)
-    np.testing.assert_allclose(found.longer(own), np.where((BAND > 190) & (BAND < 410), 0.5, 1.0))
-    np.testing.assert_array_equal(found.louder(own, others(own)), 1.0)
 
 
 def test_the_force_follows_the_mobility():

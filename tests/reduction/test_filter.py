@@ -35,21 +35,6 @@ def scanned(line, dx, stride):
     return forces, line[None, nx // 2 :][:, : forces.shape[1] * stride]
 
 
-@pytest.mark.parametrize(("q", "tolerance"), [(1.0, 0.01), (2.0, 0.01), (4.0, 0.02)])
-def test_ball_on_a_sinusoid(q, tolerance):
-    """The whole chain: 3-D scan, spectra, tangent stiffness; sign included."""
-    per_period, periods = round(2 * np.pi / q * 16), 6
-    dx, stride = 2 * np.pi * A / q / per_period, max(1, per_period // 16)
-    length = periods * per_period + 2 * int(1.25 * A / dx) + stride
-    wave = 0.02 * DELTA * np.cos(2 * np.pi * np.arange(length) / per_period)
-    forces, line = scanned(wave, dx, stride)
-    count = periods * per_period // stride
-    found = estimate(filter_spectra(forces[:, :count], line[:, : count * stride], dx), TANGENT)
-    i = int(np.argmin(np.abs(found.wavenumber - q / (2 * np.pi * A))))
-    assert found.signed[0, i] == pytest.approx(np.sin(q) / q, abs=tolerance)
-    assert found.raw[0, i] == pytest.approx(abs(np.sin(q) / q), abs=tolerance)
-
-
 def decibels(ratio):
     return 20.0 * np.log10(ratio)
 

@@ -1,11 +1,6 @@
-"""Scans of long paths: memory does not grow, a killed scan goes on, stored forces are those in memory."""
+"""Scans of long paths: memory does not grow, a scan goes on, stored forces are those in memory."""
 
 import gc
-import os
-import signal
-import subprocess
-import sys
-import time
 import tracemalloc
 from itertools import count
 
@@ -129,19 +124,6 @@ def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
     assert np.array_equal(first_touch(strip(2000), body()), first_touch(whole, body()))
 
 
-SCRIPT = """
-import sys
-import numpy as np
-from asperity.contact import scan
-from asperity.reduction.table import scan_into
-from asperity.store import Store
-sys.path.insert(0, {folder!r})
-from test_long_scan import job
-scan.BLOCK = 16
-scan_into(Store({root!r}), job(1000000), workers=1)
-"""
-
-
 def counted(solved, solve=ScanJob.solve):
     """Solution of a block that tells of the number of its contacts."""
 
@@ -153,25 +135,11 @@ def counted(solved, solve=ScanJob.solve):
     return told
 
 
-def test_a_killed_scan_goes_on_with_nothing_recomputed_but_the_last_block(tmp_path, monkeypatch):
-    script = SCRIPT.format(folder=os.path.dirname(__file__), root=str(tmp_path))
-    scanning = subprocess.Popen([sys.executable, "-c", script])
-    store = Store(tmp_path)
-    try:
-        give_up = time.monotonic() + 60
-        while len(store.files()) < 4 and scanning.poll() is None and time.monotonic() < give_up:
-            time.sleep(0.01)
-    finally:
-        scanning.send_signal(signal.SIGKILL)
-        scanning.wait()
-    kept = len(store.files())
-    assert kept >= 4
-    solved = []
-    monkeypatch.setattr("asperity.contact.scan.BLOCK", 16)
+@pytest.mark.usefixtures("short_blocks")
+def test_a_longer_scan_goes_on_with_nothing_recomputed_that_was_kept(tmp_path, monkeypatch):
+    store, solved, kept, positions = Store(tmp_path), [], 64, 96
+    scan_into(store, job(kept + N - 1), workers=1)
     monkeypatch.setattr(ScanJob, "solve", counted(solved))
-    positions = 16 * (kept + 2)
-    resumed = scan_into(store, job(positions + N - 1), workers=1)
-    again = np.count_nonzero(resumed.forces.columns(16 * kept, positions))
-    assert sum(solved) == again  # the two blocks beyond the last kept one, and no other
-    fresh = scan_forces(job(positions + N - 1), workers=2)
-    assert np.array_equal(resumed.forces.columns(0, positions), fresh.forces)
+    resumed = scan_into(store, job(positions + N - 1), workers=1).forces.columns(0, positions)
+    assert sum(solved) == np.count_nonzero(resumed[:, kept:])
+    assert np.array_equal(resumed, scan_forces(job(positions + N - 1), workers=2).forces)

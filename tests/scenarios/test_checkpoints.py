@@ -42,13 +42,6 @@ def test_every_key_of_a_case_but_its_laws_names_another_checkpoint(monkeypatch, 
     assert len({*names, *found}) == len(found) + 1
 
 
-def test_a_ball_that_rolls_directly_on_another_grid_starts_anew(own_cache):
-    """Though its path be the same: a measured one may have the same heights on two grids."""
-    case = as_case(BALL)
-    others = (case.with_(**{"contact.spacing": "10 um"}), case.with_(laws=("direct",)))
-    assert len({name(each) for each in (case, *others)}) == 2
-
-
 def recorded(monkeypatch, owner, name):
     """References to all that a function returns."""
     made, original = [], getattr(owner, name)

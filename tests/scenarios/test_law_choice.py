@@ -80,36 +80,6 @@ def test_waves_that_excite_less_than_100_hz_have_no_place(shape):
     assert place_of(wave(shape, 1.0, 0.0), shape, 1.0, transfer_of) is None
 
 
-@pytest.mark.parametrize("shape", [(101,), (97, 19)])
-def test_slow_waves_are_left_out_of_mirrored_lines(shape):
-    """Line by line, written out: mirror, transform, weigh, transform back, cut."""
-    heights = np.random.default_rng(1).standard_normal(shape).cumsum(axis=0)
-    spacing, lowest = 0.5e-3, 220.0  # at 9.1 points
-    found, rows = law_choice.without_slow(heights, spacing, lowest), len(heights)
-    spectrum = np.fft.fft(np.concatenate([heights, heights[::-1]]), axis=0)
-    share = np.abs(np.fft.fftfreq(2 * rows, spacing)) / lowest
-    gain = (1.0 - 1.0 / (1.0 + share**8)).reshape(-1, *[1] * (heights.ndim - 1))
-    expected = np.fft.ifft(spectrum * gain, axis=0).real[9 : rows - 9]
-    np.testing.assert_allclose(found, expected, atol=1e-12 * np.ptp(heights))
-
-
-def test_correlation_lengths_are_those_of_direct_sums():
-    """Lags at which mean products of all pairs fall to 0.2, joined by lines."""
-    white = np.random.default_rng(2).standard_normal((140, 40))
-    smooth = sum(white[i : 120 + i, j : 23 + j] for i in range(20) for j in range(6))
-
-    def lag(axis):
-        lines = np.moveaxis(smooth, axis, 0)
-        products = [np.mean(lines[: len(lines) - k] * lines[k:]) for k in range(len(lines) // 2 + 1)]
-        falling = np.array(products) / np.mean(smooth**2)
-        below = int(np.argmax(falling <= 0.2))
-        return np.interp(0.2, falling[[below, below - 1]], [below, below - 1])
-
-    found = law_choice.correlation_lengths(smooth, (2e-3, 3e-3))
-    assert found == pytest.approx((2e-3 * lag(0), 3e-3 * lag(1)), rel=1e-12)
-    assert 2 < lag(1) < lag(0) < 20
-
-
 def test_the_linear_force_is_that_of_a_mass_on_a_spring_on_a_stiff_beam():
     """A beam as stiff as a block leaves F/z = 1/(1/k - 1/(m w²))."""
     block = {"width": "2 m", "height": "60 mm", "length": "0.5 m"}
@@ -243,10 +213,3 @@ def test_nothing_is_said_where_the_map_knows_nothing(case):
     assert found is None
     assert "law to take" not in dict(plan(prepared, Work({}, {}, 0, None, 0.0)))
     assert law_choice.UNMAPPED == WheelOnRail(surface={"joint_depth": "1 mm"}).laws[0] == "direct"
-
-
-def test_the_map_is_whole():
-    assert (ROOT / "src/asperity/reference/law_accuracy.json").stat().st_size < 200_000
-    assert (len(MAP.bands), MAP.claim) == (18, 0.8)
-    assert all(0.0 < factor < 4.0 for factor in MAP.spread.values())
-    assert all(set(point.errors) <= set(MAP.spread) for point in MAP.points)

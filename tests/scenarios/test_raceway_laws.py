@@ -139,28 +139,6 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
     assert_allclose(both[0], both[1], rtol=1e-3)
 
 
-def test_marks_all_around_repeat():
-    marks = Fault("mark", length=0.25 * MM, width=0.8 * MM, depth=2 * UM, count=4)
-    surface = raceway_on(CONTACT, LOAD, 0.3 * MM, faults=(marks,))
-    quarter, places = surface.circumference / 4, surface.circumference * np.arange(0.0, 0.25, 0.01)
-    law = laws_on(surface, "table")["table"]
-    found = force(law, places, APPROACH)
-    assert found[0] < 0.9 * LOAD
-    assert_allclose(force(law, places + quarter, APPROACH), found, rtol=0.02)
-
-
-def test_texture_of_a_ball_is_averaged_for_its_contact():
-    raceway, ball = rough(20 * NM), rough(10 * NM, seed=1)
-    heights, places = ball_heights(CONTACT, ball, LOAD), raceway.spacing[0] * np.arange(len(raceway.heights))
-    together = laws_on(Raceway(raceway.heights + ball.heights, raceway.spacing), "table")["table"]
-    exact = force(together, places, APPROACH)
-    law = laws_on(raceway, "table", "areal")
-    for name in law:
-        off = force(law[name], places, APPROACH + heights) - exact
-        assert np.std(off) < 0.05 * np.std(exact)
-    assert np.std(force(law["areal"], places, APPROACH) - exact) > 0.2 * np.std(exact)
-
-
 def test_waves_of_a_ball_meet_those_of_a_raceway_as_if_solved_together():
     """Beside the table, against the contact with both surfaces at once on another grid, in two turns.
 
@@ -198,15 +176,6 @@ def test_unknown_law_is_refused():
         InputError, match="law of a raceway: received 'printed'; allowed: one of table, areal"
     ):
         laws_on(raceway_on(CONTACT, LOAD, 0.1 * MM), "printed")
-
-
-def test_direct_solves_what_the_table_holds():
-    on = OnRaceway(CONTACT, rough(20 * NM, 0.5 * MM), LOAD)
-    rows = np.array([0, 3, on.rows // 2 + 12, -4, -0.4]) % on.rows  # one between the last and the first
-    places = rows * on.surface.spacing[0]
-    approach = APPROACH - on.felt[rows.round().astype(int) % on.rows]
-    table, direct = (force(on.law(name, 0.0), places, approach) for name in ("table", "direct"))
-    assert_allclose(table, direct, rtol=1e-3)
 
 
 def test_direct_over_a_pit_stays_between_its_rows():

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import asperity
 from asperity.case.cases import as_case
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
@@ -123,26 +122,6 @@ def test_a_study_keeps_what_running_in_changed(untouched, run_in):
     shown = {"track_rms", "track_stiffness", "running_in_lowering", "yielded_share"}
     assert shown <= set(USUAL)
     assert not shown & set(kept(untouched))
-
-
-def test_another_pass_is_elastic():
-    """The surface that a case was run in to, run in again, is lowered by no more than the tolerance."""
-    prepared, found = run_in_of(ball(running_in="shakedown"))
-    shape = prepared.shape
-    again = run_in_case(prepared.case, found.textures, shape, None, lambda *_: None)
-    (lowered,) = again.values[contact.RUNNING_IN_LOWERING]
-    assert lowered <= 1e-3 * shape.hertz.approach(shape.load) * 1.01
-    assert again.values[contact.YIELDED_SHARE] == 0.0
-    assert found.values[contact.YIELDED_SHARE] > 0.02
-
-
-def test_direct_does_not_take_up_what_another_surface_left(own_cache):
-    """Kept solutions of `direct` are known by the passes before them, too."""
-    short = {"duration": "3 ms", "settling": "0.2 ms", "laws": ["direct"]}
-    forces = [
-        asperity.run(ball(**keys) | short)["rolling/contact_force"].values for keys in ({}, {"running_in": 1})
-    ]
-    assert np.abs(forces[1] - forces[0]).max() > 1e-3 * forces[0].mean()
 
 
 def test_measured_maps_are_run_in_along_their_strips():

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from asperity.case.cases import as_case, parse_case
-from asperity.contact.scan import ScanJob, first_touch
+from asperity.contact.scan import ScanJob
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.laws.layout import force
 from asperity.running import prepare_case
-from asperity.scenarios import laws, reducing
+from asperity.scenarios import reducing
 from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.preparing import expect, scan_sizes, try_contacts
 from asperity.scenes.compute import compute
@@ -99,28 +99,6 @@ def test_all_errors_come_at_once_and_a_single_one_as_it_is(monkeypatch):
 GIVEN = ["0 um", "0.3 um", "0.6 um", "1.2 um"]
 LOOSE = {"laws": ["table", "direct"], "contact": {"approaches": GIVEN},
          "numerics": {"force_accuracy": 1e-3, "rtol": 1e-5}}  # fmt: skip
-
-
-@IGNORED
-@pytest.mark.usefixtures("own_cache")
-def test_first_touch_along_the_path_is_found_once_and_states_are_as_given(monkeypatch):
-    looked_at = []
-
-    def counted(surface, body, stride=1):
-        looked_at.append(surface)
-        return first_touch(surface, body, stride)
-
-    for module in (laws, reducing.scan):
-        monkeypatch.setattr(module, "first_touch", counted)
-    prepared = prepared_of(**LOOSE)
-    chain = compute(prepared, quiet)
-    np.testing.assert_allclose(chain.reduction.approaches, [0.0, 3e-7, 6e-7, 1.2e-6])
-    path, shape = prepared.textures.path, prepared.shape
-    assert sum(surface is path for surface in looked_at) == 1
-    stride, half = laws.table_stride(shape), shape.body.shape[0] // 2
-    planes = reducing.patch_planes(path, shape)[half:-half:stride]
-    expected = first_touch(path, shape.body, stride) + planes
-    assert np.array_equal(chain.laws["table"].table.touches, expected)
 
 
 @pytest.mark.usefixtures("own_cache")

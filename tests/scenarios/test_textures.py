@@ -198,14 +198,6 @@ def test_a_spectrum_is_a_line_without_lateral_and_a_surface_with_it():
     np.testing.assert_allclose(high.line, 10.0 * low.line, rtol=1e-9)
 
 
-def test_levels_of_a_rail_are_those_of_its_spectrum():
-    found = textures("wheel-on-rail", wheel={"roughness": None}, duration="0.8 s")
-    wavelength, level = band_levels_of(Profile(found.parts["rail"], 1e-3), shortest=4e-3, longest=0.1)
-    given, wanted = rail_roughness("iso3095")
-    expected = np.interp(-np.log(wavelength), -np.log(given), wanted)
-    np.testing.assert_allclose(level, expected, atol=1.5)  # one line of a strip scatters
-
-
 def test_a_table_as_spectrum_is_the_named_one(tmp_path):
     pairs = zip(*(values.tolist() for values in rail_roughness("iso3095")), strict=True)
     rows = "\n".join(f"{100 * wavelength!r}; {level!r}" for wavelength, level in pairs)

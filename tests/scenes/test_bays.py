@@ -47,6 +47,7 @@ def test_bays_are_told_and_drawn(varied):
     np.testing.assert_allclose(track["bay_pad_stiffness"], BAYS[:, 1])
     np.testing.assert_allclose(track["bay_ballast_stiffness"], BAYS[:, 2])
     assert track.attrs["sleeper_spacing"] == pytest.approx(0.59)
+    assert "scattered from the moving kernel" in varied["scenario"].attrs["numerics"]
     by_name = {part.name: part for part in TRACK}
     assert {"bays", "receptance"} <= {part.name for part in figures_of(varied)}
     assert "3 bays" in by_name["bays"].caption(varied)

@@ -21,6 +21,7 @@ from small_cases import BEARING
 
 D, PITCH, BALLS, TURNS = 7.94e-3, 39.04e-3, 9, 30.0
 RATE = 51_200.0
+SMOOTH = {name: each for name, each in BEARING.items() if name != "fault"}
 OUTER = 0.5 * BALLS * TURNS * (1.0 - D / PITCH)
 INNER = 0.5 * BALLS * TURNS * (1.0 + D / PITCH)
 
@@ -40,14 +41,6 @@ def test_the_static_load_is_in_balance_and_pressures_are_those_of_hertz(runs):
     assert found["peak_pressure"].values[pressed] == pytest.approx(
         (1.5 * load / area).values[pressed], rel=1e-9
     )
-    along, across = (found[f"semi_axis_{way}"].values[pressed] for way in ("along", "across"))
-    assert (across > 5.0 * along).all()  # grooves of 0.52 D
-    # stiffness is the derivative of the load
-    case = as_case(BEARING)
-    step, of = 1e-3, case.bearing.bearing
-    moved = [of.loaded(100.0 + d, speed=TURNS, cage_angles=[0.0]).displacement[0, 0] for d in (-step, step)]
-    slope = 2.0 * step / (moved[1] - moved[0])
-    assert found["ring_stiffness"].sel(direction="along").values[0] == pytest.approx(slope, rel=1e-5)
 
 
 def test_tones_are_those_of_pure_rolling(runs):
@@ -118,64 +111,18 @@ def test_what_a_part_makes_alone_is_told(runs):
     for band, share in zip(("300 to 1800 Hz", "1800 to 10000 Hz"), above[1:], strict=True):
         assert f"µm/s in {band} ({100 * share:.0f} % from the fault)" in tree.attrs["verdict"]
     assert "no film of lubricant" in tree.attrs["verdict"]
-    smooth = runs({name: each for name, each in BEARING.items() if name != "fault"})
+    smooth = runs(SMOOTH)
     assert "source" not in group(smooth)
 
 
-def test_forces_over_a_turn_follow_the_static_load(runs):
-    tree = runs({name: each for name, each in BEARING.items() if name != "fault"})
-    moved, found = group(tree, "rolling"), group(tree)
-    order = np.argsort(np.mod(found["azimuth"].values.ravel(), 2.0 * np.pi))
-    places = np.mod(found["azimuth"].values.ravel(), 2.0 * np.pi)[order]
-    for ring in ("inner", "outer"):
-        load = found["ball_load"].sel(ring=ring).values.ravel()[order]
-        force, azimuth = moved[f"{ring}_force"].values[0], np.mod(moved["ball_azimuth"].values, 2.0 * np.pi)
-        expected = np.interp(azimuth, places, load, period=2.0 * np.pi)
-        assert np.sqrt(np.mean((force - expected) ** 2)) < 0.03 * load.max()
-    assert moved["time"].values[1] == pytest.approx(1.0 / RATE, rel=1e-9)
-
-
-def run_of(acceleration):
-    return SimpleNamespace(acceleration=np.atleast_2d(acceleration))
-
-
-@pytest.fixture(scope="module")
-def case():
-    return as_case({name: each for name, each in BEARING.items() if name != "fault"} | {"duration": "1 s"})
-
-
-def test_velocities_in_bands_are_those_of_a_sine(case):
-    time = np.arange(RATE) / RATE
-    signal = 2.0 * np.sin(2.0 * np.pi * 500.0 * time)
-    found = heard_group(case, {"hertz": run_of(signal)})
-    velocity = 2.0 / (2.0 * np.pi * 500.0)
-    low, middle, high = found[schema.BAND_VELOCITY][0][0]
-    assert middle == pytest.approx(velocity / math.sqrt(2.0), rel=1e-3)
-    assert max(low, high) < 1e-3 * middle
-    assert max(found[schema.VELOCITY_AMPLITUDE][0]) == pytest.approx(velocity, rel=2e-3)
-
-
-def test_a_resonance_struck_at_a_tone_is_found_in_the_band_it_rings_in(case):
-    time, random = np.arange(RATE) / RATE, np.random.default_rng(3)
-    signal = 0.02 * random.normal(size=len(time))
-    for strike in np.arange(0.0, 1.0, 1.0 / INNER):
-        since = time - strike
-        signal += np.exp(-((since / 0.3e-3) ** 2)) * np.sin(2.0 * np.pi * 5600.0 * since)
-    found = heard_group(case, {"hertz": run_of(signal)})
-    assert found[schema.LINES_FOUND] == [[0.0, 1.0, 0.0]]
-    assert found[schema.ENVELOPE_LOW] <= 5600.0 <= found[schema.ENVELOPE_HIGH]
-    assert heard_group(case, {"hertz": run_of(1e-6 * signal)})[schema.LINES_FOUND] == [[0.0, 0.0, 0.0]]
-    given = case.with_(envelope_band=["5 kHz", "7 kHz"])
-    chosen = heard_group(given, {"hertz": run_of(signal)})
-    assert (chosen[schema.ENVELOPE_LOW], chosen[schema.ENVELOPE_HIGH]) == (5000.0, 7000.0)
-
-
-def test_bands_beyond_the_sampling_are_missing(case):
-    coarse = case.with_(sampling_rate="12.8 kHz")
-    noise = np.random.default_rng(1).normal(size=12_800)
-    assert np.isnan(heard_group(coarse, {"hertz": run_of(noise)})[schema.BAND_VELOCITY][0][0]).tolist() == [
-        False, False, True
-    ]  # fmt: skip
+def test_bands_beyond_the_sampling_are_missing_and_a_band_that_is_given_is_taken():
+    case = as_case(
+        SMOOTH | {"duration": "1 s", "sampling_rate": "12.8 kHz", "envelope_band": ["4 kHz", "5 kHz"]}
+    )
+    noise = np.random.default_rng(1).normal(size=(1, 12_800))
+    found = heard_group(case, {"hertz": SimpleNamespace(acceleration=noise)})
+    assert np.isnan(found[schema.BAND_VELOCITY][0][0]).tolist() == [False, False, True]
+    assert (found[schema.ENVELOPE_LOW], found[schema.ENVELOPE_HIGH]) == (4000.0, 5000.0)
 
 
 def test_thinned_signals_hold_what_fewer_samples_hold_and_nothing_more():
@@ -195,7 +142,7 @@ def test_the_cage_slips_within_its_bounds_and_by_its_share(runs):
     values, between = (cage_slip(slipping)(whole + part / slipping.kinematics.cage) for part in (0.0, 0.5))
     assert between[:-1] == pytest.approx(0.5 * (values[1:] + values[:-1]), rel=1e-9)
     assert len(np.unique(values)) == 20
-    even = runs({n: v for n, v in BEARING.items() if n != "fault"} | {"cage_slip": [0.02, 0.02]})
+    even = runs(SMOOTH | {"cage_slip": [0.02, 0.02]})
     azimuth = group(even, "rolling")["ball_azimuth"].values[0]
     assert azimuth[-1] - azimuth[0] == pytest.approx(
         2.0 * np.pi * 0.98 * OUTER / BALLS * (len(azimuth) - 1) / RATE, rel=1e-9

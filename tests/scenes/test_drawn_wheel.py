@@ -81,25 +81,6 @@ def test_modes_that_ring_off_the_middle_alone_are_told_where_the_contact_is():
     assert len(found[schema.WHEEL_MODE]) == heard + 1
 
 
-def test_turning_splits_the_resonances_of_the_run():
-    """Seen from the contact, a mode with n nodal diameters answers at n times the turning speed beside it."""
-    case = case_of(section="curved-web")
-    standing, wheel = case.rolling.standing_modes(1600.0), case.rolling.tread(1600.0, case.speed)
-    frequency = np.linspace(880.0, 1040.0, 3201)
-    at = np.argmin(np.abs(standing.natural_frequencies - 960.0))
-    n, shift = standing.nodal_diameters[at], case.speed / 0.46 / (2.0 * np.pi)
-    answer = np.abs(wheel.receptance(frequency))
-    high = answer[1:-1]
-    peaks = frequency[1:-1][(high > answer[:-2]) & (high > answer[2:]) & (high > 10 * np.median(answer))]
-    expected = standing.natural_frequencies[at] + n * shift * np.array([-1.0, 1.0])
-    assert n == 3
-    assert peaks == pytest.approx(expected, abs=0.1)
-    still = Wheel(600.0, 65e3, *standing.table().T[:3])
-    assert np.argmax(np.abs(still.receptance(frequency))) == np.argmin(
-        np.abs(frequency - standing.natural_frequencies[at])
-    )
-
-
 # --- without rolling: sound of the linear contact per roughness, of two wheels on a track
 
 BANDS = 10.0 ** (np.arange(28, 35) / 10.0)  # 630 Hz to 2.5 kHz
@@ -127,12 +108,3 @@ def test_the_sound_has_converged(section):
     finer = wheel_modes(outline, steel, 1.25 * 2.5e3, size=0.7 * FINENESS * mean_thickness(outline))
     assert sound(finer) == pytest.approx(usual, abs=0.3)
     assert sound(wheel_modes(outline, steel, 2.0 * 2.5e3)) == pytest.approx(usual, abs=0.3)
-
-
-def test_dampers_make_a_wheel_quieter():
-    """Wheel damping: D. J. Thompson, Railway Noise and Vibration (2009)."""
-    wheels = ({"section": "curved-web", "added_damping": ratio} for ratio in (0.0, 1e-3, 1e-2))
-    rolling = [WheelOnRail(wheel=wheel, **SMOOTH).rolling for wheel in wheels]
-    bare, some, more = (sound(each.standing_modes(2.5e3)) for each in rolling)
-    assert bare > some + 1.0
-    assert some > more + 4.0

@@ -68,16 +68,6 @@ def test_the_mean_force_is_the_load_and_tones_lie_at_the_sleeper_passing_frequen
     assert np.sum(spectrum[tones] ** 2) > 0.9999 * np.sum(spectrum[1:] ** 2)
 
 
-def test_without_a_run_in_it_starts_steady(kernel):
-    run, steady = (
-        roll_wheel(kernel, WHEEL, HertzLaw(HERTZ), start=0.1, duration=0.02, settling=settling)
-        for settling in (0.0, 1.0)
-    )
-    assert run.contact_force[0] == LOAD
-    assert np.abs(run.contact_force[:20] / LOAD - 1.0).max() < 0.01
-    assert run.over_displacement[0] == pytest.approx(steady.over_displacement[0], rel=0.03)
-
-
 def test_linear_contact_is_within_one_decibel_of_the_frequency_domain():
     rail, texture = moving_kernel(TRACK, SPEED, 25e-6), roughness(6.5)
     run = roll_wheel(rail, WHEEL, linear(texture), start=0.0, duration=6.0, settling=0.4)
@@ -85,21 +75,6 @@ def test_linear_contact_is_within_one_decibel_of_the_frequency_domain():
     away = np.abs(np.log10(band / TRACK.pinned_pinned_frequency)) > 0.08  # from the peak and its split
     assert away.sum() >= 13
     assert np.abs(levels[0] - levels[1])[away].max() < 1.0
-
-
-def test_loss_factors_keep_the_force_at_the_resonance_of_the_wheel_on_the_track():
-    track, speed = Track.named("nordborg-loss-factor"), 10.0
-    rail = moving_kernel(track, speed, STEP, positions=12)
-    heights = 1e-8 * np.cumsum(np.random.default_rng(3).standard_normal(25_000))
-    texture = StateTexture.unfiltered(-(heights - heights.mean()), 2e-3, -5.0)
-    rough, smooth = (
-        roll_wheel(rail, WHEEL, linear(each), start=0.0, duration=4.0, settling=0.4)
-        for each in (texture, None)
-    )
-    # the contact is linear: without the tones of the sleepers, the force is that of the texture
-    force = rough.contact_force - smooth.contact_force
-    _, levels = in_bands(force, texture, rough, 20_000, 25.0, 1000.0, speed, track=track)
-    assert np.abs(levels[0] - levels[1]).max() < 0.75
 
 
 def test_a_flexible_wheel_follows_its_receptance(kernel):
