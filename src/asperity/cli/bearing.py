@@ -11,15 +11,15 @@ from asperity.arguments import Array, require
 from asperity.case.bearing import BearingKeys, read_bearing, read_signal
 from asperity.reference.bearings import PRINTED_BY
 from asperity.reporting.figure import write_chart
-from asperity.scenes.figures.bearing import envelope_chart, load_zone_chart
-from asperity.structures import bearing_statics
+from asperity.scenes.bearing import static_group
+from asperity.scenes.figures.bearing import DRAWING, ball_contacts_table, envelope_chart
+from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
 
 WIDTH = 122
-NOT_IN_IT = "a film of lubricant, friction, rings that bend or tilt, shoulders of the grooves"
 FAINT = 0.1
 """Share of the clearest fault below which another one is not told apart from what modulates it."""
 TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "band", "lines", "faults",
@@ -64,55 +64,24 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     speed = keys.speed or 0.0
     found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
     load = f"{found.radial:.4g} N radial, {found.axial:.4g} N axial"
-    _say_balls(found, load)
-    _say_ring(found)
     turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
+    at_rest = tree(static_group(found, turning))
+    contacts = ball_contacts_table(at_rest)
+    assert contacts is not None  # there are loads
+    cells = [[cell.text for cell in row] for row in contacts.rows]
+    say_table(f"{contacts.title} under {load}", contacts.head, cells, width=WIDTH)
+    say(contacts.note)
+    ends = dict.fromkeys(f"{each:.0f}" for each in (found.touching.min(), found.touching.max()))
+    say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
     _say_tones(turning, f"Hz at {60.0 * speed:.5g} 1/min" if speed else "per turn")
-    say(f"Balance to {found.imbalance:.0e} of the load in {found.steps} steps. Not in it: {NOT_IN_IT}.")
+    say(f"Balance to {found.imbalance:.0e} of the load in {found.steps} steps.")
     if picture is not None:
-        loads = {"inner": found.inner_load[0], "outer": found.outer_load[0]}
-        moved = found.displacement[:, 0], found.stiffness[:, 0, 0]
-        chart = load_zone_chart(found.azimuth[0], loads, found.azimuth[:, 0], *moved)
-        write_chart(chart, f"{keys.name or 'bearing'}, {load}", picture)
+        write_chart(DRAWING.laid_out(at_rest), f"{keys.name or 'bearing'}, {load}", picture)
     names = ("azimuth", "inner_load", "outer_load", "inner_angle", "inner_pressure", "outer_pressure")
     balls = {name: getattr(found, name)[0] for name in names}
     tones = {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS}
     ring = {"displacement": found.displacement, "stiffness": found.stiffness, "imbalance": found.imbalance}
     return {"balls": balls, **ring, "tones": tones if speed else None}
-
-
-def _say_balls(found: bearing_statics.LoadedBearing, load: str) -> None:
-    """A row for each ball, one of which is right below the load."""
-    axes = {ring: 1e3 * np.array(found.semi_axes(ring))[:, 0] for ring in ("inner", "outer")}
-    rows = []
-    for ball, azimuth in enumerate(found.azimuth[0]):
-        row = [f"{math.degrees(math.remainder(azimuth, 2.0 * math.pi)):.0f}°"]
-        for ring in ("inner", "outer"):
-            carried, angle, peak = (
-                getattr(found, f"{ring}_{what}")[0, ball] for what in ("load", "angle", "pressure")
-            )
-            size = "{:.3f}×{:.3f}".format(*axes[ring][:, ball])
-            cells = [f"{carried:.4g}", f"{math.degrees(angle):.1f}°", size, f"{peak / 1e9:.2f}"]
-            row += cells if carried else ["–"] * len(cells)
-        rows.append(row)
-    columns = [
-        "ball at",
-        *(f"{each} {unit}" for each in ("inner", "outer") for unit in ("N", "angle", "mm×mm", "GPa")),
-    ]
-    title = f"Contacts under {load}: half axes along and across, peak pressure"
-    say_table(title, columns, rows, width=WIDTH)
-    ends = dict.fromkeys(f"{each:.0f}" for each in (found.touching.min(), found.touching.max()))
-    say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
-
-
-def _say_ring(found: bearing_statics.LoadedBearing) -> None:
-    micrometres = (1e6 * each for each in (found.displacement[0], *found.compliance))
-    stiffness = 1e-6 * np.diagonal(found.stiffness, axis1=1, axis2=2)
-    ends = [f"{low:.4g} to {high:.4g}" for low, high in zip(stiffness.min(0), stiffness.max(0), strict=True)]
-    numbers = [[f"{number:.4g}" for number in np.round(each, 6) + 0.0] for each in micrometres]
-    rows = zip(("along the radial load", "across it", "axially"), *numbers, ends, strict=True)
-    columns = ["inner ring", "moved / µm", "varies, rms / µm", "peak to peak / µm", "stiffness / (MN/m)"]
-    say_table("While a ball passes", columns, list(rows), width=WIDTH)
 
 
 def _say_tones(turning: Kinematics, unit: str) -> None:

@@ -28,7 +28,8 @@ from asperity.scenarios.bearing import LEFT_OUT, NAMES, ON, RINGS, PreparedBeari
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes
 from asperity.schema import Values, bearing, contact, provenance, rolling, spectra, tree
-from asperity.structures.ball_bearing import PARTS
+from asperity.structures.ball_bearing import PARTS, Kinematics
+from asperity.structures.bearing_statics import LoadedBearing
 
 DIRECTIONS = ("along", "across", "axial")
 HARMONICS = 5
@@ -76,7 +77,8 @@ def bearing_result(
         provenance.NUMERICS: numerics,
         contact.VALIDITY: [finding.row() for finding in found],
     }
-    result = tree(scenario | static_group(case) | motion_group(case, runs) | heard | apart)
+    at_rest = static_group(case.static, case.kinematics)
+    result = tree(scenario | at_rest | motion_group(case, runs) | heard | apart)
     result.attrs = root_attributes(case, case.title, SOURCES, _verdict(heard, _deciding(apart)), caught)
     return result
 
@@ -84,9 +86,9 @@ def bearing_result(
 # --- at rest
 
 
-def static_group(case: BallBearingCase) -> Values:
-    """Lay out how the bearing carries its load, and what turns how fast."""
-    found, turning, of = case.static, case.kinematics, case.bearing.bearing
+def static_group(found: LoadedBearing, turning: Kinematics) -> Values:
+    """Lay out how a bearing carries its load, and what turns how fast."""
+    of = found.bearing
     along, across = np.transpose([found.semi_axes(ring) for ring in RINGS], (1, 0, 2, 3))
 
     def both(what: str) -> list[Array]:

@@ -96,8 +96,9 @@ def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
             (x, y), middle = _at(0.5 * ball, place + against * where), _at(0.5 * pitch, place)
         named = f"{'faults' if len(faults) > 1 else 'fault'} of the {NAMES[part]}", COLOURS[part]
         marks.append(Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
-    sensors = _at(rim - 0.5 * RING * ball, data.values(tree, bearing.SENSOR))
-    marks.append(Line(*sensors, "accelerometer", INK, width=0.0, marker="^"))
+    if data.present(tree, bearing.SENSOR):
+        sensors = _at(rim - 0.5 * RING * ball, data.values(tree, bearing.SENSOR))
+        marks.append(Line(*sensors, "accelerometer", INK, width=0.0, marker="^"))
     side = Axis("mm", -rim - 1.5 * ball, rim + 1.5 * ball)
     seen = "from the side, the radial load downwards"
     return [Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)]
@@ -348,13 +349,17 @@ def ball_contacts_table(tree: DataTree) -> ReportTable | None:
         for entry, unit, size, form in shown:
             values = np.where(loose, np.nan, data.values(tree, entry)[row, 0] / size)
             columns[f"{ring}, {unit}"] = number_cells(values, form)
+    moved = 1e6 * data.values(tree, bearing.RING_DISPLACEMENT)
     stiffness = 1e-6 * data.values(tree, bearing.RING_STIFFNESS)
-    ways = zip(data.words(tree, bearing.DIRECTION), stiffness.min(axis=1), stiffness.max(axis=1), strict=True)
+    told = (
+        f"{way} {np.round(to.mean(), 6) + 0.0:.4g} µm, varying by {np.ptp(to):.2g} µm, "
+        f"{each.min():.4g} to {each.max():.4g} MN/m"
+        for way, to, each in zip(data.words(tree, bearing.DIRECTION), moved, stiffness, strict=True)
+    )
     note = (
         "At rest, the first ball below the load: load, contact angle, half axes along and across the "
-        "raceway, largest pressure. Stiffness of the bearing while a ball passes: "
-        f"{', '.join(f'{way} {low:.3g} to {high:.3g} MN/m' for way, low, high in ways)}. "
-        f"{data.stated(tree, bearing.LEFT_OUT) or ''}"
+        "raceway, largest pressure. The inner ring as a ball passes, how far it moved and its stiffness: "
+        f"{'; '.join(told)}. {data.stated(tree, bearing.LEFT_OUT) or ''}"
     )
     return table("ball_contacts", "Contacts of the balls", columns, note)
 
@@ -374,28 +379,7 @@ def bearing_answers(tree: DataTree) -> Answers | None:
     return Answers(f"{lead}.", more, (*numbers, heaviest))
 
 
-# --- without a run, from the catalogue and a signal
-
-
-def load_zone_chart(
-    azimuth: Numbers, loads: Mapping[str, Numbers], cage: Numbers, displacement: Numbers, stiffness: Numbers
-) -> Chart:
-    """Loads of the balls, N, over their azimuth (Z,), rad; and what varies as the cage turns (m,), rad.
-
-    That is the displacement of the inner ring, m, and its stiffness, N/m, both along the radial load.
-    """
-    degrees = _degrees(azimuth)
-    order = np.argsort(degrees)
-    looks = {"inner": (VERMILLION, (), 1.3, "o"), "outer": (BLUE, (5.0, 1.5), 1.3, "s")}
-    marks = tuple(
-        Line(degrees[order], load[order], f"on the {ring} ring", *looks[ring]) for ring, load in loads.items()
-    )
-    turned = np.degrees(cage)
-    along = Axis("angle of the cage / °", float(turned[0]), float(turned[-1]))
-    moved, stiff = (Line(turned, each, colour=BLUE) for each in (1e6 * displacement, 1e-6 * stiffness))
-    zone = Panel(AROUND, Axis("load of a ball / N", low=0.0), marks, "load zone, a ball right below the load")
-    below = Panel(along, Axis("displacement / µm"), (moved,), "inner ring while a ball passes", height=2.6)
-    return Chart((zone, below, Panel(along, Axis("stiffness / (MN/m)"), (stiff,), height=2.6, beside=True)))
+# --- without a run, from a signal
 
 
 def envelope_chart(
