@@ -92,17 +92,17 @@ def test_product_of_band_and_time_says_how_far_a_level_scatters():
     assert_allclose(level.std(axis=0), 4.34 / np.sqrt(product), rtol=0.06)
 
 
-@pytest.mark.parametrize(("length", "overlap"), [(64, 0.5), (65, 0.0), (100, 0.75), (1000, 0.5)])
-def test_psd_agrees_with_scipy(length, overlap):
+@pytest.mark.parametrize("length", [64, 65, 1000])
+def test_psd_agrees_with_scipy(length):
     signals = np.random.default_rng(2).normal(size=(2, 1000)) + 3.0
     expected = scipy.signal.welch(
         signals - signals.mean(axis=1, keepdims=True),
         fs=50.0,
         nperseg=length,
-        noverlap=int(overlap * length),
+        noverlap=length // 2,
         detrend=False,
     )
-    found = spectra.psd(signals, 0.02, segment=length, overlap=overlap)
+    found = spectra.psd(signals, 0.02, segment=length)
     np.testing.assert_allclose(found[0], expected[0], rtol=1e-12)
     np.testing.assert_allclose(found[1], expected[1], rtol=1e-10, atol=1e-18)
 
@@ -115,7 +115,6 @@ test_what_is_wrong_is_said = refusals(
     (lambda: spectra.psd([1.0, np.nan, 2.0], 1.0), "NaN or infinite"),
     (lambda: spectra.psd([1.0, 2.0], -1.0), "spacing: received -1.0"),
     (lambda: spectra.psd([1.0, 2.0], 1.0, segment=3), "segment: received 3"),
-    (lambda: spectra.psd([1.0, 2.0], 1.0, overlap=1.0), "overlap: received 1.0"),
     *(
         (lambda limits=limits: spectra.third_octave_bands(*limits), "band limits")
         for limits in ((0.0, 1.0), (2.0, 1.0), (1.0, np.inf))

@@ -26,9 +26,7 @@ MOST_START = 0.2
 """Share of the mean square of a band that may not be built up yet in a record: its level is then 1 dB low."""
 
 
-def psd(
-    signal: ArrayLike, spacing: float, *, segment: int | None = None, overlap: float = 0.5
-) -> tuple[Array, Array]:
+def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tuple[Array, Array]:
     """One-sided power spectral density (..., f) by Welch's method with a Hann window, after its frequencies.
 
     The signal (..., n) has any unit U; `spacing` is the step between samples along its last axis, s or m, so
@@ -36,9 +34,9 @@ def psd(
     is in U² per Hz or per cycle per metre. The mean over the whole record is removed. The sum of the PSD
     times the frequency step is the variance of the signal, weighted by the squared windows.
 
-    By default the whole record is one segment. Segments of fewer samples, which share the part `overlap`, 0
-    <= overlap < 1, give a smoother estimate and a coarser frequency step, 1/(segment · spacing). P. D. Welch,
-    IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
+    By default the whole record is one segment. Segments of fewer samples, which overlap by half, give a
+    smoother estimate and a coarser frequency step, 1/(segment · spacing). P. D. Welch, IEEE Trans. Audio
+    Electroacoust. 15 (1967) 70-73.
     """
     from scipy.fft import rfft  # not where only bands are looked up
 
@@ -51,9 +49,8 @@ def psd(
     samples = values.shape[-1]
     length = samples if segment is None else int(segment)
     require(2 <= length <= samples, "segment", length, f"2 to {samples} samples", "Shorten the segment.")
-    require(0.0 <= overlap < 1.0, "overlap", overlap, "0 <= overlap < 1")
     values = values - values.mean(axis=-1, keepdims=True)
-    window, advance = hann_window(length), length - int(overlap * length)
+    window, advance = hann_window(length), length - length // 2
     segments = sliding_window_view(values, length, axis=-1)[..., ::advance, :]
     count, together = segments.shape[-2], max(1, TOGETHER // max(1, values[..., 0].size * length))
     power = np.zeros((*values.shape[:-1], length // 2 + 1))
@@ -72,9 +69,7 @@ def hann_window(length: int) -> Array:
     return 0.5 - 0.5 * np.cos(2.0 * np.pi / length * np.arange(length))
 
 
-def averaging_time(
-    samples: int, spacing: float, *, segment: int | None = None, overlap: float = 0.5
-) -> float:
+def averaging_time(samples: int, spacing: float, *, segment: int | None = None) -> float:
     """Time, s or m, that `psd` averages over: less than the record, since windows weigh its parts unequally.
 
     (Σu)²/Σu² steps, where u is the sum of the squared windows of all segments. With it the standard deviation
@@ -82,10 +77,9 @@ def averaging_time(
     and A. G. Piersol, Random Data, 4th ed. (2010).
     """
     length = samples if segment is None else int(segment)
-    shared = int(overlap * length)
     window = hann_window(length) ** 2
     weight = np.zeros(samples)
-    for first in range(0, samples - length + 1, length - shared):
+    for first in range(0, samples - length + 1, length - length // 2):
         weight[first : first + length] += window
     return float(spacing * weight.sum() ** 2 / (weight**2).sum())
 

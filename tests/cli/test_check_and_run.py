@@ -71,7 +71,6 @@ def test_a_finished_run_says_so_and_computes_nothing(out, monkeypatch):
 
 
 INCOMPLETE = {
-    "a table is gone": lambda out: next(out.glob("*.csv")).unlink(),
     "no page": lambda out: (out / "report.html").unlink(),
     "the page of a run before": lambda out: os.utime(out / "report.html", ns=(0, 0)),
     "damaged": lambda out: (out / "run.nc").write_bytes((out / "run.nc").read_bytes()[:-1]),

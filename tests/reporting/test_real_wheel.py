@@ -299,7 +299,7 @@ def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(s
 
 
 def test_what_a_study_of_wheels_may_be_asked_to_show_is_what_it_keeps(tree):
-    found, known = {str(name) for name in kept(tree).data_vars}, set(names_kept())
+    found, known = {str(name) for name in kept(tree).data_vars}, names_kept()
     assert found - {"point_position", "force_level_difference_to_reference_a"} <= known
     assert set(USUAL) <= known
     asked = chosen(["peak_force, pass by maximum level"])

@@ -27,8 +27,6 @@ INTERRUPTED = 130
 _INTERRUPTED = "interrupted; run the same command again to continue"
 COLLECT_AFTER = 1_000_000
 """New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
-_PARTS = ("what", "received", "allowed", "remedy", "errors")
-"""What a document says of an error beside its message, as far as it is known."""
 
 
 class Command(click.Command):
@@ -153,14 +151,10 @@ def _failed(error: BaseException, command: str, *, debug: bool = False) -> int:
             say(traceback.format_exc(), err=True, lines=True)
     say(told, err=True, lines=True)
     if manner().document:
-        kind, parts = "UsageError" if isinstance(error, click.ClickException) else "ProgramError", {}
-        if isinstance(error, errors.AsperityError):
-            kind = type(error).__name__
-            parts = {name: getattr(error, name) for name in _PARTS if hasattr(error, name)}
-        if "received" in parts:
-            parts["received"] = str(parts["received"])
+        kind = "UsageError" if isinstance(error, click.ClickException) else "ProgramError"
+        kind = type(error).__name__ if isinstance(error, errors.AsperityError) else kind
         try:
-            _say_document(command, code, {"error": {"message": message, "kind": kind, **parts}})
+            _say_document(command, code, {"error": {"message": message, "kind": kind}})
         except errors.ComputationError as unheard:
             return _failed(unheard, command)
     return code

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import re
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -33,8 +32,6 @@ CONVERGENCE, EFFECTS = "convergence", "effects"
 """Groups of a result that are computed if they are asked for."""
 READING = "reading and laying out the case"
 ANNOUNCED = 1_000_000  # contact solutions of a scan that is announced before it starts
-_LINKED = re.compile(r'href="([\w.-]+\.(?:csv|svg))"')
-"""Files that a page offers beside it."""
 
 
 def run_case(
@@ -254,7 +251,9 @@ def earlier_result(case: AnyCase, directory: Path, *, report: bool, more: Sequen
     from asperity.results import read_result
 
     file, page, name = directory / RESULT, directory / PAGE, name_of_run(case)
-    if not name or no_file(file) or (report and not _is_whole(page, file)):
+    if not name or no_file(file):
+        return None
+    if report and (no_file(page) or page.stat().st_mtime_ns < file.stat().st_mtime_ns):
         return None
     try:
         tree = read_result(file)
@@ -262,14 +261,6 @@ def earlier_result(case: AnyCase, directory: Path, *, report: bool, more: Sequen
         return None
     same = tree.attrs.get(provenance.RUN.name) == name
     return tree if same and set(more) <= set(tree.children) else None
-
-
-def _is_whole(page: Path, result: Path) -> bool:
-    """Whether a page is that of the result beside it, written after it, and all that it offers is there."""
-    if no_file(page) or page.stat().st_mtime_ns < result.stat().st_mtime_ns:
-        return False
-    linked = set(_LINKED.findall(page.read_text(encoding="utf-8", errors="replace")))
-    return not any(no_file(page.parent / name) for name in linked)
 
 
 def name_of_run(case: AnyCase) -> str:

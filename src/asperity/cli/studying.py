@@ -25,7 +25,7 @@ from asperity.studies.axes import VARIANT
 from asperity.studies.definition import Study, separated, study_of
 from asperity.studies.effects import effects, weighted_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SCATTER, SEED, mean_and_scatter, prediction_band
-from asperity.studies.member import PLACES, names_kept
+from asperity.studies.member import PLACES
 from asperity.studies.signals import SignalSet
 from asperity.terminal import line_width, remark, say, say_table
 from asperity.text_files import write_csv
@@ -78,8 +78,7 @@ def run_study(
         if asked or not told:
             print_table(table if means is None else means, asked or tables.USUAL, asked=bool(asked))
         for name in (name for name in asked if name not in table):
-            reason = names_kept()[name] or "are no bands to add up"
-            say(f"{name}: no member has it; there {reason}", err=True)
+            say(f"{name}: no member has it", err=True)
         _print_messages(table, left_out=bool(told))
         written = _write(directory, table, means, band, effect, asked)
         if heard is not None:

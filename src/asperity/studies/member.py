@@ -111,21 +111,13 @@ def _of_bodies(tree: xarray.DataTree) -> dict[str, Any]:
     )
 
 
-def names_kept() -> dict[str, str]:
-    """Names that the table of a study may have, each with which results have it, if not all."""
-    entries = (*KEPT, contact.RUNNING_IN_LOWERING, *scene.KEPT, *bearing.KEPT)
-    found = (
-        dict.fromkeys(LOADS, bearing.OF_BEARING)
-        | dict.fromkeys(rolling.FORCES, "")
-        | {entry.name: entry.condition for entry in entries}
-    )
-    found |= {fact.name: fact.condition for fact in FACTS} | {OF_CONTACTS.name: "of several contacts"}
-    for entry in (*entries, OF_CONTACTS):
-        if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"):
-            found.setdefault(f"{entry.name}_a", found[entry.name])
-    for entry in spectra.FORCE_LEVEL_DIFFERENCES.values():
-        found[_weighted_name(entry)] = entry.condition
-    return found
+def names_kept() -> set[str]:
+    """Names that the table of a study may have."""
+    entries = (*KEPT, OF_CONTACTS, contact.RUNNING_IN_LOWERING, *scene.KEPT, *bearing.KEPT)
+    bands = (each for each in entries if each.units.startswith(LEVEL) and each.dims[-1].endswith("band"))
+    found = {*LOADS, *rolling.FORCES, *(each.name for each in entries), *(fact.name for fact in FACTS)}
+    found |= {f"{entry.name}_a" for entry in bands}
+    return found | {_weighted_name(entry) for entry in spectra.FORCE_LEVEL_DIFFERENCES.values()}
 
 
 def _weighted_name(difference: Entry) -> str:
