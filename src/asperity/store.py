@@ -10,11 +10,11 @@ import time
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import AbstractContextManager, nullcontext, suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -65,16 +65,6 @@ def _feed(digest: Any, part: object) -> None:
 
 Make = Callable[[], Mapping[str, NDArray[Any]]]
 """Makes what is to be kept."""
-
-
-class Cache(Protocol):
-    """Where finished work is kept: `Store` is one."""
-
-    def get(self, key: str) -> dict[str, NDArray[Any]] | None:
-        """Return what was put under the key, or None."""
-
-    def put(self, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Keep arrays under the key."""
 
 
 @dataclass(frozen=True)
@@ -178,14 +168,8 @@ class Store:
         return sum(path.stat().st_size for path in self.files())
 
 
-def claimed(cache: Cache, key: str) -> AbstractContextManager[bool]:
-    """Claim a key as `Store.claim`; in a cache without claims all are free."""
-    claim: Callable[[str], AbstractContextManager[bool]] | None = getattr(cache, "claim", None)
-    return nullcontext(True) if claim is None else claim(key)
-
-
 def made(
-    cache: Cache, key: str, make: Make, meanwhile: Callable[[], object] = lambda: time.sleep(PATIENCE)
+    cache: Store, key: str, make: Make, meanwhile: Callable[[], object] = lambda: time.sleep(PATIENCE)
 ) -> dict[str, NDArray[Any]]:
     """Return what a cache keeps under a key; make it first where nobody does, or wait for who makes it.
 
@@ -194,7 +178,7 @@ def made(
     while True:
         if (kept := cache.get(key)) is not None:
             return kept
-        with claimed(cache, key) as free:
+        with cache.claim(key) as free:
             if free and (kept := cache.get(key)) is None:
                 found = dict(make())
                 cache.put(key, found)
@@ -207,7 +191,7 @@ def made(
 class Checkpoint:
     """State of an interrupted run under its name in a cache, so that the same run goes on where it was."""
 
-    cache: Cache
+    cache: Store
     key: str
 
     def load(self) -> dict[str, NDArray[Any]] | None:

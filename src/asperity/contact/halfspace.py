@@ -15,7 +15,7 @@ from asperity.kernels.batched import convolve_padded, padded_spectrum, unit_inde
 from asperity.kernels.box import foundation_approach
 from asperity.kernels.influence import Influence, influence, influence_table, prepared
 from asperity.progress import Progress
-from asperity.store import Cache
+from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
 from asperity.threads import refuse_to_go_on
@@ -285,7 +285,7 @@ class HalfSpace:
         rtol: float | None = None,
         force_accuracy: float | None = None,
         workers: int | None = None,
-        cache: Cache | None = None,
+        cache: Store | None = None,
         progress: Progress | None = None,
         device: str | None = None,
     ) -> "xarray.DataArray":
@@ -307,7 +307,7 @@ class HalfSpace:
             Instead of it, the largest relative error of a force: `numerics.force_accuracy` of a case.
         workers : int, optional
             Threads; by default one per processor, or ``$ASPERITY_THREADS``. The result does not depend on it.
-        cache : Cache, optional
+        cache : Store, optional
             Keeps finished blocks, so that an interrupted scan goes on where it was: `Store()`, as in a run.
         progress : callable, optional
             ``progress(done, total, message)``.
@@ -367,7 +367,7 @@ class HalfSpace:
         *,
         tolerance: float | None = None,
         workers: int | None = None,
-        cache: Cache | None = None,
+        cache: Store | None = None,
         progress: Progress | None = None,
     ) -> HeightMap:
         """Roll a body over a surface whose asperities flow at the hardness, and return what is left of it.

@@ -12,7 +12,7 @@ from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress, counted
-from asperity.store import Cache, content_key
+from asperity.store import Store, content_key
 from asperity.threads import in_order
 
 SETTLED_SHARE = 1e-3
@@ -65,7 +65,7 @@ def run_in(
     heights: Array,
     job: RunningIn,
     *,
-    cache: Cache | None = None,
+    cache: Store | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> RunInHeights:

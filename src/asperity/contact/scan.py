@@ -17,7 +17,7 @@ from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress, counted
-from asperity.store import PATIENCE, Cache, claimed, content_key, made
+from asperity.store import PATIENCE, Store, content_key, made
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import in_order, thread_count
@@ -295,7 +295,7 @@ class ScannedForces(Generic[F]):
 
 def solved_blocks(
     job: ScanJob,
-    cache: Cache | None = None,
+    cache: Store | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
     message: str = "scanning the contact",
@@ -316,7 +316,7 @@ def solved_blocks(
             rows, planes = other.under(start)
             key = other.key(rows, planes)
             assert cache is not None
-            with claimed(cache, key) as free:
+            with cache.claim(key) as free:
                 if free and cache.get(key) is None:
                     cache.put(key, other.solve(rows, planes))
                     return

@@ -16,7 +16,7 @@ from asperity.contact.tangential import SPIN_AHEAD, FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning, UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress
-from asperity.store import Cache, content_key
+from asperity.store import Store, content_key
 from asperity.surfaces.heightmap import HeightMap
 from asperity.threads import refuse_to_go_on
 
@@ -322,7 +322,7 @@ def worn(
     speed: float = 1.0,
     step: float | None = None,
     rtol: float = 1e-6,
-    cache: Cache | None = None,
+    cache: Store | None = None,
     progress: Progress | None = None,
 ) -> WornSurface:
     """Roll a body over a surface that its friction wears, row by row, and as often as asked.
@@ -425,7 +425,7 @@ def worn(
 
 
 def _passed(
-    heights: Array, job: _Wearing, cache: Cache | None, progress: Progress | None
+    heights: Array, job: _Wearing, cache: Store | None, progress: Progress | None
 ) -> dict[str, NDArray[Any]]:
     """Depth and sums after all passes; those that the cache knows are not rolled."""
     key = "" if cache is None else job.key(heights)

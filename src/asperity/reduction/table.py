@@ -10,14 +10,14 @@ from asperity.contact.scan import FORCE_ACCURACY, ScanJob, ScannedForces, solved
 from asperity.errors import ComputationError
 from asperity.kernels.along import OVERLAP, splines_along
 from asperity.reduction.texture import check_states, grid_index
-from asperity.store import Cache
+from asperity.store import Store
 
 
 @dataclass(frozen=True, eq=False)
 class StoredForces:
     """Forces of a scan, block by block in a cache."""
 
-    cache: Cache
+    cache: Store
     keys: tuple[str, ...]  # name of each block in the cache
     block: int  # positions in a block; the first lacks those `ahead`, the last may have fewer
     shape: tuple[int, ...]  # (states, positions)
@@ -39,7 +39,7 @@ class StoredForces:
         raise ComputationError("forces of the path are no longer in the cache", remedy)
 
 
-def scan_into(cache: Cache, job: ScanJob, **how: Any) -> ScannedForces[StoredForces]:
+def scan_into(cache: Store, job: ScanJob, **how: Any) -> ScannedForces[StoredForces]:
     """Scan a path of any length: its forces stay in the cache, block by block.
 
     Memory holds the blocks in work and eight bytes a position. Further arguments as in `solved_blocks`.

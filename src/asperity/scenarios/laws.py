@@ -19,7 +19,7 @@ from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import OtherContact, Textures
-from asperity.store import Cache
+from asperity.store import Store
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class LawMaterials:
     reduction: reducing.Reduction | None  # state functions; None where the case has no samples
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: Array | None
-    cache: Cache  # for the scan of the path
+    cache: Store  # for the scan of the path
     progress: Progress
 
     def of_contact(self, own: OtherContact) -> "LawMaterials":

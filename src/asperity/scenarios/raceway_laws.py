@@ -29,7 +29,7 @@ from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
 from asperity.scenarios.reducing import chosen_states
-from asperity.store import Cache
+from asperity.store import Store
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
 from asperity.surfaces.strip import Rows
@@ -198,7 +198,7 @@ class OnRaceway:
         Pressure at which asperities flow, Pa.
     accuracy : float
         Largest relative error of a scanned force.
-    cache : Cache, optional
+    cache : Store, optional
         Keeps what was scanned.
     progress : Progress, optional
         Told how far the scan is.
@@ -211,7 +211,7 @@ class OnRaceway:
     load: float
     hardness: float | None = None
     accuracy: float = FORCE_ACCURACY
-    cache: Cache | None = None
+    cache: Store | None = None
     progress: Progress | None = None
     balls: Sequence[Raceway] = ()
 
@@ -453,7 +453,7 @@ def raceway_laws(
     damping: float = 0.0,
     hardness: float | None = None,
     accuracy: float = FORCE_ACCURACY,
-    cache: Cache | None = None,
+    cache: Store | None = None,
     progress: Progress | None = None,
 ) -> dict[str, Law]:
     """Laws of a ball on a raceway, on positions along it of any number of turns, m.

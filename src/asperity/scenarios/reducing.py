@@ -17,7 +17,7 @@ from asperity.progress import Progress, counted
 from asperity.reduction import filter, stiffness, texture
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
-from asperity.store import Cache
+from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Strip
 from asperity.threads import in_order, thread_count
@@ -108,7 +108,7 @@ def reduce(
     textures: Textures,
     shape: Geometry,
     planes: Array | None,
-    cache: Cache | None,
+    cache: Store | None,
     progress: Progress,
 ) -> Reduction:
     """Press and move the body on the samples, and reduce the forces to stiffness and filters.
@@ -280,7 +280,7 @@ def line_filters(
     textures: Textures,
     shape: Geometry,
     ensemble: stiffness.StiffnessEnsemble,
-    cache: Cache | None,
+    cache: Store | None,
     progress: Progress,
 ) -> tuple[LineFilters, scan.Counts]:
     """Scan the strips, and design a filter for every normalisation that a law needs, or that is shown.
@@ -325,7 +325,7 @@ def line_filters(
 
 
 def _scanned_strips(
-    jobs: Sequence[scan.ScanJob], cache: Cache | None, progress: Progress
+    jobs: Sequence[scan.ScanJob], cache: Store | None, progress: Progress
 ) -> list[scan.ScannedForces[Array]]:
     """Forces at constant approach along each strip."""
     workers = thread_count() if jobs[0].device is None else 1  # one block fills a device

@@ -16,7 +16,7 @@ from asperity.scenarios.laws import table_stride
 from asperity.scenarios.reducing import PressedSamples, samples_of
 from asperity.scenarios.textures import Textures
 from asperity.schema import Values, contact
-from asperity.store import Cache
+from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.statistics import rms_slope
 from asperity.surfaces.strip import Rows
@@ -35,7 +35,7 @@ class RunInCase:
 
 
 def run_in_case(
-    case: Case, textures: Textures, shape: Geometry, cache: Cache | None, progress: Progress
+    case: Case, textures: Textures, shape: Geometry, cache: Store | None, progress: Progress
 ) -> RunInCase:
     """Run samples and path of a case in, each rolled over lengthwise under the working load.
 

@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 
 from asperity.arguments import Array, Complex, NDArray
 from asperity.spectra import third_octave_bands
-from asperity.store import Cache, content_key, made
+from asperity.store import Store, content_key, made
 from asperity.structures.stiffness_table import StiffnessTable
 from asperity.structures.support import ConstantLoss, Losses, Relaxation, relaxing
 from asperity.structures.track import Track
@@ -52,7 +52,7 @@ CHOICES = [
 Linearised = Callable[[Array], tuple[Array, Array]]
 
 
-def causal_track(track: Track, cache: Cache | None = None) -> Track:
+def causal_track(track: Track, cache: Store | None = None) -> Track:
     """Put stiffnesses that relax in the place of loss factors and tables; a causal track stays as it is.
 
     Least squares of the level of the mean square of 1/(α_W + α_C + α_R) over half a bay and each band, for
@@ -72,7 +72,7 @@ _fitted: dict[Track, Track] = {}
 """Causal tracks that are known, by those they stand for."""
 
 
-def _relaxations(track: Track, cache: Cache | None) -> Relaxations:
+def _relaxations(track: Track, cache: Store | None) -> Relaxations:
     """Fit, or look up, what stands for the loss factors of a track."""
 
     def make() -> dict[str, Array]:

@@ -9,7 +9,7 @@ from scipy import fft
 from asperity.arguments import Array, Complex, not_negative, positive, real, shown, whole
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
-from asperity.store import Cache, content_key, made
+from asperity.store import Store, content_key, made
 from asperity.structures.causal_track import causal_track
 from asperity.structures.cell_waves import CellWaves
 from asperity.structures.periodic_rail import PeriodicWaves
@@ -124,7 +124,7 @@ def moving_kernel(
     duration: float | None = None,
     positions: int = STARTS,
     distance: float = 0.0,
-    cache: Cache | None = None,
+    cache: Store | None = None,
     progress: Progress | None = None,
 ) -> MovingKernel:
     """Compute the moving kernel of a track for a contact at constant speed, m/s, zero for one at rest.

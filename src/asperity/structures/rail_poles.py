@@ -11,7 +11,7 @@ import scipy
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array, not_negative
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.progress import Progress
-from asperity.store import Cache, content_key, made
+from asperity.store import Store, content_key, made
 from asperity.structures.modal_fit import least_squares, paired, real_basis, vector_fit
 from asperity.structures.moving_kernel import DIED_AWAY, MovingKernel, moving_kernel
 
@@ -90,7 +90,7 @@ class RailPoles:
         return self.weights(1 + wanted.shape[1])[:, 1:] - wanted
 
 
-def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = None) -> RailPoles:
+def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Store | None = None) -> RailPoles:
     """Fit a moving kernel by common poles, both of each conjugate pair counted, and residues for every start.
 
     Their number is even, from 4 to `most_poles`. Poles by vector fitting of the transform on the unit circle,
@@ -120,7 +120,7 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = 
 
 
 def poles_or_kernel(
-    kernel: MovingKernel, most: int | None = None, *, cache: Cache | None = None
+    kernel: MovingKernel, most: int | None = None, *, cache: Store | None = None
 ) -> RailPoles | MovingKernel:
     """Fit a moving kernel by poles, `POLES` of them by default, or as many as it has lags for.
 
@@ -266,7 +266,7 @@ def rail_between(
     places: ArrayLike,
     *,
     reach: float | None = None,
-    cache: Cache | None = None,
+    cache: Store | None = None,
     progress: Progress | None = None,
 ) -> RailBetween:
     """Compute how a rail carries vibration between contacts.
@@ -286,7 +286,7 @@ def rail_between(
         m; by default the distance from which on the rms of a kernel is below 1 % of the direct one. On a
         lightly damped rail (loss factor 0.4 %) that is 40 m; leaving two wheels there alone changed the
         varying part of their forces by 3 % rms, and no one-third octave by more than 0.05 dB.
-    cache : Cache, optional
+    cache : Store, optional
         Keeps kernels and poles.
     progress : callable, optional
         Is told distances done, distances in all and what is done.
@@ -327,7 +327,7 @@ def rail_between(
 
 
 def _fitted(
-    direct: RailPoles | MovingKernel, kernel: MovingKernel, cache: Cache | None
+    direct: RailPoles | MovingKernel, kernel: MovingKernel, cache: Store | None
 ) -> RailPoles | MovingKernel:
     """The fewest poles that miss little, relative to the direct kernel; else the kernel itself."""
     weights = direct.kernel.weights

@@ -10,7 +10,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real
 from asperity.errors import InputError
 from asperity.reference.materials import Material
-from asperity.store import Cache, content_key, made
+from asperity.store import Store, content_key, made
 from asperity.structures.outline import Mesh, checked_outline, mesh_of
 from asperity.text_files import write_csv
 from asperity.threads import one_thread_in_linear_algebra
@@ -289,7 +289,7 @@ def wheel_modes(
     highest_frequency: float,
     *,
     size: float | None = None,
-    cache: Cache | None = None,
+    cache: Store | None = None,
 ) -> WheelModes:
     """Modes of a wheel up to a frequency, Hz, held where it sits on its axle, by finite elements.
 
@@ -304,7 +304,7 @@ def wheel_modes(
         Hz.
     size : float, optional
         Of the triangles, m.
-    cache : Cache, optional
+    cache : Store, optional
         Keeps the modes.
 
     Returns
