@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import cast
@@ -310,20 +310,10 @@ def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Pr
     with MissingPointsWarning.ignored():
         measured = read_lines(section, name)
     raw = (measured,) if isinstance(measured, Profile) else measured_lines.lines_of(measured)
-    fill, *rest = (step in section.processing for step in ("fill", "spikes", "curvature"))
-    done = [measured_lines.process(line, fill_gaps=fill, spikes=rest[0], curvature=rest[1]) for line in raw]
-    words = f"{content.name_of(section.line)}, {_done([how for _, how in done])}"  # type: ignore[arg-type]
-    return [level(line, degree) for line, _ in done], words
-
-
-def _done(steps: Sequence[measured_lines.Processing]) -> str:
-    """What processing did to all lines together."""
-    names = ("filled", "spikes_removed", "spike_points", "lifted")
-    sums = {name: sum(getattr(each, name) for each in steps) for name in names}
-    trimmed = sum(each.trimmed[0] for each in steps), sum(each.trimmed[1] for each in steps)
-    sums |= {"trimmed": trimmed, "lifted": sums["lifted"] / len(steps)}
-    together = replace(steps[0], **sums, largest_lift=max(each.largest_lift for each in steps))
-    return f"{len(steps)} line{'s' if len(steps) > 1 else ''} measured, {together}"
+    done, how = measured_lines.process(raw, section.processing)
+    count = f"{len(raw)} line{'s' if len(raw) > 1 else ''} measured"
+    words = f"{content.name_of(section.line)}, {count}, {how}"  # type: ignore[arg-type]
+    return [level(line, degree) for line in done], words
 
 
 def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
@@ -332,7 +322,7 @@ def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
         allowed, remedy = "the distance across between neighbouring lines", 'Add line_distance = "5 mm", say.'
         raise InputError(key, f"no distance for {len(lines)} lines", allowed, remedy)
     distance = section.line_distance or grid.spacing
-    return measured_lines.strip_from_lines(lines, grid.spacing, distance, grid.lines, grid.spacing)
+    return measured_lines.strip_from_lines(lines, distance, grid.lines, grid.spacing)
 
 
 def mirrored_before(heights: Array, rows: int) -> Array:

@@ -4,7 +4,7 @@ Later editions of the standard have not been compared.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -12,8 +12,8 @@ import numpy as np
 import scipy
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, NDArray, positive, require
-from asperity.errors import CoarseSamplingWarning, PhysicsWarning, ShortRecordWarning
+from asperity.arguments import Array, NDArray, require
+from asperity.errors import CoarseSamplingWarning, PhysicsWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.surfaces.bands import LIKELY_WAVELENGTHS, band_levels_of, likely_band
 from asperity.surfaces.cleaning import nearly_complete
@@ -37,75 +37,52 @@ CLEARLY = 0.2
 """Gain in correlation that speaks for a start farther away."""
 
 
-@dataclass(frozen=True)
-class Processing:
-    """Every switch of `process`, and what it did."""
-
-    trimmed: tuple[int, int] = (0, 0)  # missing points cut off at the start and at the end
-    fill: bool = False  # whether gaps were to be filled
-    filled: int = 0  # points that were
-    spikes: bool = False  # whether spikes were to be removed
-    spikes_removed: int = 0
-    spike_points: int = 0  # points changed by it
-    curvature: bool = False  # whether a circle was rolled over the line
-    radius: float = ROLLED_RADIUS  # of that circle, m
-    lifted: float = 0.0  # share of the points that the circle did not touch, 0 to 1
-    largest_lift: float = 0.0  # largest height of the circle above a point, m
-
-    def __str__(self) -> str:
-        """Return what was done, in one sentence."""
-        rolled = f"rolled over with a circle of {self.radius:g} m: {self.lifted:.1%} of the points lifted"
-        rolled += f", by up to {self.largest_lift * 1e6:.3g} µm"
-        removed = f"{self.spikes_removed} spikes ({self.spike_points} points) removed"
-        parts = [
-            f"{sum(self.trimmed)} missing points trimmed at the ends",
-            f"{self.filled} points filled" if self.fill else "gaps not filled",
-            removed if self.spikes else "spikes kept",
-            rolled if self.curvature else "not rolled over",
-        ]
-        return "EN 15610:2009: " + "; ".join(parts)
-
-
 def process(
-    profile: Profile,
-    *,
-    fill_gaps: bool = False,
-    spikes: bool = True,
-    curvature: bool = True,
-    radius: float = ROLLED_RADIUS,
-) -> tuple[Profile, Processing]:
-    """Process a measured line, m: trim, fill, remove spikes, roll a circle over it; and tell what each did.
+    lines: Sequence[Profile], steps: Collection[str] = ("spikes", "curvature")
+) -> tuple[list[Profile], str]:
+    """Process measured lines, m: trim, fill, remove spikes, roll a circle over them; and tell what was done.
 
-    Missing points at the ends are cut off, those inside filled by straight lines or refused. Warned of are a
-    spacing beyond 1 mm and more than 5 % filled points. Pits narrower than the patch that the circle bridges
-    are no longer in the line: a contact filter or a contact geometry applied after it counts that effect
-    twice in part. Leave `curvature` out for laws that solve the contact on the heights themselves.
+    Missing points at the ends are cut off, those inside filled by straight lines, where "fill" is among the
+    steps, or refused. Warned of are a spacing beyond 1 mm and more than 5 % filled points. Pits narrower than
+    the patch that the circle bridges are no longer in the line: a contact filter or a contact geometry
+    applied after it counts that effect twice in part. Leave "curvature" out for laws that solve the contact
+    on the heights themselves.
     """
-    if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
-        coarse = f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610"
-        remedy = "spikes and short waves are not resolved; measure more finely or leave the processing out"
-        CoarseSamplingWarning.warn(f"{coarse}: {remedy}")
-    line, trimmed = trim(profile)
-    missing = int(np.isnan(line.heights).sum())
-    received = f"{missing} missing points inside {line.source or 'the line'}"
-    remedy = "Fill them, or cut a piece without."
-    require(fill_gaps or not missing, "measured line", received, "a line without gaps", remedy)
-    line = line.filled()
-    removed = changed = 0
-    if spikes:
-        line, removed, changed = remove_spikes(line)
-    rolled = roll_over(line, radius) if curvature else line
-    lift = rolled.heights - line.heights
-    lifted = curvature, radius, float(np.mean(lift > 1e-12)), float(lift.max())
-    return rolled, Processing(trimmed, fill_gaps, missing, spikes, removed, changed, *lifted)
+    done, lifts, trimmed, filled, removed, changed = [], [], 0, 0, 0, 0
+    for profile in lines:
+        if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
+            coarse = f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610"
+            remedy = (
+                "spikes and short waves are not resolved; measure more finely or leave the processing out"
+            )
+            CoarseSamplingWarning.warn(f"{coarse}: {remedy}")
+        line = trim(profile)
+        missing = int(np.isnan(line.heights).sum())
+        received = f"{missing} missing points inside {line.source or 'the line'}"
+        remedy = "Fill them, or cut a piece without."
+        require("fill" in steps or not missing, "measured line", received, "a line without gaps", remedy)
+        trimmed, filled = trimmed + len(profile.heights) - len(line.heights), filled + missing
+        line = line.filled()
+        if "spikes" in steps:
+            line, spikes, points = remove_spikes(line)
+            removed, changed = removed + spikes, changed + points
+        done.append(roll_over(line) if "curvature" in steps else line)
+        lifts.append(done[-1].heights - line.heights)
+    lifted, highest = np.mean([np.mean(lift > 1e-12) for lift in lifts]), max(lift.max() for lift in lifts)
+    rolled = f"rolled over with a circle of {ROLLED_RADIUS:g} m: {lifted:.1%} of the points lifted"
+    words = (
+        f"{trimmed} missing points trimmed at the ends",
+        f"{filled} points filled" if "fill" in steps else "gaps not filled",
+        f"{removed} spikes ({changed} points) removed" if "spikes" in steps else "spikes kept",
+        f"{rolled}, by up to {highest * 1e6:.3g} µm" if "curvature" in steps else "not rolled over",
+    )
+    return done, "EN 15610:2009: " + "; ".join(words)
 
 
-def trim(profile: Profile) -> tuple[Profile, tuple[int, int]]:
-    """Cut missing points off both ends; and tell how many there."""
+def trim(profile: Profile) -> Profile:
+    """Cut missing points off both ends."""
     valid = np.flatnonzero(np.isfinite(profile.heights))
-    first, beyond = int(valid[0]), len(profile.heights) - int(valid[-1]) - 1
-    heights = profile.heights[first : len(profile.heights) - beyond]
-    return (replace(profile, heights=heights, start=None) if first or beyond else profile), (first, beyond)
+    return replace(profile, heights=profile.heights[valid[0] : valid[-1] + 1], start=None)
 
 
 def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
@@ -117,7 +94,7 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
     feet. EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of
     where a spike ends.
     """
-    heights = np.array(_complete(profile))
+    heights = np.array(profile.heights)
     bend = np.diff(heights, 2)
     foot = (bend > 0.0) & (bend >= np.append(0.0, bend[:-1])) & (bend >= np.append(bend[1:], 0.0))
     feet = np.concatenate([[0], np.flatnonzero(foot) + 1, [len(heights) - 1]])
@@ -140,20 +117,13 @@ def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
     carries. EN 15610:2009 (curvature processing). Contact is found at points of the line: the height between
     them is off by at most spacing²/8R, 0.3 µm at 1 mm.
     """
-    heights = _complete(profile)
-    radius = positive("radius of the circle", radius)
+    heights = profile.heights
     depth = min(float(np.ptp(heights)), radius)
     reach = min(math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing), len(heights) - 1)
     across = np.minimum(np.arange(-reach, reach + 1) * profile.spacing, radius)
     circle = np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - radius
     rolled = scipy.ndimage.grey_dilation(heights, structure=circle, mode="constant", cval=-np.inf)
     return replace(profile, heights=rolled)
-
-
-def _complete(profile: Profile) -> Array:
-    received, remedy = f"{profile.missing_share:.2%} missing points", "Trim and fill it first."
-    require(profile.missing_share == 0.0, "measured line", received, "complete heights", remedy)
-    return profile.heights
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +143,7 @@ class ThirdOctaves:
 
 def full_lines(lines: Sequence[Profile]) -> list[Profile]:
     """Lines that a spectrum can be taken of, cut to one length: those of a full length, nearly complete."""
-    cut = [trim(line)[0] for line in lines]
+    cut = [trim(line) for line in lines]
     longest = max(len(line.heights) for line in cut)
     whole = [nearly_complete(line) for line in cut if len(line.heights) >= FULL_LINE * longest]
     complete = [line for line in whole if line is not None]
@@ -191,7 +161,7 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
     if not full or 4.0 * full[0].spacing > LIKELY_WAVELENGTHS[1] or full[0].size < LIKELY_WAVELENGTHS[0]:
         return None
     with PhysicsWarning.ignored():  # of a spacing beyond 1 mm
-        processed = [process(line)[0] for line in full]
+        processed, _ = process(full)
     (wavelength, before), (_, after) = map(_levels, (full, processed))
     nominal, limits = rail_roughness("iso3095")
     nominal, limits = nominal[likely_band(nominal)], limits[likely_band(nominal)]
@@ -227,8 +197,6 @@ class Register:
     reversed: tuple[bool, ...]  # whether each line was turned round
     shifts: tuple[int, ...]  # points by which each line was moved on, around its length
     correlations: tuple[float, ...]  # coefficient of each line with the one before it; 1 for the first
-    # lines too short for a full turn, replaced by their neighbours, linearly in between
-    replaced: tuple[int, ...]
 
 
 def bring_into_register(profiles: Sequence[Profile]) -> Register:
@@ -237,27 +205,17 @@ def bring_into_register(profiles: Sequence[Profile]) -> Register:
     Lines are often measured to and fro, each starting anew. Every line but the first is tried in both
     directions, and at all shifts around the wheel, against the line before it; the highest correlation wins.
     Starts within 1 % of a turn are preferred, since long waves also agree elsewhere: one farther away must
-    raise the correlation by 0.2. A line shorter than 95 % of the longest is warned of.
+    raise the correlation by 0.2.
     """
-    count, longest = len(profiles), max((len(p.heights) for p in profiles), default=0)
-    full = [k for k, p in enumerate(profiles) if len(p.heights) >= FULL_LINE * longest]
-    lines = common_length([profiles[k] for k in full])
-    turned, shifts = [False] * count, [0] * count
-    aligned = [lines[0]]
-    for k, line in zip(full[1:], lines[1:], strict=True):
-        turned[k], shifts[k] = _best_match(aligned[-1], line)
-        aligned.append(np.roll(line[::-1] if turned[k] else line, shifts[k]))
-    replaced = tuple(k for k in range(count) if k not in full)
-    if replaced:
-        short = f"{len(replaced)} of {count} parallel lines are shorter than {FULL_LINE:.0%} of the longest"
-        remedy = "their neighbours replace them; measure again or leave them out"
-        ShortRecordWarning.warn(f"{short}, {longest} points: {remedy}")
-    result = np.repeat(aligned, count, axis=0)
-    if len(aligned) > 1:
-        between = scipy.interpolate.make_interp_spline(full, np.array(aligned), k=1)
-        result = between(np.clip(np.arange(count), full[0], full[-1]))
-    correlations = (1.0, *(_correlation(one, other) for one, other in pairwise(result)))
-    return Register(result, tuple(turned), tuple(shifts), correlations, replaced)
+    lines = common_length(profiles)
+    aligned, turned, shifts = [lines[0]], [False], [0]
+    for line in lines[1:]:
+        backwards, shift = _best_match(aligned[-1], line)
+        aligned.append(np.roll(line[::-1] if backwards else line, shift))
+        turned.append(backwards)
+        shifts.append(shift)
+    correlations = (1.0, *(_correlation(one, other) for one, other in pairwise(aligned)))
+    return Register(np.array(aligned), tuple(turned), tuple(shifts), correlations)
 
 
 def _best_match(reference: Array, line: Array) -> tuple[bool, int]:
@@ -283,21 +241,11 @@ def _correlation(one: Array, other: Array) -> float:
 
 def common_length(profiles: Sequence[Profile]) -> Array:
     """Complete parallel lines with one spacing, cut to the length of the shortest: heights (k, n), m."""
-    require(profiles, "parallel lines", "none", "one or more lines")
-    for profile in profiles:
-        received = f"{profile.missing_share:.2%} missing points in {profile.source or 'a line'}"
-        complete, remedy = profile.missing_share == 0.0, "Trim and fill them first."
-        require(complete, "parallel lines", received, "complete lines", remedy)
-        received = f"spacings {profiles[0].spacing} and {profile.spacing} m"
-        same = np.isclose(profile.spacing, profiles[0].spacing, rtol=1e-6, atol=0.0)
-        require(same, "parallel lines", received, "one spacing for all", "Use resample first.")
     n = min(len(p.heights) for p in profiles)
     return np.array([p.heights[:n] for p in profiles])
 
 
-def strip_from_lines(
-    lines: ArrayLike, spacing: float, distance_across: float, shape_y: int, spacing_y: float
-) -> Array:
+def strip_from_lines(lines: Array, distance_across: float, shape_y: int, spacing_y: float) -> Array:
     """Strip (n, shape_y) through complete parallel lines (k, n), heights and distances in m.
 
     The points across are centred on the lines. Across, one line is constant, two and three are joined by
@@ -305,16 +253,10 @@ def strip_from_lines(
     that have little in common the interpolated texture is smoother than a measured one: its mean square falls
     to about half, midway between uncorrelated lines.
     """
-    heights = np.asarray(lines, dtype=np.float64)
-    complete = heights.ndim == 2 and heights.size > 0 and np.isfinite(heights).all()
-    require(complete, "parallel lines", f"shape {heights.shape}", "complete heights (k, n)")
-    received = f"{spacing}, {distance_across}, {spacing_y} m and {shape_y} points"
-    positive = min(spacing, distance_across, spacing_y) > 0.0 and shape_y >= 1
-    require(positive, "spacings of the lines", received, "positive lengths and one point or more")
-    count = len(heights)
+    count = len(lines)
     if count == 1:
-        return np.repeat(heights.T, shape_y, axis=1)
+        return np.repeat(lines.T, shape_y, axis=1)
     at = (np.arange(count) - 0.5 * (count - 1)) * distance_across
     wanted = np.clip((np.arange(shape_y) - 0.5 * (shape_y - 1)) * spacing_y, at[0], at[-1])
-    spline = scipy.interpolate.make_interp_spline(at, heights, k=1 if count < 4 else 3)
+    spline = scipy.interpolate.make_interp_spline(at, lines, k=1 if count < 4 else 3)
     return np.ascontiguousarray(spline(wanted).T)
