@@ -96,7 +96,7 @@ GIVEN = {
         [numerics] highest_frequency = "4 kHz" | time_step = "20 us" | kernel = "poles" | poles = 80
         [noise] track_pad = "soft" | wheel_transfer = "920 mm" | axles = 4 | rail_radiation = "ratios.csv"
         sleeper_length = "2.4 m" | sleeper_width = "0.2 m" | wheel_width = "140 mm"
-        vehicle_length = "20 m" | measured_passage = "passage.csv" | measured_bands = "bands.csv"
+        vehicle_length = "20 m" | measured_bands = "bands.csv"
         measured_maximum_level = "88 dB" | measured_equivalent_level = "84 dB"
         measured_exposure_level = "86 dB\"""",
         {

@@ -21,14 +21,12 @@ RATES = "frequency (Hz), decay rate (dB/m)\n"
 MOBILITY = "frequency (Hz), mobility ((m/s)/N)\n"
 COMPLEX = "f (Hz), real (m/s/N), imaginary (m/s/N)\n"
 TWELVE = "".join(f"{n}, 1, 1\n" for n in range(1, 13))
-PASSAGE = "time (s), level (dB(A))\n" + "".join(f"{n}, {60 + 5 * min(n, 11 - n)}\n" for n in range(12))
 READ = {
     "levels": (tables.read_levels, '[surface] spectrum = "levels.csv"', "surface.spectrum"),
     "modes": (lambda path: tables.read_mode_table(path).T, '[wheel] modes = "modes.csv"', "wheel.modes"),
     "ratios": (tables.read_ratios, '[noise] rail_radiation = "ratios.csv"', "noise.rail_radiation"),
     "receptance": (tables.read_receptance, '[wheel] receptance = "receptance.csv"', "wheel.receptance"),
     "rates": (measured.read_decay_rates, '[track] decay_rates = "rates.csv"', "track.decay_rates"),
-    "passage": (measured.read_passage, '[noise] measured_passage = "passage.csv"', "noise.measured_passage"),
     "bands": (measured.read_band_levels, '[noise] measured_bands = "bands.csv"', "noise.measured_bands"),
     "mobility": (measured.read_mobility, '[track] mobility = "mobility.csv"', "track.mobility"),
 }
@@ -125,11 +123,6 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("mobility", "f (Hz), size (kg)\n100, 1\n", "'size (kg)'; allowed: magnitude or real part in"),
         ("mobility", COMPLEX + "100, -1e-5, 0\n200, 1e-5, 0\n300, 1e-5, 0", "power to the hammer at 100 Hz"),
         ("mobility", COMPLEX + "100, 1e-5\n", "'100, 1e-5' in line 2; allowed: a table with the columns"),
-        ("passage", PASSAGE[:-20], "9 instants; allowed: at least 10"),
-        ("passage", PASSAGE.replace("11, 60", "10, 60"), "times that do not rise; allowed: rising times"),
-        ("passage", PASSAGE + "12, 76", "begins at 60.0 and ends at 76.0 dB(A); allowed: one that begins"),
-        ("passage", PASSAGE + "12, 1e3", "a level of 1e+03 dB re 20 uPa; allowed: -20 to 180 dB"),
-        ("passage", "time (s), p (Pa)\n0, 1\n", "the heading 'p (Pa)'; allowed: level in dB(A)"),
         ("bands", "f (Hz), L (dB)\n100, 60\n200, 70\n201, 60", "twice the band of 201 Hz"),
         ("bands", "t (s), L (dB)\n1, 60\n2, 70\n3, 60", "the heading 't (s)'; allowed: frequency in Hz"),
     ],
@@ -196,18 +189,11 @@ def test_a_mobility_is_read_in_its_three_forms(unit, numbers, tmp_path):
     np.testing.assert_allclose(measured.read_mobility(tmp_path / "size.txt")[1], np.abs(TRUE), rtol=1e-9)
 
 
-@pytest.mark.parametrize("unit", ["dB(A)", "dB", "dBA", "dB(A) re 20 µPa"])
-def test_the_level_of_a_passage_is_read(unit, tmp_path):
-    text = f"t (s); L ({unit})\n" + "".join(f"{n / 10}; {90 - (n - 20) ** 2 / 8}\n" for n in range(40))
-    (tmp_path / "passage.csv").write_text(text.replace(".", ","), encoding="utf-8")
-    time, level = measured.read_passage(tmp_path / "passage.csv")
-    np.testing.assert_allclose(time, np.arange(40) / 10)
-    assert (level.max(), level[0]) == (90.0, 40.0)
-
-
 def test_bands_are_read_without_weighting(tmp_path):
-    for unit, at_200 in (("dB", 60.0), ("dB(A)", 60.0 + 10.8)):  # IEC 61672-1: −10.9 dB at 200 Hz nominal
-        (tmp_path / "bands.csv").write_text(f"f (kHz), L ({unit})\n0.2, 60\n1, 70\n5, 50\n")
+    weighted = 60.0 + 10.8  # IEC 61672-1: −10.9 dB at 200 Hz nominal
+    for unit, at_200 in (("dB", 60.0), ("dB(A)", weighted), ("dBA", weighted), ("dB(A) re 20 µPa", weighted)):
+        text = f"f (kHz), L ({unit})\n0.2, 60\n1, 70\n5, 50\n"
+        (tmp_path / "bands.csv").write_text(text, encoding="utf-8")
         centres, level = measured.read_band_levels(tmp_path / "bands.csv")
         np.testing.assert_allclose(centres, 10.0 ** np.array([2.3, 3.0, 3.7]))
         assert level[0] == pytest.approx(at_200, abs=0.11)

@@ -22,11 +22,7 @@ MOBILITIES = (1e-9, 0.1)
 MOST_GAINS = 0.1
 """Share of the lines at which noise may turn the power round that a hammer gives to a rail."""
 
-FEWEST_INSTANTS = 10
-"""Of a passage."""
-FALL = 10.0
-"""dB by which the level of a passage rises and falls."""
-SOUND = ("dB(A)", "dB")
+SOUND = ("dB", "dB(A)")
 SOUND_LEVELS = (-20.0, 180.0)
 """dB re 20 µPa."""
 
@@ -87,32 +83,16 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
     return frequency, mobility
 
 
-def read_passage(table: TableSource) -> tuple[Array, Array]:
-    """Read the level of a passage (n,), dB(A), over rising times (n,), s: it rises and falls by 10 dB."""
-    rows, _ = _in_some_unit(table, Column("time", "s"), ("level",), SOUND)
-    time, level = rows.T
-    _refuse_beyond(table, level, SOUND_LEVELS, "a level", "dB re 20 uPa")
-    if len(rows) < FEWEST_INSTANTS:
-        raise InputError(name_of(table), f"{len(rows)} instants", f"at least {FEWEST_INSTANTS}")
-    if (np.diff(time) <= 0.0).any():
-        raise InputError(name_of(table), "times that do not rise", "rising times")
-    if max(level[0], level[-1]) > (least := level.max() - FALL):
-        received = f"a record that begins at {level[0]:.1f} and ends at {level[-1]:.1f} dB(A)"
-        allowed = f"one that begins and ends below {least:.1f} dB(A), {FALL:g} dB below its maximum"
-        raise InputError(name_of(table), received, allowed, "Take a longer record of one train alone.")
-    return time, level
-
-
 def read_band_levels(table: TableSource) -> tuple[Array, Array]:
     """Read sound pressure levels (n,), dB, in one-third octaves by their exact centres (n,), Hz.
 
     Without weighting; a file says by the unit dB(A) that its levels are A-weighted.
     """
-    rows, unit = _in_some_unit(table, _FREQUENCY, ("level",), SOUND[::-1])
+    rows, unit = _in_some_unit(table, _FREQUENCY, ("level",), SOUND)
     _refuse_few(table, rows)
     _refuse_beyond(table, level := rows[:, 1], SOUND_LEVELS, "a level", "dB re 20 uPa")
     centres = 10.0 ** (0.1 * band_numbers(table, rows[:, 0]))
-    return centres, level - (a_weighting(centres) if unit == SOUND[0] else 0.0)
+    return centres, level - (a_weighting(centres) if unit == SOUND[1] else 0.0)
 
 
 def _refuse_beyond(

@@ -313,28 +313,21 @@ class NoiseKeys(form.Section):
         "that of their middle, the rolling radius",
         "1 mm to 10 m: vehicles are lower",
     )
-    measured_passage: Path | Array | None = optional(
-        tables.TableFile(columns=(2,), read=measured.read_passage),
-        "passage.csv",
-        "what was measured beside the track as this train passed, to compare: time (s), A-weighted sound "
-        "pressure level with time weighting F (dB)",
-        _NOTHING,
-    )
     measured_bands: Path | Array | None = optional(
         tables.TableFile(columns=(2,), read=measured.read_band_levels),
         "bands.csv",
-        "measured sound pressure levels over the pass-by time: one-third octave (Hz), level (dB, or in a "
-        "file dB(A))",
+        "sound pressure levels beside the track over the pass-by time of this train, measured, to compare: "
+        "one-third octave (Hz), level (dB, or in a file dB(A))",
         _NOTHING,
     )
     measured_maximum_level: float | None = optional(
-        Quantity("dB"), "87 dB", "measured L_pAFmax", "that of measured_passage", _HEARD
+        Quantity("dB"), "87 dB", "measured L_pAFmax", _NOTHING, _HEARD
     )
     measured_equivalent_level: float | None = optional(
-        Quantity("dB"), "85 dB", "measured L_pAeq,Tp", "that of measured_passage", _HEARD
+        Quantity("dB"), "85 dB", "measured L_pAeq,Tp", _NOTHING, _HEARD
     )
     measured_exposure_level: float | None = optional(
-        Quantity("dB"), "86 dB", "measured TEL", "that of measured_passage", _HEARD
+        Quantity("dB"), "86 dB", "measured TEL", _NOTHING, _HEARD
     )
 
     def axles_behind(self, contacts: tuple[float, ...]) -> tuple[float, ...]:

@@ -1,7 +1,6 @@
 """What a result is held against: what was measured on a track and beside it, and the limits of TSI Noise."""
 
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,11 +8,10 @@ import numpy as np
 import xarray
 
 from asperity.arguments import Array, ArrayLike, Complex, NDArray
-from asperity.case.measured import FALL, read_band_levels, read_decay_rates, read_mobility, read_passage
+from asperity.case.measured import read_band_levels, read_decay_rates, read_mobility
 from asperity.case.rolled_over import TrackKeys
 from asperity.case.sections import NoiseKeys
-from asperity.errors import ComputationError, Finding, Grade, MeasuredTrackWarning
-from asperity.radiation import pass_by
+from asperity.errors import Finding, Grade, MeasuredTrackWarning
 from asperity.radiation.pass_by import Receiver
 from asperity.reference import cnossos, tracks, tsi_noise
 from asperity.scenes import compute, schema
@@ -215,27 +213,9 @@ def findings_of_measured(keys: TrackKeys, track: Track, band: Array) -> list[Fin
 # --- a passage beside the track
 
 
-DURATION = (0.8, 1.25)
-"""Measured over computed time of a passage: outside of it the train or its speed was another one."""
-
-
-def measured_passage(
-    keys: NoiseKeys, time: Array, level: Array, passed: tuple[float, float] | None, band: Array
-) -> Values:
-    """Lay out what was measured as a train passed.
-
-    Beside the computed level (t,), dB(A), at times (t,), s, of the train whose front and rear are opposite at
-    the times `passed`, s; bands by their centres, Hz. The record is moved so that the times at which it lies
-    10 dB below its maximum, first and last, have the same middle as those of the computed one.
-    """
+def measured_passage(keys: NoiseKeys, band: Array) -> Values:
+    """Lay out what was measured as a train passed; bands by their centres, Hz."""
     laid_out: Values = {}
-    if keys.measured_passage is not None:
-        at, heard = read_passage(keys.measured_passage)
-        (begin, end), (first, last) = within_fall(at, heard), within_fall(time, level)
-        at = at + 0.5 * (first + last - begin - end)
-        laid_out = _single_numbers(at, heard, passed)
-        laid_out[schema.MEASURED_LEVEL] = np.interp(time, at, heard, left=np.nan, right=np.nan)
-        laid_out[schema.MEASURED_DURATION_RATIO] = (end - begin) / (last - first)
     if keys.measured_bands is not None:
         laid_out[schema.MEASURED_BAND_LEVEL] = in_bands(band, *read_band_levels(keys.measured_bands))
     told: dict[Attribute, float | None] = {
@@ -244,51 +224,6 @@ def measured_passage(
         schema.MEASURED_EXPOSURE_LEVEL: keys.measured_exposure_level,
     }
     return laid_out | {entry: value for entry, value in told.items() if value is not None}
-
-
-def within_fall(time: Array, level: Array) -> tuple[float, float]:
-    """First and last time at which a level lies 10 dB below its maximum, s."""
-    limit = level.max() - FALL
-    above = np.flatnonzero(level > limit)
-    rise, fall = (slice(at, at + 2) for at in (above[0] - 1, above[-1]))
-    start = np.interp(limit, level[rise], time[rise])
-    end = np.interp(-limit, -level[fall], time[fall])
-    return float(start), float(end)
-
-
-def _single_numbers(time: Array, level: Array, passed: tuple[float, float] | None) -> Values:
-    """Largest level, and those over the pass-by time as far as the record holds it.
-
-    Time weighting F delays energy by its time constant, which is taken off.
-    """
-    found: Values = {schema.MEASURED_MAXIMUM_LEVEL: float(level.max())}
-    true = time - pass_by.FAST
-    if passed is None or true[0] > passed[0] or true[-1] < passed[1]:
-        return found
-    squared = pass_by.REFERENCE_PRESSURE**2 * 10.0 ** (level[None] / 10.0)
-    mean = pass_by.integral(true, squared, *passed) / (passed[1] - passed[0])
-    found[schema.MEASURED_EQUIVALENT_LEVEL] = float(pass_by.pressure_level(mean)[0])
-    with suppress(ComputationError):  # it ends before it has fallen as far as TEL asks
-        exposed = pass_by.pass_by_levels(true, squared, passed).transit_exposure
-        found[schema.MEASURED_EXPOSURE_LEVEL] = float(exposed[0])
-    return found
-
-
-def findings_of_passage(laid_out: Mapping[Any, Any]) -> list[Finding]:
-    """Hold the time of a measured passage to that of the computed one; nothing where none was measured."""
-    if (ratio := laid_out.get(schema.MEASURED_DURATION_RATIO)) is None:
-        return []
-    low, high = DURATION
-    return [
-        Finding(
-            "time of the measured passage over that of the computed one, within 10 dB of the maximum",
-            f"{ratio:.2f}",
-            f"{low:g} to {high:g}",
-            None if low <= ratio <= high else Grade.WARNING,
-            "It was another train, or another speed.",
-            "Check speed, noise.vehicle_length and noise.vehicles.",
-        )
-    ]
 
 
 # --- limits of TSI Noise

@@ -438,8 +438,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
         laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = transit_exposure
         laid_out |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
         laid_out |= measured.held_to_limits(case, over_frequency, lambda at: heard(at)[4])
-    main = laid_out[schema.PASS_BY_LEVEL][0, -1]
-    return laid_out | measured_passage(case.noise, time[kept], main, passage.passed, band)
+    return laid_out | measured_passage(case.noise, band)
 
 
 def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSource]:

@@ -71,7 +71,6 @@ def computed_result(
         found += measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
         beside = sideways.sideways_group(computed, in_bands)
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands, beside)
-        found += measured.findings_of_passage(own)
         creeps = creep.creep_group(computed)
         own |= beside | creeps
         sources += (*scene.over.sources, cnossos.CITATION, *noise.sources_of(case))

@@ -284,14 +284,6 @@ FRONT_TIME = _place("front_time", "s", "at which the front of the train is oppos
 REAR_TIME = _place("rear_time", "s", "at which its rear is opposite: Tp ends", _LENGTH)
 
 _passage = partial(Attribute, "pass_by", condition="where a passage was measured")
-_LEVEL = "A-weighted sound pressure level with time weighting F, measured, moved in time to the computed one"
-MEASURED_LEVEL = _pass_by(
-    "measured_level(time)",
-    "dB(A) re 20 uPa",
-    _LEVEL,
-    condition="where a passage was measured over time",
-    missing="the record begins later, or ends before",
-)
 MEASURED_BAND_LEVEL = _pass_by(
     "measured_band_level(band)",
     "dB re 20 uPa",
@@ -302,8 +294,6 @@ MEASURED_BAND_LEVEL = _pass_by(
 MEASURED_MAXIMUM_LEVEL = _passage("measured_maximum_level", "dB(A) re 20 uPa", "L_pAFmax, measured")
 MEASURED_EQUIVALENT_LEVEL = _passage("measured_equivalent_level", "dB(A) re 20 uPa", "L_pAeq,Tp, measured")
 MEASURED_EXPOSURE_LEVEL = _passage("measured_exposure_level", "dB(A) re 20 uPa", "TEL, measured")
-_RATIO = "time within 10 dB of the maximum, measured over computed"
-MEASURED_DURATION_RATIO = _passage("measured_duration_ratio", "1", _RATIO)
 
 # --- what helps
 

@@ -83,16 +83,6 @@ def measured_table(tree: DataTree) -> tables.ReportTable | None:
 # --- beside the track
 
 
-def moved_words(tree: DataTree) -> str:
-    """Say how a record that was measured lies over the computed one; a blank comes first."""
-    if not data.present(tree, schema.MEASURED_LEVEL):
-        return ""
-    return (
-        " Measured: moved in time so that the stretch between the points 10 dB below its maximum has the "
-        "middle of that of the main law."
-    )
-
-
 def _over_pass_by(tree: DataTree) -> Iterator[figure.Series]:
     """Levels of the main law over the pass-by time, A-weighted, by what radiates; then those measured."""
     band, level = data.values(tree, schema.PASS_BY_BAND), schema.SOUND_EXPOSURE_LEVEL
@@ -167,11 +157,6 @@ def passage_table(tree: DataTree) -> tables.ReportTable | None:
         ),
     }
     note = f"Re 20 µPa. Computed by {data.laws(tree, schema.PASS_BY_MAXIMUM_LEVEL)[0]}, all that is known."
-    ratio = data.number(tree, schema.MEASURED_DURATION_RATIO)
-    if ratio is not None:
-        note += (
-            f" The measured passage lasted {ratio:.2f} times the computed one, within 10 dB of the maximum."
-        )
     return tables.table("measured_passage", "Pass-by: measured against computed", columns, note)
 
 

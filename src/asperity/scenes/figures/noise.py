@@ -14,7 +14,7 @@ from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Numbers
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
-from asperity.scenes.figures.measured import compared_numbers, limit_sentence, moved_words
+from asperity.scenes.figures.measured import compared_numbers, limit_sentence
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -302,11 +302,10 @@ def _pass_by(tree: DataTree, lines: Lines) -> list[Panel]:
     totals = panels.styled(tree, lines.at, lines.of(PASSING, radiator=whole))
     dashes = {part: _DASHES[part] for part in parts}
     of_parts = _of_parts(lines, PASSING, data.laws(tree, PASSING)[0], dashes)
-    heard = [Line(lines.at, s.values, s.label, INK, (), 2.2) for s in lines.of(schema.MEASURED_LEVEL)]
     label = "sound pressure level, F / dB(A) re 20 µPa"
-    axis = panels.levels_axis(label, [line.y for line in (*totals, *heard)], span=SPAN, step=5.0)
+    axis = panels.levels_axis(label, [line.y for line in totals], span=SPAN, step=5.0)
     time = Axis("time since the first axle was opposite / s", lines.at[0], lines.at[-1])
-    return [Panel(time, axis, (*_train(tree), *totals, *of_parts, *heard), height=4.2)]
+    return [Panel(time, axis, (*_train(tree), *totals, *of_parts), height=4.2)]
 
 
 def _train(tree: DataTree) -> list[Mark]:
@@ -330,7 +329,7 @@ def _pass_by_caption(tree: DataTree) -> str:
     return (
         f"{passing} (ticks), two wheels on each{where}, over {_ground(tree)}. Rail and sleepers radiate "
         f"along the track as its vibration decays, a wheel from its axle, {_directions(tree)}; nothing "
-        f"screens them.{moved_words(tree)}"
+        "screens them."
     )
 
 
@@ -373,7 +372,7 @@ PASS_BY = Figure(
     "pass_by_level",
     "Level beside the track",
     Of(schema.PASS_BY_TIME, "time"),
-    (Of(PASSING, "{radiator}, {law}"), Of(schema.MEASURED_LEVEL, "measured", "measured", optional=True)),
+    (Of(PASSING, "{radiator}, {law}"),),
     _pass_by,
     _pass_by_caption,
     (schema.AXLE_TIME,),
