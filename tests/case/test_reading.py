@@ -33,7 +33,6 @@ DEFAULTS = {
         "track.name": "x2000", "track.overrides": {}, "track.rail_head_radius": 0.3,
         "contact.spacing": 5e-4, "contact.window": 0.02, "contact.cells": 40, "contact.samples": 8,
         "numerics.highest_frequency": 5e3, "numerics.kernel": "poles", "numerics.poles": None,
-        "noise.track_pad": None, "noise.wheel_transfer": None, "noise.axles": None, "axles": 1,
         "noise.wheel_width": 0.135, "noise.sleeper_length": 2.6, "noise.sleeper_width": 0.25,
         "rolled_time": 1.0, "rolled_range": (-16.8, 56.0),
     },
@@ -94,9 +93,8 @@ GIVEN = {
         decay_rates = "rates.csv" | mobility = "mobility.csv"
         [contact] spacing = "0.4 mm" | window = "16 mm"
         [numerics] highest_frequency = "4 kHz" | time_step = "20 us" | kernel = "poles" | poles = 80
-        [noise] track_pad = "soft" | wheel_transfer = "920 mm" | axles = 4 | rail_radiation = "ratios.csv"
-        sleeper_length = "2.4 m" | sleeper_width = "0.2 m" | wheel_width = "140 mm"
-        vehicle_length = "20 m" | measured_bands = "bands.csv"
+        [noise] rail_radiation = "ratios.csv" | sleeper_length = "2.4 m" | sleeper_width = "0.2 m"
+        wheel_width = "140 mm" | vehicle_length = "20 m" | measured_bands = "bands.csv"
         measured_maximum_level = "88 dB" | measured_equivalent_level = "84 dB"
         measured_exposure_level = "86 dB\"""",
         {
@@ -107,7 +105,7 @@ GIVEN = {
             "point_positions": (9.0, 9.325), "track.bending_stiffness": 6e6, "track.mass_per_length": 61.0,
             "track.shear_stiffness": 240e6, "track.rotary_inertia": 0.2, "track.pad_stiffness": 250e6,
             "track.pad_damping": 20e3, "track.sleeper_mass": 140.0, "track.ballast_stiffness": 100e6,
-            "track.ballast_loss_factor": 0.4, "track.ballast_damping": None, "axles": 4,
+            "track.ballast_loss_factor": 0.4, "track.ballast_damping": None,
         },
     ),
 }  # fmt: skip

@@ -217,11 +217,6 @@ class Case(AnyCase):
         return (0.0, 0.0) if self.meeting is None else self.meeting.places
 
     @property
-    def axles(self) -> int:
-        """Number of axles whose sound power is added."""
-        return self.noise.axles or len(self.contacts_behind)
-
-    @property
     def passage(self) -> "Passage":
         """The axles that pass a receiver beside the track."""
         return self.noise.passage(self.contacts_behind, self.speed)

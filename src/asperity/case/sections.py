@@ -204,28 +204,10 @@ class NoiseKeys(form.Section):
     wheel_width: float = key(
         surface.LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
     )
-    track_pad: str | None = optional(
-        Choice(tuple(cnossos.PAD_CLASSES)),
-        "medium",
-        "rail pads of CNOSSOS-EU's transfer to the sound power of the track, on mono-block sleepers",
-        "those nearest to track.pad_stiffness",
-    )
-    wheel_transfer: str | None = optional(
-        Choice(tuple(cnossos.WHEEL_TRANSFER)),
-        "920 mm",
-        "wheel diameter of CNOSSOS-EU's transfer to the sound power of the wheel",
-        "that nearest to twice the rolling radius",
-    )
-    axles: int | None = optional(
-        Number(at_least=1, at_most=1000, whole=True),
-        4,
-        "number of axles whose sound power is added; each has two wheels, on two rails",
-        "one for each contact",
-    )
     axle_positions: tuple[float, ...] | None = optional(
         ListOf(surface.POSITION),
         ["0 m", "2.5 m", "19 m", "21.5 m"],
-        "axles of the vehicle that passes, behind its first; each has two wheels",
+        "axles of the vehicle that passes, behind its first; each has two wheels, on two rails",
         "the contacts that roll",
         "0 m to 1 km: trains are shorter",
     )
@@ -300,19 +282,6 @@ class NoiseKeys(form.Section):
         "both in the middle of the track",
         "0.1 m to 1.9 m: receivers stand beside the track",
     )
-    rail_height: float = key(
-        surface.POSITION,
-        "0 m",
-        "height above the rail head at which rail and sleepers radiate; 0.5 m in CNOSSOS-EU",
-        "1 mm to 10 m: vehicles are lower",
-    )
-    wheel_height: float | None = optional(
-        surface.POSITION,
-        "0.5 m",
-        "height above the rail head at which wheels radiate; 0.5 m in CNOSSOS-EU",
-        "that of their middle, the rolling radius",
-        "1 mm to 10 m: vehicles are lower",
-    )
     measured_bands: Path | Array | None = optional(
         tables.TableFile(columns=(2,), read=measured.read_band_levels),
         "bands.csv",
@@ -380,7 +349,7 @@ class NoiseKeys(form.Section):
 
     def problems_of_train(self, contacts: tuple[float, ...]) -> Iterator[InputError]:
         """Axles of one contact alone may be told otherwise; a vehicle is longer than they are apart."""
-        told = [name for name in ("axles", "axle_positions", "wheelbase") if getattr(self, name) is not None]
+        told = [name for name in ("axle_positions", "wheelbase") if getattr(self, name) is not None]
         if told and len(contacts) > 1:
             allowed = "nothing where several contacts roll, which are the axles"
             yield InputError(f"noise.{told[0]}", "a train", allowed, "Remove it.")

@@ -41,13 +41,13 @@ CLOSE_DIAMETER = 0.15
 
 
 def track_label(case: Any) -> str:
-    """Class of rail pads: that which the case names, or that nearest to its pads."""
-    return case.noise.track_pad or cnossos.nearest_pad_class(case.track.model().pad_stiffness)
+    """Class of rail pads nearest to those of the case."""
+    return cnossos.nearest_pad_class(case.track.model().pad_stiffness)
 
 
 def wheel_label(case: Any) -> str:
-    """Diameter of the wheel: that which the case names, or that nearest to its wheel."""
-    return case.noise.wheel_transfer or cnossos.nearest_wheel_transfer(2.0 * case.rolling.radius)
+    """Diameter nearest to that of the wheel of the case."""
+    return cnossos.nearest_wheel_transfer(2.0 * case.rolling.radius)
 
 
 def findings_of_labels(case: Any) -> list[Finding]:
@@ -62,7 +62,7 @@ def findings_of_labels(case: Any) -> list[Finding]:
             not least <= stiffness <= most,
             ("dynamic stiffness of the rail pads", f"{stiffness / 1e6:.4g} MN/m"),
             f'{least / 1e6:g} to {most / 1e6:g} MN/m, those of the class "{pads}"',
-            _relabelled("track_pad", pads, cnossos.nearest_pad_class(stiffness), f"such pads; {vibration}"),
+            f"It has no class for such pads; {vibration}",
         ),
         (
             not MONO_BLOCK[0] <= mass <= MONO_BLOCK[1],
@@ -74,7 +74,7 @@ def findings_of_labels(case: Any) -> list[Finding]:
             apart > math.log1p(CLOSE_DIAMETER),
             ("diameter of the wheel", f"{1e3 * diameter:.4g} mm"),
             f"within 15 % of {wheel}",
-            _relabelled("wheel_transfer", wheel, cnossos.nearest_wheel_transfer(diameter), "such a wheel."),
+            "It has no class for such a wheel.",
         ),
     )
     meaning = "CNOSSOS-EU's sound power is that of another track or wheel."
@@ -83,12 +83,6 @@ def findings_of_labels(case: Any) -> list[Finding]:
         for other, (quantity, value), limit, remedy in rows
         if other
     ]
-
-
-def _relabelled(key: str, label: str, fitting: str, none: str) -> str:
-    if fitting == label:
-        return f"It has no class for {none}"
-    return f'Set noise.{key} = "{fitting}", or leave it out.'
 
 
 def rolling_sound_power(
@@ -178,7 +172,7 @@ def _linear(computed: compute.Computed, contact_filter: Table | None) -> tuple[A
     rail, wheel = (_roughness(parts[part], case.contact.spacing) for part in ("rail", "wheel"))
     transfers = cnossos.track_transfer(track_label(case)), cnossos.wheel_transfer(wheel_label(case))
     centres, levels = rolling_sound_power(
-        case.speed, rail, wheel, *transfers, contact_filter=contact_filter, axles=case.axles
+        case.speed, rail, wheel, *transfers, contact_filter=contact_filter, axles=len(case.contacts_behind)
     )
     shown = (centres > band[0] / 1.05) & (centres < band[-1] * 1.05) & ~np.isnan(levels).any(axis=0)
     return centres[shown], levels[:, shown]
@@ -258,7 +252,7 @@ def warn_of_silence(case: Any) -> None:
 def radiation(computed: compute.Computed) -> Values:
     """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels.
 
-    That of what was rolled on one rail counts for all axles, each with two wheels, on two rails. The total
+    What was rolled on one rail stands for axles, each with two wheels, on two rails. The total
     holds what is known: without a wheel that says how its modes move it, rail and sleepers. What was measured
     on the track changes the power of both, and the length that radiates, band by band.
     """
@@ -266,13 +260,12 @@ def radiation(computed: compute.Computed) -> Values:
     edges = band / HALF_BAND, band * HALF_BAND
     density, of_modes = _radiated(computed)
     power = np.maximum(band_energies(computed.frequency, density, *edges), 0.0)
-    wheels = 2.0 * case.axles / len(computed.scene.offsets)  # for each that was rolled
 
     def laid_out(power: Array, levels: Entry, totals: Entry) -> Values:
         whole = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
         if silent != "computed":
             whole[:, 2] = np.nan
-        level = level_of(wheels * whole / PICOWATT)
+        level = level_of(2.0 * whole / PICOWATT)  # of two rails
         said = {"wheel": silent}
         if not power[:, 1].any():
             of_wheel = () if silent == "computed" else (schema.SILENT,)
@@ -292,7 +285,7 @@ def radiation(computed: compute.Computed) -> Values:
     rung: Values = {}
     if of_modes.shape[1]:
         energy = np.maximum(band_energies(computed.frequency, of_modes, *edges), 0.0)
-        rung = mode_by_mode(case, wheels * energy, band)
+        rung = mode_by_mode(case, 2.0 * energy, band)
     # the length 8.686/Δ of the decay is the mean of those over a band
     lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * WITHIN)
     return {
@@ -452,11 +445,10 @@ def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSour
 
 def _source(case: Any, name: str, level: Array, length: Array) -> pass_by.AxleSource:
     """One of them by its sound power level (laws, b), dB re 1 pW, and the length of waves in the rail, m."""
-    keys, power = case.noise, PICOWATT * np.nan_to_num(10.0 ** (level / 10.0)) / case.axles
-    if not name.startswith("wheel"):
-        return pass_by.AxleSource(power, length, keys.rail_height)
-    height = case.rolling.radius if keys.wheel_height is None else keys.wheel_height
-    return pass_by.AxleSource(power, 0.0, height)
+    power = PICOWATT * np.nan_to_num(10.0 ** (level / 10.0)) / len(case.contacts_behind)
+    if name.startswith("wheel"):
+        return pass_by.AxleSource(power, 0.0, case.rolling.radius)
+    return pass_by.AxleSource(power, length)
 
 
 def _sideways(case: Any, band: Array, beside: Values, longest: float) -> list[pass_by.AxleSource]:

@@ -200,7 +200,7 @@ def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -
         return level_of(np.maximum(energies, 0.0))
 
     powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
-    power = levels(2.0 * case.axles / contacts / PICOWATT * np.stack(powers, axis=1))
+    power = levels(2.0 / PICOWATT * np.stack(powers, axis=1))
     up = over_frequency[schema.RADIATED_POWER_LEVEL.name].sel(radiator=["rail", "sleepers"]).values
     together = np.concatenate([np.nan_to_num(up, nan=-np.inf), power[:, [0, 2]]], axis=1)
     power = np.append(power, energy_sum(together, axis=1)[:, None], axis=1)
