@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -215,7 +216,6 @@ class Choice(ValueKind):
     """One of a few words, or of those that a registry holds when it is asked."""
 
     words: tuple[str, ...] | Callable[[], tuple[str, ...]]
-    numbers: tuple[int, ...] = ()  # that mean the words, one each
 
     @property
     def known(self) -> tuple[str, ...]:
@@ -229,8 +229,6 @@ class Choice(ValueKind):
 
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> str:
         """Return the word."""
-        if isinstance(value, int) and not isinstance(value, bool) and value in self.numbers:
-            return self.known[self.numbers.index(value)]
         if not isinstance(value, str) or value not in self.known:
             self.refuse(value, nearest(value, self.known))
         return value
@@ -342,17 +340,15 @@ class File(ValueKind):
 
 @dataclass(frozen=True)
 class Either(ValueKind):
-    """One of a few words, or else a value of another kind; `last` where the words are told behind that."""
+    """One of a few words, or else a value of another kind."""
 
     words: tuple[str, ...]
     other: ValueKind
-    last: bool = False
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
-        both = [Choice(self.words).allowed, self.other.allowed]
-        return ", or ".join(both[::-1] if self.last else both)
+        return f"{Choice(self.words).allowed}, or {self.other.allowed}"
 
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> Any:
         """Return the word, or the other value."""
@@ -367,15 +363,17 @@ class Either(ValueKind):
 
 @dataclass(frozen=True)
 class ListOf(ValueKind):
-    """A list of values of one kind, of at least so many."""
+    """A list of values of one kind, of at least so many; each once, or each above the one before."""
 
     each: ValueKind
     least: int = 0
+    once: bool = False
+    rising: bool = False
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
-        return f"a list, each {self.each.allowed}"
+        return f"a list{' that rises' * self.rising}, each {self.each.allowed}"
 
     def __call__(self, value: Any, origin: Origin = FROM_PYTHON) -> tuple[Any, ...]:
         """Return the values; errors are told of each, by number."""
@@ -393,6 +391,10 @@ class ListOf(ValueKind):
                 errors.append(error.about(f"[{number}]"))
         if errors:
             raise Problems(errors)
+        if self.once and (twice := [item for item in read if read.count(item) > 1]):
+            raise InputError("value", f'"{twice[0]}" more than once', "each once")
+        if self.rising and any(later <= earlier for earlier, later in pairwise(read)):
+            self.refuse(value, "Sort them, each once.")
         return tuple(read)
 
 

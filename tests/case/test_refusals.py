@@ -28,7 +28,7 @@ ball: [beam] suspension_frequency = "3 Hz" → only together with support = "fre
 ball: [contact] window = "20 um" → contact.window: received 20 um, 2 cells of 10 um; allowed: 8 to 2048 cells
 ball: [contact] window = "25 mm" → 2500 cells
 ball: [contact] approaches = ["1 um"] → at least 2
-ball: [contact] approaches = ["1 um", "0 um"] → contact.approaches: received 1 um, 0 um; allowed: increasing
+ball: [contact] approaches = ["1 um", "0 um"] → approaches: received ['1 um', '0 um']; allowed: a list that
 ball: [contact] filter_taps = 63 → an even number
 ball: [contact] filter_degree = 6.5 → a whole number at least 1 and at most 20
 ball: [contact] sample_length = "0.6 mm" → at least two windows, 1000 um
@@ -40,7 +40,7 @@ ball: [numerics] rtol = 0 → a number greater than 0 and at most 0.01
 ball: laws = [] → laws: received an empty list; allowed: at least 1, each "areal",
 ball: laws = ["arreal"] → Did you mean "areal"?
 ball: laws = "areal" → laws: received 'areal'; allowed: a list
-ball: laws = ["areal", "areal"] → laws: received "areal" more than once; allowed: each law once
+ball: laws = ["areal", "areal"] → laws: received "areal" more than once; allowed: each once
 ball: seed = -1 → a whole number at least 0
 ball: start = "1 m" → start: received 1 m; allowed: a position on the beam
 ball: duration = "1.5 s" → duration: received 1.5 s, which ends at 1.5 m; allowed: at most 1 s

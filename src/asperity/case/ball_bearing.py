@@ -214,7 +214,9 @@ class BallBearingCase(AnyCase):
     radial: float = key(LOAD, "0 N", "radial load of the inner on the outer ring", LOADS)
     axial: float = key(LOAD, "0 N", "axial load of the inner on the outer ring", LOADS)
     laws: tuple[str, ...] = key(
-        ListOf(Choice(LAWS), least=1), list(LAWS[:3]), "laws of the contact force; the first is the main one"
+        ListOf(Choice(LAWS), least=1, once=True),
+        list(LAWS[:3]),
+        "laws of the contact force; the first is the main one",
     )
     seed: int = key(INDEX, 1, "seed of everything random")
     duration: float = key(DURATION, "1 s", "time that is recorded", "1 ms to 1 h: records lie between")
@@ -360,9 +362,6 @@ class BallBearingCase(AnyCase):
                 yield InputError(f"{name}.on", "nothing", Choice(PARTS).allowed, "Or remove the section.")
             if fault.ball > balls:
                 yield InputError(f"{name}.ball", f"{fault.ball}", f"1 to {balls}, as many balls as there are")
-        for law in sorted(set(self.laws)):
-            if self.laws.count(law) > 1:
-                yield InputError("laws", f'"{law}" more than once', "each law once")
         for name in ("cage_slip", "envelope_band"):
             pair = getattr(self, name)
             if pair is not None and (len(pair) != 2 or pair[0] > pair[1]):

@@ -71,7 +71,7 @@ class Case(AnyCase):
         "0.1 mm/s to 1 km/s: slower rolling is static, and nothing rolls faster",
     )
     laws: tuple[str, ...] = key(
-        ListOf(LAW, least=1),
+        ListOf(LAW, least=1, once=True),
         ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
         "laws of the contact force; the first is the main one, direct where a flat or a joint is rolled over",
     )
@@ -342,16 +342,14 @@ class Case(AnyCase):
         yield from ()
 
     def _problems_of_laws(self) -> Iterator[InputError]:
-        """At least one law, each once, that needs no more texture than there is."""
+        """Laws that need no more texture than there is."""
         smooth = self.surface.has_line and not self.surface.has_samples
         for name in _sections_of_laws():
             if name not in self.section_names and getattr(self, name).given():
                 yield InputError(
                     name, "keys of a law that is not rolled", f'"{name}" in laws', "Remove them."
                 )
-        for law in sorted(set(self.laws)):
-            if self.laws.count(law) > 1:
-                yield InputError("laws", f'"{law}" more than once', "each law once")
+        for law in self.laws:
             if self.surface.has_line and spec_of(law).needs_areal_path:
                 allowed = "laws that need no texture beside the line: " + _listed(line=True)
                 yield InputError("laws", f'"{law}" with a path given as a line', allowed)

@@ -1,7 +1,6 @@
 """How the contact is solved and reduced, how finely time is resolved, and what radiates."""
 
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,9 +52,9 @@ class ContactKeys(form.Section):
         "10 nm to 100 m: samples lie between contacts and bodies",
     )
     approaches: tuple[float, ...] | None = optional(
-        ListOf(Quantity("m"), least=2),
+        ListOf(Quantity("m"), least=2, rising=True),
         ["-0.5 um", "0 um", "1 um"],
-        "increasing approaches at which the contact is reduced, from the plane that the nominal patch feels",
+        "approaches at which the contact is reduced, from the plane that the nominal patch feels",
         "chosen from the load and the roughness",
         "-10 mm to 10 mm: contacts are closer than that",
     )
@@ -73,7 +72,7 @@ class ContactKeys(form.Section):
         "1 kPa to 1 TPa: no solid is as soft, or as hard",
     )
     running_in: int | str | None = optional(
-        Either((SHAKEDOWN,), Number(at_least=1, at_most=MOST_PASSES, whole=True), last=True),
+        Either((SHAKEDOWN,), Number(at_least=1, at_most=MOST_PASSES, whole=True)),
         "shakedown",
         "passes under the working load that samples and path have had before, in which asperities yielded, "
         "or until a pass changes nothing",
@@ -116,10 +115,7 @@ class ContactKeys(form.Section):
         return round(self.window / self.spacing)
 
     def problems(self) -> Iterator[InputError]:
-        """Approaches increase; the filter order is even."""
-        if any(later <= earlier for earlier, later in pairwise(self.approaches or ())):
-            received = ", ".join(written(value, "m", "um") for value in self.approaches or ())
-            yield InputError("approaches", received, "increasing values", "Sort them, each once.")
+        """The filter order is even."""
         if self.filter_taps is not None and self.filter_taps % 2:
             remedy = "An odd order would shift the texture by half a step."
             yield InputError("filter_taps", self.filter_taps, "an even number", remedy)
@@ -205,7 +201,7 @@ class NoiseKeys(form.Section):
         surface.LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
     )
     axle_positions: tuple[float, ...] | None = optional(
-        ListOf(surface.POSITION),
+        ListOf(surface.POSITION, least=1, rising=True),
         ["0 m", "2.5 m", "19 m", "21.5 m"],
         "axles of the vehicle that passes, behind its first; each has two wheels, on two rails",
         "the contacts that roll",
@@ -341,10 +337,9 @@ class NoiseKeys(form.Section):
         return SoundPath(band, receiver or self.receiver, ground, self.ground_depth, self.directivity, apart)
 
     def problems(self) -> Iterator[InputError]:
-        """Axles one behind the other."""
-        axles = self.axle_positions
-        if axles is not None and (axles[:1] != (0.0,) or any(b <= a for a, b in pairwise(axles))):
-            received = ", ".join(written(axle, "m", "m") for axle in axles) or "an empty list"
+        """The first axle is where the others count from."""
+        if self.axle_positions and self.axle_positions[0] != 0.0:
+            received = f"{self.axle_positions[0]:g} m first"
             yield InputError("axle_positions", received, "positions that rise from 0 m, the first axle")
 
     def problems_of_train(self, contacts: tuple[float, ...]) -> Iterator[InputError]:

@@ -40,7 +40,7 @@ class SidewaysKeys(Section, parameters=keys_of(LateralRail, otherwise="of a UIC 
         f"-50 mm to 50 mm: {_HEADS}",
     )
     rail_inclination: str | None = optional(
-        Choice(tuple(INCLINATIONS), numbers=(0,)),
+        Choice(tuple(INCLINATIONS)),
         "1:40",
         "inclination of the rail towards the middle of the track, by which the sections of wheel and rail "
         "lie on each other, positive to the field side from running circle and middle of the head, as their "

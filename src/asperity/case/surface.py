@@ -79,7 +79,7 @@ class MeasuredLine(Section):
         "1 um to 1 m: lines lie beside each other on one body",
     )
     processing: tuple[str, ...] = key(
-        ListOf(Choice(("fill", "spikes", "curvature"))),
+        ListOf(Choice(("fill", "spikes", "curvature")), once=True),
         (),
         "steps of EN 15610 that are applied to measured lines",
         goes_with="line",
@@ -91,12 +91,9 @@ class MeasuredLine(Section):
         return surfaces_from(super().prepared(given), "line", "line_spacing", "line_unit", (1, 2))
 
     def problems(self) -> Iterator[InputError]:
-        """A line in memory has its own points; each step of its processing once."""
+        """A line in memory has its own points."""
         yield from super().problems()
         yield from _foreign(self, "line", ("line_array", "line_unit", "line_spacing"))
-        for step in sorted(set(self.processing)):
-            if self.processing.count(step) > 1:
-                yield InputError("processing", f'"{step}" more than once', "each step once")
 
 
 class MeasuredMap(Section):
@@ -129,7 +126,7 @@ class MeasuredMap(Section):
         "--store recipe.toml' writes it",
     )
     form: str = key(
-        Choice(tuple(FORMS), tuple(FORMS.values())),
+        Choice(tuple(FORMS)),
         "plane",
         "form that is removed from each measured map",
         goes_with="file",
