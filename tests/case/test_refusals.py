@@ -99,7 +99,6 @@ wheel: [surface] spectrum = "absent.csv" → "cnossos-average", or the path of a
 wheel: [surface] corrugation = "25 um" → surface.corrugation: received no corrugation_wavelength
 wheel: [surface] corrugation = "25 um" | corrugation_wavelength = "0.5 mm" → 0.5 mm on a spacing of 0.5 mm;
 wheel: [surface] joint_depth = "1 mm" | joint_position = "60 m" → received 60 m; allowed: a position that is
-wheel: [surface] spectrum = "iso3095" | level = "+70 dB" → received a level of 70 dB re 1 um; allowed: -60 to
 bodies: [body] positions = ["0.2 m", "0.2 m"] → two contacts in the same place
 bodies: [body] positions = ["0 m", "3 m"] → less than the length of the beam, 1 m
 bodies: start = "0.99 m" | [body] positions = ["0 m", "0.5 m"] → where the foremost contact is at its end
