@@ -146,7 +146,7 @@ def part(name, title):
 PARTS = [
     part("force_bands", "Contact force levels in one-third octaves"),
     part("force_psd", "Contact force against frequency"),
-    part("scene", "The scene, to scale"),
+    part("scene", "The scene"),
 ]
 
 
@@ -155,7 +155,7 @@ PARTS = [
     [
         ([], ["force_bands", "force_psd", "scene"]),
         (["scene", "force_psd", "scene"], ["scene", "force_psd"]),
-        (["the scene, to SCALE"], ["scene"]),
+        (["the SCENE"], ["scene"]),
         (["contact force levels"], ["force_bands"]),
     ],
 )

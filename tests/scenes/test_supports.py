@@ -58,4 +58,4 @@ def test_power_and_pads_are_drawn(run):
     assert drawn["loss_factors"].laid_out(tree).panels
     scene = drawn["scene"].laid_out(tree).panels[0]
     pads = [mark for mark in scene.marks if getattr(mark, "fill", "") == "#5b6670"]
-    assert len(pads) == (1 if name == "embedded" else 4 + 3)  # of pads and, between them, dampers
+    assert len(pads) == (1 if name == "embedded" else 5)

@@ -71,7 +71,7 @@ CHAPTERS = (
     Chapter("motion", "Motion of the bodies", (motion.BODIES,)),
     Chapter("force", "Contact force", force.FORCE, (tables.loss_table,), headline.force_answers),
     Chapter("contacts", "All contacts", force.CONTACTS, (force.contacts_table,)),
-    Chapter("setup", "Scene", scene.SCENES),
+    Chapter("setup", "Scene", (scene.SCENE,)),
     Chapter(
         "texture",
         "Texture",
