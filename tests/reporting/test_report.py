@@ -406,7 +406,6 @@ def test_what_is_known_of_the_uncertainty_is_listed():
         "start of the record": f"up to 3.0 dB low, at {nominal_band(bands[told[1]])} Hz",
         # eight samples that vary by 5 %
         "contact stiffness, from the samples": f"{20 * np.log10(1 + 0.05 / np.sqrt(8)):.1f} dB",
-        "settings: grid, window, samples, time step, …": "not known",
     }
 
 

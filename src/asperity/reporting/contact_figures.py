@@ -200,10 +200,8 @@ LOADING = Figure(
 # --- filters over the wavenumber
 
 FLOOR = -40.0  # dB, lowest level of a drawn filter
-MOST_FILTERS, MOST_PRINTED = 5, 3
-LEAST_COHERENCE = 0.25  # of a signed estimate that is drawn in full
+MOST_FILTERS = 5
 _THEORY: dict[str, Any] = {"width": 0.8, "dashes": (5.0, 2.5)}
-_THEORY_TOLD = "; dashed: sin q / q"
 
 
 def _of_states(*entries: Entry) -> tuple[Of, ...]:
@@ -218,10 +216,10 @@ def _by_state(lines: Lines, entry: Entry) -> dict[float, Numbers]:
     return {series.places["approach"]: series.values for series in lines.of(entry)}
 
 
-def _drawn_states(tree: DataTree, lines: Lines, entry: Entry, most: int) -> list[float]:
+def _drawn_states(tree: DataTree, lines: Lines) -> list[float]:
     """Approaches whose filters are drawn: a few, evenly spread, that of the working load among them."""
-    filled = np.array(list(_by_state(lines, entry)))
-    picks = np.array(chart.spread(len(filled), most))
+    filled = np.array(list(_by_state(lines, contact.FILTER)))
+    picks = np.array(chart.spread(len(filled), MOST_FILTERS))
     working = data.number(tree, contact.WORKING_APPROACH)
     if working is not None:
         at_load = int(np.argmin(np.abs(filled - working)))
@@ -249,20 +247,16 @@ def _level(ratio: Numbers) -> Numbers:
 
 
 def _filters(tree: DataTree, lines: Lines) -> list[Panel]:
-    """Contact filters of several approaches: magnitude, and below it the signed estimate."""
-    states = _drawn_states(tree, lines, contact.FILTER, MOST_FILTERS)
-    magnitudes = _magnitudes(tree, lines, contact.FILTERS, states)
-    if not data.present(tree, contact.FILTER_SIGNED):
-        return [magnitudes]
-    upper, lower = replace(magnitudes.x, label=""), replace(magnitudes.x, second=None)  # each is named once
-    return [replace(magnitudes, x=upper), replace(_signed(tree, lines, states), x=lower)]
+    """A filter as estimated (dots), as fitted (wide) and as applied (thin), and what theory says (dashed).
 
-
-def _magnitudes(tree: DataTree, lines: Lines, entries: tuple[Entry, ...], states: list[float]) -> Panel:
-    """A filter as estimated (dots), as fitted (wide) and as applied (thin), and what theory says (dashed)."""
-    excited, theory = _excited(tree), _theory(tree)
-    fitted, raw, applied, spread = (_by_state(lines, entry) for entry in entries)
-    marks: list[Mark] = []
+    Over wavenumbers above zero, shaded where the texture excites nothing.
+    """
+    excited, theory, states = _excited(tree), _theory(tree), _drawn_states(tree, lines)
+    fitted, raw, applied, spread = (_by_state(lines, entry) for entry in contact.FILTERS)
+    positive = lines.at[lines.at > 0]
+    ends = np.maximum(lines.at, positive[0])[panels.stretches(~excited)]
+    lacking = panels.shade(ends[:, 0], ends[:, 1], chart.MUTED, opacity=0.12)
+    marks: list[Mark] = [lacking] if len(ends) else []
     for state, colour in zip(states, chart.sequence(len(states)), strict=True):
         name: dict[str, Any] = {"label": f"δ = {data.plain(state * 1e6)} µm", "width": 1.7}
         found = [(fitted[state], excited, name)]
@@ -279,35 +273,8 @@ def _magnitudes(tree: DataTree, lines: Lines, entries: tuple[Entry, ...], states
             found.append((theory[state], np.logical_and.accumulate(theory[state] > 0), _THEORY))
         for ratio, where, look in found:
             marks.append(Line(lines.at, np.where(where, _level(ratio), np.nan), colour=colour, **look))
-    told = "magnitude" + ("; dots: ratio; wide: fit; thin: as applied" if applied else "")
-    title = told + _THEORY_TOLD * bool(theory)
-    return _over_wavenumbers(tree, lines, Axis("|H| / dB", FLOOR, 5.0), marks, title=title, height=4.4)
-
-
-def _signed(tree: DataTree, lines: Lines, states: list[float]) -> Panel:
-    """The signed estimate, faint where it explains little of the force."""
-    excited, theory = _excited(tree), _theory(tree)
-    estimate, coherence = (
-        _by_state(lines, entry) for entry in (contact.FILTER_SIGNED, contact.FILTER_COHERENCE)
-    )
-    marks: list[Mark] = [panels.zero()]
-    for state, colour in zip(states, chart.sequence(len(states)), strict=True):
-        signed = estimate.get(state, np.full(lines.at.shape, np.nan))
-        known = excited & (coherence.get(state, np.ones(lines.at.shape)) >= LEAST_COHERENCE)
-        faint = Line(lines.at, np.where(excited, signed, np.nan), colour=colour, width=0.8, opacity=0.4)
-        marks += [faint, Line(lines.at, np.where(known, signed, np.nan), colour=colour, width=1.7)]
-        if theory:
-            marks.append(Line(lines.at, theory[state], colour=colour, **_THEORY))
-    title = "signed estimate" + _THEORY_TOLD * bool(theory)
-    return _over_wavenumbers(tree, lines, Axis("H (signed)", -0.5, 1.15), marks, title=title, height=3.0)
-
-
-def _over_wavenumbers(tree: DataTree, lines: Lines, y: Axis, marks: list[Mark], **place: Any) -> Panel:
-    """Panel over wavenumbers above zero, shaded where the texture excites nothing."""
-    positive = lines.at[lines.at > 0]
-    ends = np.maximum(lines.at, positive[0])[panels.stretches(~_excited(tree))]
-    lacking = [panels.shade(ends[:, 0], ends[:, 1], chart.MUTED, opacity=0.12)] if len(ends) else []
-    return Panel(panels.wavenumber_axis(positive[0], positive[-1]), y, (*lacking, *marks), **place)
+    along = panels.wavenumber_axis(positive[0], positive[-1])
+    return [Panel(along, Axis("|H| / dB", FLOOR, 5.0), tuple(marks), height=4.4)]
 
 
 def _filter_caption(tree: DataTree) -> str:
@@ -325,39 +292,14 @@ def _filter_caption(tree: DataTree) -> str:
             "Dashed: sin q / q, q = ka, the closed form of small roughness, uniform across, on Hertz's "
             "contact of radius a; it is negative beyond q = π, which a magnitude cannot show"
         )
-    if data.present(tree, contact.FILTER_SIGNED):
-        parts.append(
-            "Signed: the force regressed on the mean line under the patch, faint where the two have less "
-            f"than {100 * LEAST_COHERENCE:.0f} % of their power in common"
-        )
     if not _excited(tree).all():
         parts.append("Grey: waves that the texture lacks, where the filter is held")
-    return f"{'. '.join(parts)}. {_normalised(tree, contact.FILTER)}".strip()
-
-
-def _normalised(tree: DataTree, entry: Entry) -> str:
-    """What 0 dB of a filter is."""
     told = {
         "tangent": "Referred to the tangent stiffness: 0 dB is a texture that the contact feels fully.",
         "low-wavenumber": "Normalised as printed: 0 dB are its own longest waves.",
     }
-    return told.get(data.variable_of(tree, entry).attrs.get("normalise", ""), "")
-
-
-def _printed_filters(tree: DataTree, lines: Lines) -> Iterator[Panel]:
-    """The same filters, normalised as printed."""
-    states = _drawn_states(tree, lines, contact.PRINTED_FILTER, MOST_PRINTED)
-    yield _magnitudes(tree, lines, contact.PRINTED_FILTERS, states)
-
-
-def _printed_filter_caption(tree: DataTree) -> str:
-    found = ""
-    if data.present(tree, contact.FILTER_SCALE):
-        scale = data.values(tree, contact.FILTER_SCALE)
-        low, high = (data.plain(float(end), 2) for end in (np.nanmin(scale), np.nanmax(scale)))
-        found = f" k_0/k_t = {low} to {high}: what the patch averages across is left out."
-    normalised = _normalised(tree, contact.PRINTED_FILTER)
-    return f"The filter of the law printed: as above, but {normalised[:1].lower()}{normalised[1:]}{found}"
+    normalised = told.get(data.variable_of(tree, contact.FILTER).attrs.get("normalise", ""), "")
+    return f"{'. '.join(parts)}. {normalised}".strip()
 
 
 _MORE = (contact.FILTER_SIGNED, contact.FILTER_COHERENCE, contact.FILTER_THEORY)
@@ -368,14 +310,5 @@ FILTER = Figure(
     _of_states(*contact.FILTERS, *_MORE),
     _filters,
     _filter_caption,
-    (contact.APPROACH,),
-)
-PRINTED_FILTER = Figure(
-    "contact_filter_printed",
-    "Contact filter as printed",
-    Of(contact.WAVENUMBER),
-    _of_states(*contact.PRINTED_FILTERS),
-    _printed_filters,
-    _printed_filter_caption,
     (contact.APPROACH,),
 )

@@ -99,7 +99,7 @@ def figures_page(
 SUMMARY_FIGURES = 3
 """That a summary shows, of each chapter the first of these that it has."""
 ON_SHEET = (
-    "load_zone", "ball_turn", "radiated_power_bands", "sound_power_bands", "pass_by_level",
+    "load_zone", "ball_turn", "radiated_power_bands", "pass_by_level",
     "acceleration_sensors", "body_acceleration", "force_bands", "roughness", "texture_psd", "texture_path",
     "texture_sample",
 )  # fmt: skip

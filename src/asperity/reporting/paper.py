@@ -85,9 +85,6 @@ def draw(drawn: chart.Chart, title: str = "") -> ShownFigure:
             for n, panel in enumerate(row):  # one alone stands in the column of the others
                 axes = figure.add_subplot(grid[number] if len(row) == 1 else inner[n])
                 _draw_panel(axes, panel, chart.WIDE * panel.share / sum(shares), named)
-            if len(row) == 1 and number + 1 < len(rows) and _goes_on(row[0], *rows[number + 1]):
-                figure.axes[-1].tick_params(axis="x", labelbottom=False)
-                figure.axes[-1].set_xlabel("")
         if title:
             figure.suptitle(title, x=0.01, ha="left", fontweight="bold", fontsize=10)
     return figure
@@ -98,12 +95,6 @@ def save_figure(figure: Figure, file: BinaryIO, format: str) -> None:
     with rc_context(RC), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "constrained_layout not applied", UserWarning)
         figure.savefig(file, format=format, dpi=DOTS, metadata=UNDATED[format])
-
-
-def _goes_on(panel: chart.Panel, below: chart.Panel, *beside: chart.Panel) -> bool:
-    """Whether the panel below has the same axis, which then need not be named twice."""
-    same = (panel.x.label, panel.x.ticks) == (below.x.label, below.x.ticks)
-    return same and chart.limits(panel, "x") == chart.limits(below, "x") and not (below.title or beside)
 
 
 def _draw_panel(axes: Axes, panel: chart.Panel, width: float, named: set[tuple[str, str]]) -> None:

@@ -339,12 +339,11 @@ def uncertainty_table(tree: DataTree) -> ReportTable | None:
     if not data.present(tree, rolling.CONTACT_FORCE):
         return None
     main = data.laws(tree, rolling.CONTACT_FORCE)[0]
-    sources, sizes, ways = zip(
-        *_law(tree, main), *_chance(tree), *_samples(tree), *_settings(tree), strict=True
-    )
+    sources, sizes, ways = zip(*_law(tree, main), *_chance(tree), *_samples(tree), strict=True)
     note = (
         f"Of the force levels of {main}, apart from what is not known of the case itself: materials, "
-        "roughness, damping. The sources are independent: their squares add."
+        "roughness, damping. The sources are independent: their squares add, with what finer settings "
+        "change: asperity run --converge finds it."
     )
     columns = {
         "source": text_cells(sources),
@@ -410,21 +409,3 @@ def _samples(tree: DataTree) -> Iterator[Known]:
         level = 20.0 * np.log10(1.0 + spread / mean / np.sqrt(count))
         how = f"standard deviation of the mean of {count:.0f} samples, k_c under the load"
         yield "contact stiffness, from the samples", f"{level:.1f} dB", how
-
-
-def _settings(tree: DataTree) -> Iterator[Known]:
-    names = setting_names(tree)
-    if not names:
-        how = "asperity run --converge computes again with each of them made finer"
-        yield "settings: grid, window, samples, time step, …", "not known", how
-        return
-    sizes = dict(zip(names, setting_numbers(tree, convergence.LARGEST_CHANGE), strict=True))
-    half = sizes.pop(convergence.PATH_LENGTH, np.nan)
-    known = {name: size for name, size in sizes.items() if np.isfinite(size)}
-    if known:
-        worst = max(known, key=lambda name: known[name])
-        how = f"largest change of a one-third octave, {worst} made finer; all settings below"
-        yield "settings", f"{known[worst]:.2f} dB", how
-    if np.isfinite(half):
-        how = "largest difference of the first half of the record to all of it"
-        yield "chance, seen", f"{half:.1f} dB", how

@@ -49,7 +49,7 @@ CHAPTERS = (
     Chapter(
         "noise",
         "Rolling noise",
-        (noise.RADIATED, noise.STANDARD_BANDS),
+        (noise.RADIATED,),
         (noise.radiated_table, noise.wheel_table, noise.sound_power_table),
         noise.noise_answers,
     ),
@@ -92,7 +92,7 @@ CHAPTERS = (
     Chapter(
         "laws",
         "How the contact laws work",
-        (contact_figures.LOADING, contact_figures.FILTER, contact_figures.PRINTED_FILTER),
+        (contact_figures.LOADING, contact_figures.FILTER),
         (tables.reference_table,),
     ),
     Chapter(

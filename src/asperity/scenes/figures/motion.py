@@ -152,7 +152,7 @@ DISPLACEMENT = Figure(
 POINTS = 3
 """Passed points that are drawn, at most; the CSV files hold all."""
 AROUND_PASSING = 0.15
-"""Longest time before and after a passing that is drawn, s."""
+"""Time before the first and after the last passing that is drawn, s."""
 
 
 def point_labels(tree: DataTree) -> list[str]:
@@ -180,51 +180,29 @@ def _by_point(lines: Lines) -> dict[str, list[Series]]:
     return dict(list(found.items())[:POINTS])
 
 
-def _around_passing(tree: DataTree, point: float) -> tuple[slice, float | None]:
-    """Time steps around the wheel's passing of a point, and the time of it if the positions are known."""
-    time, speed = data.values(tree, rolling.TIME), data.number(tree, rolling.SPEED)
-    if not speed or not data.present(tree, rolling.POSITION):
-        return slice(0, len(time)), None
-    passing = time[0] + (point - data.values(tree, rolling.POSITION)[0]) / speed
-    low, high = np.searchsorted(time, [passing - AROUND_PASSING, passing + AROUND_PASSING])
-    return (slice(int(low), int(high)), float(passing)) if high - low > 1 else (slice(0, len(time)), None)
+def _passing(tree: DataTree, point: float) -> float:
+    """Time at which the wheel passes a point, s."""
+    speed = data.number(tree, rolling.SPEED) or np.nan
+    start = data.values(tree, rolling.POSITION)[0]
+    return float(data.values(tree, rolling.TIME)[0] + (point - start) / speed)
 
 
 def _passings(tree: DataTree) -> slice:
     """Time steps of all the passings, and of what lies between them."""
-    points = {series.places["point"] for series in _VELOCITY(tree)}
-    around = [_around_passing(tree, point)[0] for point in points]
-    return slice(min(each.start for each in around), max(each.stop for each in around))
-
-
-def _main_and_linear(tree: DataTree) -> list[str]:
-    main, *others = data.laws(tree, schema.POINT_VELOCITY)
-    return [*(law for law in data.baselines_among(tree, [main, *others])[:1] if law != main), main]
+    passed = [_passing(tree, point) for point in {series.places["point"] for series in _VELOCITY(tree)}]
+    ends = min(passed) - AROUND_PASSING, max(passed) + AROUND_PASSING
+    low, high = np.searchsorted(data.values(tree, rolling.TIME), ends)
+    return slice(int(low), int(high)) if high - low > 1 else slice(None)
 
 
 def _velocity(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
-    """Velocity of the rail at the passed points, around the passing, by the main law and by a linear one."""
-    label = "time since the wheel passed / ms" if data.number(tree, rolling.SPEED) else "time / ms"
-    laws = _main_and_linear(tree)
+    """Velocity of the rail at the passed points, around the passings."""
+    time, unit = panels.time_axis(tree, lines.at)
     for title, found in _by_point(lines).items():
-        part, passing = _around_passing(tree, found[0].places["point"])
-        shown = np.isin(lines.at, data.values(tree, rolling.TIME)[part])
-        time = (lines.at[shown] - (passing or 0.0)) * 1e3
-        of_laws = [replace(s, values=s.values[shown] * 1e3) for s in found if s.law in laws]
+        passed = chart.Rules(np.array([_passing(tree, found[0].places["point"]) / unit]), colour=chart.INK)
         # they swing fast: dashes would not be seen
-        drawn = panels.styled(tree, time, of_laws, main=laws[-1], width=1.0, dashes=())
-        passed = [] if passing is None else [chart.Rules(np.zeros(1), colour=chart.INK)]
-        axes = chart.Axis(label, time[0], time[-1], linked="passing"), chart.Axis("velocity / (mm/s)")
-        yield chart.Panel(*axes, (*passed, *drawn), title, height=1.9)
-
-
-def _velocity_caption(tree: DataTree) -> str:
-    names, speed = " and ".join(reversed(_main_and_linear(tree))), data.number(tree, rolling.SPEED)
-    around = "around the time at which the wheel passes it (dotted)" if speed else "over the whole run"
-    return (
-        f"Velocity of the rail at a fixed point, positive downwards, {around}, by {names}. "
-        "The CSV file holds all laws and points."
-    )
+        drawn = panels.styled(tree, lines.at / unit, found, size=1e-3, width=1.0, dashes=())
+        yield chart.Panel(time, chart.Axis("velocity / (mm/s)"), (passed, *drawn), title, height=1.9)
 
 
 def _velocity_spectra(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
@@ -258,8 +236,8 @@ RAIL = (
         Of(rolling.TIME),
         (_VELOCITY,),
         _velocity,
-        _velocity_caption,
-        (schema.ROLLING_POINT,),
+        "Velocity of the rail at fixed points, positive downwards, while the wheel passes them (dotted).",
+        (schema.ROLLING_POINT, rolling.POSITION),
         rows=_passings,
     ),
     Figure(

@@ -54,13 +54,9 @@ def _part_columns(tree: DataTree, entry: Entry, levels: Numbers) -> dict[str, li
     return {part: number_cells(level, "{:.1f}") for part, level in parts}
 
 
-def _weighting(band: Entry) -> Any:
+def _weighting(tree: DataTree) -> Iterator[Series]:
     """Column of the A-weighting over bands."""
-
-    def columns(tree: DataTree) -> Iterator[Series]:
-        yield Series("A-weighting", "dB", a_weighting(data.values(tree, band)), band)
-
-    return columns
+    yield Series("A-weighting", "dB", a_weighting(data.values(tree, BAND)), BAND)
 
 
 def _of_parts(
@@ -75,45 +71,6 @@ def _of_parts(
 
 
 # --- by CNOSSOS-EU
-
-
-def _bare_law(tree: DataTree) -> str:
-    """Law of which the shares of track and wheel are drawn: that of the bare roughness."""
-    bare = data.variable_of(tree, STANDARD).attrs.get("reference")
-    return str(bare or data.laws(tree, STANDARD)[0])
-
-
-def _standard_bands(tree: DataTree, lines: Lines) -> list[Panel]:
-    """A-weighted sound power per one-third octave: the total by each law, track and wheel of linear."""
-    found, (weighting,) = parts_of(tree, STANDARD), (s.values for s in lines.of(schema.NOISE_BAND))
-    weighted = [
-        Series("", "", series.values + weighting, label=series.label, places=series.places)
-        for series in lines.of(STANDARD, source=WHOLE if WHOLE in found else found[-1])
-    ]
-    totals = panels.styled(tree, lines.at, weighted, markers=True)
-    shares = _of_parts(lines, STANDARD, _bare_law(tree), _OF_STANDARD, weighting)
-    product = schema.NOISE_BAND_TIME_PRODUCT
-    return [panels.band_panel(tree, lines, _POWER, [*totals, *shares], product, of=totals)]
-
-
-STANDARD_BANDS = Figure(
-    "sound_power_bands",
-    "Sound power by CNOSSOS-EU in one-third octaves",
-    Of(schema.NOISE_BAND, "band centre"),
-    (
-        _weighting(schema.NOISE_BAND),
-        panels.products(schema.NOISE_BAND_TIME_PRODUCT),
-        Of(STANDARD, "{source}, {law}"),
-    ),
-    _standard_bands,
-    lambda tree: (
-        "A-weighted one-third octaves. The linear law: the roughness that was rolled and the transfer "
-        "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare "
-        "texture. The other laws add their difference of the contact force level to linear, band by "
-        "band, which holds what the contact filters. Grey: the shares of track and wheel by "
-        f"{_bare_law(tree)}.{panels.shaded_words(tree, schema.NOISE_BAND_TIME_PRODUCT)}"
-    ),
-)
 
 
 def sound_power_table(tree: DataTree) -> ReportTable | None:
@@ -231,7 +188,7 @@ RADIATED = Figure(
     "Sound power from vibration in one-third octaves",
     Of(BAND, "band centre"),
     (
-        _weighting(BAND),
+        _weighting,
         panels.products(BAND_TIME_PRODUCT),
         Of(OWN, "{radiator}, {law}", "{radiator}"),
         Of(UNMEASURED, "{radiator} without what was measured, {law}", "{radiator}", optional=True),
