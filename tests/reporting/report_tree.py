@@ -91,17 +91,15 @@ def texture(rng, shape, spacing, rms=0.3e-6, hurst=0.8, longest=0.4e-3):
 
 
 def of_surface(rng):
-    step, wavenumber, height = 8e-6, np.linspace(200, 62500, 400), np.linspace(-3, 3, 80)
+    step, wavenumber = 8e-6, np.linspace(200, 62500, 400)
     psd = 2e-16 / (1 + (wavenumber / 2500) ** 2) ** 1.3
     keys = ("symbol", "value", "unit", "surface", "meaning", "bandwidth")
     values = {
         surface.SAMPLE_HEIGHTS: texture(rng, (128, 128), step),
         surface.PATH_HEIGHTS: texture(rng, (2000, 64), step),
         surface.LINE: texture(rng, (20000, 2), step)[:, 0],
-        surface.PATH_HEIGHT_DENSITY: np.exp(-0.5 * height**2),
         surface.PSD_SAMPLE: psd * rng.gamma(8, 1 / 8, 400),
         surface.PSD_PATH: psd * rng.gamma(60, 1 / 60, 400),
-        surface.PATH_HEIGHT: 0.3e-6 * height,
         surface.SURFACE_WAVENUMBER: wavenumber,
     }
     counts = {"X": 128, "Y": 128, "PATH_X": 2000, "PATH_Y": 64, "DISTANCE": 20000}

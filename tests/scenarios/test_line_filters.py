@@ -2,7 +2,6 @@
 
 import json
 import re
-import warnings
 
 import numpy as np
 import pytest
@@ -10,14 +9,16 @@ import pytest
 from asperity import HeightMap
 from asperity.case.cases import as_case
 from asperity.contact.scan import first_touch
-from asperity.errors import PhysicsWarning
 from asperity.laws.layout import force
 from asperity.running import prepare_case
 from asperity.scenarios.reducing import patch_planes
 from asperity.scenes.compute import compute
 from asperity.scenes.report import figures_of
 
-pytestmark = pytest.mark.usefixtures("cache_of_module")
+pytestmark = [
+    pytest.mark.usefixtures("cache_of_module"),
+    pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning"),
+]
 
 BALL = {
     "kind": "ball-on-beam",
@@ -36,9 +37,7 @@ def case_of(base=BALL, **keys):
 
 
 def computed(case):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)
-        return compute(prepare_case(case), lambda done, total, message: None)
+    return compute(prepare_case(case), lambda done, total, message: None)
 
 
 def at_load(tree):
@@ -140,18 +139,18 @@ def test_laws_are_normalised_as_they_are_meant(chain):
         ("hertz-filtered", "tangent"),
         ("printed", "low-wavenumber"),
     ):
-        found, texture = filters[normalise], chain.laws[law].texture
+        found, texture = filters[normalise], chain.materials.build(law).texture
         padded = np.pad(line, found.taps.shape[1] // 2, mode="reflect")
         expected = [np.convolve(padded, taps, mode="valid") for taps in found.taps]
         np.testing.assert_allclose(texture.heights, expected, atol=1e-15)
     for law in ("shifted-unfiltered", "printed-unfiltered"):
-        np.testing.assert_array_equal(chain.laws[law].texture.heights, line[None])
+        np.testing.assert_array_equal(chain.materials.build(law).texture.heights, line[None])
 
 
 def test_a_normalisation_that_is_asked_for_serves_all_laws(runs):
     given = computed(case_of(laws=["shifted", "printed"], contact={"normalise": "low-wavenumber"}))
     assert set(given.reduction.filters) == {"low-wavenumber"}
-    assert np.array_equal(*(given.laws[law].texture.heights for law in ("shifted", "printed")))
+    assert np.array_equal(*(given.materials.build(law).texture.heights for law in ("shifted", "printed")))
     unused = runs(case_of(laws=["areal", "linear"]))["contact"]
     assert "filter" in unused
     assert "printed_filter" not in unused
@@ -161,7 +160,8 @@ def test_on_a_wavy_path_filters_are_read_at_the_state_of_the_contact():
     """Waves move it by several approaches: under the load it is the same state everywhere."""
     wavy = {"rms": "2 um", "longest": "8 mm"}
     found = computed(case_of(laws=["shifted", "hertz-filtered", "printed"], surface=wavy))
-    load, positions, laws = found.shape.load, found.runs["shifted"].positions[0], found.laws
+    load, positions = found.shape.load, found.runs["shifted"].positions[0]
+    laws = {name: found.materials.build(name) for name in found.runs}
     approach = found.reduction.pressed.approach
     held_at = float(found.reduction.ensemble.curve.inverse(load))
     followed = laws["shifted"].texture.held_at(held_at).at(positions)[:, 0]

@@ -174,7 +174,7 @@ def test_tables_hold_where_the_rms_is_three_approaches(text):
     """
     chain = compute(prepare_case(parse_case(text)), quiet)
     direct = first_contact(chain.runs["direct"])
-    looked_up = force(chain.laws["table"], direct.position, direct.relative_displacement)
+    looked_up = force(chain.materials.build("table"), direct.position, direct.relative_displacement)
     error = np.sqrt(np.mean((looked_up - direct.contact_force) ** 2))
     assert error < 0.04 * direct.contact_force.std()
     shape, states = chain.shape, chain.reduction.approaches

@@ -88,7 +88,7 @@ def test_a_check_says_whose_sound_power_is_computed():
         "of rail, sleepers and wheel; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
     )
     rigid = dict(planned_rows(prepare_case(case(wheel={"section": "rigid"}))))["sound power"]
-    assert rigid.startswith("of rail and sleepers, for the wheel is rigid; ")
+    assert rigid.startswith("of rail and sleepers: of this wheel it is not known how")
     hard = {"pad_stiffness": 1200e6}
     with pytest.warns(OutOfRangeWarning, match='those of the class "hard"'):
         planned_rows(prepare_case(case(track=hard)))

@@ -68,12 +68,11 @@ def test_what_a_result_says_of_a_rigid_wheel_and_of_its_labels(run):
     assert np.isnan(found["wheel"]).all()
     assert_summed(found, ("rail", "sleepers"))
     why = tree["spectra"]["radiated_power_level"].attrs
-    assert why["wheel"] == "the wheel is rigid"
-    assert why["missing"] == "of this wheel it is not known how its disc and tread vibrate"
+    assert why["wheel"] == why["missing"] == "of this wheel it is not known how its disc and tread vibrate"
     told = json.loads(tree.attrs["warnings"])
     label, silent = (w for w in told if w["category"] == "MissingSourceWarning" or "CNOSSOS" in w["message"])
     assert silent["grade"] == "note"
-    assert "that of rail and sleepers alone: the wheel is rigid" in silent["message"]
+    assert "that of rail and sleepers alone: of this wheel it is not" in silent["message"]
     assert "130 MN/m, in range 150 to 250 MN/m" in label["message"]
 
 
@@ -83,19 +82,16 @@ def assert_summed(found, names):
 
 
 @pytest.mark.parametrize(
-    ("wheel", "reason"),
+    ("wheel", "silent"),
     [
-        ({}, ""),  # the default wheel is drawn
-        ({"modes": MODES[:, :3]}, "the table wheel.modes does not say how the modes move disc and tread"),
-        ({"modes": MODES}, ""),
-        (
-            {"receptance": np.array([[100.0 * n, -1e-9, -1e-11] for n in range(1, 30)])},
-            "the wheel's receptance does not say how its disc and tread move",
-        ),
+        ({}, False),  # the default wheel is drawn
+        ({"modes": MODES[:, :3]}, True),
+        ({"modes": MODES}, False),
+        ({"receptance": np.array([[100.0 * n, -1e-9, -1e-11] for n in range(1, 30)])}, True),
     ],
 )
-def test_why_a_wheel_is_silent(wheel, reason):
-    assert silent_wheel(WheelOnRail(surface={"spectrum": "iso3095"}, wheel=wheel)) == reason
+def test_which_wheel_is_silent(wheel, silent):
+    assert bool(silent_wheel(WheelOnRail(surface={"spectrum": "iso3095"}, wheel=wheel))) == silent
 
 
 def test_a_wheel_that_rings_is_louder_than_the_rail_at_high_frequency(ringing):
@@ -129,7 +125,7 @@ def test_the_report_shows_it_beside_cnossos(run, ringing):
     assert "wheel" in own
     table, level = radiated_table(tree), levels(tree, "radiated_power_level_a")
     assert table.head[1:5] == ["rail", "sleepers", "wheel", "total"]
-    missing = "The wheel's part is missing, and the total is that of rail and sleepers: the wheel is"
+    missing = "The wheel's part is missing, and the total is that of rail and sleepers: of this wheel it"
     assert missing in table.note
     assert "missing" not in radiated_table(ringing).note
     rail, sleepers, total = (f"{level[name]:.1f}" for name in ("rail", "sleepers", "total"))

@@ -200,10 +200,7 @@ def test_statistics_and_line_are_those_of_the_whole_path(monkeypatch):
     assert path["Sz"]["value"] > 0.29e-3
     assert path["Sku"]["value"] > 20.0
     assert path["Sq"]["bandwidth"].endswith("2.24 m")
-    assert float(found["path_height"].min()) < -0.27e-3  # about the mean
     assert float(found["line"].min()) < -0.25e-3  # with the texture there
-    width = float(found["path_height"][1] - found["path_height"][0])
-    assert float(found["path_height_density"].sum()) * width == pytest.approx(1.0)
 
 
 def test_what_has_no_correlation_across_has_statistics_of_lines(runs):
@@ -231,9 +228,6 @@ def test_a_record_is_stationary_after_a_run_in_and_starts_quiet_without(runs, se
     rolled = [runs(case | {"seed": seed}) for seed in range(12)]
     thirds = np.array_split(np.array([forces(tree)[0] - 30.0 for tree in rolled]), 3, axis=1)
     assert low < thirds[0].std() / thirds[2].std() < high
-    told = {entry["name"]: entry["value"] for entry in json.loads(rolled[0]["scenario"].attrs["numerics"])}
-    expected = ", ".join(f"{part[0].std():.3g}" for part in thirds)
-    assert told["rms of the contact force in thirds of the record, hertz"] == f"{expected} N"
 
 
 # --- the stiffness of a linear contact
@@ -248,7 +242,7 @@ def test_a_linear_contact_has_the_stiffness_that_it_is_said_to(linearise):
         surface, laws = {"spectrum": "iso3095", "level": "-40 dB"}, laws[1:]
     case = changed("ball-on-beam", laws=laws, contact={"linearise": word}, surface=surface)
     computed = compute(prepare_case(case), lambda *_: None)
-    found, load = computed.laws["linear"].stiffness, computed.shape.load
+    found, load = computed.materials.build("linear").stiffness, computed.shape.load
     secant = load ** (1 / 3) * computed.shape.hertz.stiffness_constant ** (2 / 3)
     if linearise in ("hertz", "smooth secant"):
         assert found == pytest.approx(secant * (1.5 if word == "hertz" else 1.0), rel=1e-3)
@@ -263,7 +257,7 @@ def test_a_linear_contact_has_the_stiffness_that_it_is_said_to(linearise):
 def test_the_filtered_linear_contact_is_linear():
     """The force grows with the approach by k alone, everywhere: the filter does not follow the state."""
     case = changed("ball-on-beam", laws=["linear-filtered"], contact={"linearise": "hertz"})
-    law = compute(prepare_case(case), lambda *_: None).laws["linear-filtered"]
+    law = compute(prepare_case(case), lambda *_: None).materials.build("linear-filtered")
     x = np.linspace(0.45, 0.46, 50)
     near, far = (force(law, x, approach) for approach in (law.approach, law.approach + 1e-6))
     np.testing.assert_allclose(far - near, law.stiffness * 1e-6, rtol=1e-9)

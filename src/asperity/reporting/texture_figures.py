@@ -129,11 +129,6 @@ def _sample(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     x, y, heights = lines.at, data.values(tree, surface.Y), data.values(tree, surface.SAMPLE_HEIGHTS)
     slender = bool(np.ptp(x) > SLENDER * np.ptp(y))  # then the heights stand below the map
     named = {"sample": distribution(heights)}
-    if data.present(tree, surface.PATH_HEIGHT_DENSITY):
-        middle = data.values(tree, surface.PATH_HEIGHT)
-        half = (middle[1] - middle[0]) / 2
-        edges = np.append(middle - half, middle[-1] + half)
-        named["path, whole"] = (edges, data.values(tree, surface.PATH_HEIGHT_DENSITY))
     height, below = (1.9, 2.7) if slender else (4.2, 4.2)
     yield height_map(x, y, heights, title="first sample" + _between(tree), height=height, share=1.25)
     yield height_histogram(

@@ -31,22 +31,6 @@ class BodyAtContact:
         return self.body.receptance(frequency)[:, 0, 0]
 
 
-@dataclass(frozen=True)
-class StructureAtContact:
-    """What is rolled over, as a force on it feels it: modes, a track, or None for a plane."""
-
-    over: Modal | Track | None
-
-    def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> Complex:
-        """Displacement at places `x` (p,), m, per harmonic force at `x0` (p,), (p, f), m/N, e^{+iωt}."""
-        if isinstance(self.over, Track):
-            return self.over.receptance(frequency, x, x0)
-        if self.over is None:
-            return np.zeros((np.size(x), np.size(frequency)), dtype=complex)
-        pairs = zip(np.atleast_1d(x), np.atleast_1d(x0), strict=True)
-        return np.array(receptances_between(self.over, frequency, pairs))
-
-
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Bodies on a structure."""
@@ -93,13 +77,22 @@ class Scene:
         """What rolls, as the first contact feels it."""
         return BodyAtContact(self.rolling[0])
 
+    def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> Complex:
+        """Displacement of what is rolled over at `x` (p,), m, per force at `x0`, (p, f), m/N, e^{+iωt}."""
+        if isinstance(self.over, Track):
+            return self.over.receptance(frequency, x, x0)
+        if self.over is None:
+            return np.zeros((np.size(x), np.size(frequency)), dtype=complex)
+        pairs = zip(np.atleast_1d(x), np.atleast_1d(x0), strict=True)
+        return np.array(receptances_between(self.over, frequency, pairs))
+
     def transfer(self, stiffness: float, places: ArrayLike, frequency: ArrayLike) -> Complex:
         """Force of the linear contact per height of the texture (p, f), N/m, see `force_transfer`.
 
         Of the first contact by itself, at rest at places (p,), m, by its stiffness, N/m, and frequencies
         (f,), Hz; other contacts of its body bear their static load.
         """
-        return force_transfer(frequency, self.first, StructureAtContact(self.over), stiffness, places)
+        return force_transfer(frequency, self.first, self, stiffness, places)
 
     def coupled_transfer(self, stiffness: float, place: float, frequency: Array, count: int) -> Complex:
         """Forces of the first contacts per height under each of them (count, count, f), N/m, e^{+iωt}.
@@ -109,7 +102,7 @@ class Scene:
         """
         at = place + np.array(self.offsets)[:count]
         to, of = np.repeat(at, count), np.tile(at, count)
-        over = StructureAtContact(self.over).receptance(frequency, to, of)
+        over = self.receptance(frequency, to, of)
         answer = over.reshape(count, count, -1).transpose(2, 0, 1) + np.eye(count) / stiffness
         first = 0
         for body in self.rolling:

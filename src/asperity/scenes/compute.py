@@ -13,7 +13,6 @@ from asperity.arguments import Array, NDArray
 from asperity.case.content import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
-from asperity.errors import PhysicsWarning
 from asperity.laws import Law, Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
@@ -66,13 +65,6 @@ class Computed:
     def reduction(self) -> reducing.Reduction | None:
         """State functions; None without samples."""
         return self.materials.reduction
-
-    @property
-    def laws(self) -> dict[str, Law]:
-        """Its laws by name, in the order of the case, built again: each holds all the path in every state."""
-        # of that was warned when they were rolled
-        with PhysicsWarning.ignored():
-            return {name: self.materials.build(name) for name in self.runs}
 
     @property
     def stiffness(self) -> float:

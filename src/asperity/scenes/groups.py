@@ -29,7 +29,7 @@ FEWEST_POINTS = 16
 def surface_group(computed: Computed, *, brief: bool = False) -> Values:
     """Lay out the textures of a case: first sample, a piece of the path, its line.
 
-    And, if not in brief, of the whole path distribution, spectrum and statistics.
+    And, if not in brief, of the whole path spectrum and statistics.
     """
     textures, dx, recorded = computed.textures, computed.shape.spacing[0], computed.textures.recorded
     laid_out: Values = {}
@@ -55,7 +55,7 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
         laid_out[surface.LINE_UNTOUCHED] = textures.untouched.followed[recorded]
     if not brief:
         path = _survey(textures, dx)
-        laid_out |= _distribution(path) | _spectra(textures, path)
+        laid_out |= _spectra(textures, path)
         beside = textures.path is not None and textures.areal
         rows += _rows(path.statistics, "path" if beside else "middle line of the path")
         for body, lines in textures.lines.items():
@@ -78,15 +78,7 @@ def _survey(textures: Textures, dx: float) -> statistics.StripSurvey:
     if textures.path is None or not textures.areal:
         line = textures.followed[recorded]
         found = statistics.profile_statistics(Profile(line, dx)) if np.ptp(line) else []
-        edges = np.linspace(line.min(), line.max() or 1e-12, statistics.BINS + 1) - line.mean()
-        density = (
-            np.histogram(line - line.mean(), edges, density=True)[0]
-            if np.ptp(line)
-            else np.zeros(statistics.BINS)
-        )
-        return statistics.StripSurvey(
-            found, edges, density, *psd(textures.line[recorded], dx, segment=segment)
-        )
+        return statistics.StripSurvey(found, *psd(textures.line[recorded], dx, segment=segment))
     with ShortRecordWarning.caught() as caught:
         path = statistics.survey_strip(textures.surface, segment, recorded.start, recorded.stop)
         rough = path
@@ -126,13 +118,6 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
         surface.TILE_VARIATION_EXPECTED: [f.expected for f in found],
         surface.TILE_RMS: np.stack([f.tile_rms for f in found]),
     }
-
-
-def _distribution(path: statistics.StripSurvey) -> Values:
-    if not path.density.any():
-        return {}
-    middle = 0.5 * (path.edges[1:] + path.edges[:-1])
-    return {surface.PATH_HEIGHT: middle, surface.PATH_HEIGHT_DENSITY: path.density}
 
 
 def _spectra(textures: Textures, path: statistics.StripSurvey) -> Values:

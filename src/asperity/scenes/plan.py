@@ -47,7 +47,7 @@ def _rows_of_track(prepared: preparing.PreparedCase, track: Track) -> list[tuple
     doubts = findings_of_losses(losses) + measured.findings_of_measured(case.track, track.nominal, bands)
     known = "rail, sleepers and wheel"
     if reason := noise.silent_wheel(case):
-        known = f"rail and sleepers, for {reason}"
+        known = f"rail and sleepers: {reason}"
     if in_role(Role.BARE, case.laws) is not None:
         known += (
             f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"

@@ -63,7 +63,8 @@ def computed_result(
     losses = power = None
     sources = METHOD + (ROUGH_CONTACT if computed.reduction else ()) + BANDS + (EXPECTED if choice else ())
     if isinstance(scene.over, Track):
-        losses = track.error_of_losses(computed)
+        highest = case.numerics.highest_frequency
+        losses = track.loss_factor_error(computed.track, scene.first, computed.stiffness, highest)
         found += track.findings_of_losses(losses)
         if schema.SOUND_POWER_LEVEL_A in over_frequency:
             power = in_bands[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
@@ -142,18 +143,10 @@ def _numerics(
     if (scan := computed.scan) is not None:
         precision = "single" if scan.single else "double"
         yield "contacts solved for the table", f"{scan.counts.solved} in {precision} precision"
-        yield "contacts of the table not converged", f"{scan.counts.unconverged}"
-    parts = np.array_split(computed.first.contact_force, 3, axis=1)
-    thirds = ", ".join(f"{validity.rms_about_mean(part):.3g}" for part in parts)
-    yield f"rms of the contact force in thirds of the record, {next(iter(runs))}", f"{thirds} N"
-    for name, run in runs.items():
-        yield f"time steps not converged, {name}", f"{run.unconverged_steps}"
     if len(computed.scene.offsets) > 1:
         yield "contacts", f"{len(computed.scene.offsets)}"
     yield from _of_structure(computed)
     yield from track.described_losses(losses) if losses else ()
-    for name, run in runs.items():
-        yield f"energy residual, {name}", f"{run.energy.residual:.1e}"
     yield from choice.rows() if choice else ()
     for part, seconds in computed.seconds.items():
         yield f"wall time, {part}", f"{seconds:.2f} s"

@@ -244,11 +244,6 @@ class LossFactorError:
     bands: Array  # (b,), centres of one-third octaves, Hz
     force: Array  # (b,), level of the contact force over that with constant loss factors, dB
 
-    @property
-    def worst(self) -> int:
-        """Index of the band whose force is farthest off."""
-        return int(np.argmax(np.abs(self.force)))
-
 
 def loss_factor_error(
     track: Track, wheel: BodyAtContact | Wheel, stiffness: float, highest: float
@@ -270,18 +265,12 @@ def loss_factor_error(
     return LossFactorError(track, bands, level(causal_track(track.regular)) - level(track.regular))
 
 
-def error_of_losses(computed: compute.Computed) -> LossFactorError:
-    """Error of the contact force in bands, for the contact stiffness at the load."""
-    return loss_factor_error(
-        computed.track, computed.scene.first, computed.stiffness, computed.case.numerics.highest_frequency
-    )
-
-
 def findings_of_losses(error: LossFactorError) -> list[Finding]:
     """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
     if error.track.is_causal:
         return []
-    level, frequency = error.force[error.worst], error.bands[error.worst]
+    worst = int(np.argmax(np.abs(error.force)))
+    level, frequency = error.force[worst], error.bands[worst]
     meaning = "Nothing that answers after a force only has one loss factor at all frequencies"
     if error.track.pad_table is not None:
         meaning = "The springs and dampers that stand in time for the table of the pad miss it"

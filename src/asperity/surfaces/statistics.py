@@ -227,7 +227,6 @@ PIECE = 2**20
 """Points of a strip that are looked at in one go."""
 FEWEST_ROWS = 1024
 """Rows of such a piece, at least: correlations are known up to half of them."""
-BINS = 80
 MARGIN = 3
 """Neighbours on either side that the slope at a point needs."""
 
@@ -238,8 +237,6 @@ class StripSurvey:
 
     # areal roughness parameters up to Str, as of `areal_statistics`; none of a flat strip
     statistics: list[Statistic]
-    edges: Array  # (81,), heights about the mean, m
-    density: Array  # (80,), probability density between them, 1/m
     wavenumber: Array  # (f,), cycles per metre
     spectrum: Array  # (f,), one-sided PSD along the strip, mean over its lines, m³
 
@@ -261,16 +258,15 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     del heights
     points = (stop - first) * strip.shape[1]
     mean = total / points
-    edges = np.linspace(low - mean, (high if high > low else low + 1e-12) - mean, BINS + 1)
     lengths = [end - start for start, end in bounds]
     lags = LagSums(max(lengths), strip.shape[1], min(lengths) // 2)
     pieces = []
     for start, end in bounds:
         before, beyond = max(first, start - MARGIN), min(stop, end + MARGIN)
         rows, inner = strip.rows(before, beyond) - mean, slice(start - before, end - before)
-        pieces.append(_sums(rows, inner, strip.spacing, edges, segment))
+        pieces.append(_sums(rows, inner, strip.spacing, segment))
         lags.add(rows[inner])
-    powers, slopes, counts, spectra, segments = (sum(each) for each in zip(*pieces, strict=True))
+    powers, slopes, spectra, segments = (sum(each) for each in zip(*pieces, strict=True))
     statistics = []
     if high > low:
         band = (2.0 * min(strip.spacing), max((stop - first) * strip.spacing[0], strip.size[1]))
@@ -279,9 +275,8 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
         shortest, longest = lengths_of(lags.means(), strip.spacing)
         values |= {"al": shortest, "tr": shortest / longest}
         statistics = _statistics("S", values, band)
-    density = np.asarray(counts / (points * np.diff(edges)))
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
-    return StripSurvey(statistics, edges, density, wavenumber, np.asarray(spectra / segments))
+    return StripSurvey(statistics, wavenumber, np.asarray(spectra / segments))
 
 
 def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int, int]]:
@@ -293,13 +288,11 @@ def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int
     return list(pairwise(edges.tolist()))
 
 
-def _sums(
-    rows: Array, inner: slice, spacing: tuple[float, float], edges: Array, segment: int
-) -> tuple[Array, ...]:
+def _sums(rows: Array, inner: slice, spacing: tuple[float, float], segment: int) -> tuple[Array, ...]:
     """What is added up over pieces of a strip, of rows about the mean, m, of which the inner ones count.
 
     Of |z|, z², z³ and z⁴; of squares of slopes, of developed areas beyond the plane's, and the number of
-    these; numbers of heights between edges; spectra, m³, and the number of segments that they are of.
+    these; spectra, m³, and the number of segments that they are of.
     """
     square = _inner_slope(rows[:, MARGIN:-MARGIN], spacing[0], 0) ** 2
     square += _inner_slope(rows[MARGIN:-MARGIN], spacing[1], 1) ** 2
@@ -307,10 +300,9 @@ def _sums(
     z = rows[inner]
     squared = z * z
     powers = np.array([np.abs(z).sum(), squared.sum(), (squared * z).sum(), (squared * squared).sum()])
-    counts = np.histogram(z, BINS, (edges[0], edges[-1]))[0].astype(np.float64)
     segments = np.array((len(z) - segment // 2) // (segment - segment // 2), dtype=np.float64)
     density = psd(np.ascontiguousarray(z.T), spacing[0], segment=segment)[1]
-    return powers, slopes, counts, segments * density.mean(axis=0), segments
+    return powers, slopes, segments * density.mean(axis=0), segments
 
 
 # --- whether a measured map is the same everywhere
