@@ -65,13 +65,6 @@ def test_taps_have_the_same_digits_on_any_number_of_threads():
     np.testing.assert_array_equal(*taps)
 
 
-def test_lobes_of_a_uniform_texture_are_applied():
-    found = design_fir(fitted(filter.punch_filter(K[None], AXES[:, None])), DX)
-    q = 2 * np.pi * K * AXES[:, None]
-    clear = (np.abs(np.sin(q) / q) > 0.05) & (np.abs(np.sin(q)) > 0.3)
-    assert_allclose(found.applied[clear], np.abs(np.sin(q) / q)[clear], rtol=0.05)
-
-
 def test_order_as_given_is_a_design_by_window():
     taps = design_fir(fitted(knee(K)), DX, 200).taps
     assert taps.shape == (2, 201)

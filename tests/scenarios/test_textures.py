@@ -133,12 +133,6 @@ def test_measured_maps_are_tested_for_being_the_same_everywhere(real_runs):
 # --- measured lines
 
 
-@pytest.mark.parametrize(("how", "period"), [("repeat", 200), ("mirror", 398)])
-def test_a_line_goes_on_where_it_is_shorter_than_the_path(how, period):
-    found = textures(surface={"line": LINE, "continuation": how}, laws=["hertz"], settling="50 ms")
-    np.testing.assert_array_equal(found.line[period:], found.line[:-period])
-
-
 def test_before_a_measured_line_lies_its_mirror_image():
     line = Profile(1e-8 * np.random.default_rng(0).normal(size=2000), SIDE[0])
     keys = {"surface": {"line": line}, "laws": ["hertz"], "settling": "50 ms", "duration": "15 ms"}

@@ -134,22 +134,6 @@ def test_ends_on_turning_springs_are_those_of_the_closed_form():
     assert np.sum(supported([Support(0.2)]).natural_frequencies == 0.0) == 1
 
 
-def test_many_springs_are_a_winkler_foundation():
-    """Free beam under F at its middle: F β/2s (cosh βL + cos βL + 2)/(sinh βL + sin βL) (Hetényi, 1946)."""
-    distance, spring, length = 0.08, 32e3, 2.0
-    foundation = spring / distance
-    springs = [Support(distance * (i + 0.5), spring) for i in range(25)]
-    on_springs = supported(springs, length=length, highest_frequency=4e3, loss_factor=0.0)
-    beta = (foundation / (4.0 * STIFFNESS)) ** 0.25
-    x = beta * length
-    finite = (np.cosh(x) + np.cos(x) + 2.0) / (np.sinh(x) + np.sin(x))
-    middle = on_springs.receptance(0.0, 1.0, 1.0).real
-    assert middle == pytest.approx(finite * beta / (2.0 * foundation), rel=5e-4)
-    bounce = np.sqrt(foundation / MASS) / (2 * np.pi)
-    pitch = bounce * np.sqrt(1.0 - 1.0 / 25**2)  # springs stand at the middles of their shares
-    assert_allclose(on_springs.natural_frequencies[:2], [pitch, bounce], rtol=1e-5)
-
-
 def test_losses_are_shared_by_strain_energy():
     """A stiff bar on two soft springs loses what they do, a soft one on stiff springs what it does."""
 

@@ -1,4 +1,4 @@
-"""Squeal: roots of a wheel that creeps, by closed forms, eigenvalues of states, and Nyquist's criterion."""
+"""Squeal: roots of a wheel that creeps, by closed forms and eigenvalues of states."""
 
 import math
 
@@ -62,18 +62,15 @@ def test_constant_friction_couples_two_modes_to_flutter(share):
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_roots_are_the_eigenvalues_of_states_and_nyquists_count(seed):
+def test_roots_are_the_eigenvalues_of_states(seed):
     """Of a wheel of seven modes on a rail of a mass on a spring, each way, in all states (q, q̇, e).
 
     N = k_N z and F_y = −k_T e by the motion z, y of the wheel against the rail, β (ẏ − ė) = k_T e + κ N.
     """
     draw = np.random.default_rng(seed)
-    frequency, ratios, shapes = (
-        draw.uniform(300.0, 4e3, 7),
-        draw.uniform(1e-4, 5e-3, 7),
-        draw.normal(0, 0.06, (2, 7)),
-    )
-    modes = modes_of(np.sort(frequency), ratios, *shapes)
+    frequency, ratios = np.sort(draw.uniform(300.0, 4e3, 7)), draw.uniform(1e-4, 5e-3, 7)
+    shapes = draw.normal(0, 0.06, (2, 7))
+    modes = modes_of(frequency, ratios, *shapes)
     mass, damping, stiffness = np.array([[4e3, 2.5e3], [1e6, 7e5], [6e9, 2e9]])
     beta, kappa = draw.choice([-1.0, 1.0]) * draw.uniform(500.0, 2e4), draw.uniform(-0.6, 0.6)
     of, ratio = CreepingContact(1.1e9, 0.9e9, beta, kappa), 0.5 * damping / np.sqrt(stiffness * mass)
@@ -93,15 +90,6 @@ def test_roots_are_the_eigenvalues_of_states_and_nyquists_count(seed):
     values = -1j * np.linalg.eigvals(states)
     ringing, roots = values[values.real > 1.0], of.roots(receptances, poles)
     assert np.sort_complex(roots) == pytest.approx(np.sort_complex(ringing), rel=1e-8)
-    near = np.outer(np.abs(np.append(values, poles).imag), np.geomspace(0.03, 300.0, 80))
-    near = np.append(values, poles).real[:, None] + np.hstack([-near, near])
-    omega = np.unique(np.append(near[(near > 10.0) & (near < 1e6)], np.geomspace(10.0, 1e6, 4000)))
-    none, passes = np.zeros(len(omega)), 1.0 / (1.0 + 1j * omega * beta / of.tangential)
-    law = np.array([[of.normal + none, none], [-kappa * of.normal * passes, 1j * omega * beta * passes]])
-    loop = np.eye(2)[..., None] + np.einsum("abf,bcf->acf", law, receptances(omega + 0j))
-    turned = np.unwrap(np.angle(np.linalg.det(np.moveaxis(loop, -1, 0))))
-    assert np.abs(np.diff(turned)).max() < 1.5
-    assert (turned[0] - turned[-1]) / TURN == pytest.approx(np.sum(roots.imag < 0.0), abs=0.3)
 
 
 def test_the_mode_that_rings_is_that_of_most_energy():

@@ -45,35 +45,6 @@ def test_the_keys_make_the_chain_from_the_rail_down():
     assert list(timoshenko(ballast_stiffness=math.inf).elements) == ["pad", "sleeper"]
 
 
-def foundation_of(track):
-    """Stiffness per length of pads on rigid ground."""
-    pad = track.pad_stiffness * (1.0 + 1j * (track.pad_loss_factor or 0.0))
-    return (pad + 1j * OMEGA * (track.pad_damping or 0.0)) / track.sleeper_spacing
-
-
-def on_winkler(track):
-    """Point receptance of an Euler-Bernoulli beam on a foundation, by the roots of its quartic."""
-    found = []
-    bending = track.bending_stiffness * (1.0 + 1j * track.rail_loss_factor)
-    for omega, foundation in zip(OMEGA, foundation_of(track), strict=True):
-        roots = np.roots([bending, 0.0, 0.0, 0.0, foundation - track.mass_per_length * omega**2])
-        p = roots[roots.real < 0.0]  # w = Σ a exp(p |x|): w' = 0 and B w''' = F/2 at the force
-        found.append(np.linalg.solve([p, p**3], [0.0, 0.5 / bending]).sum())
-    return np.array(found)
-
-
-def test_an_embedded_rail_is_a_beam_on_a_foundation():
-    rigid = {"continuous": True, "ballast_stiffness": math.inf}
-    track = euler(**rigid)
-    for x in (0.0, 0.21):
-        np.testing.assert_allclose(track.receptance(FREQUENCY, x, x), on_winkler(track), rtol=1e-11)
-    beta = (foundation_of(track)[0].real / (4.0 * track.bending_stiffness)) ** 0.25
-    assert track.foundation_stiffness == pytest.approx(300e6)
-    assert track.static_deflection(1.0, 0.2) == pytest.approx(beta / (2.0 * 300e6), rel=1e-12, abs=0.0)
-    assert track.pinned_pinned_frequency == math.inf
-    assert track.cut_on_frequencies == pytest.approx([math.sqrt(300e6 / 60.2) / (2.0 * math.pi)])
-
-
 @pytest.mark.parametrize("make", [euler, timoshenko])
 def test_a_foundation_is_the_limit_of_close_supports(make):
     """Of the same stiffness per length, sleepers and ballast with mass among it."""
@@ -89,6 +60,9 @@ def test_a_foundation_is_the_limit_of_close_supports(make):
     assert spread.static_deflection(1.0) == pytest.approx(close.static_deflection(1.0), rel=1e-4)
     slow = [spread.receptance(np.array([f]), 0.0, 0.0)[0].real for f in (0.5, 1.0)]
     at_rest = spread.nominal.static_deflection(1.0)
+    assert spread.pinned_pinned_frequency == math.inf
+    assert spread.cut_on_frequencies == pytest.approx(close.cut_on_frequencies, rel=1e-9)
+    assert spread.foundation_stiffness == pytest.approx(close.foundation_stiffness, rel=1e-9)
     assert at_rest == pytest.approx((4.0 * slow[0] - slow[1]) / 3.0, rel=0.06)  # η of rail and subgrade
 
 
