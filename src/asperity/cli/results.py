@@ -59,7 +59,7 @@ def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> No
     refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
     found = comparison_of(paths, laws=laws)
     table, names = found.table, found.names
-    keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.telling_keys]
+    keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.keys]
     if keys:
         say_table("Keys that differ", ["key", *names], keys, width=120)
     changes = np.stack([table[f"{name}_a_difference"].values for name in found.levels], axis=-1)

@@ -71,16 +71,6 @@ class ComparedRuns:
         found: list[dict[str, Any]] = json.loads(self.table.attrs["cases"])
         return found
 
-    @property
-    def of_kinds(self) -> bool:
-        """Whether the cases are of different kinds."""
-        return any(item["key"] == provenance.KIND.name for item in self.keys)
-
-    @property
-    def telling_keys(self) -> list[dict[str, Any]]:
-        """Keys that differ; of different kinds only those that all have, for the others say little."""
-        return [item for item in self.keys if not self.of_kinds or None not in item["values"]]
-
 
 def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence[str] = ()) -> ComparedRuns:
     """Lay quantities of runs side by side, with their differences to the first run.

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import xarray
 
-from asperity import __version__
-from asperity.reporting import chart, data, page, panels, tables
+from asperity.reporting import chart, data, headline, page, panels, tables
 from asperity.reporting.chart import INK, MUTED, Axis, Chart, Flags, Line, Numbers, Panel
 from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, ComparedRuns
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
@@ -63,7 +62,7 @@ def summary(of: ComparedRuns) -> str:
     Of the levels the first and the last: the force, and what it makes.
     """
     shown = dict.fromkeys([*list(of.levels)[:1], *list(of.levels)[-1:]])
-    keys = [str(item["key"]) for item in of.telling_keys]
+    keys = [str(item["key"]) for item in of.keys]
     more = f" and {len(keys) - 4} more" if len(keys) > 4 else ""
     sentences = [f"The cases differ in {', '.join(keys[:4])}{more}" if keys else "The cases are the same"]
     for r, name in enumerate(of.names[1:], 1):
@@ -186,35 +185,18 @@ def _filters(of: ComparedRuns) -> Panel:
 
 def comparison_page(of: ComparedRuns, file: str) -> str:
     """The whole page as one self-contained HTML text; `file` is the name of the CSV file beside it."""
-    trees = [run.tree for run in of.runs]
-    citations = [str(text) for tree in trees for text in data.json_attribute(tree, provenance.CITATIONS, [])]
-    sections = compared_sections(of)
-    return page.whole_page(
-        "comparison.html.jinja",
-        [block for section in sections for block in section.blocks],
-        {name: dark for tree in reversed(trees) for name, dark in data.law_colours(tree).items()},
-        title=f"Comparison of {' and '.join(of.names)}",
-        summary=summary(of),
-        first=of.names[0],
-        version=__version__,
-        file=file,
-        sections=sections,
-        provenance=_provenance_table(of),
-        citations=list(dict.fromkeys(citations)),
+    beside = {"all numbers (CSV)": file}
+    return page.figures_page(
+        f"Comparison of {' and '.join(of.names)}", summary(of), compared_blocks(of), beside
     )
 
 
-def compared_sections(of: ComparedRuns) -> list[page.PageSection]:
-    """Chapters of the page: cases, verdicts, force, each level, contact."""
-    found = [
-        page.PageSection("case", "What differs in the cases", [_case_table(of)]),
-        page.PageSection("verdicts", "What each run says", [], list(_verdicts(of))),
-        page.PageSection("force", "Contact force and its loss", [_numbers_table(of.table)]),
-    ]
-    for name, title in ((name, title.capitalize()) for name, title in of.levels.items()):
-        drawn = page.PageFigure(name, title, _levels_caption(of, name), _levels_chart(of, name))
-        found.append(page.PageSection(f"levels-{name}", title, [drawn, _difference_table(of, name)]))
-    blocks: list[page.PageFigure | ReportTable] = [_contact_table(of.table)]
+def compared_blocks(of: ComparedRuns) -> list[page.PageFigure | ReportTable]:
+    """What the page shows: cases, what each run says, force, each level, contact."""
+    found: list[page.PageFigure | ReportTable] = [_case_table(of), _runs_table(of), _numbers_table(of.table)]
+    for name, title in of.levels.items():
+        told = _levels_caption(of, name), _levels_chart(of, name)
+        found += [page.PageFigure(name, title.capitalize(), *told), _difference_table(of, name)]
     held = (("stiffness", _stiffness), ("filter", _filters))
     if shown := [draw(of) for name, draw in held if name in of.table]:
         caption = (
@@ -222,19 +204,9 @@ def compared_sections(of: ComparedRuns) -> list[page.PageSection]:
             "the working approach; magnitude of the contact filter at the working approach of each run, as "
             "fitted."
         )
-        last = Chart((*shown[:1], *(replace(panel, beside=True, share=1.15) for panel in shown[1:])))
-        blocks.insert(0, page.PageFigure("stiffness_and_filter", "Stiffness and filter", caption, last))
-    return [*found, page.PageSection("contact", "Contact", blocks)]
-
-
-def _verdicts(of: ComparedRuns) -> Iterator[tuple[str, str, str]]:
-    """Verdict of each run, and its warnings."""
-    for run in of.runs:
-        yield run.name, str(data.stated(run.tree, provenance.VERDICT) or "no verdict was stored"), ""
-        for warning in data.json_list(run.tree, provenance.WARNINGS):
-            grade = str(warning.get("grade", "warning"))
-            if grade != "note":
-                yield f"{run.name}, {grade}", str(warning.get("message", "")), "note"
+        drawn = Chart((*shown[:1], *(replace(panel, beside=True, share=1.15) for panel in shown[1:])))
+        found.append(page.PageFigure("stiffness_and_filter", "Stiffness and filter", caption, drawn))
+    return [*found, _contact_table(of.table)]
 
 
 # --- tables
@@ -242,12 +214,9 @@ def _verdicts(of: ComparedRuns) -> Iterator[tuple[str, str, str]]:
 
 def _case_table(of: ComparedRuns) -> ReportTable:
     """Keys whose values differ."""
-    items = of.telling_keys
-    written = [["–" if value is None else value for value in item["values"]] for item in items]
-    rows = [text_cells([i["key"], *values, i["note"]]) for i, values in zip(items, written, strict=True)]
-    note = "All other keys have the same values." if items else "All keys have the same values in all runs."
-    if of.of_kinds:
-        note = "Keys that one kind of case has alone are not listed; the table beside this page has them."
+    written = [["–" if value is None else value for value in item["values"]] for item in of.keys]
+    rows = [text_cells([i["key"], *values, i["note"]]) for i, values in zip(of.keys, written, strict=True)]
+    note = "All other keys have the same values." if rows else "All keys have the same values in all runs."
     return ReportTable("keys", "Keys that differ", ["key", *of.names, "what it is"], rows, note)
 
 
@@ -311,6 +280,7 @@ def _contact_table(table: xarray.Dataset) -> ReportTable:
 
 
 _PROVENANCE = {
+    "what it says": provenance.VERDICT,
     "what was rolled": provenance.TITLE,
     "kind": provenance.KIND,
     "asperity": provenance.ASPERITY_VERSION,
@@ -319,11 +289,14 @@ _PROVENANCE = {
 }
 
 
-def _provenance_table(of: ComparedRuns) -> ReportTable:
-    """Where the runs come from."""
+def _runs_table(of: ComparedRuns) -> ReportTable:
+    """What the runs say, how far they are valid, and where they come from."""
     columns = {"run": text_cells(of.names)}
     for head, attribute in _PROVENANCE.items():
         told = (data.stated(run.tree, attribute) for run in of.runs)
         columns[head] = text_cells(data.moment("" if each is None else each) for each in told)
-    note = f"“{MAIN}” stands for the first law of each run." if of.laws[:1] == [MAIN] else ""
+    valid = (headline.validity(headline.lights(run.tree)).quantity for run in of.runs)
+    columns["validity"] = text_cells(valid)
+    note = "Differences are to the first run."
+    note += f" “{MAIN}” stands for the first law of each run." if of.laws[:1] == [MAIN] else ""
     return tables.table("runs", "Runs", columns, note)

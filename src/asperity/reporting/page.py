@@ -46,8 +46,6 @@ class PageSection:
     name: str
     title: str
     blocks: Sequence[PageFigure | ReportTable]
-    # before them: who or what a paragraph is about, its text, and a class for its look
-    paragraphs: Sequence[tuple[str, str, str]] = ()
 
 
 def whole_page(name: str, blocks: Sequence[object], colours: Mapping[str, str], /, **words: object) -> str:

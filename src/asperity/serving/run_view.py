@@ -11,7 +11,7 @@ from xarray import DataTree
 
 from asperity.arguments import Array
 from asperity.reporting import chart, data, page, payload, tables
-from asperity.reporting.comparison_page import compared_sections, summary
+from asperity.reporting.comparison_page import compared_blocks, summary
 from asperity.results import read_result
 from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
 from asperity.scenes.report import comparison_of, report
@@ -124,8 +124,7 @@ def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
     """A sentence, and what the page of the comparison shows below it."""
     told = [name if names.count(name) == 1 else f"{name} ({n})" for n, name in enumerate(names, 1)]
     found = comparison_of(paths, told)
-    blocks = [block for section in compared_sections(found) for block in section.blocks]
-    return {"summary": summary(found), **told_blocks(blocks)}
+    return {"summary": summary(found), **told_blocks(compared_blocks(found))}
 
 
 def write_report(path: str) -> dict[str, Any]:
