@@ -45,9 +45,8 @@ def run_chart():
     bars = Boxes(*(np.array([at]) for at in (1.0, 1.1, -0.35, 0.35)), colour=BLUE, law="areal", label="areal")
     marks = Rules(np.zeros(1), "y", dashes=()), Line(time, linear, **LINEAR), Line(time, force, **AREAL)
     names = panels.words_axis(("areal", "a law of a longer name"), "no contact")
-    places = {"largest force": np.array([[1.99, 2.01]]), "next loss of contact": np.array([[0.9, 1.2]])}
     lost = Panel(axis, names, (bars,), height=1.3)
-    return Chart((Panel(axis, Axis("contact force / N"), marks), lost), places)
+    return Chart((Panel(axis, Axis("contact force / N"), marks), lost))
 
 
 def spectrum_chart():
@@ -191,17 +190,8 @@ def test_points_bands_words_and_fields_are_read_by_keys(opened):
     assert 780 < float(said(page, "map").split("pressure ")[1].split(" MPa")[0]) <= 800
 
 
-def test_places_are_shown_by_buttons_and_parts_by_dragging_and_all_comes_back(opened):
+def test_parts_are_shown_by_dragging_and_all_comes_back(opened):
     page = opened()
-    whole = pixels(page, "run", VERMILLION)
-    page.get_by_role("button", name="largest force").press("Enter")
-    assert f"areal {HIGHEST:.0f} N" in said(page, "run")
-    assert pixels(page, "run", VERMILLION) != whole
-    assert pixels(page, "run", BLUE, 1) == 0  # the panel below shows the same time
-    page.get_by_role("button", name="next loss of contact").press("Enter")
-    assert pixels(page, "run", BLUE, 1) > 15
-    page.locator("#run").get_by_role("button", name="show all").press("Enter")
-    assert pixels(page, "run", VERMILLION) == whole
     whole, over = pixels(page, "spectrum", BLUE), page.locator("#spectrum .u-over")
     over.drag_to(over, source_position={"x": 100, "y": 50}, target_position={"x": 200, "y": 60})
     page.mouse.move(0, 0)

@@ -86,21 +86,14 @@ def test_loss_of_contact_is_drawn_where_there_is_any():
     np.testing.assert_allclose(areal.right, time[[1, 700, 999]] + half)
     (shaded,) = (mark for mark in whole.marks if isinstance(mark, Boxes))
     assert (shaded.law, shaded.left.tolist()) == ("areal", areal.left.tolist())
-    first, last = chart.places["next loss of contact"].T
-    assert len(first) == 3
-    assert first[1] < time[700] < last[1]
     calm = with_force(60 + WAVE)
     assert len(panels("force_peak", calm)) == 1
-    assert list(PARTS["force_envelope"].laid_out(calm).places) == ["largest force"]
 
 
 def test_the_whole_run_is_there_step_by_step(tree):
     force = tree["rolling/contact_force"]
     for line in marks("force_envelope", tree):
         np.testing.assert_array_equal(line.y, force.sel(law=line.law).values)
-    largest = PARTS["force_envelope"].laid_out(tree).places["largest force"]
-    peak = float(tree["rolling/time"][int(force[0].values.argmax())])  # s
-    assert largest[0, 0] < peak < largest[0, 1]
 
 
 # --- the contact

@@ -163,8 +163,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
             elsewhere = any(on_track(e) for e in part.needs) if not track else chapter.name == "acceleration"
             elsewhere |= chapter.name == "contacts" and not several
             elsewhere |= chapter.name in (*OF_BEARINGS, "creep")  # of a wheel that is said to creep
-            elsewhere |= part.name == "what_helps"  # where it is asked
-            elsewhere |= part.name in ("pass_by_bands", "bays")  # of what was measured, and where they differ
+            elsewhere |= part.name == "pass_by_bands"  # of what was measured
             assert (part.name in drawn) != elsewhere, part.name
 
 

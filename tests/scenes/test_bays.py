@@ -49,8 +49,7 @@ def test_bays_are_told_and_drawn(varied):
     assert track.attrs["sleeper_spacing"] == pytest.approx(0.59)
     assert "scattered from the moving kernel" in varied["scenario"].attrs["numerics"]
     by_name = {part.name: part for part in TRACK}
-    assert {"bays", "receptance"} <= {part.name for part in figures_of(varied)}
-    assert "3 bays" in by_name["bays"].caption(varied)
+    assert "receptance" in {part.name for part in figures_of(varied)}
     assert "first of 3 bays" in by_name["receptance"].caption(varied)
     assert sleepers_between(varied, -1.5, 2.0, 0.59) == pytest.approx([-1.27, -0.62, 0.0, 0.5, 1.15, 1.77])
     (rules,) = sleeper_times(varied, 0.0, 0.05, 1.0)

@@ -18,7 +18,7 @@ from asperity.progress import progress_bar
 from asperity.reporting import data, page, study_figures
 from asperity.reporting.tables import ReportTable
 from asperity.results import attributes_of, save
-from asperity.scenes.figures.effects import Effects, effects_caption, effects_chart, effects_table
+from asperity.scenes.figures.effects import Effects, effects_table
 from asperity.schema.spectra import FORCE_LEVEL
 from asperity.studies import table as tables
 from asperity.studies.axes import VARIANT
@@ -181,7 +181,8 @@ def _write(
             names["effects"] = EFFECTS
             write_csv(new / EFFECTS, *tables.long_columns(effect, list(map(str, effect["effect"].dims))))
         told = _by_place(table, effect)
-        blocks = [*_blocks(told), *_figures(table, means, band, asked or tables.USUAL_IN_FIGURES)]
+        blocks: list[page.PageFigure | ReportTable] = [*_blocks(told)]
+        blocks += _figures(table, means, band, asked or tables.USUAL_IN_FIGURES)
         if blocks:
             names["page"] = PAGE
             files.write_bytes(
@@ -252,13 +253,11 @@ def _by_place(table: xarray.Dataset, effect: xarray.Dataset | None) -> list[tupl
     return [(told, of) for told, of in found if of.parts]  # none where the case as it is has failed
 
 
-def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[page.PageFigure | ReportTable]:
-    """Bars and table of what each variant does."""
+def _blocks(told: Sequence[tuple[str, Effects]]) -> Iterator[ReportTable]:
+    """A table of what each variant does."""
     for n, (words, of) in enumerate(told, 1):
         title = f"What helps, {words}" if words else "What helps?"
-        if not all(of.left_out):
-            yield page.PageFigure(f"effects-{n}", title, effects_caption(of), effects_chart(of), EFFECTS)
-        yield replace(effects_table(of), name=f"effects-table-{n}")
+        yield replace(effects_table(of), name=f"effects-{n}", title=title)
 
 
 def _print_effects(words: str, of: Effects) -> None:

@@ -1,9 +1,8 @@
 """A figure as numbers: panels with axes and marks, which the page and matplotlib draw alike."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import cycle
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -251,8 +250,6 @@ class Chart:
     """Panels beneath each other; those whose x axes are linked zoom together."""
 
     panels: tuple[Panel, ...]
-    # where a reader may want to go: by name, stretches of x (n, 2); a button shows one after the other
-    places: Mapping[str, Numbers] = field(default_factory=lambda: MappingProxyType({}))
 
 
 MARGIN = 0.04

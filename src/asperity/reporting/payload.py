@@ -128,10 +128,7 @@ def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str]) -> str:
     """
     arrays, look = Arrays(), list(colours)
     told = {
-        name: {
-            "panels": [_panel(panel, arrays, look) for panel in _thinned(drawn).panels],
-            "places": {place: np.asarray(found).tolist() for place, found in drawn.places.items()},
-        }
+        name: {"panels": [_panel(panel, arrays, look) for panel in _thinned(drawn).panels]}
         for name, drawn in charts.items()
     }
     found = {"charts": told, "colours": look, "arrays": arrays.told, "data": arrays.packed}

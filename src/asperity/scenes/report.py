@@ -63,7 +63,7 @@ CHAPTERS = (
     Chapter(
         "effects",
         "What helps?",
-        (effects.WHAT_HELPS,),
+        (),
         (effects.what_helps_table,),
         effects.what_helps_answers,
     ),

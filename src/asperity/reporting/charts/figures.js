@@ -41,7 +41,7 @@ class Figure {
     this.status = make("p", { className: "reading" }, this.area);
     this.status.setAttribute("role", "status");
     this.outputs = legendOf(this);
-    this.showButtons = buttonsOf(this, chart.places);
+    this.showButtons = buttonsOf(this);
     this.showButtons();
     element.classList.add("ready");
     this.arrange();

@@ -45,22 +45,13 @@ function drawSwatches(figure) {
   }
 }
 
-function buttonsOf(figure, places) {  // a function that shows those that suit what is seen
+function buttonsOf(figure) {  // a function that shows those that suit what is seen
   const button = (text, name, act) => {
     const made = make("button", { type: "button", textContent: text }, figure.buttons);
     if (name) { made.title = name; made.setAttribute("aria-label", name); }
     made.addEventListener("click", act);
     return made;
   };
-  for (const [place, stretches] of Object.entries(places)) {
-    let next = 0;
-    button(place, "", () => {
-      const ends = stretches[next++ % stretches.length], [panel] = figure.panels;
-      figure.appear();
-      zoomTo(panel, ends);
-      read(panel, [(ends[0] + ends[1]) / 2, isField(panel) ? middleOf(panel) : null], true);
-    });
-  }
   const ofZoom = [
     button("all", "show all", () => figure.panels.forEach(showAll)),
     button("◂", "shift to lower values", () => shift(figure.active, -0.5)),

@@ -1,15 +1,14 @@
-"""What helps: what named changes of a case do to what radiates, as bars, as a table and in words."""
+"""What helps: what named changes of a case do to what radiates, as a table and in words."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import xarray
 
-from asperity.reporting import chart, data, figure, headline, panels, tables
-from asperity.reporting.chart import INK, Axis, Boxes, Chart, Mark, Numbers, Panel
+from asperity.reporting import data, headline, tables
+from asperity.reporting.chart import Numbers
 from asperity.scenes import schema
-from asperity.scenes.figures.noise import LOOKS, WHOLE
+from asperity.scenes.figures.noise import WHOLE
 
 HEARD = 0.05
 """Change of a level, dB, below which none is told."""
@@ -87,33 +86,6 @@ class Effects:
         return max(zip(level, self.parts, strict=True), key=lambda pair: (pair[1] != WHOLE, pair[0]))[1]
 
 
-def effects_chart(of: Effects) -> Chart:
-    """Bars: what each variant does to each part, with its confidence interval."""
-    shown = [n for n, reason in enumerate(of.left_out) if not reason]
-    thickness = 0.8 / len(of.parts)
-    marks: list[Mark] = [panels.zero("x", INK)]
-    for p, (part, hatch) in enumerate(zip(of.parts, chart.HATCHES, strict=False)):
-        y = np.arange(len(shown), dtype=np.float64) + (p - (len(of.parts) - 1) / 2) * thickness
-        effect, error = of.effect[shown, p], np.nan_to_num(of.error[shown, p])
-        left, right, half = np.minimum(effect, 0.0), np.maximum(effect, 0.0), 0.43 * thickness
-        marks.append(Boxes(left, right, y - half, y + half, part, LOOKS.get(part, (INK,))[0], hatch=hatch))
-        marks.append(Boxes(effect - error, effect + error, y, y, edge=INK))
-    along = Axis("change of the level / dB")
-    words = panels.words_axis([of.variants[n] for n in shown], down=True)
-    return Chart((Panel(along, words, tuple(marks), height=0.8 + len(shown) * (0.2 + 0.14 * len(of.parts))),))
-
-
-def effects_caption(of: Effects) -> str:
-    """Say what the bars are, and how sure."""
-    sure = "Of one texture, the same in all runs; with several seeds it is known how sure a difference is."
-    if of.seeds > 1:
-        sure = (
-            f"Means over {of.seeds} seeds, each difference within one texture; lines: their confidence "
-            "intervals of 95 % (Student's t)."
-        )
-    return f"{of.what}, by {of.law}: with each change, less that of the case as it is. {sure}"
-
-
 def effects_table(of: Effects) -> tables.ReportTable:
     """What each variant does, the quietest first, in numbers and in words."""
     columns = {"change": tables.text_cells(["as it is", *of.variants], "name")}
@@ -122,7 +94,11 @@ def effects_table(of: Effects) -> tables.ReportTable:
         columns[part or "level"] = [tables.Cell(f"{of.level[p]:.1f}", "number"), *cells]
     first = f"Loudest: {of.loudest()}." if of.loudest() else ""
     columns["in words"] = tables.text_cells([first, *of.in_words.values()])
-    note = f"As it is: {of.units}; below, differences in dB. In grey and in brackets: not surely any change."
+    sure = ", of one texture, the same in all runs: with several seeds it is known how sure a difference is."
+    if of.seeds > 1:
+        sure = f": means over {of.seeds} seeds, each within one texture, ± confidence interval of 95 %."
+    note = f"{of.what}, by {of.law}, as it is, in {of.units}; below, differences in dB{sure}"
+    note += " In grey and in brackets: not surely any change." * (of.seeds > 1)
     return tables.table("effects", "What each change does, the quietest first", columns, note)
 
 
@@ -140,14 +116,6 @@ def _of_run(tree: xarray.DataTree) -> Effects:
     return Effects.of(tree[schema.EFFECT.group].to_dataset())
 
 
-def _columns(tree: xarray.DataTree) -> Iterator[figure.Series]:
-    """One row: a column for each variant and part."""
-    of = _of_run(tree)
-    for name, effect in zip(of.variants, of.effect, strict=True):
-        for part, value in zip(of.parts, effect, strict=True):
-            yield figure.Series(f"{name}: {part}", "dB", np.array([value]), schema.EFFECT)
-
-
 def what_helps_table(tree: xarray.DataTree) -> tables.ReportTable | None:
     """What each change does, if it was asked."""
     return effects_table(_of_run(tree)) if data.present(tree, schema.EFFECT_LEVEL) else None
@@ -156,18 +124,3 @@ def what_helps_table(tree: xarray.DataTree) -> tables.ReportTable | None:
 def what_helps_answers(tree: xarray.DataTree) -> headline.Answers | None:
     """What helps most, if it was asked."""
     return headline.Answers(more=_of_run(tree).best) if data.present(tree, schema.EFFECT) else None
-
-
-def _draw(tree: xarray.DataTree, lines: figure.Lines) -> Chart:
-    return effects_chart(_of_run(tree))
-
-
-WHAT_HELPS = figure.Figure(
-    "what_helps",
-    "What helps?",
-    None,
-    (_columns,),
-    _draw,
-    lambda tree: effects_caption(_of_run(tree)),
-    (schema.EFFECT,),
-)

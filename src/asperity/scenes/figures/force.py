@@ -123,13 +123,8 @@ FORCE_SPECTRUM = Figure(
 # --- in time
 
 COLUMNS = 700  # stretches of an envelope
-AROUND = 400  # time steps that are shown around the largest force
 AROUND_PEAK = 0.024
 """Length of the piece around the largest force, s."""
-
-
-def _main_force(tree: DataTree) -> chart.Numbers:
-    return data.of_law(tree, rolling.CONTACT_FORCE, data.laws(tree, rolling.CONTACT_FORCE)[0])
 
 
 def lost(tree: DataTree, law: str, force: chart.Numbers) -> chart.Flags:
@@ -139,21 +134,17 @@ def lost(tree: DataTree, law: str, force: chart.Numbers) -> chart.Flags:
     return np.zeros(len(force), dtype=bool) if never or data.law_entry(tree, law).may_pull else force <= 0
 
 
-def _main_flight(tree: DataTree) -> chart.Flags:
-    """Time steps at which the main law has lost contact."""
-    return lost(tree, data.laws(tree, rolling.CONTACT_FORCE)[0], _main_force(tree))
-
-
-def _around(middle: int, length: int, count: int) -> slice:
-    start = min(max(middle - length // 2, 0), count - length)
-    return slice(start, start + length)
+def _main_force(tree: DataTree) -> chart.Numbers:
+    return data.of_law(tree, rolling.CONTACT_FORCE, data.laws(tree, rolling.CONTACT_FORCE)[0])
 
 
 def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
     """Time steps within `length` s around the largest force of the main law."""
     time = data.values(tree, rolling.TIME)
     steps = min(len(time), max(2, round(length * (len(time) - 1) / (time[-1] - time[0]))))
-    return _around(int(np.nanargmax(_main_force(tree))), steps, len(time))
+    start = int(np.nanargmax(_main_force(tree))) - steps // 2
+    start = min(max(start, 0), len(time) - steps)
+    return slice(start, start + steps)
 
 
 def _forces(tree: DataTree, lines: Lines, **look: Any) -> list[chart.Panel]:
@@ -184,10 +175,6 @@ def _bars(tree: DataTree, series: Series, time: chart.Numbers, row: int) -> char
     return chart.Boxes(*ends, colour=data.law_entry(tree, series.law).colour, law=series.law)
 
 
-def _whole(tree: DataTree) -> Lines:
-    return Lines(next(Of(rolling.TIME)(tree)), list(FORCES(tree)))
-
-
 def _extremes(tree: DataTree) -> Iterable[Series]:
     """Lowest and highest contact force of each law in each stretch of the run."""
     for series in FORCES(tree):
@@ -202,21 +189,9 @@ def _starts(tree: DataTree) -> Iterable[Series]:
     yield Series("time", rolling.TIME.units, time[chart.envelope(time, COLUMNS)[0]])
 
 
-def _whole_run(tree: DataTree, _: Lines) -> chart.Chart:
+def _whole_run(tree: DataTree, _: Lines) -> list[chart.Panel]:
     """Contact force of all laws over the whole run, every time step."""
-    whole, unit = _whole(tree), panels.time_axis(tree, data.values(tree, rolling.TIME))[1]
-    peak = int(np.nanargmax(whole.lines[0].values))
-    losses = [
-        (sum(ends) // 2, 6 * (ends[1] - ends[0] + 1) + 40)
-        for ends in panels.stretches(_main_flight(tree)).tolist()
-    ]
-    found = {"largest force": [(peak, AROUND)], "next loss of contact": losses}
-    places = {
-        name: whole.at[np.clip([(at - n // 2, at + n // 2) for at, n in steps], 0, len(whole.at) - 1)] / unit
-        for name, steps in found.items()
-        if steps
-    }
-    return chart.Chart(tuple(_forces(tree, whole, width=0.9)), places)
+    return _forces(tree, Lines(next(Of(rolling.TIME)(tree)), list(FORCES(tree))), width=0.9)
 
 
 _WORDS = (

@@ -7,7 +7,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, VERMILLION, Axis, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
@@ -144,37 +144,6 @@ def _first_bay(tree: DataTree) -> str:
     return f" Of the first of {count} bays that differ, and of the sleeper with which it begins."
 
 
-_OF_BAYS = (
-    (schema.BAY_LENGTH, "distance to the next sleeper", ("distance / m", 1.0)),
-    (schema.BAY_PAD_STIFFNESS, "stiffness of the pad", ("pad / (MN/m)", 1e-6)),
-    (schema.BAY_BALLAST_STIFFNESS, "stiffness of the ballast", ("ballast / (MN/m)", 1e-6)),
-)
-
-
-def _bays(tree: DataTree, lines: Lines) -> Iterator[Panel]:
-    """Distance, pad and ballast of each bay, one below the other."""
-    count = len(lines.at)
-    ticks = tuple((float(n), f"{n}") for n in range(1, count + 1, 1 + count // 20))
-    along = Axis("bay", 0.5, count + 0.5, ticks=ticks)
-    for entry, _, (label, unit) in _OF_BAYS:
-        (series,) = lines.of(entry)
-        values = series.values * unit
-        mean = Rules(np.array([values.mean()]), "y")
-        points = Line(lines.at, values, colour=chart.BLUE, width=0.8, marker="o")
-        margin = 0.1 * max(float(np.ptp(values)), 0.1 * values.mean())
-        yield Panel(
-            along, Axis(label, values.min() - margin, values.max() + margin), (mean, points), height=1.5
-        )
-
-
-def _bays_caption(tree: DataTree) -> str:
-    lengths = data.values(tree, schema.BAY_LENGTH)
-    return (
-        f"Each of the {len(lengths)} bays from the sleeper at 0 m on, with the pad and the ballast of the "
-        f"sleeper with which it begins; after {lengths.sum():.4g} m they repeat. Dotted: means."
-    )
-
-
 def _decay(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     """Decay rate along the rail against frequency, with the limit that tests of vehicles ask for."""
     positive = [replace(s, values=np.where(s.values > 0, s.values, np.nan)) for s in lines.lines]
@@ -241,14 +210,6 @@ TRACK = (
         _receptance,
         _receptance_caption,
         any_of=tuple(each.entry for each in RECEPTANCES if each.entry.units != "rad"),
-    ),
-    Figure(
-        "bays",
-        "Bays of the track",
-        Of(schema.BAY),
-        tuple(Of(each, name) for each, name, _ in _OF_BAYS),
-        _bays,
-        _bays_caption,
     ),
     Figure(
         "decay_rate",
