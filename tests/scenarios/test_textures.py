@@ -106,7 +106,7 @@ def test_a_map_is_rolled_over_in_the_direction_asked_for():
     longest = 4096 * 20e-6 / np.argmax(spectrum)
     assert longest == pytest.approx(200e-6 / np.cos(np.radians(60)), rel=0.03)
     assert slanted.maps[0].size == pytest.approx((1.15e-3, 1.99e-3), abs=20e-6)  # 2.4 mm × 2 mm, turned
-    assert "rolled over at 60° to their x axis, on the largest rectangle inside: 1.1" in slanted.origin
+    assert "rolled over at 60° to their x axis" in slanted.origin
     assert "rolled over" not in bare.origin
 
 
@@ -164,7 +164,9 @@ def test_path_and_samples_have_the_levels():
     found = by_levels(1.0, level="+6 dB")
     path, dx = whole(found.path), found.maps[0].spacing
     for heights in (path, found.maps[0].heights):
-        wavelength, level = band_levels_of(HeightMap(heights, dx), shortest=1e-4, longest=WAVELENGTHS[0])
+        wavelength, level = band_levels_of(HeightMap(heights, dx))
+        given = (wavelength > 0.9e-4) & (wavelength < 1.1 * WAVELENGTHS[0])
+        wavelength, level = wavelength[given], level[given]
         asked = np.interp(np.log(wavelength), np.log(WAVELENGTHS[::-1]), LEVELS[::-1, 1] + 6.0)
         scatter = 4.34 / np.sqrt(0.23 / wavelength * heights.shape[0] * dx[0])
         assert (np.abs(level - asked) < 3.0 * scatter).all()

@@ -103,13 +103,11 @@ test_bays_that_cannot_be_are_refused = refusals(
 )
 
 
-def test_the_plan_counts_bays_starts_and_time():
+def test_the_plan_counts_bays_and_time():
     case = over(bays=8, spacing_scatter=0.05)
     prepared, regular = prepare_case(case), prepare_case(over())
     rows = dict(planned_rows(prepared))
     assert "8 in 4.8 m, then they repeat" in rows["bays that differ"]
-    assert "of 192 start positions" in rows["moving kernel"]
-    assert "passed 1.4 times" in rows["moving kernel"]  # 0.22 s at 30 m/s
-    assert "moving kernel" not in dict(planned_rows(regular))
+    assert "bays that differ" not in dict(planned_rows(regular))
     work = [expect(each, lambda *_: None).seconds for each in (prepared, regular)]
     assert work[0] - work[1] > 0.5 * 8 * BAY_TIME / thread_count()

@@ -25,7 +25,7 @@ def test_corrugation_is_a_sine():
 def test_band_of_corrugation_lies_about_its_wavelength():
     line = corrugation(40000, MM, wavelength=0.04, rms=10 * UM, bandwidth=0.33, seed=3)
     assert_allclose(line.heights.std(), 10 * UM, rtol=1e-9)
-    wavelength, level = band_levels_of(line, segment=4.0)
+    wavelength, level = band_levels_of(line)
     assert_allclose(level[np.argmin(np.abs(wavelength - 0.04))], 20.0, atol=0.5)
     assert (level[(wavelength < 0.03) | (wavelength > 0.06)] < -20).all()
     amplitude = corrugation(40000, MM, wavelength=0.04, amplitude=10 * UM, bandwidth=0.33, seed=3)

@@ -185,8 +185,7 @@ def described_scan(scan: ScanSize) -> str:
     """Describe the scan of a path in a sentence: its size, disk use, and what an interruption costs."""
     root, size = Store().root, f"{scan.bytes / 2**20:.1f} MiB"
     return (
-        f"{scan.positions} positions {scan.step * 1e6:.4g} µm apart × {scan.states} approaches, "
-        f"solved in {'single' if scan.single else 'double'} precision, "
+        f"{scan.positions} positions × {scan.states} approaches, "
         f"at most {scan.solutions} solutions, {size} in {root}; "
         "if interrupted or killed, it goes on after its last finished block"
     )

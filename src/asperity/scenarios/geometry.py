@@ -74,25 +74,20 @@ class Geometry:
         nx, ny = self.body.shape
         return HalfSpace((nx, ny), self.spacing, self.modulus, hardness)
 
-    def remedy_for_cut_off(self, highest: float, working: float, datum: float, widest: float) -> str:
+    def remedy_for_cut_off(self, highest: float, datum: float, widest: float) -> str:
         """Name a window that holds the contacts of all states, also of those that this one keeps out.
 
-        Approaches of the highest state and under the working load, m; d0 of the states, m, minus the lowest
-        first touch; widest window that the samples allow, m. One sentence.
+        Approach of the highest state, m; d0 of the states, m, minus the lowest first touch; widest window
+        that the samples allow, m. One sentence.
         """
         wanted = max(HIGHEST_FORCE * self.class_load, self.largest_force)
         kept_out = self.hertz.approach(wanted) - self.hertz.approach(self.largest_force)
-        overlap = highest + kept_out + datum
-        side = window_for(self.body, self.spacing, overlap)
+        side = window_for(self.body, self.spacing, highest + kept_out + datum)
         if side <= widest:
             return f'contact.window = "{side * 1e3:.3g} mm" holds them.'
-        text = f"It takes a window of {side * 1e3:.3g} mm, and the maps are {widest * 1e3:.3g} mm wide: "
-        held = overlap * (widest / side) ** 2 - datum  # the side grows as the root of the overlap
-        if held < working:
-            return text + "measure wider maps, or remove the waviness by surface.longest."
         return (
-            text + f"a window as wide as they are holds approaches up to {held * 1e6:.3g} µm; end "
-            "contact.approaches there."
+            f"It takes a window of {side * 1e3:.3g} mm, and the maps are {widest * 1e3:.3g} mm wide: measure "
+            "wider maps, remove the waviness by surface.longest, or end contact.approaches earlier."
         )
 
     def within_window(self) -> "Geometry":

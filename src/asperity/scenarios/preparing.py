@@ -174,9 +174,7 @@ class ScanSize:
 
     positions: int
     states: int
-    step: float  # distance of the positions, m
     bytes: int  # on disk
-    single: bool  # whether the iteration will be in single precision
 
     @property
     def solutions(self) -> int:
@@ -197,9 +195,7 @@ def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, Sca
         jobs = [
             ScanJob(half_space, strip, shape.body, states, stride, rtol, anchor=anchor) for strip in strips
         ]
-        positions, size = sum(job.positions for job in jobs), sum(job.bytes for job in jobs)
-        single = any(job.single for job in jobs)
-        return ScanSize(positions, len(states), stride * shape.spacing[0], size, single)
+        return ScanSize(sum(job.positions for job in jobs), len(states), sum(job.bytes for job in jobs))
 
     sizes = {}
     if strips := [strip for strip in textures.strips if strip.heights.any()]:
@@ -214,7 +210,6 @@ class ContactTrial:
     """What samples of a case say of its contact."""
 
     approaches: Array  # (k,), states much as the run will choose them, m
-    working: float  # approach of a sample under the working load, m
     pressed: reducing.PressedSamples  # under that load; a few where that takes long
     cut_off: float  # share of the contacts of a loading curve that the window cuts off
     solution: float  # processor time of a contact of that curve, s
@@ -247,7 +242,7 @@ def try_contacts(case: Case, shape: Geometry, textures: Textures, progress: Prog
         counts = scan_forces(job, workers=1).counts
         solution = (time.process_time() - begin) / len(approaches)
         progress(2, 2, "trying contacts")
-    return ContactTrial(approaches, working, pressed, counts.truncated / max(counts.solved, 1), solution)
+    return ContactTrial(approaches, pressed, counts.truncated / max(counts.solved, 1), solution)
 
 
 @dataclass(frozen=True)

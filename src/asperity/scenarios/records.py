@@ -179,17 +179,6 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
     return tuple(maps), float(np.mean([measured.missing_share for measured in read]))
 
 
-def direction_words(surface: Surface, maps: tuple[HeightMap, ...]) -> str:
-    """Say in which direction measured maps are rolled over, if not along x, and what is left of the first."""
-    if not surface.direction:
-        return ""
-    length, width = maps[0].size
-    return (
-        f", rolled over at {math.degrees(surface.direction):.4g}° to their x axis, on the largest rectangle "
-        f"inside: {1e3 * length:.3g} mm × {1e3 * width:.3g} mm"
-    )
-
-
 # --- measured lines
 
 

@@ -134,7 +134,7 @@ def reduce(
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
     wide = textures.widest_window
-    remedy = shape.remedy_for_cut_off(float(approaches[-1]), pressed.approach, -lowest["path"], wide)
+    remedy = shape.remedy_for_cut_off(float(approaches[-1]), -lowest["path"], wide)
     ensemble = stiffness.stiffness_ensemble(
         samples, half_space, shape.body, approaches, 0.0, rtol=scan.rtol_for(numerics.force_accuracy),
         progress=progress, tolerance=SCAN_TOLERANCE, remedy=remedy,

@@ -232,7 +232,9 @@ def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple
         maps, missing = records.measured_maps(surface, contact.spacing)
         strips, origin = strips_of(maps, contact, seeds)
         measured = f"{len(maps)} samples measured, {name_of(surface.file)}"
-        return maps, strips, missing, f"{measured}{records.direction_words(surface, maps)}; {origin}"
+        if surface.direction:
+            measured += f", rolled over at {math.degrees(surface.direction):.4g}° to their x axis"
+        return maps, strips, missing, f"{measured}; {origin}"
     if surface.rms is not None:
         shape = (strip_rows(contact), window_cells(contact))
         spacing, keys = (contact.spacing, contact.spacing), _self_affine_keys(surface)

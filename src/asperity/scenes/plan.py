@@ -17,7 +17,6 @@ from asperity.scenes import measured, noise, schema
 from asperity.scenes.track import LOWEST, described_losses, findings_of_losses, loss_factor_error
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting, third_octave_bands
-from asperity.structures.moving_kernel import STARTS
 from asperity.structures.rail_poles import POLES
 from asperity.structures.track import Track
 from asperity.units import written
@@ -61,7 +60,7 @@ def _rows_of_track(prepared: preparing.PreparedCase, track: Track) -> list[tuple
     points = ", ".join(f"{position:g} m" for position in scene.points)
     return [
         ("track", frequencies),
-        *_rows_of_bays(case, track),
+        *_rows_of_bays(track),
         *case.track.described_tables,
         *described_losses(losses),
         ("rail motion recorded at", points),
@@ -69,8 +68,8 @@ def _rows_of_track(prepared: preparing.PreparedCase, track: Track) -> list[tuple
     ]
 
 
-def _rows_of_bays(case: Case, track: Track) -> Iterator[tuple[str, str]]:
-    """How bays differ, and what that costs, in words; nothing where they do not."""
+def _rows_of_bays(track: Track) -> Iterator[tuple[str, str]]:
+    """How bays differ, in words; nothing where they do not."""
     if track.bays is None:
         return
     lengths, count = track.sleeper_spacing * track.bays.lengths, track.cell_bays
@@ -80,9 +79,6 @@ def _rows_of_bays(case: Case, track: Track) -> Iterator[tuple[str, str]]:
         if np.ptp(stiffness):
             parts.append(f"{name} {stiffness.min():.3g} to {stiffness.max():.3g} MN/m")
     yield "bays that differ", f"{count} in {track.period:.4g} m, then they repeat: {', '.join(parts)}"
-    passes = case.speed * (case.settled_time + case.rolled_time) / track.period
-    words = f"of {STARTS * count} start positions, {count} times that of one bay; passed {passes:.2g} times"
-    yield "moving kernel", words
 
 
 def own_settings(case: Case) -> list[Setting]:

@@ -230,7 +230,6 @@ def spectra_group(computed: Computed) -> Values:
     }
     laid_out |= sureness(computed) | level_differences(list(computed.runs), level) | _bodies(computed)
     if forces.shape[1] > 1:
-        laid_out[schema.SUM_PSD] = computed.psd(forces.sum(axis=1))[..., shown]
         tones = passing_frequencies(
             scene.offsets, computed.case.speed, computed.case.numerics.highest_frequency
         )

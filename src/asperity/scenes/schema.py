@@ -37,9 +37,6 @@ BODY_DISPLACEMENT = _rolling(
 )
 _BODIES = "PSD of the acceleration of the bodies in their degrees of freedom, one-sided"
 BODY_ACCELERATION_PSD = _spectra("body_acceleration_psd(law, degree, frequency)", "(m/s2)2/Hz", _BODIES)
-_SEVERAL = "of several contacts"
-_SUM = "PSD of the sum of all contact forces, one-sided"
-SUM_PSD = _spectra("force_sum_psd(law, frequency)", "N2/Hz", _SUM, _SEVERAL)
 _PASSING = "frequency at which contacts at equal distances pass a place, and its multiples"
 PASSING_FREQUENCY = _spectra("passing_frequency", "Hz", _PASSING, "contacts at equal distances")
 

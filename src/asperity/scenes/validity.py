@@ -18,7 +18,6 @@ from asperity.scenarios.textures import Textures
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, spectra
 from asperity.spectra import nominal_frequency, say_little
-from asperity.surfaces.statistics import shortest_wave_for
 
 AREA = (0.9, 0.7)
 """Real contact area over that of smooth bodies: warned of, and out of range, below."""
@@ -73,9 +72,8 @@ def foreseen(
     case: Case, shape: Geometry, textures: Textures, tried: ContactTrial, choice: LawChoice | None
 ) -> list[Finding]:
     """What a run will find fault with, from contacts that were tried."""
-    remedy = shape.remedy_for_cut_off(
-        float(tried.approaches[-1]), tried.working, -float(tried.approaches[0]), textures.widest_window
-    )
+    lowest, *_, highest = tried.approaches.tolist()
+    remedy = shape.remedy_for_cut_off(highest, -lowest, textures.widest_window)
     found = (
         _area(case, tried.pressed.area_ratio, choice),
         _slope(case, shape, textures),
@@ -127,11 +125,6 @@ def _area(case: Case, ratio: float, choice: LawChoice | None) -> Finding:
 def _slope(case: Case, shape: Geometry, textures: Textures) -> Finding:
     slope = textures.rms_slope
     pressure = 0.5 * shape.modulus * slope
-    shortest = max(shortest_wave_for(sample, SLOPE[0]) for sample in textures.maps)
-    remedy = "Leave out the short waves that yield at first touch"
-    if shortest > 2 * shape.spacing[0]:
-        remedy += f": surface.shortest = {_um(shortest)} leaves a slope of {SLOPE[0]:g}"
-    hard = "" if case.contact.hardness is not None else ", or give contact.hardness"
     return Finding(
         "rms slope of the samples, Sdq",
         f"{slope:.2g}",
@@ -139,7 +132,7 @@ def _slope(case: Case, shape: Geometry, textures: Textures) -> Finding:
         _grade(slope, SLOPE),
         "An elastic half-space is for small slopes, and elastic asperities carry about E* Sdq/2 = "
         f"{pressure / 1e9:.2g} GPa.",
-        f"{remedy}{hard}.",
+        "Leave out the short waves that yield at first touch by surface.shortest, or give contact.hardness.",
         f"rms slope {slope:.2g}",
         tuple(case.laws),
     )

@@ -11,7 +11,7 @@ from asperity.arguments import Array, require
 from asperity.spectra import psd
 from asperity.surfaces import cleaning, levelling, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.spectra import LagSums, autocorrelation_lengths, lengths_of, psd_2d, texture_direction
+from asperity.surfaces.spectra import LagSums, autocorrelation_lengths, lengths_of, texture_direction
 from asperity.surfaces.strip import Strip
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
@@ -170,26 +170,6 @@ def _inner_slope(heights: Array, spacing: float, axis: int) -> Array:
     for k, weight in SEVEN_POINTS:
         slope += weight / (60.0 * spacing) * (z[3 + k : n + 3 + k] - z[3 - k : n + 3 - k])
     return np.moveaxis(slope, 0, axis)
-
-
-def shortest_wave_for(surface: HeightMap, slope: float) -> float:
-    """Cut-off, m, that leaves a surface with an rms slope when `levelling.band_limit` has it.
-
-    Complete, levelled heights, m. At most the surface's longest side; zero where it has no larger slope.
-    """
-    qx, qy, density = psd_2d(surface)
-    square = qx[:, None] ** 2 + qy**2
-    power = square * density * (qx[1] - qx[0]) * (qy[1] - qy[0])
-    if power.sum() <= slope**2:
-        return 0.0
-
-    def left(octaves: float) -> float:
-        """What a Gaussian of half transmission at this cut-off leaves too much."""
-        passed = 4.0 ** -(square * (2.0**octaves / (2.0 * np.pi)) ** 2)
-        return float(np.sum(power * passed)) - slope**2
-
-    ends = np.log2(min(surface.spacing)) - 4.0, np.log2(max(surface.size))
-    return float(2.0 ** (scipy.optimize.brentq(left, *ends, xtol=1e-3) if left(ends[1]) < 0.0 else ends[1]))
 
 
 def material_ratio_curve(heights: Array, points: int = 201) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from asperity.reporting.tables import ReportTable, number_cells, table, text_cel
 from asperity.scenes import schema
 from asperity.scenes.figures import track
 from asperity.schema import rolling, spectra
-from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, CONTACT_FORCE_LEVEL, CONTACT_FORCE_PSD, FREQUENCY
+from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, CONTACT_FORCE_LEVEL
 from asperity.spectra import energy_sum
 
 FORCES = Of(rolling.CONTACT_FORCE, "{law}")
@@ -278,13 +278,6 @@ def _levels_caption(tree: DataTree) -> str:
     return f"{what}{some}{panels.shaded_words(tree)}"
 
 
-def _powers(tree: DataTree) -> Iterator[Series]:
-    """Sum of the powers of all contact forces."""
-    every = np.stack([s.values for s in Of(CONTACT_FORCE_PSD, "{contact}")(tree)])
-    name = "sum of their powers"
-    yield Series(name, schema.SUM_PSD.units, every.sum(axis=0), None, name, look=(chart.MUTED, (4, 2)))
-
-
 def tone_rules(tree: DataTree) -> list[chart.Mark]:
     """Multiples of the frequency at which contacts pass a place, while they stand apart."""
     if not data.present(tree, schema.PASSING_FREQUENCY):
@@ -334,20 +327,6 @@ CONTACTS = (
         _levels,
         _levels_caption,
         (rolling.CONTACT, rolling.OFFSET),
-        worth=_several,
-    ),
-    Figure(
-        "force_sum",
-        "Contacts together",
-        Of(FREQUENCY),
-        (Of(schema.SUM_PSD, "sum of all contact forces", look=(chart.INK,)), _powers),
-        panels.draw_spectrum("force PSD / dB re 1 N²/Hz", 1.0, tone_rules, slice(None, None, -1)),
-        lambda tree: (
-            f"Where the sum of all forces lies below the sum of their powers, contacts cancel; above it, "
-            f"they act together. Main law, {data.laws(tree, schema.SUM_PSD)[0]}; {panels.DRAWN}."
-            f"{tones_words(tree)}{panels.shaded_words(tree)}"
-        ),
-        (CONTACT_FORCE_PSD, rolling.CONTACT),
         worth=_several,
     ),
 )
