@@ -53,7 +53,7 @@ def own_package(tmp_path, monkeypatch):
 
 
 def test_a_figure_of_ones_own_is_one_file_and_one_line(own_package, tmp_path):
-    tree = report_tree(["areal", "linear"], steps=1000)
+    tree = report_tree(["areal", "linear"])
     page = asperity.report(tree, tmp_path / "report")
     text = page.read_text(encoding="utf-8")
     assert text.index('id="own"') > text.index('id="laws"')

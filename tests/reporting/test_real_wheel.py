@@ -1,20 +1,17 @@
 """The figures and tables that only a wheel on a rail has, on a real run."""
 
-import json
-
 import numpy as np
 import pytest
-from report_reading import HOSTILE, Reader, read_csv
-from report_tree import figures_by_name, laws_in
+from report_reading import read_csv
+from report_tree import figures_by_name
 
 from asperity.cli.studying import print_table
-from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Line, Note, Rules
 from asperity.reporting.study_figures import key_chart
 from asperity.scenes.figures.force import AROUND_PEAK, around_peak
 from asperity.scenes.figures.motion import point_labels
 from asperity.scenes.figures.noise import sound_power_table
-from asperity.scenes.report import figures_of, page_of
+from asperity.scenes.report import figures_of
 from asperity.studies.member import kept, names_kept
 from asperity.studies.table import USUAL, USUAL_IN_FIGURES, chosen, columns_of
 
@@ -54,6 +51,7 @@ LINEAR = "linear, frequency domain"
     [
         ("force_psd", f"{LINEAR} [N^2/Hz]", "spectra/linear_reference_psd", {}),
         ("force_bands", f"{LINEAR} [dB re 1 N]", "spectra/linear_reference_level", {}),
+        ("contact_force", "stiffness [N/m]", "contact/stiffness", {}),
         ("roughness", "wheel [dB re 1 µm]", "spectra/roughness_level", {"part": "wheel"}),
         ("receptance", "receptance_midspan [m/N]", "track/receptance_midspan", {}),
         ("receptance", "receptance_support phase [rad]", "track/receptance_support_phase", {}),
@@ -129,39 +127,6 @@ def test_contact_of_wheel_and_rail_is_outlined_by_its_ellipse(tree):
         assert any(panel.y.label.endswith("/ kN") for panel in panels_of(tree, name))
 
 
-def of_laws(tree, *laws):
-    """A result of the first laws of another, under other names."""
-    for group in ("rolling", "spectra"):
-        tree[group] = tree[group].to_dataset().isel(law=slice(len(laws))).assign_coords(law=list(laws))
-    tree["scenario"].attrs["laws"] = json.dumps([spec_of(law).entry() for law in laws if law != HOSTILE])
-    return tree
-
-
-@pytest.mark.parametrize("laws", [["linear"], ["table"], ["direct", "hertz-filtered", "linear"]])
-def test_any_set_of_laws(other, laws):
-    tree = of_laws(other, *laws)
-    for name in (
-        "force_envelope",
-        "force_peak",
-        "force_psd",
-        "force_bands",
-        "displacement",
-    ):
-        assert laws_in(PARTS[name].laid_out(tree)) == set(laws)
-    assert sound_power_table(tree) is not None
-
-
-def test_hostile_names_stay_text(other):
-    tree = of_laws(other, HOSTILE, "linear")
-    names = {"part": [HOSTILE, "b", "c"], "source": [HOSTILE, "b", "total"]}
-    tree["spectra"] = tree["spectra"].to_dataset().assign_coords(names)
-    del tree["surface"], tree["contact"]
-    reader = Reader(page_of(tree))
-    assert not reader.open
-    assert "img" not in {tag for tag, _ in reader.tags}
-    assert reader.shown.count(HOSTILE) > 10
-
-
 def test_what_is_smooth_has_no_map_and_no_spectrum_and_bands_without_roughness_are_not_drawn(tree, other):
     for name in ("sample_heights", "psd_sample", "psd_path"):
         other["surface"][name].values[:] = 0.0
@@ -210,15 +175,11 @@ def test_passed_points_are_named_by_their_place_in_the_bay(other):
     assert point_labels(other) == ["x = 1.2 m, over a sleeper", "x = 1.5 m, mid-span", "x = 1.65 m"]
 
 
-@pytest.mark.parametrize(
-    ("name", "variable"),
-    [
-        ("force_bands", "band_time_product"),
-        ("force_psd", "band_time_product"),
-        ("rail_velocity_psd", "band_time_product"),
-        ("roughness", "surface_band_length_product"),
-    ],
-)
+@pytest.mark.parametrize(("name", "variable"), [
+    ("force_bands", "band_time_product"),
+    ("rail_velocity_psd", "band_time_product"),
+    ("roughness", "surface_band_length_product"),
+])  # fmt: skip
 def test_bands_that_say_little_are_shaded_and_in_the_csv_file(other, name, variable):
     product, part = other[f"spectra/{variable}"].values, PARTS[name]
     product[:] = 100.0

@@ -16,7 +16,7 @@ from asperity.serving.worker import answered
 
 @pytest.fixture(scope="module")
 def tree():
-    made = report_tree(["areal", "linear"], steps=4000)
+    made = report_tree(["areal", "linear"])
     position = POSITION.variable(2.0 + 1.0 * made["rolling/time"].values)  # at 1 m/s
     made["rolling"] = made["rolling"].to_dataset().assign({POSITION.name: position})
     for node in made.subtree:  # it is made for a page, which needs no units of coordinates
