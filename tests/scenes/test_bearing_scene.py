@@ -12,7 +12,7 @@ from asperity.case.cases import as_case
 from asperity.errors import OutOfRangeWarning, percent
 from asperity.reference.materials import MATERIALS
 from asperity.scenarios.bearing import PreparedBearing, bearing_rings, cage_slip, prepare_bearing, thinned
-from asperity.scenarios.raceway_laws import raceway_with_balls
+from asperity.scenarios.raceway_laws import ball_heights, raceway_with_balls
 from asperity.scenes.bearing import bearing_result, heard_group
 from asperity.scenes.figures.bearing import DRAWING
 from asperity.schema import bearing as schema
@@ -78,11 +78,18 @@ def test_a_pit_of_the_inner_ring_has_side_bands_one_turn_beside_its_lines():
     )
 
 
-def test_opposite_the_load_a_pit_is_hardly_heard(runs):
-    opposite = BEARING | {"fault": BEARING["fault"] | {"angle": "180 deg"}}
-    both = runs(BEARING), asperity.run(opposite, brief=True)
-    loaded, free = (group(tree)["band_velocity"].values[0, 0, 2] for tree in both)
-    assert free < 0.1 * loaded
+def test_a_pit_strikes_by_what_the_static_load_loses_over_it():
+    """Below the load, 25° and 40° beside it, and opposite, where no ball is loaded."""
+    prepared, heard, lost = prepare_bearing(as_case(BEARING)), [], []
+    bearing = prepared.case.bearing.bearing
+    depth = -ball_heights(bearing.outer_contact, prepared.raceways[1], prepared.case.contacts[1][1]).min()
+    for angle in (0, 25, 40, 180):
+        fault = BEARING["fault"] | {"angle": f"{angle} deg"}
+        tree = asperity.run(BEARING | {"fault": fault}, brief=True)
+        heard.append(group(tree)["band_velocity"].values[0, 0, 2])
+        load = bearing.loaded(100.0, speed=TURNS, cage_angles=[np.radians(angle)]).outer_load[0, 0]
+        lost.append(load - bearing.outer_contact.force(bearing.outer_contact.approach(load) - depth))
+    assert np.array(heard) / heard[0] == pytest.approx(np.array(lost) / lost[0], rel=0.3, abs=0.07)
 
 
 def test_a_pit_that_is_solved_strikes_much_as_its_average_under_the_contact():

@@ -108,3 +108,12 @@ def test_the_sound_has_converged(section):
     finer = wheel_modes(outline, steel, 1.25 * 2.5e3, size=0.7 * FINENESS * mean_thickness(outline))
     assert sound(finer) == pytest.approx(usual, abs=0.3)
     assert sound(wheel_modes(outline, steel, 2.0 * 2.5e3)) == pytest.approx(usual, abs=0.3)
+
+
+def test_dampers_make_a_wheel_quieter():
+    """Wheel damping: D. J. Thompson, Railway Noise and Vibration (2009)."""
+    wheels = ({"section": "curved-web", "added_damping": ratio} for ratio in (0.0, 1e-3, 1e-2))
+    rolling = [WheelOnRail(wheel=wheel, **SMOOTH).rolling for wheel in wheels]
+    bare, some, more = (sound(each.standing_modes(2.5e3)) for each in rolling)
+    assert bare > some + 1.0
+    assert some > more + 4.0

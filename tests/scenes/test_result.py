@@ -156,6 +156,12 @@ class TestTrack:
         limits = iso_3095_decay_rate([100.0, 250.0, 500.0, 800.0, 2000.0, 9000.0])
         np.testing.assert_array_equal(limits, [np.nan, 2.0, 6.0, 2.19, 0.8, np.nan])
 
+    def test_poles_follow_the_scattered_kernel(self, runs, wheel):
+        scatter = changed("wheel-on-rail", laws=["shifted"], numerics={"poles": None, "kernel": "scatter"})
+        scattered, poles = runs(scatter), wheel["rolling/contact_force"].sel(law="shifted")
+        difference = np.abs(poles.values - scattered["rolling/contact_force"].values[0]).max()
+        assert difference < 0.005 * float(poles.std())
+
 
 @pytest.mark.usefixtures("own_cache")
 def test_long_work_says_what_it_does():

@@ -48,6 +48,12 @@ def test_nothing_moves_on_rigid_ground():
     assert not Chain((PAD,)).sleeper_square(OMEGA).any()
 
 
+def test_a_stiff_sleeper_is_a_point_mass():
+    below, stiff = BALLAST.stiffness(LOWER), BendingSleeper(**(SLEEPER | {"bending_stiffness": 1e18}))
+    np.testing.assert_allclose(stiff.on(LOWER, below), RigidMass(150.0).on(LOWER, below), rtol=1e-9)
+    np.testing.assert_allclose(stiff.spread(LOWER, below), 1.0, rtol=1e-8)
+
+
 def test_a_sleeper_is_right_at_any_complex_frequency():
     """Causal: the receptance is analytic, so that its mean on a circle is its value in the middle."""
     middle, sleeper = 4000.0 - 300.0j, BendingSleeper(**SLEEPER)
