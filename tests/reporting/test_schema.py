@@ -75,7 +75,7 @@ def test_conditions_of_small_runs_cover_the_schema(real_runs):
         - set(written(tree))
         for kind, tree in real_runs.items()
     }
-    homogeneity = {f"surface/{name}" for name in ("homogeneity_p", "tile_rms", "tile_variation")}
+    homogeneity = {f"surface/{name}" for name in ("homogeneity_p", "tile_variation")}
     homogeneity |= {"surface/tile_variation_expected"}  # of measured maps
     asked = {entry.path for entry in contents_of(convergence)[0]}  # written by tests/test_convergence.py
     asked |= {e.path for e in contents_of(schema)[0] if e.group == schema.EFFECT.group}  # by tests/studies

@@ -55,7 +55,6 @@ class RunInHeights:
     lowering: Array  # (n, ny), by which places have been lowered for good, m, never negative
     touched: NDArray[np.bool_]  # (n, ny), places that have carried pressure
     largest: Array  # (passes,), largest lowering of a place in each pass, m
-    yielding: Array  # (passes,), share of the touched area that yielded in each pass
     yielded_share: float  # of the touched area, in all passes together
     settled: bool  # whether the last pass lowered no place by more than the tolerance
     counts: Counts
@@ -81,22 +80,18 @@ def run_in(
         "touched": np.zeros(heights.shape, dtype=np.bool_),
         "counts": np.zeros(4, dtype=np.int64),
         "largest": np.empty(0),
-        "yielding": np.empty(0),
     }
     lowering, touched = state["lowering"], state["touched"]
     while not job.done(state["largest"]):
         before = lowering.copy()
         state["counts"] = state["counts"] + _pass(heights, state, job, workers, progress)
-        step, area = lowering - before, max(int(np.count_nonzero(touched)), 1)
-        state["largest"] = np.append(state["largest"], step.max())
-        state["yielding"] = np.append(state["yielding"], np.count_nonzero(step > job.tolerance) / area)
+        state["largest"] = np.append(state["largest"], (lowering - before).max())
         if cache is not None:
             cache.put(key, state)
     share = np.count_nonzero(lowering > job.tolerance) / max(int(np.count_nonzero(touched)), 1)
     largest, counts = state["largest"], Counts(*state["counts"].tolist())
     settled = bool(largest[-1] <= job.tolerance)
-    rest = (largest, state["yielding"], share, settled, counts)
-    return RunInHeights(heights - lowering, lowering, touched, *rest)
+    return RunInHeights(heights - lowering, lowering, touched, largest, share, settled, counts)
 
 
 def _pass(

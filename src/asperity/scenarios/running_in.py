@@ -79,14 +79,13 @@ def _passes(surfaces: Sequence[RunInHeights], conditions: Array) -> Values:
     weights = np.array([np.count_nonzero(each.touched) for each in surfaces], dtype=np.float64)
     weights /= max(weights.sum(), 1.0)
     passes = max(len(each.largest) for each in surfaces)
-    largest, yielding = np.zeros((2, len(surfaces), passes))
+    largest = np.zeros((len(surfaces), passes))
     for n, each in enumerate(surfaces):
-        largest[n, : len(each.largest)], yielding[n, : len(each.yielding)] = each.largest, each.yielding
+        largest[n, : len(each.largest)] = each.largest
     names = (contact.TRACK_RMS, contact.TRACK_SLOPE, contact.TRACK_AREA_RATIO, contact.TRACK_STIFFNESS)
     return {
         contact.RUNNING_IN_PASS: np.arange(1, passes + 1),
         contact.RUNNING_IN_LOWERING: largest.max(axis=0),
-        contact.RUNNING_IN_YIELDING: weights @ yielding,
         contact.CONDITION: ["before", "after"],
         **dict(zip(names, conditions.T, strict=True)),
         contact.YIELDED_SHARE: float(weights @ np.array([each.yielded_share for each in surfaces])),

@@ -116,7 +116,6 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
         surface.HOMOGENEITY_P: surface.HOMOGENEITY_P.variable(p_values, significance=statistics.SIGNIFICANCE),
         surface.TILE_VARIATION: [f.variation for f in found],
         surface.TILE_VARIATION_EXPECTED: [f.expected for f in found],
-        surface.TILE_RMS: np.stack([f.tile_rms for f in found]),
     }
 
 
@@ -204,7 +203,6 @@ def _reduced(computed: Computed, reduction: Reduction) -> Values:
         contact.PRESSURE: working.pressure,
         contact.GAP: working.gap,
         contact.DATUM: ensemble.datum,
-        contact.DATUM_FROM: computed.case.contact.datum,
         contact.DATUM_SAMPLES: reduction.datums["samples"],
         contact.DATUM_PATH: reduction.datums["path"],
         contact.WORKING_APPROACH: reduction.pressed.approach,

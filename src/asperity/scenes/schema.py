@@ -129,13 +129,6 @@ STATIC_DEFLECTION_IN_TIME = _fact("static_deflection_in_time", "m", _STATIC)
 
 # --- texture, linear reference and noise over a track
 
-
-def _product(dim: str, what: str, condition: str) -> Entry:
-    long_name = BAND_TIME_PRODUCT.long_name.replace("averaging time", f"averaging {what}")
-    attributes = BAND_TIME_PRODUCT.attributes
-    return _spectra(f"{dim}_{what}_product({dim})", "1", long_name, condition, attributes=attributes)
-
-
 _PASSED = "PSD of the texture passed by, one-sided"
 TEXTURE_PSD = _rail_spectra("texture_psd(frequency)", "m2/Hz", _PASSED)
 _LINEAR = "PSD of the contact force, linear, by frequency, with constant loss factors"
@@ -146,7 +139,10 @@ LINEAR_REFERENCE_LEVEL = _rail_spectra(
 )
 PART = _rail_spectra("part", "1", "what bears the texture")
 SURFACE_BAND = _rail_spectra("surface_band", "m", "wavelength of the one-third octave")
-SURFACE_BAND_LENGTH_PRODUCT = _product("surface_band", "length", _TRACK)
+_PRODUCT = BAND_TIME_PRODUCT.long_name.replace("averaging time", "averaging length")
+SURFACE_BAND_LENGTH_PRODUCT = _rail_spectra(
+    "surface_band_length_product(surface_band)", "1", _PRODUCT, attributes=BAND_TIME_PRODUCT.attributes
+)
 ROUGHNESS_LEVEL = _rail_spectra(
     "roughness_level(part, surface_band)",
     "dB re 1 um",
@@ -158,7 +154,6 @@ _NOISE = "where the law linear rolled over a roughness"
 _noise = partial(_spectra, condition=_NOISE)
 SOURCE = _noise("source", "1", "what radiates")
 NOISE_BAND = _noise("noise_band", "Hz", _BAND)
-NOISE_BAND_TIME_PRODUCT = _product("noise_band", "time", _NOISE)
 SOUND_POWER_LEVEL = _noise(
     "sound_power_level(law, source, noise_band)",
     "dB re 1 pW",

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import xarray
 
 from asperity import spectra
 from asperity.arguments import Array, ArrayLike
@@ -14,7 +13,7 @@ from asperity.reduction.texture import along_path
 from asperity.reference.tracks import iso_3095_decay_rate
 from asperity.scenarios.scene import BodyAtContact, Scene, mean_square_transfer
 from asperity.scenes import compute, noise, schema, validity
-from asperity.schema import Entry, Values
+from asperity.schema import Values
 from asperity.structures import track_power
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
@@ -25,32 +24,20 @@ from asperity.surfaces.heightmap import Profile
 
 def track_spectra(computed: compute.Computed) -> Values:
     """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track."""
-    shown, case = computed.shown, computed.case
+    shown = computed.shown
     reference, texture = linear_reference(computed)
     velocity = computed.psd(computed.points[1])
-    laid_out: Values = {
+    return {
         schema.TEXTURE_PSD: texture[shown],
         schema.LINEAR_REFERENCE_PSD: reference[shown],
         schema.LINEAR_REFERENCE_LEVEL: computed.levels(reference),
         schema.SPECTRA_POINT: computed.scene.points,
         schema.POINT_VELOCITY_PSD: velocity[..., shown],
         schema.POINT_VELOCITY_LEVEL: computed.levels(velocity, schema.VELOCITY_REFERENCE),
+        **_roughness(computed),
+        **noise.noise(computed),
+        **noise.radiation(computed),
     }
-    laid_out |= _roughness(computed) | noise.noise(computed) | noise.radiation(computed)
-    if schema.NOISE_BAND in laid_out:
-        time = spectra.averaging_time(len(computed.first.time), case.time_step, segment=computed.segment)
-        product = product_of_bands(schema.NOISE_BAND_TIME_PRODUCT, laid_out[schema.NOISE_BAND], time)
-        laid_out[schema.NOISE_BAND_TIME_PRODUCT] = product
-    return laid_out
-
-
-def product_of_bands(entry: Entry, centres: Array, time: float) -> xarray.Variable:
-    """Lay out the product B T of bands, from which one sees which levels say little.
-
-    Centres (b,), Hz or cycles per metre; averaging time, s, or length, m. The least product of a level that
-    says something is in its attributes.
-    """
-    return entry.variable(spectra.band_product(centres, time), least=spectra.LEAST_PRODUCT)
 
 
 PLACES = 12
@@ -127,12 +114,12 @@ def _roughness(computed: compute.Computed) -> Values:
     lines = {**textures.parts, "combined": textures.line}
     bands = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
     wavelength = bands["combined"][0]
-    averaged = spectra.averaging_time(len(textures.line), spacing)
-    product = product_of_bands(schema.SURFACE_BAND_LENGTH_PRODUCT, 1.0 / wavelength, averaged)
+    averaged, entry = spectra.averaging_time(len(textures.line), spacing), schema.SURFACE_BAND_LENGTH_PRODUCT
+    product = spectra.band_product(1.0 / wavelength, averaged)
     return {
         schema.PART: list(bands),
         schema.SURFACE_BAND: wavelength,
-        schema.SURFACE_BAND_LENGTH_PRODUCT: product,
+        entry: entry.variable(product, least=spectra.LEAST_PRODUCT),
         schema.ROUGHNESS_LEVEL: np.stack([level for _, level in bands.values()]),
     }
 

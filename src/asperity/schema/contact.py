@@ -63,9 +63,6 @@ _passed = partial(_entry, condition=RUN_IN)
 _PASS, _CONDITION = "(running_in_pass)", "(condition)"
 RUNNING_IN_PASS = _passed("running_in_pass", "1", "pass of running-in")
 RUNNING_IN_LOWERING = _passed(f"running_in_lowering{_PASS}", "m", "largest lowering of a place in the pass")
-RUNNING_IN_YIELDING = _passed(
-    f"running_in_yielding{_PASS}", "1", "share of the touched area that yields in it"
-)
 CONDITION = _passed("condition", "1", "before or after running-in")
 TRACK_RMS = _passed(f"track_rms{_CONDITION}", "m", "rms height on the track, as wide as the nominal patch")
 TRACK_SLOPE = _passed(f"track_slope{_CONDITION}", "1", "rms slope on the track")
@@ -87,7 +84,6 @@ _WORKING = "mean contact stiffness under the static load, dF/dr of the mean forc
 WORKING_STIFFNESS = _attribute("working_stiffness", "N/m", _WORKING)
 CONTACT_MODULUS = _attribute("contact_modulus", "Pa", "E*, of both bodies")
 DATUM = _attribute("datum", "m", "d₀: the state r is the approach plus this")
-DATUM_FROM = _attribute("datum_from", "text", "where the datum was taken from", SAMPLED)
 DATUM_SAMPLES = _attribute("datum_samples", "m", "highest first touch of the samples", SAMPLED)
 DATUM_PATH = _attribute("datum_path", "m", "highest first touch of samples and path", SAMPLED)
 CONTACT_AREA = _attribute("contact_area", "m2", "area in contact of the first sample at the load", SAMPLED)

@@ -39,7 +39,6 @@ TILE_VARIATION = _measured(
 )
 _STATIONARY = "the same of stationary textures, median"
 TILE_VARIATION_EXPECTED = _measured("tile_variation_expected(sample)", "1", _STATIONARY)
-TILE_RMS = _measured("tile_rms(sample, tile_x, tile_y)", "m", "rms height of the tiles")
 
 _STATISTICS = "statistics of the texture: symbol, value, unit, bandwidth, …"
 STATISTICS = _attribute("statistics", "JSON", _STATISTICS)
