@@ -1,4 +1,4 @@
-"""Sleepers by their receptance at the rail seat: against free beams of the test, free and on a bed."""
+"""Sleepers by their receptance at the rail seat: against free beams of the test."""
 
 import numpy as np
 import pytest
@@ -16,13 +16,13 @@ LOOKED = np.array([30.0, 121.0, 280.0, 650.0, 1063.0, 1600.0, 2900.0, 4500.0])
 NOTHING = np.zeros(len(FREQUENCY), complex)
 
 
-def beam(bed, bending=BENDING):
-    """Seat receptance of a free beam on a bed, N/m under its half, both seats pressed alike, at `FREQUENCY`.
+def beam(bending=BENDING):
+    """Seat receptance of a free beam, both seats pressed alike, at `FREQUENCY`.
 
     B w'''' = k⁴ B w: cos kx and cosh kx from the middle to the seat; from there two sums that leave the end
     free, of y, from the end. At the seat w, w', w'' go on, and B w''' falls by the force.
     """
-    k = ((MASS * (2.0 * np.pi * FREQUENCY) ** 2 - bed) / (0.5 * LENGTH) / bending + 0j) ** 0.25
+    k = (MASS * (2.0 * np.pi * FREQUENCY) ** 2 / (0.5 * LENGTH) / bending + 0j) ** 0.25
     x, y = k * 0.5 * SEATS, k * 0.5 * (LENGTH - SEATS)
     even, odd = [np.cosh, np.sinh] * 2, [np.sinh, np.cosh] * 2
     rows = []
@@ -36,21 +36,14 @@ def beam(bed, bending=BENDING):
     return amplitude[:, 0] * np.cos(x) + amplitude[:, 1] * np.cosh(x)
 
 
-def bed_of(track):
-    return track.support.below(2.0 * np.pi * FREQUENCY)[1]
-
-
 @pytest.mark.parametrize("name", ["nordborg", "nordborg-loss-factor"])
-@pytest.mark.parametrize(("bedded", "noise"), [(False, 0.0), (True, 0.0), (True, 0.02)])
-def test_a_table_of_a_beam_is_the_track_on_such_beams(name, bedded, noise):
-    """The ballast may lose as much as it does: modes are sought where the free sleeper answers alike.
-
-    Two per cent of noise on the table are less on the track.
-    """
-    draws, bed = np.random.default_rng(3), bed_of(Track.named(name)) if bedded else None
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_a_table_of_a_beam_is_the_track_on_such_beams(name, noise):
+    """A per cent of noise on the table is less on the track."""
+    draws = np.random.default_rng(3)
     around = 1.0 + noise * (draws.standard_normal(250) + 1j * draws.standard_normal(250))
-    sleeper = measured_sleeper(FREQUENCY, around * beam(bed if bedded else 0.0), MASS, bed)
-    assert sleeper.fit_error < (0.2 if noise else 0.005)
+    sleeper = measured_sleeper(FREQUENCY, around * beam(BENDING * (1.0 + 1e-9j)), MASS)
+    assert sleeper.fit_error < (0.1 if noise else 0.005)
     found = Track.named(name, measured_sleeper=sleeper, ballast_mass=300.0, subgrade_stiffness=9e7)
     bends = {"sleeper_bending_stiffness": BENDING, "sleeper_length": LENGTH, "seat_distance": SEATS}
     exact = Track.named(name, **bends, ballast_mass=300.0, subgrade_stiffness=9e7)
@@ -63,10 +56,9 @@ def test_a_table_of_a_beam_is_the_track_on_such_beams(name, bedded, noise):
     np.testing.assert_allclose(*squares, rtol=10.0 * near)
 
 
-@pytest.mark.parametrize("bed", [0.0, 120e6 * (1.0 + 1.0j)])
-def test_a_table_of_a_mass_is_a_mass(bed):
-    omega, held = 2.0 * np.pi * FREQUENCY, bed + NOTHING
-    sleeper = measured_sleeper(FREQUENCY, 1.0 / (held - MASS * omega**2), MASS, held)
+def test_a_table_of_a_mass_is_a_mass():
+    omega = 2.0 * np.pi * FREQUENCY
+    sleeper = measured_sleeper(FREQUENCY, -1.0 / (MASS * omega**2) + NOTHING, MASS)
     below = 150e6 * (1.0 + 0.4j) + NOTHING
     np.testing.assert_allclose(sleeper.on(omega, below), RigidMass(MASS).on(omega, below), rtol=1e-12)
     assert sleeper.resting(150e6) == pytest.approx(150e6, rel=1e-12)
@@ -79,7 +71,7 @@ def test_a_table_of_a_mass_is_a_mass(bed):
 
 def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power():
     """Its receptance is analytic in the lower half-plane: the mean on a circle is the value in the middle."""
-    sleeper = measured_sleeper(FREQUENCY, beam(0.0, BENDING * (1.0 + 0.03j)), MASS)
+    sleeper = measured_sleeper(FREQUENCY, beam(BENDING * (1.0 + 0.03j)), MASS)
     ring = 4000.0 - 300.0j + 200.0 * np.exp(2j * np.pi * np.arange(64) / 64) * np.array([[1.0], [0.0]])
     around, middle = np.mean(1.0 / sleeper.on(ring, 150e6 + 5e4j * ring), axis=1)
     assert around == pytest.approx(middle, rel=1e-12, abs=0.0)
@@ -98,7 +90,7 @@ test_receptances_that_cannot_be_are_refused = refusals(
     (np.where(FREQUENCY < 300.0, 1.0, 1.0 + 0.2j), "imaginary part above zero from 3.* to 6000 Hz, by which"),
     (np.where(FREQUENCY < 300.0, 1.0, 0.0), "size of a receptance"),
     (np.full(len(FREQUENCY), 1e30), "1e-20 to 1e+20 m/N"),
-    (beam(0.0), "remove sleeper_bending_stiffness"),
+    (beam(), "remove sleeper_bending_stiffness"),
     of=lambda receptance: Track.named(
         "uic60",
         measured_sleeper=measured_sleeper(FREQUENCY, receptance + 0j, MASS),

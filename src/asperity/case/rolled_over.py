@@ -49,7 +49,6 @@ LISTED = ("sleeper_spacing", "pad_stiffness", "ballast_stiffness")
 PRELOAD_STEPS = 20
 """Steps in which the preload of pads is found, whose stiffness depends on it."""
 FREQUENCY = Quantity("Hz", above=0)
-BEDDED = "on-ballast"
 _WIDTHS = "10 mm to 1 m: rails lie between"
 
 
@@ -142,14 +141,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     sleeper_table: Path | Array | None = optional(
         tables.TableFile(columns=(3,), read=tables.read_seat_receptance),
         "sleeper.csv",
-        "measured receptance of a sleeper at a rail seat with both pressed alike: frequency (Hz), real and "
-        "imaginary part (m/N), or magnitude (m/N) and phase (deg); modes on sleeper_mass are fitted",
-    )
-    sleeper_measured: str = key(
-        Choice(("free", BEDDED)),
-        "free",
-        "how it lay when it was measured: free, or on what this track has under its sleepers",
-        goes_with="sleeper_table",
+        "measured receptance of a free sleeper at a rail seat with both pressed alike: frequency (Hz), real "
+        "and imaginary part (m/N), or magnitude (m/N) and phase (deg); modes on sleeper_mass are fitted",
     )
     bays: int | None = optional(
         Number(at_least=2, at_most=MOST_BAYS, whole=True),
@@ -202,13 +195,9 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     @property
     def overrides(self) -> dict[str, Any]:
         """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
-        sleeper = {} if self.sleeper_table is None else {"measured_sleeper": self._sleeper}
-        return self._told | sleeper
-
-    @property
-    def _told(self) -> dict[str, Any]:
-        """The same without a measured sleeper."""
         told = {name: getattr(self, name) for name in keys_of(Track, "")}
+        if self.sleeper_table is not None:
+            told["measured_sleeper"] = self._sleeper
         if self.pad_table is not None:
             told["pad_table"] = self._pad
         if self.bay_table is not None:
@@ -229,9 +218,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     def _sleeper(self) -> MeasuredSleeper:
         assert self.sleeper_table is not None
         frequency, receptance = tables.read_seat_receptance(self.sleeper_table)
-        track, bedded = Track.named(self.name, **self._told), self.sleeper_measured == BEDDED
-        bed = track.support.below(2.0 * math.pi * frequency)[1] if bedded else None
-        return measured_sleeper(frequency, receptance, track.sleeper_mass, bed)
+        mass: float | None = getattr(self, "sleeper_mass")  # noqa: B009
+        return measured_sleeper(frequency, receptance, mass or Track.named(self.name).sleeper_mass)
 
     @cached_property
     def _listed(self) -> Array:
@@ -252,7 +240,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         """Say which measured sleepers and pads these are, and at which preload; nothing of others."""
         if self.sleeper_table is not None:
             met = f"{self._sleeper.fitted} meet it to {self._sleeper.fit_error:.2g} dB rms"
-            yield "measured sleepers", f"{name_of(self.sleeper_table)}, {self.sleeper_measured}: {met}"
+            yield "measured sleepers", f"{name_of(self.sleeper_table)}: {met}"
         if self.pad_table is None:
             return
         preloads, said = preloads_of(self._pad_rows), name_of(self.pad_table)

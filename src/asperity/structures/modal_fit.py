@@ -165,25 +165,21 @@ SINGULAR = 1e-9  # of the largest eigenvalue of normal equations, below which on
 SWEEPS, SETTLED = 30, 1e-6  # of mode shapes at the places of excitation, and their last change
 
 
-def fit_modes(
-    frequency: Array, receptance: Complex, rigid: Complex, answering: Complex | None = None
-) -> Modes:
+def fit_modes(frequency: Array, receptance: Complex, rigid: Complex) -> Modes:
     """Modes with positive modal masses that add to the rigid motion of a wheel.
 
     Frequency (n,), Hz, above zero and rising; receptances (n,) of the whole wheel, not zero, and of its rigid
-    motion, m/N. Modes in order of frequency; none of a rigid wheel. What lies on a bed spread like its mass
-    answers as a free body does at other, complex frequencies (n,), Hz, with a negative imaginary part.
+    motion, m/N. Modes in order of frequency; none of a rigid wheel.
 
     Poles come from vector fitting, modal masses from non-negative least squares: the sum takes energy at
     every frequency, also outside of the band. Relative errors count the same at all points. Modes that
     contribute nothing are left out.
     """
     flexible, weights = receptance - rigid, 1.0 / np.abs(receptance)
-    at = frequency if answering is None else answering
-    none, masses = np.zeros(0), partial(_modal_masses, at, flexible, weights)
+    none, masses = np.zeros(0), partial(_modal_masses, frequency, flexible, weights)
     left = float(np.linalg.norm(weights * flexible))
     level = np.abs(receptance)
-    return _searched(frequency, at, flexible[None], weights, level, masses, ((none, none, none), left))
+    return _searched(frequency, flexible[None], weights, level, masses, ((none, none, none), left))
 
 
 def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: NDArray[np.intp]) -> Modes:
@@ -204,7 +200,7 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
     left = float(np.linalg.norm(weights * flexible))
     responses = flexible.reshape(len(frequency), -1).T
     with one_thread_in_linear_algebra():
-        return _searched(frequency, frequency, responses, 1.0 / level, level, shapes, (none, left))
+        return _searched(frequency, responses, 1.0 / level, level, shapes, (none, left))
 
 
 def checked_record(
@@ -296,7 +292,6 @@ def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
 
 def _searched(
     frequency: Array,
-    answering: Array | Complex,
     responses: Complex,
     weights: Array,
     level: Array,
@@ -316,7 +311,7 @@ def _searched(
         if before <= GOOD_FIT * np.sqrt(responses.size):
             break
         try:
-            poles = vector_fit(2j * np.pi * answering, mixed, start, weights=weights).poles
+            poles = vector_fit(2j * np.pi * frequency, mixed, start, weights=weights).poles
             modes, error = modes_of(_with_residual(poles, frequency))
         except (ComputationError, np.linalg.LinAlgError):
             continue
@@ -355,9 +350,7 @@ def _with_residual(poles: Complex, frequency: Array) -> Complex:
     return np.concatenate([poles[near], residual * (1j * damped - RESIDUAL_DAMPING)])
 
 
-def _modal_masses(
-    frequency: Array | Complex, flexible: Complex, weights: Array, poles: Complex
-) -> tuple[Modes, float]:
+def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Complex) -> tuple[Modes, float]:
     """Modes of given poles by non-negative least squares, and the weighted error that they leave."""
     natural = np.abs(poles) / (2.0 * np.pi)
     ratio = -poles.real / np.abs(poles)

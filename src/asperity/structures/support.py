@@ -350,9 +350,7 @@ def check_receptance(frequency: Array, receptance: Complex) -> None:
         raise InputError("receptance of the sleeper", received, allowed, remedy)
 
 
-def measured_sleeper(
-    frequency: Array, receptance: Complex, mass: float, below: Complex | None = None
-) -> MeasuredSleeper:
+def measured_sleeper(frequency: Array, receptance: Complex, mass: float) -> MeasuredSleeper:
     """Modes of half a sleeper that meet its receptance at the rail seat, both seats pressed alike.
 
     Parameters
@@ -360,11 +358,10 @@ def measured_sleeper(
     frequency : ndarray (n,)
         Hz, rising, above zero; ten or more, fine enough for a few in each resonance.
     receptance : ndarray of complex (n,)
-        m/N, e^{+iωt}: displacement of a seat per force there, with the same force at the other.
+        m/N, e^{+iωt}, of the free sleeper: displacement of a seat per force there, with the same force at the
+        other.
     mass : float
         Of the half, kg.
-    below : ndarray of complex (n,), optional
-        Dynamic stiffness of what it lay on, N/m; free by default.
 
     Returns
     -------
@@ -378,22 +375,20 @@ def measured_sleeper(
 
     Notes
     -----
-    On a bed of the stiffness K that is spread like its mass, mode k answers with 1/(m_k (ω_k² − ω² + K/m)):
-    as the free sleeper does at Ω² = ω² − K/m. So modes are those of the free sleeper (vector fitting at iΩ,
-    modal masses by least squares without negative values), wherever it was measured; those above the band
-    are there by their flexibility.
+    Vector fitting, modal masses by least squares without negative values. Modes above the band are there by
+    their flexibility. On a bed of the stiffness K that is spread like its mass, mode k answers with
+    1/(m_k (ω_k² − ω² + K/m)).
     """
     from asperity.structures import modal_fit
 
     check_receptance(frequency, receptance)
-    omega, bed = 2.0 * np.pi * frequency, np.zeros(len(frequency), complex) if below is None else below
-    answering = -1j * np.sqrt(bed / mass - omega**2) / (2.0 * np.pi)
-    rigid = np.asarray(1.0 / (bed - mass * omega**2))
-    own, ratios, masses = modal_fit.fit_modes(frequency, receptance, rigid, answering)
+    omega = 2.0 * np.pi * frequency
+    rigid = np.asarray(-1.0 / (mass * omega**2), dtype=complex)
+    own, ratios, masses = modal_fit.fit_modes(frequency, receptance, rigid)
     rigidly = ((0.0, own), (0.0, ratios), (mass, masses))
     natural, damping, modal = (tuple(np.append(*each).tolist()) for each in rigidly)
     found = MeasuredSleeper(mass, natural, damping, modal)
-    fitted = found._modes(omega, bed).sum(axis=-1)
+    fitted = found._modes(omega, np.zeros(omega.shape, complex)).sum(axis=-1)
     off = 20.0 * np.log10(np.abs(fitted / receptance))
     worst = int(np.argmax(np.abs(off)))
     words = f"{len(own)} modes on {mass:.4g} kg"
