@@ -11,7 +11,6 @@ from asperity.errors import ComputationError
 from asperity.radiation import pass_by
 from asperity.radiation.pass_by import FAST, AxleSource, Passage, Receiver, divergence, squared_pressure
 from asperity.radiation.track import IMPEDANCE
-from refusals import refusals
 
 D = 7.5
 HERE, FLAT = Receiver(), Receiver(D, 0.0)
@@ -136,19 +135,3 @@ def test_a_level_that_does_not_fall_is_refused():
     message = "does not fall by 10 dB before and after the train between -1"
     with pytest.raises(ComputationError, match=message):
         pass_by.pass_by_levels(TIME, np.ones((1, 101)), (-0.5, 0.5))
-
-
-test_bad_input = refusals(
-    (lambda: AxleSource(np.array([-1.0])), r"sound power \(W\)"),
-    (lambda: AxleSource(WATT, np.nan), "length of a source"),
-    (lambda: AxleSource(WATT, 0.0, np.inf), "height of a source"),
-    (lambda: Receiver(0.0), "distance of the receiver"),
-    (lambda: Receiver(7.5, np.nan), "height of the receiver"),
-    (lambda: Passage([], 10.0), "rise from 0 m"),
-    (lambda: Passage([1.0], 10.0), "rise from 0 m"),
-    (lambda: Passage([0.0, 3.0, 2.0], 10.0), "rise from 0 m"),
-    (lambda: Passage([0.0], 0.0), "speed"),
-    (lambda: Passage([0.0, 20.0], 10.0, 19.0), "at least that over its axles, 20"),
-    (lambda: Passage([0.0], 10.0, -1.0), "length of the train"),
-    (lambda: pass_by.time_weighted([1.0, 2.0], 0.0), "time step"),
-)

@@ -8,7 +8,6 @@ from numpy.testing import assert_allclose
 from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 from asperity import Track
-from asperity.errors import InputError
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, SideOfRail, squared_lateral_mobility
 from asperity.structures.lateral_rail import LateralTrack, contact_shapes
 
@@ -45,8 +44,3 @@ def test_the_ratio_is_near_that_of_a_60e1_section(frequency, low, high):
     field = power_per_length(*turned, 2.0 * math.pi * frequency / SPEED_OF_SOUND)
     model = SIDE.power(frequency, np.ones(1))[0] / IMPEDANCE
     assert low < 10.0 * math.log10(model / field) < high
-
-
-def test_a_section_without_size_is_refused():
-    with pytest.raises(InputError, match="height of the rail's section: received 0"):
-        SideOfRail(0.0, 0.15, 0.072)

@@ -12,7 +12,6 @@ from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND
 from asperity.radiation.wheel import RadiatingWheel, axial_transition, radial_transition
 from asperity.spectra import band_energies, psd, third_octave_bands
 from asperity.structures.wheel import Wheel
-from refusals import refusals
 
 RADIUS, WIDTH = 0.46, 0.135
 
@@ -60,15 +59,6 @@ def test_the_power_is_that_of_both_faces_of_the_disc_and_of_the_tread():
     disc, tread = 2.0 * math.pi * RADIUS**2 * 16.0, 2.0 * math.pi * RADIUS * WIDTH * 0.25
     found = wheel([3], 4.0, 0.5).power(np.array([20e3]), np.array([[1e-6]]))
     assert found == pytest.approx(IMPEDANCE * 1e-6 * (disc + tread), rel=1e-4)
-
-
-test_a_wheel_that_cannot_be_is_refused = refusals(
-    (lambda: wheel(radius=0.0), "radius of the wheel's tread: received 0.0"),
-    (lambda: RadiatingWheel(1.0, 0.1, np.arange(5), np.ones(4), np.ones(5)), "4 numbers; allowed: 5"),
-    (lambda: wheel(radial=-1.0), "radial velocity of a mode: received -1.0; allowed: finite ratios"),
-    (lambda: axial_transition(0.5), r"number of nodal diameters: received 0\.5"),
-    (lambda: radial_transition(1, 0.0), r"width of the tread over its radius: received 0\.0"),
-)
 
 
 RATE, SAMPLES, SEGMENT = 20e3, 2**19, 4000  # 26 s; lines of 5 Hz, as in a run: the last mode is 1.5 Hz wide

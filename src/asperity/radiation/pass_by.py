@@ -13,8 +13,8 @@ import numpy as np
 from scipy.linalg import solve_banded
 from scipy.special import exp1
 
-from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real
-from asperity.errors import ComputationError, InputError
+from asperity.arguments import Array, ArrayLike, Complex
+from asperity.errors import ComputationError
 from asperity.radiation.track import IMPEDANCE
 from asperity.spectra import level_of
 
@@ -36,10 +36,6 @@ class Receiver:
     distance: float = 7.5
     height: float = 1.2
 
-    def __post_init__(self) -> None:
-        positive("distance of the receiver (m)", self.distance)
-        real("height of the receiver (m)", self.height, "a finite number")
-
     def shortest(self, height: float) -> float:
         """Distance, m, from a source of this height above the rail head, m, that is just opposite."""
         return float(np.hypot(self.distance, self.height - height))
@@ -58,21 +54,11 @@ class AxleSource:
         rate Δ, dB/m, ℓ is 8.686/Δ. Zero for a source in one place.
     height : float
         Above the rail head, m.
-
-    Raises
-    ------
-    InputError
-        If a power or a length is negative, or something is not finite.
     """
 
     power: Array
     length: ArrayLike = 0.0
     height: float = 0.0
-
-    def __post_init__(self) -> None:
-        for what, values in (("sound power (W)", self.power), ("length of a source (m)", self.length)):
-            finite_array(what, values, "finite numbers, zero or more", at_least=0.0)
-        real("height of a source (m)", self.height, "a finite number")
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,25 +74,11 @@ class Passage:
     length : float, optional
         Of the whole train, m, equally far beyond both outer axles. Without it half a mean distance of the
         axles is added at each end; one axle alone has no length then.
-
-    Raises
-    ------
-    InputError
-        If the axles do not rise from zero, or speed or length are not possible.
     """
 
     axles: Sequence[float]
     speed: float
     length: float | None = None
-
-    def __post_init__(self) -> None:
-        at = np.asarray(self.axles, dtype=float)
-        if at.ndim != 1 or not at.size or at[0] or not np.isfinite(at).all() or (np.diff(at) <= 0.0).any():
-            raise InputError("axles (m)", list(self.axles), "positions that rise from 0 m, the first axle")
-        positive("speed (m/s)", self.speed)
-        if self.length is not None and positive("length of the train (m)", self.length) < at[-1]:
-            allowed = f"at least that over its axles, {at[-1]:g}"
-            raise InputError("length of the train (m)", self.length, allowed)
 
     @property
     def passed(self) -> tuple[float, float] | None:
@@ -279,7 +251,7 @@ def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) 
     Exact for a squared pressure that is linear between its samples, `step` apart, s; it is steady before.
     """
     values = np.asarray(squared, dtype=float)
-    kept = np.exp(-positive("time step (s)", step) / time_constant)
+    kept = np.exp(-step / time_constant)
     mean = -np.expm1(-step / time_constant) * time_constant / step
     forced = (1.0 - mean) * values
     forced[..., 1:] += (mean - kept) * values[..., :-1]

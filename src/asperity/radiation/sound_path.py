@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import wofz
 
-from asperity.arguments import Array, Complex, finite_array, not_negative, one_of, positive, require
+from asperity.arguments import Array, Complex, require
 from asperity.radiation.pass_by import Receiver, time_weighted
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, wavenumber
 from asperity.reference import cnossos
@@ -27,11 +27,6 @@ class PorousGround:
     flow_resistivity : float
         σ, Pa s/m²: that which fits the ground, an effective one.
 
-    Raises
-    ------
-    InputError
-        If it is not positive.
-
     Notes
     -----
     Fitted to fibrous material at 0.01 < ρf/σ < 1. Ground has less, and is described all the same (C. I.
@@ -42,13 +37,9 @@ class PorousGround:
 
     flow_resistivity: float
 
-    def __post_init__(self) -> None:
-        positive("flow resistivity of the ground (Pa s/m²)", self.flow_resistivity)
-
     def impedance(self, frequency: ArrayLike) -> Complex:
         """Characteristic impedance over that of air, e^{+iωt}, at positive frequencies, Hz."""
-        at = finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0)
-        x = AIR_DENSITY * at / self.flow_resistivity
+        x = AIR_DENSITY * np.asarray(frequency, dtype=float) / self.flow_resistivity
         return np.asarray(1.0 + 0.0571 * x**-0.754 - 0.087j * x**-0.732)
 
     def reflection(self, frequency: ArrayLike, cosine: ArrayLike, distance: ArrayLike) -> Complex:
@@ -147,7 +138,7 @@ class SoundPath:
     Raises
     ------
     InputError
-        If a number is not possible, the receiver is not beside the rails, or it is not above the ground.
+        If the receiver is not beside the rails, or not above the ground.
     """
 
     band: Array
@@ -158,10 +149,7 @@ class SoundPath:
     rail_distance: float = 0.0
 
     def __post_init__(self) -> None:
-        finite_array("band centres (Hz)", self.band, "finite positive numbers", above=0.0)
-        one_of("directivity", self.directivity, cnossos.DIRECTIVITIES)
-        not_negative("depth of the ground (m)", self.ground_depth)
-        nearest = 0.5 * not_negative("distance of the rails (m)", self.rail_distance)
+        nearest = 0.5 * self.rail_distance
         away = f"{self.receiver.distance:g} m from the middle of the track"
         require(
             self.receiver.distance > nearest, "receiver", away, f"more than {nearest:g} m, beside both rails"

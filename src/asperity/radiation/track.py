@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import h2vp, j1
 
-from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, whole
+from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.radiation.mobility import ForceOverBay, Mobility
 from asperity.structures.lateral_rail import LateralTrack, contact_shapes
 from asperity.structures.track import Track
@@ -41,11 +41,6 @@ def cylinder(ka: ArrayLike, order: int = 1) -> Array:
     ndarray
         2/(π ka |H_n'(ka)|²), of the shape of `ka`.
 
-    Raises
-    ------
-    InputError
-        If ka is not positive, or the order negative.
-
     Notes
     -----
     Outside, p = A H_n(kr) cos(nθ) with Hankel's function of the second kind; −∂p/∂r = iωρ v cos(nθ) on the
@@ -53,24 +48,18 @@ def cylinder(ka: ArrayLike, order: int = 1) -> Array:
     of a plane wave of the same mean square velocity. Of an oscillating rigid cylinder ⟨v_n²⟩ is half
     of its ⟨v²⟩. Limits: (π/2)(ka)³ for n = 1 and (π/2) ka for n = 0 at low ka, 1 at high ka.
     """
-    ka = _positive(ka)
-    whole("order of the motion around a cylinder", order, "zero or more", at_least=0)
+    ka = np.asarray(ka, dtype=float)
     return np.asarray(2.0 / (np.pi * ka * np.abs(h2vp(order, ka)) ** 2))
 
 
 def baffled_piston(ka: ArrayLike) -> Array:
     """Radiation ratio of a rigid circular piston in an infinite plane, at positive ka.
 
-    1 − J₁(2ka)/ka (Rayleigh 1896): (ka)²/2 at low ka, 1 at high ka. An `InputError` says if ka is not
-    positive.
+    1 − J₁(2ka)/ka (Rayleigh 1896): (ka)²/2 at low ka, 1 at high ka.
     """
-    ka = _positive(ka)
+    ka = np.asarray(ka, dtype=float)
     series = 0.5 * ka**2 * (1.0 - ka**2 / 6.0)
     return np.where(ka < _SMALL, series, 1.0 - j1(2.0 * ka) / ka)
-
-
-def _positive(ka: ArrayLike) -> Array:
-    return finite_array("wavenumber times radius", ka, "finite positive numbers", above=0.0)
 
 
 def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
@@ -234,11 +223,6 @@ class SleeperTop:
     width : float
         Of its top along the track, m.
 
-    Raises
-    ------
-    InputError
-        If a dimension is not positive.
-
     Notes
     -----
     A rigid circular piston of the same area in an infinite rigid plane. Each half sleeper radiates by
@@ -248,10 +232,6 @@ class SleeperTop:
 
     length: float
     width: float
-
-    def __post_init__(self) -> None:
-        for what in ("length", "width"):
-            positive(f"{what} of a sleeper", getattr(self, what))
 
     @property
     def area(self) -> float:
@@ -289,11 +269,6 @@ class SideOfRail:
     height, foot_width, head_width : float
         H, b_f and b_h, m.
 
-    Raises
-    ------
-    InputError
-        If a dimension is not positive.
-
     Notes
     -----
     The power per length is ρ c · 2H · σ · ⟨v²⟩, ⟨v²⟩ the mean over the height. The air between head and foot
@@ -308,10 +283,6 @@ class SideOfRail:
     height: float
     foot_width: float
     head_width: float
-
-    def __post_init__(self) -> None:
-        for what in ("height", "foot_width", "head_width"):
-            positive(f"{what} of the rail's section", getattr(self, what))
 
     def radiation_ratio(self, frequency: ArrayLike) -> Array:
         """Ratio σ (f,) at positive frequencies (f,), Hz."""

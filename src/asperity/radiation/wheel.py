@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import beta, gamma
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, whole
+from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, above_zero
 from asperity.structures.modal import modal_answers
 from asperity.structures.wheel import Wheel
@@ -87,7 +87,7 @@ def axial_transition(nodal_diameters: int) -> float:
     ratio that follows, per 2πa² ⟨v²⟩, is C (ka)^(2n+4), here set equal to one. For n = 0 C = 8/(27π²), that
     of a rigid disc (Rayleigh).
     """
-    n = _diameters(nodal_diameters)
+    n = nodal_diameters
     flow = gamma(n + 1.0) / (math.sqrt(math.pi) * gamma(n + 1.5))
     layer = gamma(1.5) / (2.0 ** (n + 1) * gamma(n + 2.5))
     limit = (n + 1.0) * (flow * layer) ** 2 * beta(1.5, n + 1.0)
@@ -101,14 +101,9 @@ def radial_transition(nodal_diameters: int, width_ratio: float) -> float:
     monopoles its ratio per 2πab ⟨v²⟩ is k²ab/4 ∫J_n²(ka sinϑ) sinϑ dϑ, which at low frequency is (b/a)
     (ka)^(2n+2) B(1/2, n+1)/(4^(n+1) n!²), here set equal to one.
     """
-    n = _diameters(nodal_diameters)
-    slender = positive("width of the tread over its radius", width_ratio)
-    limit = slender * beta(0.5, n + 1.0) / (4.0 ** (n + 1) * gamma(n + 1.0) ** 2)
+    n = nodal_diameters
+    limit = width_ratio * beta(0.5, n + 1.0) / (4.0 ** (n + 1) * gamma(n + 1.0) ** 2)
     return float(limit ** (-1.0 / (2 * n + 2)))
-
-
-def _diameters(number: int) -> int:
-    return whole("number of nodal diameters", number, "a whole number, zero or more", at_least=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,11 +120,6 @@ class RadiatingWheel:
         Root mean square, over the disc, of the axial velocity, and over the tread, of the radial velocity,
         both per radial velocity at the contact.
 
-    Raises
-    ------
-    InputError
-        If a dimension is not positive, a ratio negative, or the lists differ in length.
-
     Notes
     -----
     W = ρ c Σ [2πa² σ_a(n) ⟨v_a²⟩ + 2πab σ_r(n) ⟨v_r²⟩], each mode by itself: two modes of the same n that
@@ -141,13 +131,6 @@ class RadiatingWheel:
     nodal_diameters: NDArray[np.int64]
     axial: Array
     radial: Array
-
-    def __post_init__(self) -> None:
-        for what in ("radius", "width"):
-            positive(f"{what} of the wheel's tread", getattr(self, what))
-        count, allowed = len(self.nodal_diameters), "finite ratios, zero or more"
-        for what, values in (("axial", self.axial), ("radial", self.radial)):
-            finite_array(f"{what} velocity of a mode", values, allowed, count=count, at_least=0.0)
 
     def axial_ratio(self, frequency: ArrayLike) -> Array:
         """σ_a (p, f) at positive frequencies (f,), Hz: 1/(1 + (f_ca/f)^(2n+4))."""
