@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from rolling_parts import rough, same
+from rolling_parts import rigid_bar, rough, same
 
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
-from asperity.structures.body import Body, carriage, chain
+from asperity.structures.body import Body, chain
 from asperity.structures.modal import ModalStructure
 from one_contact import Shelf, Stepped, first_contact
 
@@ -76,7 +76,7 @@ def test_steady_waves_give_the_force_of_the_receptances(over, receptance):
 def pitching(mass, load, places):
     """A rigid body that heaves and pitches, with its mass as far out as its contacts."""
     places = np.asarray(places, float)
-    return carriage(mass, mass * np.mean(places**2), places, load=load - mass * 9.80665)
+    return rigid_bar(mass, mass * np.mean(places**2), places, load)
 
 
 @pytest.mark.parametrize("count", [2, 4])

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from rolling_parts import rough, same
+from rolling_parts import rigid_bar, rough, same
 
 from asperity.errors import ComputationError
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.body import Body, bogie, carriage
+from asperity.structures.body import Body, bogie
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import Track
@@ -122,7 +122,7 @@ def test_a_pulse_under_one_wheel_shakes_both_as_receptances_say(slow):
 def test_a_rigid_carriage_on_three_wheels_starts_steadily(kernel):
     """Statically indeterminate on a rail: the loads settle between the bodies and the rail."""
     places = np.array([-1.8, 0.0, 1.8])
-    body = carriage(1800.0, 2000.0, places, load=3 * LOAD - 1800.0 * 9.80665)
+    body = rigid_bar(1800.0, 2000.0, places, 3 * LOAD)
     path = PATH | {"settling": 0.0, "positions": [1.8]}
     run = roll_bodies(rail_between(kernel, places), [body], [HertzLaw(9.4e10)] * 3, **path)
     force = run.contact_force

@@ -366,8 +366,7 @@ class Rolling(Ringing, FlatOnTread):
         if self.type == "bogie":
             return bogie(mass, places[1], above[0], inertia, springs[0], dampers[0], load=extra)
         upper = springs[0] if springs else upper_stiffness
-        held = {"element_mass": mass, "upper_stiffness": upper, "upper_damping": dampers[0], "load": extra}
-        return carriage(above[0], inertia, places, **held)
+        return carriage(above[0], inertia, places, mass, upper, dampers[0], load=extra)
 
     def tread(self, highest_frequency: float, speed: float, place: float = 0.0) -> "Wheel":
         """What touches at each contact, at a place, m, by itself: mass and modes, as `model` has them."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, real
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array
 from asperity.errors import InputError
 
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall, CGPM 1901
@@ -148,10 +148,6 @@ def _above_zero(what: str, given: ArrayLike, count: int) -> Array:
     return finite_array(what, given, "finite numbers, above 0", count=count, above=0.0)
 
 
-def _not_below_zero(what: str, given: ArrayLike, count: int) -> Array:
-    return finite_array(what, given, "finite numbers, 0 and more", count=count, at_least=0.0)
-
-
 def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, load: float = 0.0) -> Body:
     """Masses above one contact, each on the one below: wheelset, bogie share, car-body share.
 
@@ -173,16 +169,13 @@ def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, loa
     Raises
     ------
     InputError
-        If a mass or stiffness is not positive, a damping negative, a number is missing, or nothing is left
-        to press on the contact.
+        If nothing is left to press on the contact.
     """
-    mass = _above_zero("masses of the chain (kg)", masses, np.size(masses))
-    spring = _above_zero("stiffnesses of the chain (N/m)", stiffnesses, mass.size - 1)
-    damper = _not_below_zero("dampings of the chain (N s/m)", dampings, mass.size - 1)
+    mass, unit = np.asarray(masses, dtype=float), np.eye(np.size(masses))
     pressing = GRAVITY * mass
-    pressing[-1] += _load(load)
-    unit = np.eye(mass.size)
-    return _on_springs(np.zeros(1), unit[:1], mass, pressing, np.diff(unit, axis=0), spring, damper)
+    pressing[-1] += load
+    springs, dampers = (np.asarray(each, dtype=float) for each in (stiffnesses, dampings))
+    return _on_springs(np.zeros(1), unit[:1], mass, pressing, np.diff(unit, axis=0), springs, dampers)
 
 
 def bogie(
@@ -193,7 +186,6 @@ def bogie(
     primary_stiffness: float,
     primary_damping: float,
     *,
-    car_body: tuple[float, float, float] | None = None,
     load: float = 0.0,
 ) -> Body:
     """Two wheels one behind the other, and their share of the frame above, which pitches.
@@ -208,54 +200,38 @@ def bogie(
         Of the frame, in its middle: kg, and kg m² about the transverse axis.
     primary_stiffness, primary_damping : float
         Of the suspension of each wheel, N/m and N s/m.
-    car_body : (float, float, float), optional
-        Mass above the middle of the frame, kg, on a secondary spring, N/m, and damper, N s/m.
     load : float
-        Constant force that presses on the car body, or the frame, N, beside the weight of all masses;
-        negative where it lifts.
+        Constant force that presses on the frame, N, beside the weight of all masses; negative where it lifts.
 
     Returns
     -------
     Body
         On two contacts; its position is that of the rear one. Degrees of freedom: rear wheel, front wheel,
-        frame, pitch of the frame (rad, front up), car body.
+        frame, pitch of the frame (rad, front up).
 
     Raises
     ------
     InputError
-        If a number is not positive (damping may be zero), or nothing is left to press on the contacts.
+        If nothing is left to press on the contacts.
     """
-    what = "wheel mass, wheelbase, frame mass, frame inertia and primary stiffness"
-    given = [wheel_mass, wheelbase, frame_mass, frame_inertia, primary_stiffness]
-    wheel, base, frame, inertia, spring = _above_zero(what, given, 5)
-    damper = _not_below_zero("primary damping (N s/m)", [primary_damping], 1)[0]
-    masses, springs, dampers = [wheel, wheel, frame, inertia], [spring] * 2, [damper] * 2
-    if car_body is not None:
-        masses += [*_above_zero("mass of the car body (kg)", car_body[:1], 1)]
-        secondary = _not_below_zero("secondary stiffness and damping", car_body[1:], 2)
-        springs, dampers = [*springs, secondary[0]], [*dampers, secondary[1]]
-    unit, places = np.eye(len(masses)), np.array([0.0, base])
-    stretch = unit[2] + np.outer(places - 0.5 * base, unit[3]) - unit[:2]
-    pressing = GRAVITY * np.array(masses)
-    pressing[3] = 0.0
-    pressing[2 if car_body is None else 4] += _load(load)
-    stretch = np.vstack([stretch, unit[4:] - unit[2]])
-    return _on_springs(
-        places, unit[:2], np.array(masses), pressing, stretch, np.array(springs), np.array(dampers)
-    )
+    masses = np.array([wheel_mass, wheel_mass, frame_mass, frame_inertia])
+    unit, places = np.eye(4), np.array([0.0, wheelbase])
+    stretch = unit[2] + np.outer(places - 0.5 * wheelbase, unit[3]) - unit[:2]
+    pressing = GRAVITY * masses
+    pressing[2], pressing[3] = pressing[2] + load, 0.0
+    springs, dampers = np.full(2, primary_stiffness), np.full(2, primary_damping)
+    return _on_springs(places, unit[:2], masses, pressing, stretch, springs, dampers)
 
 
 def carriage(
     mass: float,
     inertia: float,
     places: ArrayLike,
-    *,
-    centre: float | None = None,
-    element_mass: float | None = None,
-    upper_stiffness: float | None = None,
+    element_mass: float,
+    upper_stiffness: float,
     upper_damping: float = 0.0,
+    *,
     load: float = 0.0,
-    load_place: float | None = None,
 ) -> Body:
     """A rigid carriage that pitches, on rolling elements in a row: the carriage of a linear guide.
 
@@ -264,53 +240,38 @@ def carriage(
     mass, inertia : float
         Of the carriage: kg, and kg m² about the transverse axis through its centre of mass.
     places : array_like (c,)
-        Of the contacts, ahead of the position of the body, m.
-    centre : float, optional
-        Place of the centre of mass, m; the middle of the contacts.
-    element_mass : float, optional
-        Mass of each rolling element, kg, with the contact above it as a spring; without one the carriage
-        itself touches at the places.
-    upper_stiffness, upper_damping : float, optional
+        Of the contacts, ahead of the position of the body, m, the centre of mass in their middle.
+    element_mass : float
+        Mass of each rolling element, kg, with the contact above it as a spring.
+    upper_stiffness, upper_damping : float
         Of the contact above each element, linearised under its load: N/m and N s/m.
     load : float
         Constant force that presses on the carriage, N, beside all weights; negative where it lifts.
-    load_place : float, optional
-        Where it presses, m; the centre of mass.
 
     Returns
     -------
     Body
-        On as many contacts as places. Degrees of freedom: the elements, if there are any, the carriage at its
-        centre of mass, its pitch (rad, front up).
+        On as many contacts as places. Degrees of freedom: the elements, the carriage at its centre of mass,
+        its pitch (rad, front up).
 
     Raises
     ------
     InputError
-        If a number is not positive (damping may be zero), or the carriage tilts or lifts off.
+        If the carriage lifts off.
 
     Notes
     -----
     Elements move with the carriage: that a rolling ball follows at half its speed, and comes back around, is
     left out.
     """
-    heavy, moment = _above_zero("mass (kg) and inertia (kg m^2) of the carriage", [mass, inertia], 2)
-    at = np.atleast_1d(np.asarray(places, dtype=float))
-    middle = at.mean() if centre is None else real("centre of mass (m)", centre, "a finite number")
-    down = _load(load)
-    pressed = middle if load_place is None else real("place of the load (m)", load_place, "a finite number")
-    lever = np.stack([np.ones_like(at), at - middle], axis=1)
-    moved = np.array([heavy * GRAVITY + down, down * (pressed - middle)])
-    if element_mass is None:
-        none = np.zeros((0, 2))
-        return _on_springs(at, lever, np.array([heavy, moment]), moved, none, np.zeros(0), np.zeros(0))
-    what, stiffness = "mass (kg) of the elements and stiffness (N/m) above them", upper_stiffness or 0.0
-    element, spring = _above_zero(what, [element_mass, stiffness], 2)
-    damper = _not_below_zero("damping above the elements (N s/m)", [upper_damping], 1)
-    masses = np.append(np.full(at.size, element), [heavy, moment])
-    pressing = np.append(GRAVITY * masses[:-2], moved)
-    unit = np.eye(masses.size)
+    at = np.asarray(places, dtype=float)
+    lever = np.stack([np.ones_like(at), at - at.mean()], axis=1)
+    masses = np.append(np.full(at.size, element_mass), [mass, inertia])
+    pressing, unit = GRAVITY * masses, np.eye(masses.size)
+    pressing[-2], pressing[-1] = pressing[-2] + load, 0.0
     stretch = lever @ unit[-2:] - unit[: at.size]
-    return _on_springs(at, unit[: at.size], masses, pressing, stretch, np.full(at.size, spring), damper)
+    springs, dampers = np.full(at.size, upper_stiffness), np.full(at.size, upper_damping)
+    return _on_springs(at, unit[: at.size], masses, pressing, stretch, springs, dampers)
 
 
 def _on_springs(
@@ -331,9 +292,5 @@ def _on_springs(
     least = float(body.static_loads.min())
     if not least > 0.0:
         received, allowed = f"a contact under {least:.4g} N", "contacts that are pressed at rest"
-        raise InputError("load (N)", received, allowed, "Press more, or nearer the middle.")
+        raise InputError("load (N)", received, allowed, "Press more.")
     return body
-
-
-def _load(load: float) -> float:
-    return real("load (N)", load, "a finite number")
