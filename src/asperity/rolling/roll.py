@@ -130,8 +130,7 @@ def roll_bodies(
     Raises
     ------
     InputError
-        If a contact leaves the structure, a rail was made for another speed, time step or distances, or
-        numbers of bodies, laws and positions disagree.
+        If a contact leaves the structure.
     ComputationError
         If nothing is at rest at the start, or the motion runs away.
     """

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array, not_negative
+from asperity.arguments import Array, ArrayLike, Complex, NDArray
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.progress import Progress
 from asperity.store import Store, content_key, made
@@ -253,19 +253,13 @@ class RailBetween:
             return self.direct
         if abs(apart) > self.reach:
             return None
-        found = self.crossing.get(apart)
-        if found is None:
-            known = ", ".join(f"{at:g}" for at in sorted(self.crossing)) or "none"
-            remedy = "Compute the rail between them for the places of these contacts."
-            raise InputError("distance of two contacts on the rail (m)", f"{apart:g}", known, remedy)
-        return found
+        return self.crossing[apart]
 
 
 def rail_between(
     direct: RailPoles | MovingKernel,
     places: ArrayLike,
     *,
-    reach: float | None = None,
     cache: Store | None = None,
     progress: Progress | None = None,
 ) -> RailBetween:
@@ -273,8 +267,11 @@ def rail_between(
 
     The moving kernel of every distance between two of them is computed from the same track as the direct one,
     for the same speed, time step and duration, and fitted by poles of its own (scattered where a fit is worse
-    than half a percent of the direct kernel). Equal distances share a kernel. Contacts farther apart than the
-    `reach` do not feel each other, so that a train costs in proportion to its wheels.
+    than half a percent of the direct kernel). Equal distances share a kernel. Contacts do not feel each other
+    from the distance on at which the rms of a kernel is below 1 % of the direct one, so that a train costs in
+    proportion to its wheels. On a lightly damped rail (loss factor 0.4 %) that is 40 m; leaving two wheels
+    there alone changed the varying part of their forces by 3 % rms, and no one-third octave by more than
+    0.05 dB.
 
     Parameters
     ----------
@@ -282,10 +279,6 @@ def rail_between(
         The rail under one contact.
     places : array_like (n,)
         Of the contacts along the path, m.
-    reach : float, optional
-        m; by default the distance from which on the rms of a kernel is below 1 % of the direct one. On a
-        lightly damped rail (loss factor 0.4 %) that is 40 m; leaving two wheels there alone changed the
-        varying part of their forces by 3 % rms, and no one-third octave by more than 0.05 dB.
     cache : Store, optional
         Keeps kernels and poles.
     progress : callable, optional
@@ -294,15 +287,8 @@ def rail_between(
     Returns
     -------
     RailBetween
-
-    Raises
-    ------
-    InputError
-        If places or reach are not finite, or the reach is negative.
     """
-    at = finite_array("places of the contacts (m)", places).ravel()
-    if reach is not None:
-        reach = not_negative("reach (m)", reach)
+    at, reach = np.ravel(places), np.inf
     apart = np.unique(np.round(np.subtract.outer(at, at), DECIMALS))
     lengths = np.unique(np.abs(apart[apart != 0.0]))
     kernel = direct.kernel
@@ -310,20 +296,18 @@ def rail_between(
     positions, taps = len(kernel.weights) // kernel.track.cell_bays, kernel.weights.shape[1]
     like = {"duration": taps * kernel.time_step, "positions": positions, "cache": cache}
     for done, length in enumerate(lengths):
-        if reach is not None and length > reach:
-            break
         far = [
             moving_kernel(kernel.track, kernel.speed, kernel.time_step, distance=sign * float(length), **like)
             for sign in (1.0, -1.0)
         ]
         size = max(np.linalg.norm(each.weights) for each in far) / np.linalg.norm(kernel.weights)
-        if reach is None and size < NEGLIGIBLE:
+        if size < NEGLIGIBLE:
             reach = float(lengths[done - 1]) if done else 0.0
             break
         crossing |= {each.distance: _fitted(direct, each, cache) for each in far}
         if progress is not None:
             progress(done + 1, len(lengths), "rail between contacts")
-    return RailBetween(direct, crossing, np.inf if reach is None else reach)
+    return RailBetween(direct, crossing, reach)
 
 
 def _fitted(
