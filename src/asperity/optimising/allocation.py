@@ -3,19 +3,17 @@
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog, minimize, minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
 
-MOST_STEPS = 500
-PRECISION = 1e-10
-"""Of the level that is minimised, dB; of the price, its unit."""
 SLACK = 1e-6
 """By which a solution may miss a limit, dB or price."""
+FREE, UNHEARD = 1e-6, 1e-12
+"""Of the highest price, and of the largest weight, what a band without any has: its share is a number."""
 _NOTHING = "no texture within the limits was found"
 _WIDER = "wider bounds of the levels, of the rms height or of the price"
 
@@ -63,11 +61,6 @@ class Response:
         """10 lg E(L), dB."""
         return float(10.0 * np.log10(self.floor + self.energies(levels).sum()))
 
-    def slope(self, levels: Array) -> Array:
-        """By how much its level grows with each band's (b,), dB per dB: the band's share of the energy."""
-        energies = self.energies(levels)
-        return np.asarray(energies / (self.floor + energies.sum()))
-
 
 def energy_of(levels: Array) -> Array:
     """Mean square of each band, µm², of levels in dB re 1 µm."""
@@ -79,122 +72,97 @@ def rms_of(levels: Array) -> float:
     return float(1e-6 * np.sqrt(energy_of(levels).sum()))
 
 
-def quietest(response: Response, limits: Limits, begin: Array) -> Array:
-    """Find the levels (b,), dB, with the least response within limits, beginning at some.
+def quietest(response: Response, limits: Limits) -> Array:
+    """Find the levels (b,), dB, with the least response within limits.
 
     What is found is the best there is: the problem is convex in the bands' energies. Raises
-    `ComputationError` where nothing lies within the limits, or the search does not end.
+    `ComputationError` where nothing lies within the limits.
     """
-    if np.isfinite(limits.budget):
-        return _solved(Term(response.level, response.slope), [], limits, begin)
-    return _by_linear_programme(response, limits)
+    return _balanced(response, limits, lambda levels: limits.budget - limits.cost(levels), cheap=False)
 
 
-def roughest(response: Response, limits: Limits, level: float, begin: Array) -> Array:
+def roughest(response: Response, limits: Limits, level: float) -> Array:
     """Find the cheapest levels (b,), dB, whose response has a level, dB, or less.
 
     Where nothing else binds, each band adds to the response in proportion to its price:
     weight 10^(L/10) = price (10^(level/10) − floor)/Σ price. Convex, as `quietest`; raises the same.
     """
-    kept = Term(lambda x: level - response.level(x), lambda x: -response.slope(x))
-    scale = max(float(limits.price.sum()), 1e-300)
-    cost = Term(lambda x: limits.cost(x) / scale, lambda _: -limits.price / scale)
-    return _solved(cost, [kept], limits, begin)
-
-
-def _by_linear_programme(response: Response, limits: Limits) -> Array:
-    """Without a price, response and rms height are sums of the bands' energies, and nothing else counts."""
-    low, high = energy_of(limits.lowest), energy_of(limits.highest)
-    least, most = ((1e6 * rms) ** 2 for rms in (limits.rms_at_least, limits.rms_at_most))
-    rows = [(-1.0, -least)] + ([(1.0, most)] if np.isfinite(most) else [])
-    found = linprog(
-        response.weights,
-        A_ub=np.array([np.full(len(low), sign) for sign, _ in rows]),
-        b_ub=[bound for _, bound in rows],
-        bounds=list(zip(low, high, strict=True)),
-    )
-    if not found.success:
-        raise ComputationError(f"{_NOTHING} ({found.message})", _WIDER)
-    return np.clip(10.0 * np.log10(np.asarray(found.x)), limits.lowest, limits.highest)
-
-
-class Term(NamedTuple):
-    """A function of the levels, and its slope."""
-
-    value: Callable[[Array], float]
-    slope: Callable[[Array], Array]  # (b,), per dB
-
-
-def _of_limits(limits: Limits) -> list[Term]:
-    """What must not be negative within the limits."""
-    found = []
-    if np.isfinite(limits.budget):
-        found.append(Term(lambda x: limits.budget - limits.cost(x), lambda _: limits.price))
-    if limits.rms_at_least > 0.0:
-        found.append(Term(lambda x: _rms_level(x, limits.rms_at_least), _share))
-    if np.isfinite(limits.rms_at_most):
-        found.append(Term(lambda x: -_rms_level(x, limits.rms_at_most), lambda x: -_share(x)))
+    found = _balanced(response, limits, lambda levels: level - response.level(levels), cheap=True)
+    if limits.cost(found) > limits.budget + SLACK:
+        raise ComputationError(f"{_NOTHING} (its price is {limits.cost(found):.3g})", _WIDER)
     return found
 
 
-def _rms_level(levels: Array, rms: float) -> float:
-    return 20.0 * float(np.log10(rms_of(levels) / rms))
+def _balanced(response: Response, limits: Limits, left: Callable[[Array], float], *, cheap: bool) -> Array:
+    """Levels that leave nothing of a limit; where those leave some, the cheapest, or the quietest of all."""
+
+    def of(silence: float) -> float:
+        return left(_shared(response, limits, silence))
+
+    cheapest, softest = _shared(response, limits, 0.0), _least_heard(response, limits)
+    if max(left(cheapest), left(softest)) < -SLACK:
+        raise ComputationError(f"{_NOTHING} (a limit excludes the others)", _WIDER)
+    best, below = cheapest if cheap else softest, 0.0
+    if left(best) >= 0.0:
+        return best
+    low, high, *_ = _energies(limits)
+    shares = _at_least(limits.price, FREE) / _at_least(response.weights, UNHEARD)
+    for silence in 10.0 ** np.arange(np.log10((shares / high).min()), np.log10((shares / low).max()) + 1.0):
+        if of(silence) * left(cheapest) <= 0.0:
+            return _shared(response, limits, _root(of, below, silence))
+        below = silence
+    return softest
 
 
-def _share(levels: Array) -> Array:
-    energy = energy_of(levels)
-    return np.asarray(energy / energy.sum())
+def _root(of: Callable[[float], float], low: float, high: float) -> float:
+    return float(brentq(of, low, high, xtol=1e-300, rtol=1e-15))
 
 
-def _solved(least: Term, kept: list[Term], limits: Limits, begin: Array) -> Array:
-    """Minimise a term where others are not negative.
+def _least_heard(response: Response, limits: Limits) -> Array:
+    """Levels whatever they cost: as low as they may be, and the least rms height where it is heard least."""
+    low, high, least, _ = _energies(limits)
+    order = np.argsort(response.weights)
+    room = (high - low)[order]
+    low[order] += np.clip(least - low.sum() - (np.cumsum(room) - room), 0.0, room)
+    return _levels(low, limits)
 
-    Over levels, in which all but the least rms height is convex; with one, over energies, in which all is.
+
+def _energies(limits: Limits) -> tuple[Array, Array, float, float]:
+    """Bounds of the energies of each band (b,), and of all together, µm²."""
+    low, high = energy_of(limits.lowest), energy_of(limits.highest)
+    least, most = ((1e6 * rms) ** 2 for rms in (limits.rms_at_least, limits.rms_at_most))
+    if least > high.sum() * (1.0 + SLACK) or most < low.sum() * (1.0 - SLACK):
+        raise ComputationError(f"{_NOTHING} (bounds of levels and rms height exclude each other)", _WIDER)
+    return low, high, least, most
+
+
+def _levels(energies: Array, limits: Limits) -> Array:
+    return np.clip(10.0 * np.log10(energies), limits.lowest, limits.highest)
+
+
+def _at_least(values: Array, share: float) -> Array:
+    return np.maximum(values, share * (values.max() or 1.0))
+
+
+def _shared(response: Response, limits: Limits, silence: float) -> Array:
+    """Levels of which each band's energy is price/(silence weight − relief), between its bounds.
+
+    They are the best at that weight of silence over price: by its energy e the price of a band falls as
+    price/e, and the response grows as its weight. The relief is that of the limits of the rms height.
     """
-    kept = [*kept, *_of_limits(limits)]
-    begin = np.clip(begin, limits.lowest, limits.highest)
-    message = ""
-    for over_energies in (True, False) if limits.rms_at_least > 0.0 else (False,):
-        levels, message = _searched(least, kept, limits, begin, over_energies)
-        missed = min((term.value(levels) for term in kept), default=0.0)
-        if missed < -SLACK:
-            message = f"a limit is missed by {-missed:.2g}"
-        if not message:
-            return levels
-    raise ComputationError(f"{_NOTHING} ({message})", _WIDER)
+    (low, high, least, most), price = _energies(limits), _at_least(limits.price, FREE)
+    heard = silence * _at_least(response.weights, UNHEARD)
 
+    def energies(relief: float) -> Array:
+        below = heard - relief
+        return np.clip(np.divide(price, below, out=np.full_like(low, np.inf), where=below > 0.0), low, high)
 
-def _searched(
-    least: Term, kept: list[Term], limits: Limits, begin: Array, over_energies: bool
-) -> tuple[Array, str]:
-    """Best levels found, over levels or over y = 10^((L − begin)/10), and why they are not to be trusted."""
-
-    def levels(y: Array) -> Array:
-        return begin + 10.0 * np.log10(np.maximum(y, 1e-30)) if over_energies else y
-
-    def over(term: Term) -> Term:  # dL/dy = (10/ln 10)/y
-        if not over_energies:
-            return term
-        return Term(
-            lambda y: term.value(levels(y)),
-            lambda y: term.slope(levels(y)) * (10.0 / np.log(10.0)) / np.maximum(y, 1e-30),
-        )
-
-    start, low, high = (
-        energy_of(each - begin) if over_energies else each for each in (begin, limits.lowest, limits.highest)
-    )
-    aim, limited = over(least), [over(term) for term in kept]
-    found = minimize(
-        aim.value,
-        start,
-        jac=aim.slope,
-        method="SLSQP",
-        bounds=list(zip(low, high, strict=True)),
-        constraints=[{"type": "ineq", "fun": term.value, "jac": term.slope} for term in limited],
-        options={"maxiter": MOST_STEPS, "ftol": PRECISION},
-    )
-    message = "" if found.success else str(found.message)
-    return np.clip(levels(found.x), limits.lowest, limits.highest), message
+    found = energies(0.0)
+    wanted = float(np.clip(found.sum(), max(least, low.sum()), min(most, high.sum())))
+    if wanted != found.sum():
+        ends = heard.min() - (price / low).max(), heard.max()
+        found = energies(_root(lambda relief: energies(relief).sum() - wanted, *ends))
+    return _levels(found, limits)
 
 
 MOST_ROUNDS = 12
@@ -292,7 +260,7 @@ def _up_to(
     response, before = _in_proportion(trials[-1]), len(trials)
     for _ in range(MOST_ROUNDS):
         last = trials[-1]
-        trial = rolled(roughest(response, limits, limit, last.levels))
+        trial = rolled(roughest(response, limits, limit))
         trials, found = [*trials, trial], _in_proportion(trial)
         weights = response.weights ** (1.0 - RELAXATION) * found.weights**RELAXATION
         response = Response(weights, found.floor)
@@ -308,10 +276,10 @@ def _quieter(
     """Find the levels with the least response; the texture of the case may lie outside of the limits."""
     first = trials[-1]
     response = _in_proportion(first)
-    best = rolled(quietest(response, limits, first.levels))
+    best = rolled(quietest(response, limits))
     trials, response = [*trials, best], _by_slopes(response, first, best)
     for _ in range(MOST_ROUNDS):
-        wanted = quietest(response, limits, best.levels)
+        wanted = quietest(response, limits)
         if response.level(wanted) > best.level - SETTLED_LEVEL:
             return trials, True
         trial = rolled(wanted)
