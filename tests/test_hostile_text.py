@@ -18,17 +18,12 @@ from asperity.case.cases import as_case, case_class, load_case, parse_case
 from asperity.case.tables import LEVELS, read_levels, read_table
 from asperity.case.toml import read_toml
 from asperity.errors import CaseError, ComputationError, InputError
-from asperity.files import alone_in, refuse_unwritable, write_bytes
 from asperity.parameters import Quantity
 from asperity.results import GROUPS, read_result, save
 from asperity.schema import VERSION
-from asperity.store import Store
 from asperity.studies.definition import load_study, study_of
-from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.likeness import likeness
 from asperity.surfaces.readers import read_surface
 from asperity.surfaces.readers.text import parsed_header
-from asperity.text_files import number_in
 from asperity.units import quantity
 
 BALL = 'kind = "ball-on-beam"\n'
@@ -280,21 +275,6 @@ def test_heights_as_text_take_a_few_times_their_file(tmp_path, text):
         heights(text, tmp_path)
 
 
-def test_what_cannot_be_a_folder_or_a_name_is_told(tmp_path):
-    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    for folder, message in (
-        ("link", r"link is a link that leads nowhere\); allowed: a folder that"),
-        ("link/run", r"link is a link that leads nowhere\); allowed: a folder that"),
-        (LONG_NAME, "folder of the results: received .*File name too long.*with -o"),
-    ):
-        choice = ("folder of the results", "Choose another one with -o.")
-        assert re.search(message, refusal(refuse_unwritable, tmp_path / folder, *choice))
-    assert "a name that is too long" in refusal(write_bytes, tmp_path / f"{LONG_NAME}.png", b"")
-    with pytest.raises(InputError, match="a name that is too long"), alone_in(tmp_path / LONG_NAME):
-        pass
-    assert Store(tmp_path / LONG_NAME).files() == []
-
-
 # --- names in messages
 
 
@@ -330,16 +310,3 @@ def test_a_result_may_name_files_that_are_no_utf8(tmp_path):
     tree = xr.DataTree.from_dict(groups | {"/": xr.Dataset(attrs=attributes)})
     assert read_result(save(tree, tmp_path / "run.nc")).attrs["case"] == 'file = "\\udcff.npy"'
     assert tree.attrs["case"] == 'file = "\udcff.npy"'
-
-
-@pytest.mark.parametrize("text", ["1_0", "1_000.5", b"1_0", "one", ""])
-def test_marks_between_digits_are_no_number(text):
-    with pytest.raises(ValueError, match=r"no number|could not convert"):
-        number_in(text)
-
-
-@pytest.mark.parametrize("height", [0.0, 5e-6])
-def test_nothing_is_synthesised_from_a_plane(height):
-    plane = HeightMap(np.full((32, 32), height), (1e-6, 1e-6), "plane.npy")
-    with pytest.raises(InputError, match=r"maps: received a plane without roughness, plane\.npy"):
-        likeness(plane)

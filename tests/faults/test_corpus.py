@@ -71,15 +71,8 @@ CORPUS = {
         "a plane without roughness, map.npy",
         **{"map.npy": npy(np.ones((200, 200)))},
     ),
-    "a folder of 300 letters": (
-        ("run", "case.toml", "-o", "a" * 300), 2, "File name too long", {"case.toml": BALL + ROUGH}
-    ),
-    "a name that is no UTF-8": (("check", "\udcff.toml"), 2, r"\\xff\.toml: received no such file", {}),
     "a folder whose name is markup": (
         ("check", "a [/b]/case.toml"), 2, r"a \[/b\]/case\.toml: 1 error", {"a [/b]/case.toml": BALL}
-    ),
-    "a name that controls a terminal": case(
-        BALL + MAP.format("\\u001b[31m.npy"), r"surface\.file: received '\\x1b\[31m\.npy'"
     ),
     "a library that ends": (
         ("surface", "a.nc", "--height-unit", "um", "--pixel", "1 um"),
