@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 Outcome = dict[str, Any] | Failure
 Outcomes = Generator[tuple[Member, Outcome], None, None]
 
-ATTEMPTS = 3
-"""How often a member is given to an executor that loses it."""
 BEAT = 5.0
 """How often an executor is asked whether it lives, s."""
 
@@ -40,36 +38,28 @@ BEAT = 5.0
 def through(executor: futures.Executor, members: Sequence[Member]) -> Outcomes:
     """Compute members through any executor; yield each once, as they end, as `compute_member` returned it.
 
-    A member whose worker is lost goes to another one.
+    A cluster gives members whose worker is lost to another one itself; elsewhere they fail.
     """
-    lost: dict[Member, Exception] = dict.fromkeys(members, Exception())
-    heart = Heart(executor, len(members))
-    for _ in range(ATTEMPTS):
-        given: dict[futures.Future[Outcome], Member] = {}
-        try:
-            for member in lost:
-                given[_submitted(executor, member)] = member
-            lost = {}
-            for future in _ended(given, heart):
-                try:
-                    outcome = future.result()
-                except Exception as error:
-                    lost[given[future]] = error
-                    continue
+    heart, given = Heart(executor, len(members)), dict[futures.Future[Outcome], Member]()
+    try:
+        for member in members:
+            given[_submitted(executor, member)] = member
+        for future in _ended(given, heart):
+            try:
+                outcome = future.result()
+            except Exception as error:
+                while not heart.listen():  # a scheduler that is gone has lost them all
+                    time.sleep(BEAT)
+                outcome = Failure.of(error)
+            else:
                 heart.finished += 1
-                yield given[future], outcome
-        except RuntimeError as error:  # broken, or shut down
-            what = f"the executor takes no more members ({error})"
-            raise ComputationError(what, "the same study again: it goes on where it was") from error
-        finally:
-            for future in given:
-                future.cancel()
-        if not lost:
-            return
-        while not heart.listen():
-            time.sleep(BEAT)
-    for member, reason in lost.items():
-        yield member, Failure.of(reason)
+            yield given[future], outcome
+    except RuntimeError as error:  # broken, or shut down
+        what = f"the executor takes no more members ({error})"
+        raise ComputationError(what, "the same study again: it goes on where it was") from error
+    finally:
+        for future in given:
+            future.cancel()
 
 
 def _ended(given: Collection[futures.Future[Outcome]], heart: Heart) -> Iterator[futures.Future[Outcome]]:
