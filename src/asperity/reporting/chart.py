@@ -43,8 +43,6 @@ COLOURS = {
     "#e07f2d": "#ffb066",
     "#b58a00": "#f5e05f",
 }
-HATCHES = ("", "/", "\\", "x", ".", "-")
-"""Of bars beside each other, for those who do not see colours."""
 DASHES = ((), (6, 1.5), (6, 1.5, 1.5, 1.5), (3, 1.5), (1.5, 1.5), (9, 1.5, 1.5, 1.5, 1.5, 1.5))
 """Of lines of a sequence, for the same."""
 LAW_COLOURS, SEQUENCE = tuple(COLOURS)[3:-6], tuple(COLOURS)[-6:]
@@ -168,7 +166,6 @@ class Boxes:
     label: str = ""
     colour: str = INK
     opacity: float = 1.0
-    hatch: str = ""  # "/", "\\", "x", "." or "-", for those who do not see colours
     law: str = ""
     edge: str = ""  # colour of the outline
 

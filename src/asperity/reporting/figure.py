@@ -16,7 +16,7 @@ from asperity.arguments import shown
 from asperity.errors import InputError
 from asperity.files import atomic_write, write_bytes
 from asperity.reporting import data
-from asperity.reporting.chart import Chart, Numbers, Panel
+from asperity.reporting.chart import Chart, Numbers, Panel, envelope
 from asperity.reporting.headline import Answers
 from asperity.reporting.tables import ReportTable
 from asperity.schema import Entry
@@ -122,6 +122,27 @@ def field(entry: Entry, across: Entry, symbol: str) -> Columns:
         rows = zip(data.values(tree, across).tolist(), data.values(tree, entry).T, strict=True)
         for place, numbers in rows:
             yield Series(f"{symbol}(y={place:.9g} m)", entry.units, numbers)
+
+    return columns
+
+
+def starts(of: Of, count: int) -> Columns:
+    """Column of where stretches begin in which a long line is told by its `extremes`."""
+
+    def columns(tree: DataTree) -> Iterator[Series]:
+        for series in of(tree):
+            yield replace(series, values=series.values[envelope(series.values, count)[0]])
+
+    return columns
+
+
+def extremes(of: Of, count: int) -> Columns:
+    """Columns of the lowest and the highest number of lines in each of so many stretches."""
+
+    def columns(tree: DataTree) -> Iterator[Series]:
+        for series in of(tree):
+            for end, numbers in zip(("lowest", "highest"), envelope(series.values, count)[1:], strict=True):
+                yield Series(f"{series.name} {end}", series.units, numbers)
 
     return columns
 

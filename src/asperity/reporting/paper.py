@@ -18,24 +18,17 @@ from asperity.reporting import chart, data
 RC: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "asperity",
-    "font.family": "sans-serif",
     "font.size": 9,
     "axes.titlesize": 9.5,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
-    "axes.labelsize": 9,
     "axes.edgecolor": chart.MUTED,
     "axes.labelcolor": chart.INK,
-    "axes.titlecolor": chart.INK,
     "axes.facecolor": "none",
     "axes.linewidth": 0.7,
     "axes.grid": True,
     "axes.axisbelow": True,
-    "axes.unicode_minus": True,
-    "figure.facecolor": "white",
     "grid.color": chart.GRID,
-    "grid.linewidth": 0.6,
-    "hatch.linewidth": 0.8,
     "text.color": chart.INK,
     "text.parse_math": False,
     "xtick.color": chart.MUTED,
@@ -47,7 +40,6 @@ RC: dict[Any, Any] = {
     "legend.frameon": False,
     "legend.fontsize": 8.5,
     "lines.markersize": 4,
-    "path.simplify_threshold": 0.2,  # of a pixel
     "image.interpolation": "nearest",
 }
 UNDATED = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}
@@ -58,7 +50,6 @@ LETTER, ROW, HANDLE = 0.068, 13.0, 10
 """Width of a letter in inches, height of a row of a legend in points, letters that a handle takes."""
 OPPOSITE = 32.0
 """Points that an axis opposite takes above a panel."""
-HATCHES = {"/": "///", "\\": "\\\\\\", "x": "xxx", ".": "..", "-": "---"}
 Ends = tuple[float, float]
 
 
@@ -207,10 +198,8 @@ def _draw_boxes(axes: Axes, mark: chart.Boxes, x: Ends, y: Ends, look: dict[str,
     left, right = (np.clip(edge, min(x), max(x)) for edge in (mark.left, mark.right))
     low, high = (np.clip(edge, min(y), max(y)) for edge in (mark.low, mark.high))
     corners = np.stack([left, low, left, high, right, high, right, low], axis=-1).reshape(-1, 4, 2)
-    if mark.hatch:  # drawn in the colour of the outline
-        look["hatch"] = HATCHES[mark.hatch]
-    look |= {"edgecolors": mark.edge or ("white" if mark.hatch else "none")}
-    look |= {"linewidths": 0.8 if mark.edge else 0.0, "alpha": mark.opacity}
+    look |= {"edgecolors": mark.edge or "none", "linewidths": 0.8 if mark.edge else 0.0}
+    look["alpha"] = mark.opacity
     axes.add_collection(PolyCollection(list(corners), facecolors=mark.colour, **look), autolim=False)
 
 

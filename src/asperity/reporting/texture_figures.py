@@ -10,7 +10,7 @@ from xarray import DataTree
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Chart, Line, Mark, Numbers, Panel
 from asperity.reporting.data import length_unit
-from asperity.reporting.figure import Figure, Lines, Of, Series, field
+from asperity.reporting.figure import Figure, Lines, Of, extremes, field, starts
 from asperity.schema import contact, surface
 from asperity.spectra import nominal
 from asperity.surfaces.measured_lines import ThirdOctaves
@@ -145,18 +145,6 @@ def _sample_caption(tree: DataTree) -> str:
     )
 
 
-def _starts(tree: DataTree) -> Iterator[Series]:
-    distance = data.values(tree, surface.DISTANCE)
-    yield Series("x", surface.DISTANCE.units, distance[chart.envelope(distance, STRETCHES)[0]])
-
-
-def _extremes(tree: DataTree) -> Iterator[Series]:
-    """Lowest and highest point of the middle line of the path, in stretches of it."""
-    extremes = chart.envelope(data.values(tree, surface.LINE), STRETCHES)[1:]
-    for name, heights in zip(("lowest z", "highest z"), extremes, strict=True):
-        yield Series(name, surface.LINE.units, heights)
-
-
 def _path(tree: DataTree, _: Lines) -> Iterator[Panel]:
     """Strip of the path, and its middle line, every point; a path given as a line has the line alone."""
     if data.present(tree, surface.PATH_HEIGHTS):
@@ -212,8 +200,8 @@ TEXTURE = (
     Figure(
         "texture_path",
         "Texture of the path",
-        _starts,
-        (_extremes,),
+        starts(Of(surface.DISTANCE, "x"), STRETCHES),
+        (extremes(Of(surface.LINE, "z"), STRETCHES),),
         _path,
         _path_caption,
         (surface.LINE, surface.DISTANCE),

@@ -1,6 +1,6 @@
 """Figures of the contact force: in time, in lines and in one-third octaves, of one contact and of all."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -8,7 +8,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.figure import Figure, Lines, Of, Series, extremes, starts
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures import track
@@ -175,20 +175,6 @@ def _bars(tree: DataTree, series: Series, time: chart.Numbers, row: int) -> char
     return chart.Boxes(*ends, colour=data.law_entry(tree, series.law).colour, law=series.law)
 
 
-def _extremes(tree: DataTree) -> Iterable[Series]:
-    """Lowest and highest contact force of each law in each stretch of the run."""
-    for series in FORCES(tree):
-        for name, numbers in zip(
-            ("lowest", "highest"), chart.envelope(series.values, COLUMNS)[1:], strict=True
-        ):
-            yield Series(f"{series.name} {name}", series.units, numbers)
-
-
-def _starts(tree: DataTree) -> Iterable[Series]:
-    time = data.values(tree, rolling.TIME)
-    yield Series("time", rolling.TIME.units, time[chart.envelope(time, COLUMNS)[0]])
-
-
 def _whole_run(tree: DataTree, _: Lines) -> list[chart.Panel]:
     """Contact force of all laws over the whole run, every time step."""
     return _forces(tree, Lines(next(Of(rolling.TIME)(tree)), list(FORCES(tree))), width=0.9)
@@ -230,8 +216,8 @@ FORCE_PEAK = Figure(
 FORCE_ENVELOPE = Figure(
     "force_envelope",
     "Contact force, the whole run",
-    _starts,
-    (_extremes,),
+    starts(Of(rolling.TIME), COLUMNS),
+    (extremes(FORCES, COLUMNS),),
     _whole_run,
     _whole_caption,
     further=(rolling.CONTACT_FORCE, rolling.TIME),

@@ -10,7 +10,7 @@ from xarray import DataTree
 from asperity.reference.cnossos import CNOSSOS
 from asperity.reference.grounds import HARD
 from asperity.reporting import chart, data, headline, panels
-from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
@@ -40,18 +40,30 @@ def parts_of(tree: DataTree, entry: Entry) -> list[str]:
     return [] if found is None else [str(name) for name in found[entry.dims[1]].values]
 
 
+def _of_law(tree: DataTree, entry: Entry, law: str) -> dict[str, float]:
+    """Single numbers of a law by what radiates."""
+    return dict(zip(parts_of(tree, entry), data.of_law(tree, entry, law).tolist(), strict=True))
+
+
 def by_part(tree: DataTree, entry: Entry) -> dict[str, float]:
     """Single numbers of the main law by what radiates; what is not known is missing."""
-    if not (laws := data.laws(tree, entry)):
-        return {}
-    found = zip(parts_of(tree, entry), data.of_law(tree, entry, laws[0]).tolist(), strict=True)
-    return {name: level for name, level in found if np.isfinite(level)}
+    found = _of_law(tree, entry, laws[0]) if (laws := data.laws(tree, entry)) else {}
+    return {name: level for name, level in found.items() if np.isfinite(level)}
 
 
-def _part_columns(tree: DataTree, entry: Entry, levels: Numbers) -> dict[str, list[Cell]]:
-    """Columns of levels (law, part) by what radiates."""
-    parts = zip(parts_of(tree, entry), levels.T, strict=True)
-    return {part: number_cells(level, "{:.1f}") for part, level in parts}
+def _levels_table(
+    words: tuple[str, str, str],
+    rows: Mapping[str, Mapping[str, float]],
+    note: str,
+    more: Mapping[str, list[Cell]],
+) -> ReportTable:
+    """Levels in dB(A) by what radiates, a row each; name, title and first head in words, and more columns."""
+    name, title, head = words
+    parts = dict.fromkeys(part for levels in rows.values() for part in levels)
+    levels = {
+        part: number_cells((row.get(part, np.nan) for row in rows.values()), "{:.1f}") for part in parts
+    }
+    return table(name, title, {head: text_cells(rows), **levels, **more}, note)
 
 
 def _weighting(tree: DataTree) -> Iterator[Series]:
@@ -75,28 +87,28 @@ def _of_parts(
 
 def sound_power_table(tree: DataTree) -> ReportTable | None:
     """A-weighted sound power per law and source, and of all together its differences to the linear laws."""
-    laws, radiating = data.laws(tree, STANDARD_A), parts_of(tree, STANDARD_A)
+    laws, note = data.laws(tree, STANDARD_A), ""
     if not laws:
         return None
-    levels = np.array([data.of_law(tree, STANDARD_A, law) for law in laws])
-    rows, note = list(laws), ""
-    whole = radiating.index(WHOLE) if WHOLE in radiating else -1
+    rows = {law: _of_law(tree, STANDARD_A, law) for law in laws}
     standard = data.stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
     if standard is not None:
-        rows.append("CNOSSOS-EU")
-        levels = np.vstack([levels, standard.sel(source=radiating).values])
+        rows["CNOSSOS-EU"] = {part: float(standard.sel(source=part)) for part in parts_of(tree, STANDARD_A)}
         name = standard.attrs.get("contact_filter", "")
         note = f" Last row: the same roughness with the contact filter of CNOSSOS-EU itself ({name})."
-    columns = {"law": text_cells(rows), **_part_columns(tree, STANDARD_A, levels)}
-    for law in data.baselines_among(tree, laws):
-        over = levels[:, whole] - levels[laws.index(law), whole]
-        over[laws.index(law)] = np.nan
-        columns[f"over {law}"] = number_cells(over, data.signed)
+    totals = {law: levels[WHOLE] for law, levels in rows.items()}
+    over = {
+        f"over {base}": number_cells(
+            (np.nan if law == base else level - totals[base] for law, level in totals.items()), data.signed
+        )
+        for base in data.baselines_among(tree, laws)
+    }
     note = (
-        f"dB(A) re 1 pW, over the bands that were computed; differences of the {radiating[whole]}. Positive: "
-        f"linear contact underestimates.{note}"
+        f"dB(A) re 1 pW, over the bands that were computed; differences of the {WHOLE}. Positive: linear "
+        f"contact underestimates.{note}"
     )
-    return table("sound_power_table", "Sound power by CNOSSOS-EU, A-weighted", columns, note)
+    words = "sound_power_table", "Sound power by CNOSSOS-EU, A-weighted", "law"
+    return _levels_table(words, rows, note, over)
 
 
 # --- from the vibration itself
@@ -202,27 +214,22 @@ RADIATED = Figure(
 
 def radiated_table(tree: DataTree) -> ReportTable | None:
     """A-weighted sound power per law and radiator."""
-    laws = data.laws(tree, OWN_A)
+    laws, beside, sideways = (data.laws(tree, entry) for entry in (OWN_A, UNMEASURED_A, SIDE_A))
     if not laws:
         return None
-    levels = np.array([data.of_law(tree, OWN_A, law) for law in laws])
-    rows = list(laws)
-    if beside := data.laws(tree, UNMEASURED_A):
-        rows = [f"{law}, track as measured" for law in laws] + [f"{law}, all computed" for law in beside]
-        levels = np.vstack([levels, [data.of_law(tree, UNMEASURED_A, law) for law in beside]])
-    columns, over = {"law": text_cells(rows), **_part_columns(tree, OWN_A, levels)}, ""
-    if data.laws(tree, SIDE_A) == laws:
-        side = np.array([data.of_law(tree, SIDE_A, law) for law in laws])
-        more = ((0, len(rows) - len(laws)), (0, 0))
-        columns |= _part_columns(tree, SIDE_A, np.pad(side, more, constant_values=np.nan))
-        columns.pop(schema.WHEEL_VERTICAL, None)
-    own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
-    if set(BOTH) <= set(own) and "track" in standard:
-        both = data.signed(float(energy_sum([own[part] for part in BOTH])) - standard["track"])
-        over = f"Rail and sleepers together are {both} dB over the track of CNOSSOS-EU ({laws[0]}). "
+    measured = ", track as measured" if beside else ""
+    rows = {
+        f"{law}{measured}": _of_law(tree, OWN_A, law)
+        | (_of_law(tree, SIDE_A, law) if law in sideways else {})
+        for law in laws
+    }
+    rows |= {f"{law}, all computed": _of_law(tree, UNMEASURED_A, law) for law in beside}
+    for levels in rows.values():
+        levels.pop(schema.WHEEL_VERTICAL, None)
     told = " ".join(filter(None, [silence(tree), with_measured(tree), with_sideways(tree)]))
-    note = f"dB(A) re 1 pW, over the bands that were computed. {over}{told}"
-    return table("radiated_power_table", "Sound power from vibration, A-weighted", columns, note)
+    note = f"dB(A) re 1 pW, over the bands that were computed. {told}"
+    words = "radiated_power_table", "Sound power from vibration, A-weighted", "law"
+    return _levels_table(words, rows, note, {})
 
 
 # --- the pass-by: level over time beside the track, and its single numbers
@@ -345,7 +352,7 @@ def noise_answers(tree: DataTree) -> headline.Answers | None:
     if not own and not standard:
         return None
     side, whole = by_part(tree, SIDE_A), own
-    lead, *more = [*_by_vibration(tree, own, side), *_by_label(tree, standard)]
+    lead, more = _by_vibration(tree, own, side)
     held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
     plain = by_part(tree, UNMEASURED_A).get(WHOLE)
     beside = "" if plain is None else f"; track as measured, {plain:.1f} dB(A) if all is computed"
@@ -362,41 +369,30 @@ def noise_answers(tree: DataTree) -> headline.Answers | None:
         for how, of, note in models
         if WHOLE in of
     )
-    return headline.Answers(lead, " ".join(more), cards, (_sources_table(own | side, standard),))
+    return headline.Answers(lead, more, cards, (_sources_table(own | side, standard),))
 
 
-def _by_vibration(tree: DataTree, own: Mapping[str, float], side: Mapping[str, float]) -> list[str]:
-    """Say what radiates most by its own vibration, and in which bands."""
+def _by_vibration(tree: DataTree, own: Mapping[str, float], side: Mapping[str, float]) -> tuple[str, str]:
+    """Say what radiates most by its own vibration, and in which bands; then what is beside it."""
     parts = {name: level for name, level in own.items() if name != WHOLE}
     if not parts:
-        return []
+        return "", ""
     most = max(parts, key=lambda name: parts[name])
     verb, with_side = "decide" if most == "sleepers" else "decides", ""
     if schema.WITH_SIDEWAYS in side:
         told = [f"{n} {side[n]:.1f}" for n in (schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH) if n in side]
         with_side = f"With motion sideways it is {side[schema.WITH_SIDEWAYS]:.1f} dB(A): {'; '.join(told)}."
-    return [
+    lead = (
         f"By vibration the {most} {verb}: {parts[most]:.1f} of {own.get(WHOLE, parts[most]):.1f} dB(A) of "
-        f"sound power, half of it in the bands of {_bands(tree, OWN, most)}.",
-        *filter(None, [with_side, silence(tree)]),
-    ]
+        f"sound power, half of it in the bands of {_bands(tree, most)}."
+    )
+    return lead, " ".join(filter(None, [with_side, silence(tree)]))
 
 
-def _by_label(tree: DataTree, standard: Mapping[str, float]) -> list[str]:
-    """Say which of track and wheel radiates more by CNOSSOS-EU."""
-    if not {"track", "wheel"} <= set(standard):
-        return []
-    less, most = sorted(("track", "wheel"), key=lambda name: standard[name])
-    return [
-        f"By CNOSSOS-EU the {most} decides: {standard[most]:.1f} dB(A), beside {standard[less]:.1f} dB(A) of "
-        f"the {less}, half of it in the bands of {_bands(tree, STANDARD, most)}."
-    ]
-
-
-def _bands(tree: DataTree, entry: Entry, part: str) -> str:
+def _bands(tree: DataTree, part: str) -> str:
     """Bands that hold half the A-weighted sound power of what radiates, by the main law."""
-    band = data.values(tree, BAND if entry is OWN else schema.NOISE_BAND)
-    level = data.of_law(tree, entry, data.laws(tree, entry)[0])[parts_of(tree, entry).index(part)]
+    band = data.values(tree, BAND)
+    level = data.of_law(tree, OWN, data.laws(tree, OWN)[0])[parts_of(tree, OWN).index(part)]
     return headline.deciding_bands(band, level + a_weighting(band))
 
 
@@ -407,15 +403,16 @@ def _sources_table(own: Mapping[str, float], standard: Mapping[str, float]) -> R
     by_label = {TRACK: standard["track"]} if "track" in standard else {}
     models = {"by vibration, own model": {**own, **track}, "by CNOSSOS-EU": {**standard, **by_label}}
     shown = {name: levels for name, levels in models.items() if levels}
-    columns = {"dB(A) re 1 pW": text_cells(shown)}
     heads = {name: name for name in (*BOTH, TRACK, "wheel")} | {WHOLE: "sum"}
     heads |= {name: name for name in (schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH) if name in own}
     heads |= {schema.WITH_SIDEWAYS: "sum with sideways"} if schema.WITH_SIDEWAYS in own else {}
-    for part, head in heads.items():
-        look = "number total" if part in (WHOLE, schema.WITH_SIDEWAYS) else "number"
-        columns[head] = number_cells((levels.get(part, np.nan) for levels in shown.values()), "{:.1f}", look)
+    rows = {
+        name: {head: levels.get(part, np.nan) for part, head in heads.items()}
+        for name, levels in shown.items()
+    }
     note = "" if "wheel" in own or not own else "–: not known. The first sum is without the wheel."
-    return table("sound_power_sources", "Sound power by source", columns, note)
+    words = "sound_power_sources", "Sound power by source", "dB(A) re 1 pW"
+    return _levels_table(words, rows, note, {})
 
 
 _HEADLINES = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_MAXIMUM_LEVEL}
