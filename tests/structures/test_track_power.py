@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from asperity import Track
-from asperity.scenes import schema
-from asperity.scenes.track import power_shares
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track_power import dissipated_power
 from refusals import refusals
@@ -42,12 +40,6 @@ def test_what_goes_in_is_dissipated(name):
         np.testing.assert_allclose(sum(parts.values()), fed, rtol=1e-9)
         assert all((power >= 0.0).all() for power in parts.values())
     assert set(parts) == {"rail", *track.springs} | ({"rail_damper"} if track.damper else set())
-
-
-def test_shares_add_up():
-    laid_out = power_shares(TRACKS["dampers"], FREQUENCY)
-    assert laid_out[schema.POWER_PART] == ["rail", "pad", "ballast", "rail_damper"]
-    np.testing.assert_allclose(laid_out[schema.POWER_SHARE].sum(axis=0), 1.0)
 
 
 def test_what_dissipates_nothing_gets_nothing():

@@ -225,7 +225,6 @@ def spectra_group(computed: Computed) -> Values:
         spectra.CONTACT: 1 + np.arange(forces.shape[1]),
         spectra.FORCE_PSD: density[..., shown],
         spectra.FORCE_LEVEL: level,
-        spectra.CONTACT_FORCE_PSD: computed.force_psd[..., shown],
         spectra.CONTACT_FORCE_LEVEL: computed.force_levels,
     }
     laid_out |= sureness(computed) | level_differences(list(computed.runs), level) | _bodies(computed)

@@ -93,10 +93,6 @@ DECAY_RATE_EN15461 = _track("decay_rate_en15461(frequency)", "dB/m", "decay rate
 _LIMIT, _NONE = "lower limit, ISO 3095:2013", "the standard sets no limit at these frequencies"
 DECAY_RATE_LIMIT = _track("decay_rate_limit(frequency)", "dB/m", _LIMIT, missing=_NONE)
 
-POWER_PART = _track("power_part", "1", "part of the track that dissipates")
-_SHARE = "share that the part dissipates of the power of a harmonic force on the rail at mid-span"
-POWER_SHARE = _track("power_share(power_part, frequency)", "1", _SHARE)
-
 TRACK_BAND = _losses("band", "Hz", _BAND)
 _FORCE = "level of the linear contact force in time over that of constant loss factors"
 LOSS_FACTOR_FORCE_ERROR = _losses("loss_factor_force_error(band)", "dB", _FORCE)

@@ -14,7 +14,6 @@ from asperity.reference.tracks import iso_3095_decay_rate
 from asperity.scenarios.scene import BodyAtContact, Scene, mean_square_transfer
 from asperity.scenes import compute, noise, schema, validity
 from asperity.schema import Values
-from asperity.structures import track_power
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.structures.wheel import Wheel
@@ -174,7 +173,6 @@ def track_group(computed: compute.Computed, losses: "LossFactorError") -> Values
         schema.STATIC_DEFLECTION: track.static_deflection(load, half),
         schema.STATIC_DEFLECTION_IN_TIME: in_time.static_deflection(load, half),
         **relaxed(losses),
-        **power_shares(track, frequency),
         **_bays(track, frequency),
     }
 
@@ -183,16 +181,6 @@ def facts(track: Track) -> Values:
     """What a track says of itself, but for frequencies that it does not have."""
     values = {fact: getattr(track, fact.name) for fact in OF_TRACK}
     return {fact: value for fact, value in values.items() if isinstance(value, str) or np.isfinite(value)}
-
-
-def power_shares(track: Track, frequency: Array) -> Values:
-    """Lay out what share each part of a track dissipates of the power of a force at mid-span.
-
-    Of bays that differ, the nominal one.
-    """
-    parts = track_power.dissipated_power(track.regular, frequency, 0.5 * track.sleeper_spacing)
-    powers = np.array(list(parts.values()))
-    return {schema.POWER_PART: list(parts), schema.POWER_SHARE: powers / powers.sum(axis=0)}
 
 
 def _bays(track: Track, frequency: Array) -> Values:

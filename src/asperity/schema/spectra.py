@@ -34,8 +34,6 @@ FORCE_PSD = _entry(
 FORCE_LEVEL = _level(
     "force_level(law, band)", "dB re 1 N", "contact force level, energy mean of the contacts"
 )
-_PSD = "PSD of the force of each contact, one-sided"
-CONTACT_FORCE_PSD = _entry("contact_force_psd(law, contact, frequency)", "N2/Hz", _PSD)
 _LEVEL = "level of the force of each contact"
 CONTACT_FORCE_LEVEL = _level("contact_force_level(law, contact, band)", "dB re 1 N", _LEVEL)
 

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, MUTED, VERMILLION, Axis, Mark, Note, Numbers, Panel, Rules
-from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.figure import Figure, Lines, Of
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
 from asperity.schema import rolling
@@ -165,42 +165,6 @@ def _decay_caption(tree: DataTree) -> str:
     )
 
 
-_LAYERS = (
-    (chart.BLUE, ()),
-    (VERMILLION, (6, 1.5)),
-    (chart.GREEN, (3, 1.5)),
-    (MUTED, (6, 1.5, 1.5, 1.5)),
-    (INK, (1.5, 1.5)),
-    (chart.BLUE, (1.5, 1.5)),
-)
-"""Looks of parts of the track."""
-
-
-# --- where the power goes
-
-
-def _powers(tree: DataTree) -> list[Series]:
-    """Shares of the parts, from the rail down."""
-    every = list(Of(schema.POWER_SHARE, "{power_part}", "{power_part}")(tree))
-    looks = zip(every, _LAYERS, strict=False)
-    return [replace(each, label=each.label.replace("_", " "), look=look) for each, look in looks]
-
-
-def _power(tree: DataTree, lines: Lines) -> Iterator[Panel]:
-    """Shares of the power against frequency, in percent."""
-    along, ends = _along(lines)
-    shares = [replace(s, values=100.0 * s.values) for s in lines.lines]
-    drawn = panels.styled(tree, lines.at, shares, width=1.5)
-    share = Axis("share of the power / %", 0.0, 100.0)
-    yield Panel(along, share, (*natural_rules(tree, *ends), *drawn), height=3.3)
-
-
-_POWER_CAPTION = (
-    "Of the power that a harmonic force at mid-span feeds into the track: where vibration of which frequency "
-    "is turned into heat. What pads or rail dampers dissipate does not run along the rail and sound."
-)
-
-
 TRACK = (
     Figure(
         "receptance",
@@ -225,15 +189,6 @@ TRACK = (
         _decay,
         _decay_caption,
         any_of=(schema.DECAY_RATE, schema.DECAY_RATE_EN15461),
-    ),
-    Figure(
-        "power_shares",
-        "Where the power goes",
-        Of(schema.TRACK_FREQUENCY),
-        (_powers,),
-        _power,
-        _POWER_CAPTION,
-        further=(schema.POWER_SHARE,),
     ),
 )
 
