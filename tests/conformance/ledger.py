@@ -25,7 +25,7 @@ PAGE = Path(__file__).parents[2] / "CONFORMANCE.md"
 ROOMS = {
     "contacts": "Contact",
     "frictions": "Friction",
-    "reductions": "Contact filters and rolling",
+    "reductions": "Contact filters",
     "bodies": "Beams, bearings and wheels",
     "together": "Several contacts at once",
     "tracks": "Track",

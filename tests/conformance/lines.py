@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.spectra import a_weighting, band_levels, psd, third_octave_bands
+from asperity.spectra import a_weighting, third_octave_bands
 
 A_WEIGHTING = {
     10: -70.4, 20: -50.5, 31.5: -39.4, 63: -26.2, 125: -16.1, 250: -8.6, 500: -3.2, 1000: 0.0, 2000: 1.2,
@@ -38,15 +38,3 @@ def bands():
     nearest = lengths[np.argmin(np.abs(lengths - 0.05))]
     expected, source = 1 / mp.mpf(10) ** mp.mpf("1.3"), "base 10 in wavenumber, 10^(13/10) 1/m"
     yield row("wavelength band called 50 mm: centre", expected, nearest, "mm", source=source)
-
-
-def densities():
-    step = 1e-4
-    sine = 3.0 * np.sin(2 * np.pi * 1000.0 * step * np.arange(8000))
-    frequency, density = psd(sine, step, segment=2000)
-    total = density.sum() * (frequency[1] - frequency[0])
-    yield Check("PSD of a sine of 3 N: its integral", 4.5, total, "N²", source="A²/2", tolerance=1e-9)
-    band, level = band_levels(frequency, density)
-    expected, found = 10 * mp.log10(4.5), level[np.argmin(np.abs(band - 1000.0))]
-    what, source = "level of that sine in its one-third octave", "10 lg 4.5"
-    yield Check(what, expected, found, "dB", source=source, tolerance=1e-4, absolute=True)

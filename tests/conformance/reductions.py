@@ -1,20 +1,10 @@
 """Checks of contact filters, laws and rolling."""
 
-from dataclasses import replace
-
 import mpmath as mp
 import numpy as np
 from ledger import Check
-from scipy.integrate import cumulative_trapezoid
 
 from asperity import HalfSpace, Hertz
-from asperity.laws import Linear
-from asperity.reference.materials import material
-from asperity.structures.beam import Beam
-from asperity.structures.body import Body
-from one_contact import roll_ball
-
-STEEL = material("steel")
 
 
 def filter_of_the_half_space():
@@ -37,32 +27,3 @@ def filter_of_the_half_space():
         what = f"ball over a sine of ka = {q:g}: force over stiffness times height"
         source = "transform of the flat-punch pressure, sin q/q; tolerance: 16 cells in a"
         yield Check(what, mp.sinc(q), found, source=source, tolerance=tolerance, absolute=True)
-
-
-def moving_force():
-    beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, loss_factor=0.0, highest_frequency=5e3)
-    load = 5.0
-    critical = np.pi / beam.length * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
-    static = load * beam.length**3 / (48 * beam.bending_stiffness)
-    for alpha in (0.1, 0.25, 0.5, 0.75):
-        speed = alpha * critical
-        run = roll_ball(
-            replace(beam), Body.rigid(0.5, load), Linear(load, stiffness=1e-3), speed=speed, start=0.0,
-            duration=1 / speed, time_step=2e-5, sensors=[0.5],
-        )  # fmt: skip
-        velocity = cumulative_trapezoid(run.acceleration[0], run.time, initial=0.0)
-        deflection = cumulative_trapezoid(velocity, run.time, initial=0.0)
-        source = "Frýba's series, Eq. 1.41; tolerance: accelerations integrated twice"
-        what = f"force at {alpha:g} of the critical speed: largest mid-span deflection over the static one"
-        found = deflection.max() / static
-        yield Check(what, fryba_maximum(alpha), found, source=source, tolerance=1e-3)
-
-
-def fryba_maximum(alpha):
-    """Largest mid-span deflection over FL³/48EI under a constant force that crosses an undamped beam."""
-    s = np.linspace(0.0, 1.0, 20001)  # vt/L
-    total = np.zeros_like(s)
-    for n in range(1, 60, 2):
-        bracket = np.sin(n * np.pi * s) - alpha / n * np.sin(n**2 * np.pi * s / alpha)
-        total += np.sin(n * np.pi / 2) * bracket / (n**2 * (n**2 - alpha**2))
-    return float(96 / np.pi**4 * total.max())

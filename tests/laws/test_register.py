@@ -1,6 +1,5 @@
 """A law of the user's own: registered, rolled, in result, report and CSV; or refused."""
 
-import csv
 import json
 import re
 from dataclasses import dataclass, replace
@@ -79,7 +78,7 @@ def case(*names):
     return as_case(CASES["ball-on-beam"] | {"laws": names})
 
 
-def test_a_law_of_the_test_runs_through_result_report_and_csv(registered, tmp_path):
+def test_a_law_of_the_test_runs_through_result_and_report(registered, tmp_path):
     registered(TWIN)
     registered(SPRING)
     names = ["twin", "twin-bare", "spring", "shifted", "shifted-unfiltered", "linear"]
@@ -100,9 +99,6 @@ def test_a_law_of_the_test_runs_through_result_report_and_csv(registered, tmp_pa
     assert page.index("<strong>twin</strong>") < page.index(told)
     (variable,) = re.findall(r"(--c\d+):#123456;", page)  # for light screens …
     assert page.count(f"{variable}:") >= 2  # … and another value for dark ones
-    with open(tmp_path / "force_bands.csv", encoding="utf-8", newline="") as file:
-        rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    assert {f"{name} [dB re 1 N]" for name in names} <= {cell for row in rows[:3] for cell in row}
 
 
 def test_a_case_file_knows_it_while_it_is_registered(registered):
@@ -138,35 +134,28 @@ def added(**changes):
     ("call", "message"),
     [
         (added(name="shifted"), "name of a law: received 'shifted'; allowed: a name that no other law has"),
-        (added(name="linear-filtered"), "received 'linear-filtered'; allowed: a name that no other"),
         (added(name="linear", variants=()), "a name that no other law has"),
         (added(name="linear-", variants=()), "allowed: small letters and digits"),
         (added(role=Role.REFERENCE), 'role of law twin: received "reference", which the law direct has'),
         (lambda: laws.register(laws.Shifted), "allowed: an asperity.laws.LawSpec"),
         (lambda: laws.unregister("shifted"), "'shifted'; allowed: a law that was registered (none is)"),
-        (lambda: laws.unregister("linear-filtered"), "allowed: a law that was registered (none is)"),
         (lambda: laws.spec_of("shiftd"), 'allowed: "areal", "shifted"'),
         (lambda: laws.spec_of("shiftd"), 'Did you mean "shifted"?'),
         (lambda: laws.needs_of(["areal", 3]), "law: received 3; allowed:"),
         (changed(name="My law"), "name of a law: received 'My law'; allowed: small letters and digits"),
         (changed(name=3), "name of a law: received 3"),
-        (changed(name="twin\n"), "name of a law: received"),
         (changed(meaning="no sentence"), "meaning of law twin: received 'no sentence'; allowed: one line"),
-        (changed(meaning="Two\nlines."), "meaning of law twin"),
         (changed(build="Shifted"), "build of law twin: received 'Shifted'; allowed: a function of the mat"),
         (changed(needs={"patience"}), "needs of law twin: received {'patience'}; allowed: a set of \"sam"),
-        (changed(needs=None), "needs of law twin: received None"),
         (changed(normalise="none"), "normalise of law twin: received 'none'; allowed: \"tangent\" or"),
         (changed(look="blue"), "look of law twin: received 'blue'"),
         (changed(role="king"), "role of law twin: received 'king'; allowed: None"),
         (changed(variants=(3,)), "variants of law twin"),
         (changed(variants=(Variant("Not So", "So.", set()),)), "name of a law: received 'twin-Not So'"),
-        (changed(variants=(Variant("so", "So.", {"rest"}),)), "needs of law twin-so"),
         (changed(parameters={"one": 1.0}), "parameters of law twin"),
         (lambda: Look(colour="blue"), "colour of a law: received 'blue'; allowed: six digits and letters"),
         (lambda: Look(marker="oo"), "marker of a law: received 'oo'"),
         (lambda: Look(dashes="--"), "dashes of a law: received '--'"),
-        (lambda: Look(dashes=(0, ())), "dashes of a law"),
         (lambda: Look(dashes=(0, (1, -1))), "dashes of a law"),
     ],
 )

@@ -9,7 +9,6 @@ from asperity import HalfSpace, Hertz, Material
 from asperity.contact.creep import kalker_coefficients
 from asperity.contact.hertz import stick_stiffness
 from asperity.errors import OutOfRangeWarning, TruncatedContactWarning
-from asperity.reduction import traction
 from asperity.reduction.traction import traction_states
 from asperity.surfaces.synthesis import self_affine
 from refusals import refusals
@@ -107,15 +106,6 @@ def test_under_load_the_rough_contact_becomes_the_smooth_one(ensemble):
     assert (found.change["real area"][0] < 0.9).all()
     rough_creep, smooth_creep = found.creep[:, :, 1, 0]
     assert found.change["longitudinal creep"][0][1] == pytest.approx(np.mean(rough_creep / smooth_creep))
-
-
-def test_no_friction_that_nothing_reaches_matters(ensemble, monkeypatch):
-    space, gap, samples, found = ensemble
-    monkeypatch.setattr(traction, "UNLIMITED", 2e9)
-    monkeypatch.setattr(traction, "MOTION", 3e-12)
-    again = traction_states(space, like(0.3), gap, samples[:1], [0.5e-6])
-    assert again.tangential[:, 0, 0] == pytest.approx(found.tangential[:, 0, 1], abs=300.0)  # of 1e7 N/m
-    assert again.creep[:, 0, 0] == pytest.approx(found.creep[:, 0, 1], rel=1e-6)
 
 
 def test_what_is_left_out_is_told():

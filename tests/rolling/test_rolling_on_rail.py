@@ -84,17 +84,6 @@ def test_two_wheels_far_apart_are_two_single_ones(kernel, monkeypatch):
     assert (difference.max(axis=1) > 0.05 * LOAD).all()
 
 
-def test_two_loads_deflect_the_rail_as_its_receptances_superpose(slow):
-    bodies, laws = [RIGID, Body.rigid(MASS, 40e3)], [HertzLaw(9.4e10)] * 2
-    found = roll_bodies(slow, bodies, laws, duration=2e-3, **SLOW)
-    places, track = (0.1, 2.6), slow.kernel.track
-    static = np.array([[track.receptance(0.2, x, x0).real for x0 in places] for x in places])
-    assert static[0, 1] < 0.0  # it rises there
-    assert_allclose(found.over_displacement[:, 0], static @ [LOAD, 40e3], rtol=2e-3)
-    # and stay so, at rest
-    assert_allclose(found.contact_force[:, -1], [LOAD, 40e3], rtol=1e-3)
-
-
 def test_a_pulse_under_one_wheel_shakes_both_as_receptances_say(slow):
     """F = −(A_wheel + A_contact + A_rail)⁻¹ h with the rail's point and transfer receptances.
 

@@ -139,38 +139,6 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
     assert_allclose(both[0], both[1], rtol=1e-3)
 
 
-def test_waves_of_a_ball_meet_those_of_a_raceway_as_if_solved_together():
-    """Beside the table, against the contact with both surfaces at once on another grid, in two turns.
-
-    The error is of second order: 2.5 % of the force for waves of a tenth of the approach, 0.21 mm long.
-    """
-    smooth, of_ball, of_raceway = raceway_on(CONTACT, LOAD, 1.0 * MM), 120, 40  # waves
-    circle, rows, around = smooth.circumference, len(smooth.heights), 7.94 * MM * np.pi
-    line = 60 * NM * np.cos(2 * np.pi * of_raceway * np.arange(rows) / rows)
-    law = laws_on(Raceway(smooth.heights + line[:, None], smooth.spacing), "table")["table"]
-    off = []
-    for size in (200 * NM, 100 * NM):
-        texture = AroundTexture(waves=(of_ball,), amplitudes=(size,))
-        ball, more = raceway_on(CONTACT, LOAD, 3.97 * MM, texture), []
-        felt, phase = ball_heights(CONTACT, ball, LOAD), np.angle(np.fft.rfft(ball.heights[:, 0])[of_ball])
-        for place, turn in ((0.1, 0.0), (0.47, 0.0), (0.47, 0.31), (0.83, 0.31)):
-            x0, spot = place * circle, place * circle + turn * around
-
-            def both(x, y, size=size, x0=x0, spot=spot, phase=phase):
-                wave = size * np.cos(2 * np.pi * of_ball * (x + spot) / around + phase)
-                return 60 * NM * np.cos(2 * np.pi * of_raceway * (x + x0) / circle) + wave
-
-            height = np.interp(spot, np.arange(len(felt)) * around / len(felt), felt, period=around)
-            found = force(law, [x0] * 2, APPROACH + np.array([height, 0.0])) / solved(
-                both, APPROACH, (12, 24)
-            )
-            more.append(found - 1.0)
-        off.append(np.abs(more).max(axis=0))
-    assert off[0][0] < 0.025
-    assert off[1][0] < 0.008
-    assert off[0][1] > 0.07  # without the ball
-
-
 def test_unknown_law_is_refused():
     with pytest.raises(
         InputError, match="law of a raceway: received 'printed'; allowed: one of table, areal"

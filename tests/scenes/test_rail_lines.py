@@ -94,12 +94,6 @@ class TestWheel:
         with pytest.warns(ShortRecordWarning, match="1 of 3 lines of the wheel"):
             laid(tmp_path, lines, wheel=LINES + APART)
 
-    def test_lines_measured_to_and_fro_are_brought_into_register(self, tmp_path):
-        same = turn(2890)
-        found = laid(tmp_path, [same, same[::-1], np.roll(same, 7)], wheel=LINES + APART)
-        assert "2 brought into register (1 turned round)" in found.origin
-        np.testing.assert_allclose(np.ptp(all_of(found.path)[:, 5:-5], axis=1), 0.0, atol=1e-7)
-
 
 @either
 def test_flat_of_a_measured_wheel_is_found(tmp_path, runs, measured):

@@ -143,7 +143,6 @@ def test_a_vertical_force_in_the_middle_does_not_move_the_rail_sideways():
 
 test_bad_questions_are_refused = refusals(
     (lambda: LateralRail(bending_stiffness=0.0), "bending_stiffness of the lateral rail: received 0"),
-    (lambda: LateralRail(torsional_stiffness=math.nan), "torsional_stiffness of the lateral rail"),
     (lambda: LateralRail(rotary_inertia=-1.0), "rotary_inertia of the lateral rail: received -1"),
     (lambda: LateralTrack(UIC60, pad_stiffness=0.0), r"lateral pad stiffness \(N/m\): received 0"),
     (lambda: LateralTrack(UIC60, foot_width=-0.1), "width of the rail's foot"),

@@ -231,7 +231,6 @@ USUAL = {Beam: BAR, SupportedBeam: BAR, ModalStructure: TABLE, Support: {}}
 test_what_is_no_structure_is_refused = refusals(
     (Beam, {"length": 0.0}, "beam length"),
     (Beam, {"bending_stiffness": np.nan}, "bending stiffness"),
-    (Beam, {"mass_per_length": -1.0}, "mass per length"),
     (Beam, {"highest_frequency": 0.0}, "highest frequency"),
     (Beam, {"highest_frequency": 1.0}, "above the first natural frequency"),
     (Beam, {"suspension_frequency": 0.0}, "suspension frequency"),
@@ -242,7 +241,6 @@ test_what_is_no_structure_is_refused = refusals(
     (SupportedBeam, {"supports": ENDS["clamped"], "highest_frequency": 1.0}, "above the first natural"),
     (SupportedBeam, {"highest_frequency": 1e10}, "knots of splines; allowed: 1500 knots.*fewer supports"),
     (Support, {"position": -0.1}, r"position of a support \(m\): received -0.1; allowed: 0 and more"),
-    (Support, {"position": 0.0, "stiffness": -1.0}, r"stiffness of a support \(N/m\): received -1.0"),
     (Support, {"position": 0.0, "stiffness": 0.0}, "allowed: a support that holds something"),
     (Support, {"position": 0.0, "loss_factor": 2.0}, "loss factor of a support: received 2.0"),
     (ModalStructure, {"positions": X[::-1]}, "numbers that do not rise; allowed: two or more rising"),
@@ -266,7 +264,6 @@ TABLED = ModalStructure(**TABLE)
 
 test_bad_questions_are_refused = refusals(
     (lambda: Beam.rectangular(1.0, -0.05, 0.01, STEEL), "beam width"),
-    (lambda: Beam.rectangular(1.0, 0.05, np.inf, STEEL), "beam height"),
     (lambda: beam().shapes([0.5, 1.1]), "positions on the beam"),
     (lambda: beam().shapes_along(0.9, 1e-3, 300), "positions on the beam"),
     (lambda: supported(ENDS["clamped"]).shapes(1.2), "received 1.2 to 1.2; allowed: 0 to 1"),

@@ -143,27 +143,6 @@ def test_preloads_are_interpolated_and_held_beyond():
     assert stiffness_at_preload(np.vstack([table, third]), 93e3).real[1] == pytest.approx(360e6)
 
 
-def maxwell(omega):
-    """A pad that is causal: a spring and two of the elements that the fit has, of 1000 MN/m at most."""
-    elements = [1e8 * 1j * omega / (1j * omega + 2.0 * np.pi * f) for f in (100.0, 1000.0)]
-    return 2e8 + sum(elements)
-
-
-def test_a_causal_table_is_met_in_time():
-    """What is left is the table's interpolation, and its ends."""
-    frequency = np.geomspace(5.0, 8e3, 60)
-    measured = maxwell(2.0 * np.pi * frequency)
-    parts = (tuple(each.tolist()) for each in (frequency, measured.real, measured.imag))
-    track = Track.named("nordborg", pad_table=StiffnessTable(*parts), rail_loss_factor=0.0)
-    assert not track.is_causal
-    causal = causal_track(track)
-    assert causal.is_causal
-    assert causal.nominal == track
-    at = 2.0 * np.pi * np.geomspace(8.0, 5e3, 40)
-    np.testing.assert_allclose(causal.springs["pad"].stiffness(at), maxwell(at), rtol=0.02)
-    assert causal.springs["pad"].static == pytest.approx(2e8, rel=0.02)
-
-
 def test_every_layer_relaxes_in_time():
     """Passive, and within 0.6 dB of the force in every band, as check says of loss factors in general."""
     soft = {"under_sleeper_pad_stiffness": 1.5e8, "under_sleeper_pad_loss_factor": 0.2}
