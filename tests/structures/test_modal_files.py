@@ -216,12 +216,11 @@ def universal(tmp_path):
     ("make", "sets", "options"),
     [
         (mode, [nodes(), UNITS], {}),
-        (mode, [nodes()], {"length_unit": "mm", "force_unit": "N"}),
         (lambda i: mode(i, modal_damp_vis=0.0, modal_damp_his=0.02), [nodes(), UNITS], {}),
         (lambda i: mode(i, modal_damp_vis=0.0), [nodes(), UNITS], {"damping": 0.01}),
         (complex_mode, [nodes(), UNITS], {}),
     ],
-    ids=["normal", "without units", "hysteretic, twice the ratio", "damping given", "complex, in phase"],
+    ids=["normal", "hysteretic, twice the ratio", "damping given", "complex, in phase"],
 )
 def test_modes_of_a_universal_file(universal, make, sets, options):
     """Numbers of a dataset 55 have six digits; 200 Hz are 2 % from a resonance."""
@@ -233,7 +232,7 @@ test_universal_files_that_do_not_say_enough = refusals(
     ([nodes(), UNITS, mode()], {"along": None}, r"along of .*received None; allowed: one of x"),
     ([nodes(), UNITS, mode()], {"nodes": None}, "42 nodes at 41 places along y.*Choose those under"),
     ([nodes(), UNITS, mode()], {"nodes": [1, 99]}, "node 99, which has no place or no shape"),
-    ([nodes(), mode()], {}, "no unit of length.*Give length_unit"),
+    ([nodes(), mode()], {}, "no unit of length.*dataset 164.*Export it again"),
     ([UNITS, mode()], {}, r"datasets 164, 55; allowed: modes in datasets 55 and nodes"),
     ([nodes(), UNITS, mode(modal_m=0.0)], {}, "a modal mass of 0 of the mode at"),
     ([nodes(), UNITS, mode(spec_data_type=12)], {}, "a mode as data of type 12"),

@@ -37,7 +37,6 @@ OF_SEVERAL = (
     "type",
     "positions",
     "groove_radius",
-    "groove_width",
     "raceway_radius",
     "raceway",
     "masses",
@@ -187,14 +186,6 @@ class Rolling(Ringing, FlatOnTread):
         "radius of the groove that it rolls in, across the path",
         "what is rolled over is flat; of a track, the head of the rail",
         "10 um to 100 m: grooves lie between",
-    )
-    groove_width: float | None = optional(
-        LENGTH,
-        "4 mm",
-        "width of the groove between its edges",
-        "wider than the contact",
-        "10 um to 100 m: grooves lie between",
-        goes_with="groove_radius",
     )
     raceway_radius: float | None = optional(
         LENGTH,

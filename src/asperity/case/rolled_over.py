@@ -21,7 +21,6 @@ from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import (
     Choice,
     File,
-    LengthUnit,
     ListOf,
     MaterialOrName,
     Number,
@@ -337,12 +336,6 @@ class StructureKeys(RolledOver):
     )
     along: str | None = of_file(_AXIS, "x", f"direction of the path in {_UFF}", "the file is none")
     force: str | None = of_file(_AXIS, "z", f"direction of the contact force in {_UFF}", "the file is none")
-    length_unit: str | None = of_file(
-        LengthUnit(), "mm", f"unit of length of {_UFF} that states none", "from the file"
-    )
-    force_unit: str | None = of_file(
-        Choice(("N", "kN", "mN", "lbf")), "N", f"unit of force of {_UFF} that states none", "from the file"
-    )
     damping_ratio: float | None = of_file(
         Number(at_least=0, at_most=0.99),
         0.01,
@@ -444,8 +437,6 @@ class StructureKeys(RolledOver):
                 modes,
                 along=self.along,
                 force=self.force,
-                length_unit=self.length_unit,
-                force_unit=self.force_unit,
                 damping=self.damping_ratio,
                 nodes=self.nodes,
             )

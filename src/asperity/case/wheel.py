@@ -35,7 +35,7 @@ _DIMENSIONS = {
     name: replace(each, goes_with="section")
     for name, each in keys_of(WheelSection, otherwise="that of the named section").items()
 }
-_OF_DRAWN = ("modal_damping", "added_damping", "added_damping_from")
+_OF_DRAWN = ("modal_damping", "added_damping")
 
 
 class Ringing(form.Section, parameters=_DIMENSIONS):
@@ -75,13 +75,7 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
     added_damping: float = key(
         Number(at_least=0, at_most=0.9),
         0.0,
-        "damping ratio that wheel dampers or rings add to its modes",
-        goes_with="section",
-    )
-    added_damping_from: int = key(
-        Number(at_least=0, at_most=20, whole=True),
-        2,
-        "least number of nodal diameters of the modes that they damp",
+        "damping ratio that wheel dampers or rings add to its modes with two nodal diameters or more",
         goes_with="section",
     )
 
@@ -131,7 +125,7 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
             self.material,
             min(BEYOND * highest_frequency, HIGHEST),
         )
-        return found.damped(self.modal_damping, self.added_damping, self.added_damping_from)
+        return found.damped(self.modal_damping, self.added_damping)
 
     def turning_modes(self, highest_frequency: float, speed: float) -> WheelModes | None:
         """The same in the frame of a contact that moves along at a speed, m/s."""

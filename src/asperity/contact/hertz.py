@@ -281,7 +281,6 @@ def check_half_space(
     *,
     groove_radius: float = math.inf,
     raceway_radius: float = math.inf,
-    groove_width: float | None = None,
     cause: str = "the load",
 ) -> None:
     """Refuse a contact that is none on a half-space, and warn of one that is nearly none.
@@ -292,16 +291,14 @@ def check_half_space(
         Of the contact along and across the path, m.
     radius, groove_radius, raceway_radius : float
         As in `in_groove`, m.
-    groove_width : float, optional
-        Width of the groove between its edges, m.
     cause : str
         What makes the contact so large, for messages.
 
     Raises
     ------
     InputError
-        If a semi-axis is above a third of the radius of a convex body, fills more than 0.6 rad of a groove
-        to either side, or reaches over its edge.
+        If a semi-axis is above a third of the radius of a convex body, or fills more than 0.6 rad of a
+        groove to either side.
 
     Warns
     -----
@@ -327,11 +324,6 @@ def check_half_space(
             "Take the measured radius."
         )
     angle = across / groove_radius
-    if groove_width is not None:
-        carries = groove_radius * math.asin(min(0.5 * groove_width / groove_radius, 1.0)) >= across
-        received = f"{groove_width * 1e3:.4g} mm, and a contact of {2e3 * across:.4g} mm under {cause}"
-        allowed, remedy = "a groove wider than the contact", "The edge would carry. Press less."
-        require(carries, "width of the groove", received, allowed, remedy)
     fills = f"fills {angle:.2g} rad of the groove to either side"
     allowed = f"at most {HOLLOW[1]:g} rad, where the groove is an elastic half-space"
     remedy = "Lower the load, or take a groove of a greater radius."

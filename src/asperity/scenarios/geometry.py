@@ -162,7 +162,7 @@ def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
         else:
             check_half_space(
                 axes, body.across, groove_radius=body.groove_radius, raceway_radius=body.raceway_along,
-                groove_width=body.groove_width, cause=cause,
+                cause=cause,
             )  # fmt: skip
 
 

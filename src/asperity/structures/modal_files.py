@@ -35,7 +35,7 @@ def modes_of_universal(path: str, given: dict[str, Any]) -> Answer:
     file = Path(path)
     along, force = (_axis(name, given[name], file.name) for name in ("along", "force"))
     modes, nodes, units = _datasets(file)
-    length, newtons = _units(units, given, file.name)
+    length, newtons = (_unit(units, name, file.name) for name in ("length", "force"))
     numbers, places = _path(nodes, along, given["nodes"], modes, file.name)
     read = [_mode(mode, numbers, force, given["damping"], file.name) for mode in modes]
     frequencies, ratios, masses, shapes = (list(values) for values in zip(*read, strict=True))
@@ -72,18 +72,12 @@ def _datasets(file: Path) -> tuple[list[Dataset], list[Dataset], Dataset | None]
     return modes, nodes, units[-1] if units else None
 
 
-def _units(stated: Dataset | None, given: dict[str, Any], source: str) -> tuple[float, float]:
-    """Length, m, and force, N, of one of the units of a file."""
-    found = []
-    for name, dimension in (("length", "m"), ("force", "N")):
-        key = f"{name}_unit"
-        if given[key] is not None:
-            found.append(factor(given[key], dimension))
-        elif stated is not None and np.isfinite(stated[name]) and stated[name] > 0.0:
-            found.append(1.0 / stated[name])
-        else:
-            raise InputError(source, f"no unit of {name}", "a dataset 164, or the unit given", f"Give {key}.")
-    return found[0], found[1]
+def _unit(stated: Dataset | None, of: str, source: str) -> float:
+    """Length, m, or force, N, of one of the units of a file."""
+    factor_of_it = math.nan if stated is None else float(stated[of])
+    allowed = "a dataset 164 with units"
+    require(0.0 < factor_of_it < math.inf, source, f"no unit of {of}", allowed, _EXPORT)
+    return 1.0 / factor_of_it
 
 
 def _path(
@@ -181,8 +175,6 @@ def read_modal_structure(
     *,
     along: str | None = None,
     force: str | None = None,
-    length_unit: str | None = None,
-    force_unit: str | None = None,
     damping: float | None = None,
     nodes: Sequence[int] | None = None,
     around: bool = False,
@@ -207,8 +199,6 @@ def read_modal_structure(
         The file; ``.nc`` is netCDF, ``.uff`` and ``.unv`` are universal files, others text.
     along, force : {"x", "y", "z"}, optional
         Direction of the path, and of the contact force.
-    length_unit, force_unit : str, optional
-        As ``"mm"`` and ``"N"``, where the file does not state them; stronger than what it states.
     damping : float, optional
         Damping ratio of all modes, where the file states none.
     nodes : sequence of int, optional
@@ -244,7 +234,6 @@ def read_modal_structure(
     require(size <= LARGEST_FILE, file.name, amount(size), f"at most {amount(LARGEST_FILE)}")
     numbers = None if nodes is None else [int(node) for node in nodes]
     given: dict[str, Any] = {"along": along, "force": force, "damping": damping, "nodes": numbers}
-    given |= {"length_unit": length_unit, "force_unit": force_unit}
     kind = file.suffix.lower()
     if kind in (".uff", ".unv", ".univ") and not around:
         return _read_from(file, "universal", modes_of_universal, given)

@@ -227,16 +227,16 @@ class WheelModes:
         rows = self.table(place).tolist()
         return write_csv(Path(path), HEADING, [[*row[:3], int(row[3]), *row[4:]] for row in rows])
 
-    def damped(self, ratios: Sequence[float], added: float = 0.0, added_from: int = 2) -> "WheelModes":
+    def damped(self, ratios: Sequence[float], added: float = 0.0) -> "WheelModes":
         """With damping ratios of 0, 1 and so on nodal diameters, the last of all beyond.
 
-        Wheel dampers add a ratio to modes of `added_from` and more nodal diameters.
+        Wheel dampers add a ratio to modes of two and more nodal diameters.
         """
         given = finite_array(
             "damping ratios", ratios, "above 0, below 1", shape=(None,), above=0.0, below=1.0
         )
         own = given[np.minimum(self.nodal_diameters, len(given) - 1)]
-        own = own + np.where(self.nodal_diameters >= added_from, added, 0.0)
+        own = own + np.where(self.nodal_diameters >= 2, added, 0.0)
         if (own >= 1.0).any():
             raise InputError("damping ratio with dampers", f"{own.max():.4g}", "below 1")
         return replace(self, damping_ratios=own)
