@@ -23,7 +23,7 @@ ball: [beam] loss_factor = "0.1" → Write it without quotes and unit
 ball: [beam] sensors = "0.5 m" → beam.sensors: received '0.5 m'; allowed: a list, each a length
 ball: [beam] sensors = ["0.5 m", 3] → beam.sensors[2]: received 3
 ball: [beam] sensors = [] → at least 1, each a length at least 0
-ball: [beam] sensors = ["1.2 m"] → beam.sensors: received 1.2 m; allowed: positions on the beam, 0 to 1 m
+ball: [beam] sensors = ["1.2 m"] → beam.sensors: received 1.2 m; allowed: positions on it, 0 to 1 m
 ball: [beam] suspension_frequency = "3 Hz" → only together with support = "free"
 ball: [contact] window = "20 um" → contact.window: received 20 um, 2 cells of 10 um; allowed: 8 to 2048 cells
 ball: [contact] window = "25 mm" → 2500 cells

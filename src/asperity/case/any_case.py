@@ -75,38 +75,6 @@ def entry_of(model: type[Section], dotted: str) -> CaseKey:
     raise InputError(dotted, "an unknown key", allowed, remedy)
 
 
-def parameters(case: Section, shown: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
-    """List the keys that matter in a case, of some sections those at their defaults that are `shown` alone.
-
-    Returns
-    -------
-    list of dict
-        For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
-        ``note`` (what the key is).
-    """
-    listed, more = [], [name for name in case.section_names if name not in type(case).sections()]
-    further = [each for name in more for each in entries(type(getattr(case, name)), name)]
-    for entry in (*entries(type(case)), *further):
-        section: Section = getattr(case, entry.section) if entry.section else case
-        if (entry.section and entry.section not in case.section_names) or not section.is_active(entry.name):
-            continue
-        value, usual = getattr(section, entry.name), section.default_of(entry.name)
-        default = entry.key.otherwise if usual is None else in_words(usual, entry.key)
-        same = value is None or content(value) == content(usual)
-        beside = same and entry.name not in shown.get(entry.section, (entry.name,))
-        if not beside and (text := default if value is None else in_words(value, entry.key)):
-            listed.append(
-                {
-                    "key": entry.dotted,
-                    "value": text,
-                    "default": default,
-                    "is_default": same,
-                    "note": entry.key.meaning,
-                }
-            )
-    return listed
-
-
 def in_words(value: object, key: Key) -> str:
     """Write a value of a key for people, in the unit of its default or its example: ``"300 MN/m"``."""
     if holds_memory(value):
@@ -118,14 +86,13 @@ def in_words(value: object, key: Key) -> str:
     if isinstance(value, Path):
         return value.name
     if isinstance(value, Material):
-        return words_of_material(_material(value, exactly=False))
+        told = _material(value, exactly=False)
+        return (
+            told
+            if isinstance(told, str)
+            else ", ".join(f"{n} {v}" for n, v in told.items() if n != "citation")
+        )
     return _quantity(value, key, exactly=False) if isinstance(value, float) else str(value)
-
-
-def words_of_material(value: str | dict[str, Any]) -> str:
-    """Write a material for people: its name, or its numbers."""
-    numbers = {} if isinstance(value, str) else {k: v for k, v in value.items() if k != "citation"}
-    return ", ".join(f"{name} {item}" for name, item in numbers.items()) or str(value)
 
 
 def in_toml(section: Section, in_memory: Callable[[str, Any], Any], title: str = "") -> dict[str, Any]:
@@ -315,7 +282,24 @@ class AnyCase(Section):
             For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
             ``note`` (what the key is).
         """
-        return parameters(self, self.SHOWN)
+        listed = []
+        repeated = (name for name in self.section_names if name not in self.sections())
+        further = [each for name in repeated for each in entries(type(getattr(self, name)), name)]
+        for entry in (*entries(type(self)), *further):
+            if entry.section not in ("", *self.section_names):
+                continue
+            section: Section = getattr(self, entry.section) if entry.section else self
+            if not section.is_active(entry.name):
+                continue
+            value, usual = getattr(section, entry.name), section.default_of(entry.name)
+            default = entry.key.otherwise if usual is None else in_words(usual, entry.key)
+            same = value is None or content(value) == content(usual)
+            if same and entry.name not in self.SHOWN.get(entry.section, (entry.name,)):
+                continue
+            if text := default if value is None else in_words(value, entry.key):
+                told = {"key": entry.dotted, "value": text, "default": default, "is_default": same}
+                listed.append(told | {"note": entry.key.meaning})
+        return listed
 
 
 @runtime_checkable

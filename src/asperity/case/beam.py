@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from asperity.case.rolled_over import FREQUENCY, SENSOR_SHARES, RolledOver
+from asperity.case.rolled_over import FREQUENCY, RolledOver, sensors_along
 from asperity.case.surface import LENGTH, POSITION
 from asperity.errors import InputError
 from asperity.parameters import Choice, ListOf, MaterialOrName, Number, Quantity, key, optional
@@ -58,13 +58,7 @@ class BeamKeys(RolledOver):
         "four times the highest frequency of the spectra",
         "0.1 Hz to 100 MHz: rolling is slower than ultrasound",
     )
-    sensors: tuple[float, ...] | None = optional(
-        ListOf(POSITION, least=1),
-        ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
-        "positions of the accelerometers from the beam's start",
-        "at 20, 35, 50, 65 and 80 % of the length",
-        "0 m to 1 km: beams are shorter",
-    )
+    sensors: tuple[float, ...] | None = sensors_along()
 
     @property
     def sides(self) -> dict[str, float]:
@@ -75,11 +69,6 @@ class BeamKeys(RolledOver):
     def extent(self) -> tuple[float, float]:
         """Where it begins and ends, m."""
         return 0.0, self.length
-
-    @property
-    def sensor_positions(self) -> tuple[float, ...]:
-        """Positions of the accelerometers, m, with the default filled in."""
-        return self.sensors or tuple(share * self.length for share in SENSOR_SHARES)
 
     def highest_mode(self, highest_frequency: float) -> float:
         """Frequency up to which modes are kept, Hz, for spectra up to a highest one, Hz."""
@@ -115,10 +104,7 @@ class BeamKeys(RolledOver):
 
     def problems(self) -> Iterator[InputError]:
         """Sensors, and supports on the beam, in places of their own."""
-        for position in self.sensors or ():
-            if position > self.length:
-                allowed = f"positions on the beam, 0 to {self.length:g} m"
-                yield InputError("sensors", f"{position:g} m", allowed)
+        yield from self.problems_of_sensors(*self.extent)
         if self.supports is None:
             return
         ends = () if self.support == "free" else (0.0, self.length)

@@ -55,6 +55,7 @@ class RolledOver(Section):
     """What is rolled over, of whatever kind: a new one is a section with these."""
 
     material: Material
+    sensors: tuple[float, ...] | None = None
 
     @property
     def radius_across(self) -> float:
@@ -78,8 +79,11 @@ class RolledOver(Section):
 
     @property
     def sensor_positions(self) -> tuple[float, ...]:
-        """Where its acceleration is recorded, m."""
-        return ()
+        """Where its acceleration is recorded, m: as given, else at shares of its length."""
+        if self.sensors is not None or self.extent is None:
+            return self.sensors or ()
+        first, last = self.extent
+        return tuple(first + share * (last - first) for share in SENSOR_SHARES)
 
     def point_positions(self, middle: float) -> tuple[float, ...]:
         """Where the rail of a track is looked at, m, of a run whose middle is there, m."""
@@ -92,6 +96,24 @@ class RolledOver(Section):
     def problems_of_run(self, speed: float, first: float, last: float) -> Iterator[InputError]:
         """What does not fit to a speed, m/s, and to places passed in the record, from and to, m."""
         yield from ()
+
+    def problems_of_sensors(self, first: float, last: float) -> Iterator[InputError]:
+        """Sensors on what begins and ends at places, m."""
+        for position in self.sensors or ():
+            if not first <= position <= last:
+                yield InputError("sensors", f"{position:g} m", f"positions on it, {first:g} to {last:g} m")
+
+
+def sensors_along(goes_with: str = "") -> Any:
+    """Declare where the acceleration of what has an extent is recorded."""
+    return optional(
+        ListOf(POSITION, least=1),
+        ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
+        "positions of the accelerometers",
+        "at 20, 35, 50, 65 and 80 % of the length",
+        "0 m to 10 km: structures are shorter",
+        goes_with=goes_with,
+    )
 
 
 def _scatter(of: str, most: float) -> Any:
@@ -370,15 +392,7 @@ class StructureKeys(RolledOver):
         "1e-12 kg m^2 to 1e12 kg m^2: structures that are rolled over lie between",
         goes_with="mass",
     )
-    sensors: tuple[float, ...] | None = optional(
-        ListOf(POSITION),
-        ["0.2 m", "0.5 m"],
-        "positions whose acceleration is recorded",
-        "at 20, 35, 50, 65 and 80 % of the length",
-        "0 m to 10 km: structures are shorter",
-        goes_with="file or receptances",
-    )
-
+    sensors: tuple[float, ...] | None = sensors_along("file or receptances")
     material: Material = key(MaterialOrName(), "steel", "material of its surface")
 
     @property
@@ -442,14 +456,6 @@ class StructureKeys(RolledOver):
             )
         return modes if self.mass is None else modes.with_rigid_body(self.mass, inertia=self.inertia)
 
-    @property
-    def sensor_positions(self) -> tuple[float, ...]:
-        """Positions whose acceleration is recorded, m."""
-        if self.sensors is not None or not self.is_known:
-            return self.sensors or ()
-        first, last = self.modes.extent
-        return tuple(first + share * (last - first) for share in SENSOR_SHARES)
-
     def problems(self) -> Iterator[InputError]:
         """A source that can be read, and sensors on the structure."""
         if not self.is_known:
@@ -460,7 +466,4 @@ class StructureKeys(RolledOver):
             name = "receptances" if self.file is None else "file"
             yield error.about(name, f"{error.received} ({error.what})")
             return
-        for position in self.sensors or ():
-            if not first <= position <= last:
-                allowed = f"positions on the structure, {first:g} to {last:g} m"
-                yield InputError("sensors", f"{position:g} m", allowed)
+        yield from self.problems_of_sensors(first, last)
