@@ -11,7 +11,7 @@ from asperity.errors import ComputationError
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.body import Body, bogie
+from asperity.structures.body import Body, carriage
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import Track
@@ -127,7 +127,7 @@ def test_a_rigid_carriage_on_three_wheels_starts_steadily(kernel):
 def test_the_energy_of_sprung_wheels_on_a_rail_closes(between):
     """What goes into springs and dampers of a bogie, into contacts and rail."""
     law = HertzLaw(9.4e10, texture(3e-5), damping=2e3)
-    body = bogie(MASS, 2.5, 3000.0, 2500.0, 1.2e6, 2e4, load=90e3)
+    body = carriage(3000.0, 2500.0, [0.0, 2.5], MASS, 1.2e6, 2e4, load=90e3)
     run = roll_bodies(between, [body], [law] * 2, positions=[0.0], **PATH)
     energy = run.energy
     assert run.contact_force.std() > 0.1 * LOAD

@@ -15,7 +15,7 @@ from asperity.errors import InputError
 from asperity.parameters import Choice, Either, File, ListOf, MaterialOrName, Number, Quantity, key, optional
 from asperity.reference.cnossos import WHEEL_ROUGHNESS
 from asperity.reference.materials import Material
-from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
+from asperity.structures.body import GRAVITY, Body, carriage, chain
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
 
@@ -354,8 +354,6 @@ class Rolling(Ringing, FlatOnTread):
         if self.type == "mass":
             return Body.rigid(mass, self.contact_load)
         inertia = self.inertia or above[0] * (places[-1] or 2.0 * self.radius) ** 2 / 12.0
-        if self.type == "bogie":
-            return bogie(mass, places[1], above[0], inertia, springs[0], dampers[0], load=extra)
         upper = springs[0] if springs else upper_stiffness
         return carriage(above[0], inertia, places, mass, upper, dampers[0], load=extra)
 

@@ -1,4 +1,4 @@
-"""Rigid and suspended bodies on their contacts: a mass, a chain, a bogie, a carriage."""
+"""Rigid and suspended bodies on their contacts: a mass, a chain, a carriage or bogie."""
 
 from __future__ import annotations
 
@@ -178,51 +178,6 @@ def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, loa
     return _on_springs(np.zeros(1), unit[:1], mass, pressing, np.diff(unit, axis=0), springs, dampers)
 
 
-def bogie(
-    wheel_mass: float,
-    wheelbase: float,
-    frame_mass: float,
-    frame_inertia: float,
-    primary_stiffness: float,
-    primary_damping: float,
-    *,
-    load: float = 0.0,
-) -> Body:
-    """Two wheels one behind the other, and their share of the frame above, which pitches.
-
-    Parameters
-    ----------
-    wheel_mass : float
-        Unsprung mass of each wheel, kg.
-    wheelbase : float
-        Distance of the two contacts, m.
-    frame_mass, frame_inertia : float
-        Of the frame, in its middle: kg, and kg m² about the transverse axis.
-    primary_stiffness, primary_damping : float
-        Of the suspension of each wheel, N/m and N s/m.
-    load : float
-        Constant force that presses on the frame, N, beside the weight of all masses; negative where it lifts.
-
-    Returns
-    -------
-    Body
-        On two contacts; its position is that of the rear one. Degrees of freedom: rear wheel, front wheel,
-        frame, pitch of the frame (rad, front up).
-
-    Raises
-    ------
-    InputError
-        If nothing is left to press on the contacts.
-    """
-    masses = np.array([wheel_mass, wheel_mass, frame_mass, frame_inertia])
-    unit, places = np.eye(4), np.array([0.0, wheelbase])
-    stretch = unit[2] + np.outer(places - 0.5 * wheelbase, unit[3]) - unit[:2]
-    pressing = GRAVITY * masses
-    pressing[2], pressing[3] = pressing[2] + load, 0.0
-    springs, dampers = np.full(2, primary_stiffness), np.full(2, primary_damping)
-    return _on_springs(places, unit[:2], masses, pressing, stretch, springs, dampers)
-
-
 def carriage(
     mass: float,
     inertia: float,
@@ -233,7 +188,7 @@ def carriage(
     *,
     load: float = 0.0,
 ) -> Body:
-    """A rigid carriage that pitches, on rolling elements in a row: the carriage of a linear guide.
+    """A rigid mass that pitches, on elements in a row: a carriage on balls, the frame of a bogie on wheels.
 
     Parameters
     ----------
@@ -242,9 +197,9 @@ def carriage(
     places : array_like (c,)
         Of the contacts, ahead of the position of the body, m, the centre of mass in their middle.
     element_mass : float
-        Mass of each rolling element, kg, with the contact above it as a spring.
+        Mass of each rolling element or wheel, kg, with a spring above it.
     upper_stiffness, upper_damping : float
-        Of the contact above each element, linearised under its load: N/m and N s/m.
+        Of that spring, the suspension of a wheel or a contact, linearised under its load: N/m and N s/m.
     load : float
         Constant force that presses on the carriage, N, beside all weights; negative where it lifts.
 
