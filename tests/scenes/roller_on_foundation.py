@@ -11,7 +11,6 @@ from asperity.case.body import STIFFNESS, Rolling
 from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver
 from asperity.case.scene import Case
-from asperity.case.sections import ContactKeys, NumericsKeys
 from asperity.parameters import Choice, MaterialOrName, key
 from asperity.reference.materials import Material
 from asperity.structures.modal import STATIC, STATIC_DAMPING
@@ -60,5 +59,3 @@ class RollerOnFoundation(Case, defaults=DEFAULTS):
     kind: str = key(Choice(("roller-on-foundation",)), "roller-on-foundation", "what rolls")
     roller: Rolling = section(Rolling, "the roller", mass="0.5 kg", load="30 N")
     foundation: Foundation = section(Foundation, "what is rolled over")
-    contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")
-    numerics: NumericsKeys = section(NumericsKeys, "how finely time is resolved")

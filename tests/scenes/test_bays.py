@@ -74,7 +74,7 @@ def test_a_table_of_bays_is_read_in_its_units(tmp_path):
     text += '[track]\nname = "uic60"\nbay_table = "bays.csv"\n'
     (tmp_path / "case.toml").write_text(text)
     case = load_case(tmp_path / "case.toml")
-    track, same = case.track_model(), over(bay_table=BAYS).track_model()
+    track, same = case.track.model(), over(bay_table=BAYS).track.model()
     assert track.bays.ballast == pytest.approx(same.bays.ballast)
     assert (track.period, track.cell_bays) == pytest.approx((1.77, 3))
     told = {each["key"]: each["value"] for each in case.parameters()}

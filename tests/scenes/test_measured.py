@@ -25,7 +25,7 @@ def plain(runs):
 
 def own_data(case):
     """What a hammer finds on the track of a case, as tables."""
-    own = HammerTest.of_track(case.track_model(), BAND)
+    own = HammerTest.of_track(case.track.model(), BAND)
     mobility = own.mobility.ravel()
     columns = own.frequency.ravel(), mobility.real, mobility.imag
     return np.column_stack([BAND, own.decay_rate]), np.column_stack(columns)

@@ -50,7 +50,7 @@ def spread(track, lines):
 
 def test_the_power_is_that_of_the_force_on_two_rails(run):
     case, tree = run
-    spectra, track = tree["spectra"], case.track_model()
+    spectra, track = tree["spectra"], case.track.model()
     frequency, band = spectra["frequency"].values, spectra["band"].values
     for name, part in (("rail", rail_section(case, track)), ("sleepers", SleeperTop(2.6, 0.25))):
         density = part.power_per_force(track, frequency, spread(track, frequency))

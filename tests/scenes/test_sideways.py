@@ -48,7 +48,7 @@ def test_nothing_moves_sideways_under_a_rigid_wheel_in_the_middle(runs):
 
 def by_places(case, frequency, modes=None, head=PLACE):
     """At 12 places of a bay: lateral over vertical force (n, f), and how the latter is spread there."""
-    track, vertical, hertz = LateralTrack(case.track_model()), case.track_model(), case.smooth_contact
+    track, vertical, hertz = LateralTrack(case.track.model()), case.track.model(), case.smooth_contact
     under = hertz.approach(65e3)
     springs = (
         hertz.tangent_stiffness(under),
@@ -78,7 +78,7 @@ def test_the_lateral_force_and_the_rail_are_those_of_both_forces_at_every_place(
     places, share, spread = by_places(case, frequency, head=head)
     lateral = np.mean(spread * np.abs(share) ** 2, axis=0) * force[0]
     assert_levels(side["lateral_force_level"].values[0], frequency, lateral, band)
-    both, track = np.stack([np.ones_like(share), share], axis=1), LateralTrack(case.track_model())
+    both, track = np.stack([np.ones_like(share), share], axis=1), LateralTrack(case.track.model())
     forms = squared_lateral_mobility(track, frequency, places, head)
     moved = np.mean(spread * np.einsum("xmf,xmnf,xnf->xf", both.conj(), forms, both).real, axis=0)
     power = 2.0 * SideOfRail(0.172, 0.15, 0.072).power(frequency, moved * force[0]) / 1e-12
@@ -154,7 +154,7 @@ def test_tread_and_head_answer_each_at_its_own_place(runs):
     assert side.attrs["rail_contact_place"] == pytest.approx(HEAD, rel=1e-6)
     assert side.attrs["contact_place"] == pytest.approx(HEAD - 0.005, rel=1e-5)
     at, modes = side["frequency"].values, case.wheel.turning_modes(4000.0, 56.0)
-    rail = LateralTrack(case.track_model()).at_contact(at, 0.3, 0.3, HEAD)
+    rail = LateralTrack(case.track.model()).at_contact(at, 0.3, 0.3, HEAD)
     wheel = wheel_receptances(modes, 600.0, at, side.attrs["contact_place"])
     for name, expected in (("rail", rail), ("wheel", wheel)):
         found = side[f"{name}_cross_receptance"].values

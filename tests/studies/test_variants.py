@@ -230,7 +230,7 @@ def test_measured_pads_are_scaled():
     """To half the stiffness that they have where they are told by a number."""
     rows = np.array([[100.0, 300e6, 60e6], [300.0, 340e6, 70e6], [1000.0, 400e6, 80e6]])  # Hz, N/m
     case = changed("wheel-on-rail", track={"name": "uic60", "pad_table": rows})
-    nominal = case.track_model().pad_stiffness
+    nominal = case.track.model().pad_stiffness
     assert nominal > 300e6
     halved = {"track.pad_stiffness": "times 0.5", "track.pad_damping": "times 0.5"}
     assert values_of(case, halved, "track.pad_stiffness") == [pytest.approx(0.5 * nominal)]

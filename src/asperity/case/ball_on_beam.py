@@ -6,7 +6,6 @@ from asperity.case.beam import BeamKeys
 from asperity.case.body import Rolling
 from asperity.case.form import section
 from asperity.case.scene import Case
-from asperity.case.sections import ContactKeys, NumericsKeys
 from asperity.case.surface import OF_RAILS, Surface
 from asperity.parameters import Choice, key
 
@@ -63,8 +62,6 @@ class BallOnBeam(Case):
     kind: str = key(Choice(("ball-on-beam",)), "ball-on-beam", "what rolls")
     ball: Rolling = section(Rolling, "the ball that rolls")
     beam: BeamKeys = section(BeamKeys, "the beam that is rolled over")
-    contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")
-    numerics: NumericsKeys = section(NumericsKeys, "how finely time is resolved")
 
     @property
     def title(self) -> str:

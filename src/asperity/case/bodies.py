@@ -9,7 +9,7 @@ from asperity.case.creep import CreepKeys
 from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
-from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
+from asperity.case.sections import NoiseKeys
 from asperity.case.sideways import SidewaysKeys
 from asperity.errors import InputError
 from asperity.parameters import Choice, key
@@ -18,7 +18,19 @@ STRUCTURES = ("plane", "beam", "track", "structure")
 """What may be rolled over; but for the plane, each is a section of the case."""
 
 
-class Bodies(Case):
+class OverTrack(Case):
+    """A scene in which a track may be rolled over."""
+
+    noise: NoiseKeys = section(
+        NoiseKeys, "what radiates where a track is rolled over, and the train that passes", last=True
+    )
+    sideways: SidewaysKeys = section(
+        SidewaysKeys, "where a rail is touched, and what moves sideways, by frequency", last=True
+    )
+    creep: CreepKeys = section(CreepKeys, "how wheels creep on a rail, and whether they squeal", last=True)
+
+
+class Bodies(OverTrack):
     """Bodies roll, one or many, over a plane, a beam, a track, or any structure that is known by its modes.
 
     Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
@@ -49,13 +61,6 @@ class Bodies(Case):
     structure: StructureKeys = section(
         StructureKeys, "any other structure that is rolled over, by its modes or receptances"
     )
-    contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")
-    numerics: NumericsKeys = section(NumericsKeys, "how finely time is resolved")
-    noise: NoiseKeys = section(NoiseKeys, "what radiates, where a track is rolled over")
-    sideways: SidewaysKeys = section(
-        SidewaysKeys, "where a rail is touched, and what moves sideways, by frequency"
-    )
-    creep: CreepKeys = section(CreepKeys, "how wheels creep on a rail, and whether they squeal")
 
     @property
     def rolled_over(self) -> RolledOver:
@@ -80,9 +85,4 @@ class Bodies(Case):
             remedy = 'As file = "guide.csv".'
             yield InputError("structure.file", "nothing", "the file of its modes, or receptances", remedy)
             return
-        for name, verb in (("noise", "sounds"), ("sideways", "moves sideways"), ("creep", "creeps")):
-            if self.over != "track" and (given := getattr(self, name).given()):
-                received = f"a [{name}] of what is rolled over a {self.over}: {', '.join(sorted(given))}"
-                remedy = f"Remove it: a track alone {verb} here."
-                yield InputError(name, received, 'over = "track"', remedy)
         yield from super().problems()

@@ -22,14 +22,17 @@ class Inner(NamedTuple):
     model: "type[Section]"
     meaning: str
     repeated: bool = False  # whether it may come several times
+    last: bool = False  # whether it comes after those that are declared later
 
 
-def section(model: "type[Section]", meaning: str, *, repeated: bool = False, **defaults: Any) -> Any:
+def section(
+    model: "type[Section]", meaning: str, *, repeated: bool = False, last: bool = False, **defaults: Any
+) -> Any:
     """Declare a section inside another one, and other defaults that its keys have there, as in TOML.
 
     One that may be repeated, as ``[[fault]]``, has the names ``fault``, ``fault[2]``, ``fault[3]`` …
     """
-    return Inner(model.with_defaults(**defaults) if defaults else model, meaning, repeated)
+    return Inner(model.with_defaults(**defaults) if defaults else model, meaning, repeated, last)
 
 
 def numbered(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -69,7 +72,8 @@ class Section(Keyed):
         for name in [name for name, each in vars(cls).items() if isinstance(each, Key | Inner)]:
             delattr(cls, name)
         cls.keys = {name: each for name, each in declared.items() if isinstance(each, Key)}
-        cls.inner = {name: each for name, each in declared.items() if isinstance(each, Inner)}
+        inner = [(name, each) for name, each in declared.items() if isinstance(each, Inner)]
+        cls.inner = dict(sorted(inner, key=lambda named: named[1].last))
 
     @classmethod
     def sections(cls) -> Mapping[str, Inner]:

@@ -43,8 +43,8 @@ OVER_DEFECTS = ("direct", "linear-filtered", "linear")
 """Laws that are rolled where a case names none, and where it rolls over a flat or a joint."""
 SMOOTH = "hertz-filtered"
 """Main law of those where there is no sample of the surface."""
-OF_A_TRACK = ("numerics.kernel", "numerics.poles")
-"""Keys that mean nothing where no track is rolled over, beside those of the noise."""
+OF_A_TRACK = ("noise", "sideways", "creep", "numerics.kernel", "numerics.poles")
+"""Sections and keys that mean nothing where no track is rolled over."""
 LAW = Choice(names)
 
 
@@ -99,10 +99,10 @@ class Case(AnyCase):
         "1 us to 1 h: records lie between",
     )
     surface: Surface = section(Surface, "what is rolled over: a measured map, or synthesised roughness")
+    contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced", last=True)
+    numerics: NumericsKeys = section(NumericsKeys, "how finely time, and a track, are resolved", last=True)
 
-    if TYPE_CHECKING:  # each preset declares these, the last four where a track may be rolled over
-        contact: ContactKeys
-        numerics: NumericsKeys
+    if TYPE_CHECKING:  # where a track may be rolled over
         track: TrackKeys
         noise: NoiseKeys
         sideways: "SidewaysKeys"
@@ -446,8 +446,10 @@ class Case(AnyCase):
             return
         for dotted in OF_A_TRACK:
             title, _, name = dotted.partition(".")
-            if name in getattr(self, title).given():
-                yield InputError(dotted, "a key of a track", f"what a {self.over_name} has", "Remove it.")
+            for given in sorted(getattr(self, title).given() if title in self.inner else ()):
+                if name in ("", given):
+                    what, allowed = f"{title}.{given}", f"what a {self.over_name} has"
+                    yield InputError(what, "a key of a track", allowed, "Remove it.")
 
     def _problem_of_place(self) -> Iterator[InputError]:
         """A contact on the rail head."""

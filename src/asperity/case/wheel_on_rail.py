@@ -3,18 +3,15 @@
 from collections.abc import Iterator
 from typing import ClassVar
 
+from asperity.case.bodies import OverTrack
 from asperity.case.body import OF_SEVERAL, Rolling
-from asperity.case.creep import CreepKeys
 from asperity.case.form import section
 from asperity.case.rolled_over import TrackKeys
-from asperity.case.scene import Case, time_step_on_grid
-from asperity.case.sections import ContactKeys, NoiseKeys, NumericsKeys
-from asperity.case.sideways import SidewaysKeys
+from asperity.case.scene import time_step_on_grid
 from asperity.case.surface import Surface
 from asperity.errors import InputError
 from asperity.parameters import Choice, key
 from asperity.structures.body import GRAVITY
-from asperity.structures.track import Track
 from asperity.units import written
 
 STEPS_PER_PERIOD = 8  # of the highest frequency
@@ -36,7 +33,7 @@ DEFAULTS = {
 }
 
 
-class WheelOnRail(Case, defaults=DEFAULTS):
+class WheelOnRail(OverTrack, defaults=DEFAULTS):
     """A wheel rolls on a rail of infinite length on discrete supports.
 
     Each key's meaning, default and allowed values are printed by ``asperity new wheel-on-rail``. Positions
@@ -46,7 +43,7 @@ class WheelOnRail(Case, defaults=DEFAULTS):
     --------
     >>> from asperity import WheelOnRail
     >>> case = WheelOnRail(surface={"spectrum": "iso3095"}, track={"pad_stiffness": 150e6})
-    >>> case.with_(speed="200 km/h").track_model().pad_stiffness
+    >>> case.with_(speed="200 km/h").track.model().pad_stiffness
     150000000.0
     """
 
@@ -73,11 +70,6 @@ class WheelOnRail(Case, defaults=DEFAULTS):
         section="straight-web",
     )
     track: TrackKeys = section(TrackKeys, "the track that is rolled over")
-    contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")
-    numerics: NumericsKeys = section(NumericsKeys, "how finely time and the track are resolved")
-    noise: NoiseKeys = section(NoiseKeys, "what radiates, and the labels of CNOSSOS-EU")
-    sideways: SidewaysKeys = section(SidewaysKeys, "where they touch, and what moves sideways, by frequency")
-    creep: CreepKeys = section(CreepKeys, "how the wheel creeps, and whether it squeals")
 
     @property
     def title(self) -> str:
@@ -98,10 +90,6 @@ class WheelOnRail(Case, defaults=DEFAULTS):
         cells = round(wanted / per_cell)
         step = cells * per_cell if cells else time_step_on_grid(wanted, per_cell)
         return step if 1 / CLOSE <= step / wanted <= CLOSE else wanted
-
-    def track_model(self) -> Track:
-        """Build the track of this case: the named set with the case's own keys in it."""
-        return self.track.model()
 
     def own_problems(self) -> Iterator[InputError]:
         """A load that asks for its unit, and a path that is long enough."""
