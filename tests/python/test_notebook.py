@@ -56,9 +56,9 @@ def test_a_result_draws_its_figures_by_name(result):
 def test_what_it_shows_cannot_run_scripts(result):
     hostile = Result.of(result.copy())
     hostile.attrs["verdict"] = "<script>alert(1)</script>"
-    hostile.attrs["warnings"] = json.dumps([{"message": "<b>coarse</b>", "grade": "note"}])
-    assert "<summary>1 warning</summary><ul><li>Note: &lt;b&gt;coarse" in hostile._repr_html_()
     assert "<p><strong>Steel ball on a steel beam.</strong> &lt;script&gt;" in hostile._repr_html_()
+    hostile.attrs["warnings"] = json.dumps([{"message": "coarse", "grade": "warning"}])
+    assert "To be read with care: 1 warning" in hostile._repr_html_()
 
 
 def test_it_survives_saving_and_a_part_of_it_is_shown_as_a_tree(result, tmp_path):

@@ -20,7 +20,7 @@ from asperity.units import quantity
 
 SOME = 64
 """Numbers among which a finite one is sought before it is among all."""
-_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -164,7 +164,7 @@ def engineering(value: float, unit: str, digits: int = 3) -> str:
     exponent = min(max(exponent, -12 if power == 1 else -9), 0 if power == 2 else 12)
     scaled = value / 10.0 ** (exponent * power)
     places = 0 if scaled == 0 else max(0, digits - 1 - math.floor(math.log10(abs(scaled))))
-    return f"{scaled:.{places}f} {_PREFIXES[exponent]}{unit}".replace("-", "−")
+    return f"{scaled:.{places}f} {PREFIXES[exponent]}{unit}".replace("-", "−")
 
 
 def plain(value: float, digits: int = 3) -> str:

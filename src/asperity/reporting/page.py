@@ -67,10 +67,10 @@ def whole_page(name: str, blocks: Sequence[object], colours: Mapping[str, str], 
 
 
 @cache
-def page_template(name: str) -> Template:
-    """A template of this package, which writes text of others so that it is seen and does nothing."""
+def page_template(name: str, package: str = "asperity.reporting") -> Template:
+    """A template of a package, which writes text of others so that it is seen and does nothing."""
     environment = Environment(
-        loader=PackageLoader("asperity.reporting", ""),
+        loader=PackageLoader(package, ""),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -116,7 +116,6 @@ PLACES = ("sensor", "point")
 """Dimensions over which levels are averaged; other words, as what radiates, are told apart."""
 SPREAD = 20.0
 """Ratio of the largest value to the smallest from which the axis is logarithmic."""
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
 def key_chart(
@@ -171,7 +170,7 @@ def _scale(found: xarray.DataArray) -> tuple[float, str, str]:
     largest = np.nanmax(np.abs(found.values))
     power = 3 * math.floor(math.log10(largest) / 3) if largest > 0 else 0
     power = min(max(power, -9), 9)
-    return 10.0**power, what, f"{_PREFIXES[power]}{units}"
+    return 10.0**power, what, f"{data.PREFIXES[power]}{units}"
 
 
 def _panel(mean: xarray.Dataset, scatter: xarray.Dataset | None, name: str, key: str, looks: Looks) -> Panel:
@@ -191,15 +190,9 @@ def _panel(mean: xarray.Dataset, scatter: xarray.Dataset | None, name: str, key:
             if np.isfinite(by).any():
                 marks.append(Boxes(line.x, line.x, line.y - by, line.y + by, edge=line.colour, law=line.law))
         marks.append(line)
-    law_unsaid = (
-        LAW.name in mean[name].dims
-        and lines[0][1]["label"] not in mean[LAW.name].values
-        and not _others(mean, key)
-    )
-    title = f"{what}, {_main(mean)}" if law_unsaid else what
-    others = _others(mean, key)
-    told = [f", {at}" for dim, at in lines[0][0].items() if others and dim not in (LAW.name, *others)]
-    title += "".join(told)
+    (place, look), others = lines[0], _others(mean, key)
+    told = [str(at) for dim, at in place.items() if dim not in others and str(at) != look["label"]]
+    title = ", ".join([what, *told])
     return Panel(_key_axis(mean[key]), Axis(unit), tuple(marks), title, height=2.55)
 
 

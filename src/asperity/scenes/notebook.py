@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from xarray import DataTree
 
-from asperity.reporting import data
+from asperity.reporting import data, headline
 from asperity.schema import bearing, provenance, rolling
 
 if TYPE_CHECKING:
@@ -74,22 +74,13 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         title, verdict = (
             escape(str(data.stated(self, each))) for each in (provenance.TITLE, provenance.VERDICT)
         )
+        valid = headline.validity(headline.lights(self)).quantity
         image = base64.b64encode(self.plot()._repr_png_()).decode()  # type: ignore[attr-defined]
         return (
-            f"<div><p><strong>{title}.</strong> {verdict}</p>\n{_warnings(self)}\n{_numbers(self)}\n"
+            f"<div><p><strong>{title}.</strong> {verdict} {valid}</p>\n{_numbers(self)}\n"
             f'<img alt="main figure" width="840" src="data:image/png;base64,{image}">\n'
             f"<details><summary>All data</summary>{tree}</details></div>"
         )
-
-
-def _warnings(tree: DataTree) -> str:
-    """Every warning on the physics, in a list that opens."""
-    told = [
-        f"<li>{escape(str(item.get('grade', 'warning')).capitalize() + ': ' + str(item.get('message')))}</li>"
-        for item in data.json_list(tree, provenance.WARNINGS)
-    ]
-    count = f"{len(told)} warning{'s' if len(told) > 1 else ''}"
-    return f"<details><summary>{count}</summary><ul>{''.join(told)}</ul></details>" if told else ""
 
 
 def _numbers(tree: DataTree) -> str:

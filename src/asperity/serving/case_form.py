@@ -8,14 +8,13 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from asperity import __version__
 from asperity.arguments import shown
 from asperity.case import PRESETS, any_case, cases, scene, toml
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
+from asperity.reporting.page import page_template
 from asperity.serving.stored_runs import LARGEST_UPLOAD
 
 LONGEST_VALUE = 2000
@@ -64,12 +63,8 @@ SLIDERS = (("Roughness", "surface.rms surface.level"), ("Load", ".load"), ("Spee
 @cache
 def page_text() -> str:
     """Write the page; what it shows of runs and contacts its script asks for."""
-    environment = Environment(
-        loader=PackageLoader("asperity.serving", ""), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
     largest = {"largest": LARGEST_UPLOAD, "largest_words": amount(LARGEST_UPLOAD)}
-    page = environment.get_template("page.html.jinja")
+    page = page_template("page.html.jinja", "asperity.serving")
     return page.render(forms=forms(), sliders=SLIDERS, version=__version__, **largest)
 
 
