@@ -66,7 +66,7 @@ except ValueError as error:
 page = report(tree, sys.argv[1]).read_text(encoding="utf-8")
 assert "<strong>cubic</strong>: A law from a file of its own." in page
 assert ":#7f3b08;" in page
-assert "cubic [N]" in (pathlib.Path(sys.argv[1]) / "force_piece.csv").read_text(encoding="utf-8")
+assert "cubic [dB re 1 N]" in (pathlib.Path(sys.argv[1]) / "force_bands.csv").read_text(encoding="utf-8")
 print("all follows")
 """
 
