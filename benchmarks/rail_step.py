@@ -79,7 +79,7 @@ def laws(duration: float) -> dict[str, Law]:
         "linear": Linear(LOAD, hertz.tangent_stiffness(approach), approach, plain),
         "hertz": HertzLaw(hertz.stiffness_constant, plain),
         "shifted": Shifted(curve, filtered),
-        "table": Table(ForceTable(following, states, -1.0, SPACING)),
+        "table": Table(ForceTable(following, states, -1.0, SPACING, -heights)),
     }
 
 

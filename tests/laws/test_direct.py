@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity import HalfSpace, Hertz
-from asperity.contact.scan import ScanJob, scan_forces
+from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import TruncatedContactWarning
 from asperity.laws import Areal, Direct, Printed, Shifted, Table
 from asperity.laws.layout import force
@@ -98,7 +98,8 @@ CURVE = ForceCurve.hertz(HERTZ.stiffness_constant)
 def looked_up():
     approaches = np.linspace(-0.1e-6, 0.5e-6, 13)
     scanned = scan_forces(ScanJob(HALF_SPACE, Rows(BUMP), BODY, approaches, stride=15))
-    return Table(ForceTable(scanned.forces, approaches, N // 2 * DX, 15 * DX))
+    touches = first_touch(BUMP, BODY, 15)
+    return Table(ForceTable(scanned.forces, approaches, N // 2 * DX, 15 * DX, touches))
 
 
 @pytest.mark.parametrize(

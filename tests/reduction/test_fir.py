@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose
 from scipy.signal import freqz
 from threadpoolctl import threadpool_limits
 
-from asperity.errors import InputError
 from asperity.reduction import filter
 from asperity.reduction.filter import ACCURACY, design_fir
 
@@ -73,10 +72,6 @@ def test_order_as_given_is_a_design_by_window():
     assert design_fir(fitted(knee(K)), DX, 20).miss > 3.0
     printed = design_fir(fitted(knee(K) / 0.78, "low-wavenumber"), DX, 60).taps
     assert_allclose(printed.sum(axis=1), 1.0, rtol=1e-12)
-    with pytest.raises(InputError, match="order of the contact filter: received 41; allowed: an even number"):
-        design_fir(fitted(knee(K)), DX, 41)
-    with pytest.raises(InputError, match="received 0"):
-        design_fir(fitted(knee(K)), DX, 0)
 
 
 @pytest.mark.parametrize("order", [None, 400])

@@ -60,11 +60,11 @@ def test_positions_and_blocks_count_from_the_anchor(anchor, tmp_path):
 @pytest.mark.usefixtures("short_blocks")
 def test_a_table_of_stored_forces_is_that_of_held_ones_until_they_are_cleared_away(tmp_path, monkeypatch):
     path, store = job(300), Store(tmp_path)
-    held = ForceTable(scan_forces(path).forces, APPROACHES, 0.0, DX)
+    held = ForceTable(scan_forces(path).forces, APPROACHES, 0.0, DX, np.zeros(path.positions))
     at = np.linspace(0.0, 285 * DX, 700)
     expected = held.at(at)
     monkeypatch.setattr("asperity.reduction.table.PIECE", 50)
-    stored = ForceTable(scan_into(store, path).forces, APPROACHES, 0.0, DX)
+    stored = ForceTable(scan_into(store, path).forces, APPROACHES, 0.0, DX, np.zeros(path.positions))
     np.testing.assert_allclose(stored.at(at), expected, rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(stored.at(at[::-1])[::-1], expected, rtol=1e-11, atol=1e-12)
     for file in store.files():

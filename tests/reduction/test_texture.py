@@ -73,10 +73,6 @@ def strip(rows, columns, *axes):
 
 
 test_messages = refusals(
-    (StateTexture, (np.zeros((2, 8)), [0.0], 0.0, 1e-6), r"\(2, 8\) values for 1 states"),
-    (StateTexture, (np.zeros((2, 8)), [1e-6, 0.0], 0.0, 1e-6), "strictly increasing"),
-    (StateTexture, (np.full((1, 8), np.nan), [0.0], 0.0, 1e-6), "missing points"),
-    (StateTexture, (np.zeros((1, 8)), [0.0], 0.0, 0.0), r"spacing of the state texture \(m\)"),
     (strip, (50, 40, 5.0, 5.0), "an odd number"),
     (strip, (50, 9, 5.0, 5.0), "widest patch, 10 m.*Enlarge contact.window"),
     of=lambda make, arguments: make(*arguments),

@@ -69,17 +69,15 @@ def shape_preserving(knots: NDArray, values: NDArray, places: NDArray) -> NDArra
     return np.asarray(values[..., piece] + s * (secant[..., piece] + rest))
 
 
-def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDArray:
+def continued_to_touch(knots: NDArray, root: NDArray) -> NDArray:
     """Replace the zeros before first touch in rows (n, k) of g = F^(2/3) by the continuation of what follows.
 
     With this root of the force, contact starts on a straight line (exactly so for Hertz). Where that line is
     flatter than the one to the last sample without contact, the latter is taken; so every zero becomes a
-    value of zero or less, and first touch lies where g crosses zero. A value below the share `least` of the
-    next one counts as zero.
+    value of zero or less, and first touch lies where g crosses zero.
     """
     rows = np.arange(len(root))
-    following = np.concatenate([root[:, 1:], np.zeros((len(root), 1))], axis=1)
-    first = np.argmax(root > least * following, axis=1)
+    first = np.argmax(root > 0.0, axis=1)
     before, after, second = first - 1, first + 1, first + 2
     last = len(knots) - 1
 
@@ -96,20 +94,6 @@ def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDA
     slope = np.maximum(np.where(second <= last, curved, steepness), secant(before, first))
     line = root[rows, first][:, None] + slope[:, None] * (knots - knots[first][:, None])
     return np.where(np.arange(len(knots)) < first[:, None], np.minimum(line, root), root)
-
-
-def zero_crossing(knots: NDArray, root: NDArray) -> NDArray:
-    """Where non-decreasing rows (n, k) cross zero, along the straight line between the knots beside it.
-
-    Rows that are positive throughout are continued downwards by their first slope; those that are nowhere
-    positive cross at the last knot.
-    """
-    first = np.clip(np.argmax(root > 0.0, axis=1), 1, len(knots) - 1)
-    rows = np.arange(len(root))
-    low, high = root[rows, first - 1], root[rows, first]
-    width = knots[first] - knots[first - 1]
-    crossing = knots[first] - high * width / np.where(high > low, high - low, 1.0)
-    return np.where(root[:, -1] > 0.0, crossing, knots[-1])
 
 
 def _inner_slopes(width: NDArray, secant: NDArray) -> NDArray:

@@ -88,21 +88,12 @@ class Direct:
         """Lay the law out on positions (n,) of the contact, m."""
         from asperity.contact.halfspace import HalfSpace
         from asperity.contact.in_place import ContactInPlace
+        from asperity.reduction.texture import grid_index
 
         (dx, _), half = self.spacing, self.body.shape[0] // 2
+        rows = len(self.heights) - 2 * half
+        grid_index("texture under the contact window", rows, self.start + half * dx, dx, positions)
         index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / dx
-        last = self.heights.shape[0] - 1 - half
-        asked, known = (
-            f"{self.start + dx * low:.6g} to {self.start + dx * high:.6g}"
-            for low, high in ((index.min(), index.max()), (half, last))
-        )
-        require(
-            half - 1e-6 <= index.min() and index.max() <= last + 1e-6,
-            "path (m)",
-            asked,
-            f"{known}, where the texture fills the contact window",
-            "Shorten the duration or provide a longer texture.",
-        )
         half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness)
         return DirectOnPath(self, ContactInPlace(half_space, self.body, self.rtol), index - half)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, not_negative
-from asperity.kernels.piecewise import continued_to_touch, monotone_slopes, zero_crossing
+from asperity.kernels.piecewise import monotone_slopes
 from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law
 from asperity.reduction.stiffness import ForceCurve
@@ -73,9 +73,6 @@ def _laid_out(table: ForceTable, at: Array) -> tuple[Array, Array, Array]:
     """g = F^(2/3), its slopes and the first touch at some positions."""
     root = np.cbrt(table.at(at)) ** 2
     touches = table.touch_at(at)
-    if touches is None:
-        # ripples of the spline beside a place where contact is lost are no contact
-        touches = zero_crossing(table.approaches, continued_to_touch(table.approaches, root, least=0.05))
     root = _straight_to_touch(table.approaches, root, touches)
     return root, monotone_slopes(table.approaches, root), touches
 

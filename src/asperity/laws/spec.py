@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 Dashes = Literal["-"] | tuple[float, tuple[float, ...]]
 
-MARKERS = ("o", "s", "^", "v", "<", ">", "D", "d", "P", "X", "p", "h", "H", "8", "*")
-"""Markers that a law may have in figures, in the letters of matplotlib."""
 _WORD = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
 
 
@@ -71,12 +69,12 @@ class Look:
     dashes : "-" or (offset, (on, off, ...))
         Of the line, in points.
     marker : str
-        One of `MARKERS`.
+        In the letters of matplotlib.
 
     Raises
     ------
     InputError
-        If they are none.
+        If the colour is none.
     """
 
     colour: str = "#6f7a85"
@@ -88,16 +86,6 @@ class Look:
         require(
             re.fullmatch("#[0-9a-f]{6}", str(self.colour)), "colour of a law", shown(self.colour), allowed
         )
-        require(self.marker in MARKERS, "marker of a law", shown(self.marker), " ".join(MARKERS))
-        allowed = '"-", or an offset and lengths of dashes and gaps, as (0, (6, 1.5))'
-        require(_are_dashes(self.dashes), "dashes of a law", shown(self.dashes), allowed)
-
-
-def _are_dashes(dashes: object) -> bool:
-    match dashes:
-        case (int() | float(), (_, *_) as lengths):
-            return all(isinstance(length, int | float) and length > 0 for length in lengths)
-    return dashes == "-"
 
 
 VARIANT_DASHES: Dashes = (0, (8, 1.5, 1, 1.5, 1, 1.5))
@@ -186,9 +174,6 @@ class LawSpec:
             "meaning": (_matches(r"\S.*\.", self.meaning), "one line that ends with a full stop"),
             "build": (callable(self.build), "a function of the materials"),
             "normalise": (self.normalise in ("tangent", "low-wavenumber"), '"tangent" or "low-wavenumber"'),
-            "look": (isinstance(self.look, Look), "a Look of colour, dashes and marker"),
-            "role": (self.role is None or isinstance(self.role, Role), "None, or a Role"),
-            "variants": (all(isinstance(each, Variant) for each in self.variants), "a tuple of Variant"),
             "parameters": (
                 all(isinstance(each, Key) for each in self.parameters.values()),
                 "keys of asperity.parameters.key, by name",

@@ -305,8 +305,6 @@ def design_fir(
     the taps of each state sum to one.
     """
     if order is not None:
-        even = order >= 2 and order % 2 == 0
-        require(even, "order of the contact filter", order, "an even number ≥ 2", "J + 1 taps need J even.")
         return LineFilter(contact_filter, _by_window(contact_filter, spacing, order), spacing)
     fine, most = _fine(contact_filter), max(2, 2 * (min(most, LARGEST_ORDER) // 2))
     fitted, order = _target(contact_filter, fine), min(max(2, least), most)

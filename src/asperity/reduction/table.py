@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array, require
-from asperity.contact.scan import FORCE_ACCURACY, ScanJob, ScannedForces, solved_blocks, total
+from asperity.arguments import Array, ArrayLike
+from asperity.contact.scan import ScanJob, ScannedForces, solved_blocks, total
 from asperity.errors import ComputationError
 from asperity.kernels.along import OVERLAP, splines_along
-from asperity.reduction.texture import check_states, grid_index
+from asperity.reduction.texture import grid_index
 from asperity.store import Store
 
 
@@ -58,8 +58,6 @@ def columns(forces: Array | StoredForces, first: int, stop: int) -> Array:
     return forces[:, first:stop] if isinstance(forces, np.ndarray) else forces.columns(first, stop)
 
 
-FALL = 2.0 * FORCE_ACCURACY
-"""Fall of the force from state to state, relative to the largest, that an iterative solver may leave."""
 PIECE = 8192
 """Positions worked on in one go."""
 
@@ -73,19 +71,7 @@ class ForceTable:
     approaches: Array  # (s,), of the states, m, increasing
     start: float  # position of the first point on the path, m
     spacing: float  # distance of the points, m
-    # (m,), approach at which contact begins, m; by default it is estimated from the forces
-    touches: Array | None = None
-
-    def __post_init__(self) -> None:
-        forces, approaches = self.forces, np.asarray(self.approaches, dtype=float)
-        if not isinstance(forces, StoredForces):
-            forces = np.asarray(forces, dtype=float)
-        _check_forces(forces, approaches, self.spacing)
-        if self.touches is not None:
-            allowed = f"{forces.shape[1]} finite approaches, one a position"
-            finite_array("first touches of the force table", self.touches, allowed, shape=(forces.shape[1],))
-        object.__setattr__(self, "forces", forces)
-        object.__setattr__(self, "approaches", approaches)
+    touches: Array  # (m,), approach at which contact begins, m
 
     def at(self, positions: ArrayLike) -> Array:
         """Forces (n, s), N, at positions (n,), m, by cubic splines: not negative, not falling with states."""
@@ -101,25 +87,7 @@ class ForceTable:
         # a spline may undershoot beside a place where contact is lost
         return np.maximum.accumulate(np.maximum(result, 0.0, out=result), axis=1)
 
-    def touch_at(self, positions: ArrayLike) -> Array | None:
-        """Approach at first touch at positions (n,), m, interpolated linearly; None where it is not known."""
-        if self.touches is None:
-            return None
+    def touch_at(self, positions: ArrayLike) -> Array:
+        """Approach at first touch at positions (n,), m, interpolated linearly."""
         at = self.start + self.spacing * np.arange(self.forces.shape[1])
         return np.interp(np.asarray(positions, dtype=float), at, self.touches)
-
-
-def _check_forces(forces: Array | StoredForces, approaches: Array, spacing: float) -> None:
-    """Refuse forces that no contact has, piece by piece."""
-    lowest, largest, fall = 0.0, 0.0, 0.0
-    for first in range(0, forces.shape[-1], PIECE):
-        # the last four points again where fewer are left
-        piece = columns(forces, min(first, max(0, forces.shape[-1] - 4)), first + PIECE)
-        check_states("force table", piece, approaches, spacing)
-        lowest, largest = min(lowest, piece.min()), max(largest, piece.max())
-        fall = min(fall, np.diff(piece, axis=0).min(initial=0.0))
-    what, remedy = "force table", "Give contact.approaches two or more."
-    require(len(approaches) >= 2, what, "one state", "at least two states", remedy)
-    require(lowest >= 0.0, "force table (N)", lowest, "forces of zero or more")
-    received, allowed = "forces that fall while the approach grows", "forces that rise with the approach"
-    require(fall >= -FALL * largest, what, received, allowed)

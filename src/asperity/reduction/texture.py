@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from asperity.arguments import Array, ArrayLike, positive, require
+from asperity.arguments import Array, ArrayLike, require
 from asperity.kernels.along import splines_along
 from asperity.surfaces.strip import Rows, Strip
 
@@ -28,7 +28,6 @@ class StateTexture:
     def __post_init__(self) -> None:
         heights = np.atleast_2d(np.asarray(self.heights, dtype=float))
         approaches = np.atleast_1d(np.asarray(self.approaches, dtype=float))
-        check_states("state texture", heights, approaches, self.spacing)
         object.__setattr__(self, "heights", heights)
         object.__setattr__(self, "approaches", approaches)
 
@@ -50,21 +49,6 @@ class StateTexture:
     def at(self, positions: ArrayLike) -> Array:
         """Texture (n, s), m, of every state at positions (n,) on the path, m, by cubic splines along it."""
         return along_path("state texture", self.heights, self.start, self.spacing, positions)
-
-
-def check_states(what: str, values: Array, approaches: Array, spacing: float) -> None:
-    """Refuse values (s, m) at approaches (s,) and positions along a path whose shapes or values do not fit.
-
-    Approaches and spacing in m; `what` they are is for the message.
-    """
-    received, allowed = f"{values.shape} values for {len(approaches)} states", "an array (states, positions)"
-    shaped = values.ndim == 2 and values.shape[0] == len(approaches) and values.shape[1] >= 4
-    require(shaped, what, received, f"{allowed} with at least 4 positions")
-    finite = np.all(np.isfinite(values)) and np.all(np.isfinite(approaches))
-    require(finite, what, "NaN or infinite values", "finite numbers", "Fill missing points first.")
-    rising, allowed = np.all(np.diff(approaches) > 0.0), "strictly increasing approaches (m)"
-    require(rising, f"approaches of the {what}", approaches, allowed)
-    positive(f"spacing of the {what} (m)", spacing)
 
 
 def along_path(what: str, values: Array, start: float, spacing: float, positions: ArrayLike) -> Array:
