@@ -99,28 +99,11 @@ def test_band_without_energy():
     assert not strip_from_bands((2000, 5), (MM, MM), [0.1], [-np.inf], seed=1).heights.any()
 
 
-def line(n=1000, spacing=MM, wavelengths=(0.1,), levels_db=(0.0,)):
-    return from_bands(n, spacing, wavelengths, levels_db, seed=1)
-
-
-def strip(shape=(1000, 9), spacing=(MM, MM), lateral=1.0):
-    return strip_from_bands(shape, spacing, [0.1], [0.0], lateral=lateral, seed=1)
-
-
 test_what_is_wrong_is_said = refusals(
-    (lambda: line(n=100), "length of the line: received 0.1 m"),
-    (lambda: line(spacing=1e-2, wavelengths=[0.02]), "spacing: received 0.01 m"),
-    (lambda: line(wavelengths=[0.1, 0.1], levels_db=[0.0, 0.0]), "distinct centres"),
-    (lambda: line(wavelengths=[0.09]), "distinct centres"),
-    (lambda: line(wavelengths=[0.1, 0.08]), "equal length"),
-    (lambda: line(levels_db=[np.nan]), "equal length"),
-    (lambda: line(wavelengths=[-0.1]), "positive and finite"),
-    (lambda: line(n=1), "2 points or more"),
-    (lambda: strip(shape=(1, 9)), r"shape: received \(1, 9\)"),
-    (lambda: strip(spacing=(MM, -MM)), "spacing: received"),
-    (lambda: strip(lateral=0.0), "lateral: received 0.0"),
-    (lambda: strip(lateral=np.nan), "lateral: received nan"),
-    (lambda: strip(shape=(100, 9)), "length of the line: received 0.1 m"),
+    *(
+        (lambda wavelengths=wavelengths: from_bands(1000, MM, wavelengths, [0.0], seed=1), "distinct centres")
+        for wavelengths in ([0.1, 0.1], [0.09])
+    )
 )
 
 

@@ -14,7 +14,6 @@ from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip, check_shape
 
 Continuation = Literal["refuse", "mirror", "repeat"]
-CHOICES = ("refuse", "mirror", "repeat")
 
 PIECE_POINTS = 2**18
 """Points of a piece of a long strip, at least: 2 MiB."""
@@ -49,9 +48,6 @@ def extend(
     """
     values = np.asarray(heights, dtype=np.float64)
     n, index = len(values), np.arange(start, start + rows)
-    require(how in CHOICES, f"continuation of the {what}", repr(how), "one of " + ", ".join(CHOICES))
-    complete = np.isfinite(values).all()
-    require(complete, what, "missing points", "complete heights", "Fill or trim it first.")
     if how == "repeat":
         return close(values, crossfade)[np.mod(index, n)]
     if how == "mirror":
