@@ -54,32 +54,28 @@ test_what_is_not_positive_has_no_class = refusals(
 )
 
 
-NO_PADS = "It has no class for such pads; take the sound power from the vibration."
-
-
 @pytest.mark.parametrize(
     ("sections", "told"),
     [
         ({}, None),
         (
             {"track": {"pad_stiffness": 100e6}},
-            "dynamic stiffness of the rail pads, for CNOSSOS-EU: 100 MN/m, in range 150 to 250 MN/m, those "
-            'of the class "soft". CNOSSOS-EU\'s sound power is that of another track or wheel. ' + NO_PADS,
+            "dynamic stiffness of the rail pads, MN/m, for CNOSSOS-EU: 100, in range 150 to 250. "
+            "CNOSSOS-EU's sound power is that of another one. Take the sound power from the vibra",
         ),
-        ({"track": {"pad_stiffness": 1200e6}}, f'the class "hard". … {NO_PADS}'),
-        ({"track": {"sleeper_mass": 40.0}}, "half a sleeper, for CNOSSOS-EU: 40 kg, in range 110 to 210 kg"),
-        ({"track": {"sleeper_mass": 400.0}}, "for CNOSSOS-EU: 400 kg, in range 110 to 210 kg"),
+        ({"track": {"pad_stiffness": 1200e6}}, "in range 800 to 1000."),
+        ({"track": {"sleeper_mass": 40.0}}, "half a sleeper, kg, for CNOSSOS-EU: 40, in range 110 to 210"),
+        ({"track": {"sleeper_mass": 400.0}}, "for CNOSSOS-EU: 400, in range 110 to 210"),
         (
             {"wheel": {"radius": 0.25}},
-            "diameter of the wheel, for CNOSSOS-EU: 500 mm, in range within 15 % of 680 mm … "
-            "It has no class for such a wheel.",
+            "diameter of the wheel, mm, for CNOSSOS-EU: 500, in range 591.3 to 782",
         ),
     ],
 )
 def test_a_label_that_does_not_fit_is_told_with_what_to_do(sections, told):
     found = noise.findings_of_labels(case(**sections))
     assert [finding.grade for finding in found] == [Grade.WARNING] * (told is not None)
-    assert all(part in finding.message for finding in found for part in told.split(" … "))
+    assert all(told in finding.message for finding in found)
 
 
 def test_a_check_says_whose_sound_power_is_computed():
@@ -90,7 +86,7 @@ def test_a_check_says_whose_sound_power_is_computed():
     rigid = dict(planned_rows(prepare_case(case(wheel={"section": "rigid"}))))["sound power"]
     assert rigid.startswith("of rail and sleepers: of this wheel it is not known how")
     hard = {"pad_stiffness": 1200e6}
-    with pytest.warns(OutOfRangeWarning, match='those of the class "hard"'):
+    with pytest.warns(OutOfRangeWarning, match="in range 800 to 1000"):
         planned_rows(prepare_case(case(track=hard)))
     without = prepare_case(case(track=hard, laws=["hertz"]))
     assert "CNOSSOS" not in dict(planned_rows(without))["sound power"]

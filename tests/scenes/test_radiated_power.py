@@ -73,7 +73,7 @@ def test_what_a_result_says_of_a_rigid_wheel_and_of_its_labels(run):
     label, silent = (w for w in told if w["category"] == "MissingSourceWarning" or "CNOSSOS" in w["message"])
     assert silent["grade"] == "note"
     assert "that of rail and sleepers alone: of this wheel it is not" in silent["message"]
-    assert "130 MN/m, in range 150 to 250 MN/m" in label["message"]
+    assert "MN/m, for CNOSSOS-EU: 130, in range 150 to 250" in label["message"]
 
 
 def assert_summed(found, names):

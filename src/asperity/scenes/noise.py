@@ -36,8 +36,8 @@ EMPTY = -200.0
 MONO_BLOCK = (110.0, 210.0)
 """Mass of half a mono-block sleeper of concrete, kg: 140 to 177.5 kg are published for models of tracks; half
 of one of wood, or of two blocks, is lighter."""
-CLOSE_DIAMETER = 0.15
-"""By which part the wheel may be larger or smaller than the label says."""
+CLOSE = 1.15
+"""Ratio to the diameter of the label by which the wheel may be larger or smaller."""
 
 
 def track_label(case: Any) -> str:
@@ -52,36 +52,18 @@ def wheel_label(case: Any) -> str:
 
 def findings_of_labels(case: Any) -> list[Finding]:
     """Hold track and wheel of a case to those of which CNOSSOS-EU knows the sound power."""
-    pads, wheel, track = track_label(case), wheel_label(case), case.track.model()
-    stiffness, mass, diameter = track.pad_stiffness, track.sleeper_mass, 2.0 * case.rolling.radius
-    least, most = cnossos.PAD_CLASSES[pads]
-    apart = abs(math.log(diameter / (1e-3 * float(wheel.split()[0]))))
-    vibration = "take the sound power from the vibration."
-    rows = (  # whether it is another one, quantity, value, limit and remedy
-        (
-            not least <= stiffness <= most,
-            ("dynamic stiffness of the rail pads", f"{stiffness / 1e6:.4g} MN/m"),
-            f'{least / 1e6:g} to {most / 1e6:g} MN/m, those of the class "{pads}"',
-            f"It has no class for such pads; {vibration}",
-        ),
-        (
-            not MONO_BLOCK[0] <= mass <= MONO_BLOCK[1],
-            ("mass of half a sleeper", f"{mass:.4g} kg"),
-            f"{MONO_BLOCK[0]:g} to {MONO_BLOCK[1]:g} kg, those of one block of concrete",
-            f"Its tables here are those of mono-block sleepers; {vibration}",
-        ),
-        (
-            apart > math.log1p(CLOSE_DIAMETER),
-            ("diameter of the wheel", f"{1e3 * diameter:.4g} mm"),
-            f"within 15 % of {wheel}",
-            "It has no class for such a wheel.",
-        ),
-    )
-    meaning = "CNOSSOS-EU's sound power is that of another track or wheel."
+    track, wheel = case.track.model(), float(wheel_label(case).split()[0])
+    least, most = cnossos.PAD_CLASSES[track_label(case)]
+    rows = {  # value, and between which it may lie
+        "dynamic stiffness of the rail pads, MN/m": (1e-6 * track.pad_stiffness, 1e-6 * least, 1e-6 * most),
+        "mass of half a sleeper, kg": (track.sleeper_mass, *MONO_BLOCK),
+        "diameter of the wheel, mm": (2e3 * case.rolling.radius, wheel / CLOSE, wheel * CLOSE),
+    }
+    words = "CNOSSOS-EU's sound power is that of another one.", "Take the sound power from the vibration."
     return [
-        Finding(f"{quantity}, for CNOSSOS-EU", value, limit, Grade.WARNING, meaning, remedy)
-        for other, (quantity, value), limit, remedy in rows
-        if other
+        Finding(f"{name}, for CNOSSOS-EU", f"{value:.4g}", f"{low:.4g} to {high:.4g}", Grade.WARNING, *words)
+        for name, (value, low, high) in rows.items()
+        if not low <= value <= high
     ]
 
 

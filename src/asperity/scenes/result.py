@@ -60,14 +60,13 @@ def computed_result(
     choice, population = validity.choice_of(computed, brief=brief), answers(computed)
     found, own = validity.findings(computed, population, choice), Values()
     in_bands = group(over_frequency)
-    losses = power = None
+    losses = None
     sources = METHOD + (ROUGH_CONTACT if computed.reduction else ()) + BANDS + (EXPECTED if choice else ())
     if isinstance(scene.over, Track):
         highest = case.numerics.highest_frequency
         losses = track.loss_factor_error(computed.track, scene.first, computed.stiffness, highest)
         found += track.findings_of_losses(losses)
         if schema.SOUND_POWER_LEVEL_A in over_frequency:
-            power = in_bands[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
             found += noise.findings_of_labels(case)
         found += measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
         beside = sideways.sideways_group(computed, in_bands)
@@ -90,7 +89,7 @@ def computed_result(
         **expected,
     }
     result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
-    verdict = validity.verdict(computed, in_bands, found, power, choice)
+    verdict = validity.verdict(computed, in_bands, found, choice)
     result.attrs = root_attributes(case, scene.title, sources, verdict, caught)
     return result
 

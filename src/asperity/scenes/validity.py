@@ -201,13 +201,12 @@ def verdict(
     computed: Computed,
     over_frequency: xarray.Dataset,
     found: Sequence[Finding],
-    sound_power: xarray.DataArray | None = None,
     choice: LawChoice | None = None,
 ) -> str:
     """Say in a sentence or two how the main law's contact went, and how far it is from the others.
 
-    The main law is the first of the runs. By the group of spectra; sound power (laws,), A-weighted, dB;
-    choice of a law, from the law accuracy map.
+    The main law is the first of the runs. By the group of spectra; choice of a law, from the law accuracy
+    map.
     """
     main, run = next(iter(computed.runs.items()))
     sentences = list(_doubts(computed, found))
@@ -223,10 +222,6 @@ def verdict(
         sentences.append(f"Per one-third octave {main} is {' and '.join(compared)}{secant}")
     if choice is not None and (told := choice.sentence(main)) is not None:
         sentences.append(told)
-    if sound_power is not None and others:
-        own = sound_power.sel(law=main)
-        changes = [f"{signed_level(own - sound_power.sel(law=law))} dB over {law}" for law in others]
-        sentences.append(f"Its A-weighted sound power is {' and '.join(changes)}{secant}")
     return ". ".join(sentences) + "."
 
 
