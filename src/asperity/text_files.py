@@ -60,10 +60,7 @@ def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -
         if content.startswith(_MARKS):
             return content.decode("utf-16")
         if b"\0" in content:
-            halves = content[: len(content) // 2 * 2]
-            utf16 = not any(halves[0::2]) or not any(halves[1::2])
-            received = "text in UTF-16 without a byte-order mark" if utf16 else "bytes that are no text"
-            raise InputError(source, received, allowed, remedy)
+            raise InputError(source, "bytes that are no text, or not in UTF-8", allowed, remedy)
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         if latin and not content.startswith(_MARKS):

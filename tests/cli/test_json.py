@@ -79,8 +79,6 @@ def test_numbers_of_a_run_are_those_of_its_file():
     assert told["laws"][0]["peak_force"] == float(force.sel(law="hertz").max())
     assert told["laws"][1]["rms_force"] == float(force.sel(law="linear", contact=1).std("time"))
     assert told["laws"][0]["mean_force"] == float(force.sel(law="hertz", contact=1).mean("time"))
-    levels = tree["spectra/force_level"].sel(law="linear").values
-    np.testing.assert_array_equal(told["force_level"]["linear"], levels)
     assert told["verdict"] == tree.attrs["verdict"]
     assert [item["message"] for item in told["warnings"]] == [
         item["message"] for item in json.loads(tree.attrs["warnings"])

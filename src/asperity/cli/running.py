@@ -18,7 +18,7 @@ from asperity.case.cases import of_bodies
 from asperity.case.content import content, file_digest
 from asperity.errors import InputError
 from asperity.progress import COMPILATION, duration, progress_bar
-from asperity.schema import bearing, provenance, rolling, spectra
+from asperity.schema import bearing, provenance, rolling
 from asperity.store import Store, content_key
 from asperity.terminal import detail, remark, say, say_files
 
@@ -100,7 +100,6 @@ def run_case(
         "computed": computed,
         "verdict": verdict,
         "laws": law_summaries(tree),
-        **band_summaries(tree),
         "warnings": _warnings(tree),
         "files": written,
     }
@@ -132,19 +131,17 @@ def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, mor
     if CONVERGENCE not in more:
         del prepared  # what it holds is not needed beside what is written
     _write(tree, directory, report=report)
-    if CONVERGENCE in more:
+    if more:
         from asperity.convergence import with_convergence
         from asperity.scenarios.preparing import PreparedCase
-
-        assert isinstance(prepared, PreparedCase)  # of bodies
-        with progress_bar() as progress:
-            tree = with_convergence(prepared, tree, progress)
-        _write(tree, directory, report=report)
-    if EFFECTS in more:
         from asperity.studies.effects import with_effects
 
         with progress_bar() as progress:
-            tree = with_effects(case, tree, progress)
+            if CONVERGENCE in more:
+                assert isinstance(prepared, PreparedCase)  # of bodies
+                tree = with_convergence(prepared, tree, progress)
+            if EFFECTS in more:
+                tree = with_effects(case, tree, progress)
         _write(tree, directory, report=report)
     spent, compiling = time.monotonic() - began, COMPILATION.seconds - compiled
     told = f", of which {duration(compiling)} compiled {COMPILATION.functions} functions" if compiling else ""
@@ -230,16 +227,6 @@ def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
         {"law": law} | {name: float(values.sel(law=law)) for name, values in numbers.items()}
         for law in group["law"].values.tolist()
     ]
-
-
-def band_summaries(tree: DataTree) -> dict[str, Any]:
-    """Centres of the one-third octaves, Hz, and the force level of each law in them, dB re 1 N."""
-    group = tree["spectra"].to_dataset()
-    if spectra.FORCE_LEVEL.name not in group:
-        return {"bands": [], "force_level": {}}
-    level = group[spectra.FORCE_LEVEL.name]
-    levels = {str(law): level.sel(law=law).values for law in level["law"].values}
-    return {"bands": group[spectra.BAND.name].values, "force_level": levels}
 
 
 # --- the run of an earlier time
