@@ -86,7 +86,6 @@ def test_what_was_computed_is_printed(computed):
     ):
         assert text in told
     assert "100 Hz" not in told
-    assert "prediction interval; it holds the value of one more seed with a" in told
     assert str((computed.out / "study.nc").resolve()) in told
     (rest,) = [line for line in warned.splitlines() if "after rest" in line]
     assert rest.startswith("Warning (8 of 16 members): the record starts 0 ms after rest")
@@ -186,7 +185,7 @@ def test_columns_and_figures_are_those_that_are_asked_for(out):
 def test_an_earlier_study_stays_whole_until_all_is_there_that_replaces_it(out, monkeypatch):
     before = {file.name: file.read_bytes() for file in out.iterdir()}
     full = Mock(side_effect=OSError(errno.ENOSPC, "No space left"))
-    monkeypatch.setattr("asperity.cli.studying._page", full)
+    monkeypatch.setattr("asperity.cli.studying._summary", full)
     assert "out could not be written: the disk is full" in call(*AGAIN, code=3).stderr
     assert {file.name: file.read_bytes() for file in out.iterdir()} == before
 

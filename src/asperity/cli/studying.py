@@ -27,11 +27,19 @@ from asperity.studies.effects import effects, weighted_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SCATTER, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES
 from asperity.studies.signals import SignalSet
-from asperity.terminal import line_width, remark, say, say_table
+from asperity.terminal import line_width, remark, say, say_files, say_table
 from asperity.text_files import write_csv
 
 RESULTS, TABLE, MEANS, BAND, PAGE = "study.nc", "study.csv", "study_mean.csv", "ensemble.csv", "study.html"
 EFFECTS = "effects.csv"
+OFFERED = {
+    "effects": "effects (CSV)",
+    "table": "table (CSV)",
+    "mean": "means over seeds (CSV)",
+    "ensemble": "band over seeds (CSV)",
+    "results": "results (netCDF)",
+}
+"""What lies beside the page, in its words."""
 MOST_ROWS = 60  # that are printed; the file has all of them
 FOLDED = 14  # characters of a line of a heading
 WIDTH = 200  # characters of a line where standard output is no terminal
@@ -164,17 +172,15 @@ def _write(
     asked: Sequence[str],
 ) -> dict[str, Path]:
     """Write all that there is of a study, in place of an earlier one, and say where; return files by name."""
-    names, notes = {"results": RESULTS, "table": TABLE}, {}
+    names = {"results": RESULTS, "table": TABLE}
     with files.together(directory, last=RESULTS) as new:
         save(xarray.DataTree(table), new / RESULTS)
         write_csv(new / TABLE, *tables.columns_of(table))
         if means is not None:
             names["mean"] = MEANS
-            notes["mean"] = f", over {means.attrs['members']} values of {SEED}, ± their standard deviation"
             write_csv(new / MEANS, *tables.columns_of(means))
         if band is not None:
             names["ensemble"] = BAND
-            notes["ensemble"] = f"\n{band.attrs['meaning']}"
             axes = [str(name) for name in band["force_level"].dims if name not in ("law", "band")]
             write_csv(new / BAND, *tables.long_columns(band, [*axes, "law", "band"]))
         if effect is not None:
@@ -185,33 +191,21 @@ def _write(
         blocks += _figures(table, means, band, asked or tables.USUAL_IN_FIGURES)
         if blocks:
             names["page"] = PAGE
-            files.write_bytes(
-                new / PAGE, _page(table, blocks, list(names), told[0][1].best if told else "").encode()
-            )
+            beside = {words: names[what] for what, words in OFFERED.items() if what in names}
+            lead = (told and told[0][1].best) or _summary(table)
+            text = page.figures_page("Study", lead, blocks, beside)
+            files.write_bytes(new / PAGE, text.encode())
         for name in {MEANS, BAND, EFFECTS, PAGE} - set(names.values()):  # of an earlier study
             files.discard(directory / name)
-    for what, name in names.items():
-        label = {"mean": "Means", "ensemble": "Seeds"}.get(what, what.capitalize())
-        say(f"{label + ':':9}{(directory / name).resolve()}{notes.get(what, '')}", lines=True)
-    return {what: directory / name for what, name in names.items()}
+    written = {what: directory / name for what, name in names.items()}
+    say_files(written)
+    return written
 
 
-def _page(
-    table: xarray.Dataset, blocks: Sequence[page.PageFigure | ReportTable], written: Sequence[str], best: str
-) -> str:
-    """The page of a study, with the files that lie beside it; what helps `best` comes first."""
+def _summary(table: xarray.Dataset) -> str:
     swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
     done, count = int(table["completed"].sum()), table["completed"].size
-    summary = swept if done == count else f"{swept}; {done} of {count} members completed"
-    offered = {
-        "effects": ("effects (CSV)", EFFECTS),
-        "table": ("table (CSV)", TABLE),
-        "mean": ("means over seeds (CSV)", MEANS),
-        "ensemble": ("band over seeds (CSV)", BAND),
-        "results": ("results (netCDF)", RESULTS),
-    }
-    beside = dict(offered[what] for what in offered if what in written)
-    return page.figures_page("Study", best or summary, blocks, beside)
+    return swept if done == count else f"{swept}; {done} of {count} members completed"
 
 
 def _figures(
