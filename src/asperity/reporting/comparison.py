@@ -104,6 +104,7 @@ def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence
 
 
 def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
+    """Keys that differ; of different kinds of case those that all have, for the others say little."""
     held = [{str(i.get("key")): i for i in data.json_list(r.tree, provenance.PARAMETERS)} for r in runs]
     found = []
     for key in dict.fromkeys(key for items in held for key in items):
@@ -111,7 +112,8 @@ def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
         if len(set(map(str, written))) > 1:
             note = next(str(items[key].get("note", "")) for items in held if key in items)
             found.append({"key": key, "note": note, "values": written})
-    return found
+    of_kinds = any(item["key"] == provenance.KIND.name for item in found)
+    return [item for item in found if not of_kinds or None not in item["values"]]
 
 
 def _by_law(

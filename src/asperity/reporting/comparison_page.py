@@ -193,7 +193,7 @@ def comparison_page(of: ComparedRuns, file: str) -> str:
 
 def compared_blocks(of: ComparedRuns) -> list[page.PageFigure | ReportTable]:
     """What the page shows: cases, what each run says, force, each level, contact."""
-    found: list[page.PageFigure | ReportTable] = [_case_table(of), _runs_table(of), _numbers_table(of.table)]
+    found: list[page.PageFigure | ReportTable] = [_runs_table(of), _case_table(of), _numbers_table(of.table)]
     for name, title in of.levels.items():
         told = _levels_caption(of, name), _levels_chart(of, name)
         found += [page.PageFigure(name, title.capitalize(), *told), _difference_table(of, name)]
@@ -216,7 +216,11 @@ def _case_table(of: ComparedRuns) -> ReportTable:
     """Keys whose values differ."""
     written = [["–" if value is None else value for value in item["values"]] for item in of.keys]
     rows = [text_cells([i["key"], *values, i["note"]]) for i, values in zip(of.keys, written, strict=True)]
-    note = "All other keys have the same values." if rows else "All keys have the same values in all runs."
+    note = (
+        "All other keys that the runs share have the same values."
+        if rows
+        else "All keys have the same values in all runs."
+    )
     return ReportTable("keys", "Keys that differ", ["key", *of.names, "what it is"], rows, note)
 
 
