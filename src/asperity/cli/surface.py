@@ -122,17 +122,19 @@ def _show_first(
         say(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
         title += f", the first of {len(surfaces)} maps"
     band, section = _filtered(first, steps)
+    spectra = _spectra_of(first)
+    octaves = _third_octaves([first] if isinstance(first, Profile) else [])
     if isinstance(first, HeightMap):
-        items, spacing = statistics.areal_statistics(first, band), first.spacing
+        items = statistics.areal_statistics(first, band)
+        chart = surface_chart(first.heights, first.spacing, spectra)
     else:
-        items, spacing = statistics.profile_statistics(first, band, section), (first.spacing, first.spacing)
+        items = statistics.profile_statistics(first, band, section)
+        chart = lines_chart([first.heights], first.spacing, spectra, octaves)
     say(f"Levelled; wavelengths {_band(items[0])}:")
     for item in items:
         say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}")
     homogeneous = _homogeneity(first)
-    spectra = _spectra_of(first)
-    octaves = _third_octaves([first] if isinstance(first, Profile) else [])
-    write_chart(surface_chart(first.heights, spacing, spectra, octaves), title, picture)
+    write_chart(chart, title, picture)
     if isinstance(first, HeightMap) and spectra:
         spectra[AREAL] = psd_radial(cleaning.nearly_complete(first) or first)
     told = {"statistics": [asdict(item) for item in items], "homogeneity": homogeneous}

@@ -273,34 +273,38 @@ NamedSpectra = Mapping[str, tuple[Numbers, Numbers]]
 """Wavenumbers above zero, cycles/m, and one-sided PSD, m³, by name."""
 
 
-def surface_chart(
-    heights: Numbers,
-    spacing: tuple[float, float],
-    spectra: NamedSpectra | None = None,
-    octaves: ThirdOctaves | None = None,
-) -> Chart:
-    """Lay out what a surface file holds: its map, the distribution of its heights, and its spectra.
+def surface_chart(heights: Numbers, spacing: tuple[float, float], spectra: NamedSpectra) -> Chart:
+    """Lay out what a map holds: its heights from above, their distribution, and their spectra.
 
-    Heights (nx, ny), or (n,) for a line, and distances along x and y, m, positive out of the material; NaN
-    where missing.
+    Heights (nx, ny), and distances along x and y, m, positive out of the material; NaN where missing.
     """
     heights = np.asarray(heights, dtype=np.float64)
-    length = np.asarray(heights.shape, dtype=np.float64) * spacing[: heights.ndim]
-    across = heights.ndim == 1 or bool(length[0] > SLENDER * length[1])  # it takes the whole width
-    x, *y = (step * np.arange(n, dtype=np.float64) for n, step in zip(heights.shape, spacing, strict=False))
-    unit = height_scale(heights)[:2]
-    if heights.ndim == 1:
-        along, symbol = length_unit(np.ptp(x))
-        starts, low, high = chart.envelope(heights / unit[0], STRETCHES)
-        line = chart.Area(x[starts] / along, low, high, colour=BLUE, opacity=1.0)
-        above = Panel(Axis(f"x / {symbol}"), Axis(f"height / {unit[1]}"), (line,), height=1.9)
-    else:
-        equal = bool(max(length) <= 12 * min(length))
-        above = height_map(x, y[0], heights, equal=equal, height=1.9 if across else 4.2, share=1.25)
-    named, height = {"heights": distribution(heights)}, 2.7 if across else 4.2
-    beside = height_histogram(named, unit, height=height, beside=not across)
-    ratio = _ratio_panel(heights, unit, beside=across, height=2.7 if across else 3.2)
-    return Chart((above, beside, ratio, *_spectra_panels(spectra or {}, octaves, beside=not across)))
+    length = np.asarray(heights.shape, dtype=np.float64) * spacing
+    slender, equal = bool(length[0] > SLENDER * length[1]), bool(max(length) <= 12 * min(length))
+    x, y = (step * np.arange(n, dtype=np.float64) for n, step in zip(heights.shape, spacing, strict=True))
+    above = height_map(x, y, heights, equal=equal, height=1.9 if slender else 4.2, share=1.25)
+    return _with_statistics(above, heights, spectra, None, beside=not slender)
+
+
+def lines_chart(
+    lines: Sequence[Numbers], spacing: float, spectra: NamedSpectra, octaves: ThirdOctaves | None = None
+) -> Chart:
+    """Lay out lines measured side by side, one above the other, with their distribution and their spectra.
+
+    Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
+    """
+    above, together = _lines_panel(lines, spacing), np.concatenate(lines)
+    return _with_statistics(above, together, spectra, octaves, beside=True)
+
+
+def _with_statistics(
+    above: Panel, heights: Numbers, spectra: NamedSpectra, octaves: ThirdOctaves | None, *, beside: bool
+) -> Chart:
+    """What heights look like, and how often each occurs, beside it or below, and their spectra."""
+    unit, named = height_scale(heights)[:2], {"heights": distribution(heights)}
+    histogram = height_histogram(named, unit, height=above.height if beside else 2.7, beside=beside)
+    ratio = _ratio_panel(heights, unit, beside=not beside, height=3.2 if beside else 2.7)
+    return Chart((above, histogram, ratio, *_spectra_panels(spectra, octaves, beside=beside)))
 
 
 def _ratio_panel(heights: Numbers, unit: tuple[float, str], **place: Any) -> Panel:
@@ -341,29 +345,11 @@ def _octaves_panel(octaves: ThirdOctaves, **place: Any) -> Panel:
     return Panel(along, Axis("roughness / dB re 1 µm"), tuple(marks), title=title, **place)
 
 
-def lines_chart(
-    lines: Sequence[Numbers],
-    spacing: float,
-    spectra: NamedSpectra | None = None,
-    octaves: ThirdOctaves | None = None,
-) -> Chart:
-    """Lay out lines measured side by side, one above the other, with their distribution and their spectra.
-
-    Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
-    """
-    together = np.concatenate(lines)
-    unit, height = height_scale(together)[:2], 2.4 + 0.42 * len(lines)
-    named, place = {"heights": distribution(together)}, {"height": height, "title": "heights of all lines"}
-    histogram = height_histogram(named, unit, beside=True, **place)
-    ratio = _ratio_panel(together, unit, height=3.2)
-    above = _lines_panel(lines, spacing, unit, height=height, share=2.0)
-    return Chart((above, histogram, ratio, *_spectra_panels(spectra or {}, octaves, beside=True)))
-
-
-def _lines_panel(lines: Sequence[Numbers], spacing: float, unit: tuple[float, str], **place: Any) -> Panel:
+def _lines_panel(lines: Sequence[Numbers], spacing: float) -> Panel:
     """Lines below each other, and a bar that says how high they are drawn."""
-    size, symbol = unit
-    reach = float(np.ptp(np.nanpercentile(np.concatenate(lines), [0.1, 99.9]))) / size or 1.0
+    together = np.concatenate(lines)
+    size, symbol = height_scale(together)[:2]
+    reach = float(np.ptp(np.nanpercentile(together, [0.1, 99.9]))) / size or 1.0
     along, along_symbol = length_unit(longest := max(map(len, lines)) * spacing)
     end = longest / along
     marks: list[Mark] = []
@@ -381,6 +367,7 @@ def _lines_panel(lines: Sequence[Numbers], spacing: float, unit: tuple[float, st
         Axis(f"distance along the lines / {along_symbol}", 0.0, end),
         Axis("line", -(len(lines) - 0.4) * reach, 1.1 * reach, ticks=ticks),
         (*marks, bar, note),
-        title=f"levelled lines, each drawn {reach:.3g} {symbol} below the one before",
-        **place,
+        title=f"lines {reach:.3g} {symbol} apart, levelled" if len(lines) > 1 else "line, levelled",
+        height=2.4 + 0.42 * len(lines),
+        share=2.0,
     )
