@@ -159,7 +159,7 @@ def population_table(tree: DataTree) -> ReportTable | None:
     return listed_table(tree, contact.POPULATION, ("population", "One population?"), columns, note)
 
 
-_CONDITIONS = (contact.TRACK_RMS, contact.TRACK_SLOPE, contact.TRACK_AREA_RATIO, contact.TRACK_STIFFNESS)
+_CONDITIONS = contact.TRACK_RMS, contact.TRACK_STIFFNESS
 
 
 def condition_table(tree: DataTree) -> ReportTable | None:

@@ -18,6 +18,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scene import Scene
 from asperity.scenarios.textures import Textures
 from asperity.spectra import psd
+from asperity.structures.track import Track
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
 from asperity.threads import thread_count
@@ -241,10 +242,11 @@ def law_choice(case: Case, shape: Geometry, textures: Textures, scene: Scene) ->
     It holds wheels on rails, which stand for all that rolls over a track, and balls on beams, for all else.
     """
     path = textures.path
-    if path is None or textures.defects is not None or not (textures.areal and scene.like):
+    if path is None or textures.defects is not None or not textures.areal:
         return None
+    kind = "wheel-on-rail" if isinstance(scene.over, Track) else "ball-on-beam"
     place = place_of(path, shape, case.speed, scene.square_transfer)
-    return None if place is None else choose(law_map(), scene.like, place, case.laws)
+    return None if place is None else choose(law_map(), kind, place, case.laws)
 
 
 def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawChoice:

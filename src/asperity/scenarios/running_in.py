@@ -13,12 +13,11 @@ from asperity.contact.scan import total
 from asperity.progress import Progress
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
-from asperity.scenarios.reducing import PressedSamples, samples_of
+from asperity.scenarios.reducing import samples_of
 from asperity.scenarios.textures import Textures
 from asperity.schema import Values, contact
 from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.statistics import rms_slope
 from asperity.surfaces.strip import Rows
 from asperity.threads import in_order, thread_count
 
@@ -75,19 +74,19 @@ def run_in_case(
 
 
 def _passes(surfaces: Sequence[RunInHeights], conditions: Array) -> Values:
-    """What each pass did to all surfaces together, and their conditions (2, 4) before and after."""
+    """What each pass did to all surfaces together, and their conditions (2, 2) before and after."""
     weights = np.array([np.count_nonzero(each.touched) for each in surfaces], dtype=np.float64)
     weights /= max(weights.sum(), 1.0)
     passes = max(len(each.largest) for each in surfaces)
     largest = np.zeros((len(surfaces), passes))
     for n, each in enumerate(surfaces):
         largest[n, : len(each.largest)] = each.largest
-    names = (contact.TRACK_RMS, contact.TRACK_SLOPE, contact.TRACK_AREA_RATIO, contact.TRACK_STIFFNESS)
     return {
         contact.RUNNING_IN_PASS: np.arange(1, passes + 1),
         contact.RUNNING_IN_LOWERING: largest.max(axis=0),
         contact.CONDITION: ["before", "after"],
-        **dict(zip(names, conditions.T, strict=True)),
+        contact.TRACK_RMS: conditions[:, 0],
+        contact.TRACK_STIFFNESS: conditions[:, 1],
         contact.YIELDED_SHARE: float(weights @ np.array([each.yielded_share for each in surfaces])),
         contact.SHAKEN_DOWN: int(all(each.settled for each in surfaces)),
     }
@@ -109,27 +108,26 @@ def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures)
     return words if textures.path is not None else f"{words}, line of the path as given"
 
 
-def _condition(case: Case, shape: Geometry, textures: Textures) -> tuple[float, float, float, float]:
-    """Of samples and path rms height, m, and slope on the track; pressed, area ratio, and stiffness, N/m.
+def _condition(case: Case, shape: Geometry, textures: Textures) -> tuple[float, float]:
+    """Of samples and path rms height on the track, m; pressed, their stiffness, N/m.
 
     The track is as wide as the nominal patch; the stiffness is that which small vibration feels: elastic.
     """
     half_space, elastic = shape.half_space(case.contact.hardness), shape.half_space(None)
     samples, rtol = samples_of(case, shape, textures.maps, shape.semi_axes), case.numerics.rtol
     contacts = [half_space.solve(shape.body - each, load=shape.load, rtol=rtol) for each in samples]
-    pressed = PressedSamples(elastic, contacts, elastic.solve(shape.body, load=shape.load, rtol=rtol))
+    stiffnesses = [elastic.tangent_stiffness(each.pressure) for each in contacts]
     tracks = [_track(strip.heights, shape) for strip in textures.strips]
     if textures.path is not None:
         tracks.append(_track(textures.path.rows(0, textures.path.shape[0]), shape))
-    weights = np.array([track.heights.size for track in tracks], dtype=np.float64)
-    squares = np.array([[np.var(track.heights), rms_slope(track) ** 2] for track in tracks])
-    rms, slope = np.sqrt(weights @ squares / weights.sum())
-    return float(rms), float(slope), pressed.area_ratio, float(np.mean(pressed.stiffnesses))
+    weights = np.array([track.size for track in tracks], dtype=np.float64)
+    square = weights @ np.array([np.var(track) for track in tracks]) / weights.sum()
+    return float(np.sqrt(square)), float(np.mean(stiffnesses))
 
 
-def _track(heights: Array, shape: Geometry) -> HeightMap:
+def _track(heights: Array, shape: Geometry) -> Array:
     """Heights over which the middle of the body has rolled, as wide as the nominal patch."""
     nx, ny = shape.body.shape
     half = min(max(1, round(shape.semi_axes[1] / shape.spacing[1])), ny // 2)
     rows = slice(nx // 2, max(len(heights) - nx // 2, nx // 2 + 2))
-    return HeightMap(heights[rows, ny // 2 - half : ny // 2 + half + 1], shape.spacing)
+    return heights[rows, ny // 2 - half : ny // 2 + half + 1]

@@ -1,7 +1,7 @@
 """The scene of a case: what rolls, what it is rolled over, where both are looked at; and its linear force."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -37,21 +37,15 @@ class Scene:
 
     over: Modal | Track | None  # None for a rigid plane
     rolling: tuple[Body, ...]  # in the order of their positions
-    title: str
-    positions: tuple[float, ...] = (0.0,)  # of the bodies ahead of that of the run, m
-    sensors: tuple[float, ...] = ()  # positions of accelerometers on what is rolled over, m
-    points: tuple[float, ...] = ()  # positions at which the rail of a track is looked at, m
-    # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m; numbered if not named
-    degrees: Mapping[str, float] = field(default_factory=dict)
-    # what its displacements at a contact are called: of what is rolled over, and of what rolls
-    displacements: tuple[str, str] = ("over_displacement", "rolling_displacement")
-    like: str = ""  # kind of case whose errors of laws are its own, as far as a map knows
-    wheel: Wheel | None = None  # what touches a rail, by itself: its mass and its modes
-    modes: WheelModes | None = None  # its modes in the frame of the contact, where their shapes are known
-    place: float = 0.0  # of the contact across the tread, m from its middle, to the field side
-    rail_place: float = 0.0  # and across the rail head
-    scattered: bool = False  # a track is carried on by its whole past, not by poles
-    most_poles: int | None = None  # that are fitted to a track
+    positions: tuple[float, ...]  # of the bodies ahead of that of the run, m
+    sensors: tuple[float, ...]  # positions of accelerometers on what is rolled over, m
+    points: tuple[float, ...]  # positions at which the rail of a track is looked at, m
+    # degrees of freedom by name, body by body, and what makes them lengths: 1, or a lever, m
+    degrees: Mapping[str, float]
+    wheel: Wheel | None  # what touches a rail, by itself: its mass and its modes
+    modes: WheelModes | None  # its modes in the frame of the contact, where their shapes are known
+    place: float  # of the contact across the tread, m from its middle, to the field side
+    rail_place: float  # and across the rail head
 
     @property
     def offsets(self) -> tuple[float, ...]:
@@ -63,14 +57,6 @@ class Scene:
     def loads(self) -> Array:
         """Static forces of all contacts (c,), N."""
         return np.concatenate([body.static_loads for body in self.rolling])
-
-    @property
-    def levers(self) -> dict[str, float]:
-        """Degrees of freedom by name, see `degrees`."""
-        if self.degrees:
-            return dict(self.degrees)
-        count = sum(len(body.mass) for body in self.rolling)
-        return {"body": 1.0} if count == 1 else {f"degree of freedom {n + 1}": 1.0 for n in range(count)}
 
     @property
     def first(self) -> BodyAtContact:
@@ -137,19 +123,14 @@ def scene_of(case: Case) -> Scene:
     return Scene(
         model,
         (one,) * len(body.positions),
-        case.title,
-        positions=body.positions,
-        sensors=over.sensor_positions,
-        points=case.point_positions,
-        degrees=degrees,
-        displacements=case.DISPLACEMENTS,
-        like="wheel-on-rail" if on_track else "ball-on-beam",
-        wheel=body.tread(highest, case.speed, place) if on_track else None,
-        modes=body.turning_modes(highest, case.speed) if on_track else None,
-        place=place,
-        rail_place=rail_place,
-        scattered=case.numerics.kernel == "scatter",
-        most_poles=case.numerics.poles,
+        body.positions,
+        over.sensor_positions,
+        case.point_positions,
+        degrees,
+        body.tread(highest, case.speed, place) if on_track else None,
+        body.turning_modes(highest, case.speed) if on_track else None,
+        place,
+        rail_place,
     )
 
 

@@ -210,7 +210,8 @@ def _in_time(scene: Scene, case: Case, store: Store, progress: Progress) -> Moda
     if not isinstance(scene.over, Track):
         return scene.over
     kernel = moving_kernel(scene.over, case.speed, case.time_step, cache=store, progress=progress)
-    rail = kernel if scene.scattered else poles_or_kernel(kernel, scene.most_poles, cache=store)
+    scattered = case.numerics.kernel == "scatter"
+    rail = kernel if scattered else poles_or_kernel(kernel, case.numerics.poles, cache=store)
     return rail_between(rail, scene.offsets, cache=store, progress=progress)
 
 

@@ -90,7 +90,7 @@ def computed_result(
     }
     result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
     verdict = validity.verdict(computed, in_bands, found, choice)
-    result.attrs = root_attributes(case, scene.title, sources, verdict, caught)
+    result.attrs = root_attributes(case, case.title, sources, verdict, caught)
     return result
 
 
@@ -170,7 +170,7 @@ def rolling_group(computed: Computed) -> Values:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
     scene, stack, first = computed.scene, computed.stacked, computed.first
     runs, losses = computed.runs.values(), [run.contact_loss for run in computed.runs.values()]
-    over, rolls = (getattr(schema, name.upper()) for name in scene.displacements)
+    over, rolls = (getattr(schema, name.upper()) for name in computed.case.DISPLACEMENTS)
     laid_out: Values = {
         rolling.LAW: list(computed.runs),
         rolling.TIME: first.time,
@@ -187,7 +187,7 @@ def rolling_group(computed: Computed) -> Values:
         rolling.LONGEST_LOSS: [
             [max((flight.duration for flight in flights), default=0.0) for flights in run] for run in losses
         ],
-        schema.ROLLING_DEGREE: list(scene.levers),
+        schema.ROLLING_DEGREE: list(scene.degrees),
         schema.BODY_DISPLACEMENT: _motion(computed),
         schema.ENERGY_TERM: list(first.energy.shares),
         schema.ENERGY: [list(run.energy.shares.values()) for run in runs],
@@ -205,7 +205,7 @@ def rolling_group(computed: Computed) -> Values:
 
 def _motion(computed: Computed) -> Array:
     """Degrees of freedom of all bodies (laws, d, n), positive downwards, m."""
-    levers = np.array(list(computed.scene.levers.values()))[:, None]
+    levers = np.array(list(computed.scene.degrees.values()))[:, None]
     return np.stack([-levers * np.concatenate(run.degrees_of_freedom) for run in computed.runs.values()])
 
 
@@ -285,7 +285,7 @@ def _bodies(computed: Computed) -> Values:
     half = np.pi * computed.frequency * step
     to_acceleration = (half / np.sin(np.maximum(half, 1e-12))) ** 4
     density = (computed.psd(curvature) * to_acceleration)[..., computed.shown]
-    return {schema.SPECTRA_DEGREE: list(computed.scene.levers), schema.BODY_ACCELERATION_PSD: density}
+    return {schema.SPECTRA_DEGREE: list(computed.scene.degrees), schema.BODY_ACCELERATION_PSD: density}
 
 
 EQUAL = 1e-6
