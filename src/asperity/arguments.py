@@ -83,9 +83,9 @@ def real(
     return number
 
 
-def positive(what: str, value: object, remedy: str = "") -> float:
+def positive(what: str, value: object) -> float:
     """Take one finite number above zero, as `real` does."""
-    return real(what, value, "a finite positive number", above=0.0, remedy=remedy)
+    return real(what, value, "a finite positive number", above=0.0)
 
 
 def not_negative(what: str, value: object) -> float:

@@ -101,15 +101,21 @@ class ValueKind:
         raise InputError("value", shown(value), self.allowed, remedy)
 
 
-@dataclass(frozen=True)
-class Bounds:
-    """What numbers of a kind may be."""
+def is_absurd(value: float) -> bool:
+    """Whether a number is so large or small that its products are not finite."""
+    return value != 0 and not LEAST <= abs(value) <= MOST
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bounded(ValueKind):
+    """A number within bounds: greater than one, not less and not more than another; perhaps also "inf"."""
 
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
+    infinite: bool = False
 
-    def hold(self, value: float) -> bool:
+    def holds(self, value: float) -> bool:
         """Whether a number lies within them."""
         return not (
             (self.above is not None and value <= self.above)
@@ -117,42 +123,31 @@ class Bounds:
             or (self.at_most is not None and value > self.at_most)
         )
 
-    def __str__(self) -> str:
+    @property
+    def bounds(self) -> str:
+        """They in words, a blank before them."""
         named = {"greater than": self.above, "at least": self.at_least, "at most": self.at_most}
         words = " and ".join(f"{word} {limit}" for word, limit in named.items() if limit is not None)
-        return f" {words}" if words else ""
-
-
-def is_absurd(value: float) -> bool:
-    """Whether a number is so large or small that its products are not finite."""
-    return value != 0 and not LEAST <= abs(value) <= MOST
+        return f" {words}" * bool(words) + ', or "inf"' * self.infinite
 
 
 @dataclass(frozen=True)
-class Quantity(ValueKind):
+class Quantity(Bounded):
     """A number with a unit, written as a string; from Python also a number in SI.
 
     Parameters
     ----------
     dimension : str
         The SI unit of the value behind the door.
-    above, at_least : float, optional
-        What the value must be greater than, or not less than.
-    infinite : bool
-        Whether "inf" is a value, too.
     """
 
     dimension: str
-    above: float | None = None
-    at_least: float | None = None
-    infinite: bool = False
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
         word, example = _WORDS[self.dimension]
-        infinite = ', or "inf"' if self.infinite else ""
-        return f'{word}{Bounds(self.above, self.at_least)}{infinite}, with its unit, as "{example}"'
+        return f'{word}{self.bounds}, with its unit, as "{example}"'
 
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> float:
         """Return the value in SI."""
@@ -161,7 +156,7 @@ class Quantity(ValueKind):
             self.refuse(value, "Give a finite value.")
         if math.isfinite(number) and is_absurd(number):
             self.refuse(value, f"In {self.dimension}, numbers lie between {LEAST:g} and {MOST:g}.")
-        if not Bounds(self.above, self.at_least).hold(number):
+        if not self.holds(number):
             self.refuse(value)
         return number
 
@@ -183,20 +178,15 @@ class Quantity(ValueKind):
 
 
 @dataclass(frozen=True)
-class Number(ValueKind):
+class Number(Bounded):
     """A pure number."""
 
-    above: float | None = None
-    at_least: float | None = None
-    at_most: float | None = None
     whole: bool = False
-    infinite: bool = False  # "inf" is a value, too
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
-        limits = Bounds(self.above, self.at_least, self.at_most)
-        return f"a {'whole ' * self.whole}number{limits}" + ', or "inf"' * self.infinite
+        return f"a {'whole ' * self.whole}number{self.bounds}"
 
     def __call__(self, value: Any, origin: Origin = FROM_PYTHON) -> float | int:
         """Return the number."""
@@ -206,7 +196,7 @@ class Number(ValueKind):
         if isinstance(value, bool) or not isinstance(value, int if self.whole else int | float):
             self.refuse(value, "Write it without quotes and unit." if isinstance(value, str) else "")
         finite = isinstance(value, int) or math.isfinite(value)
-        if not finite or is_absurd(value) or not Bounds(self.above, self.at_least, self.at_most).hold(value):
+        if not finite or is_absurd(value) or not self.holds(value):
             self.refuse(value)
         return value if self.whole else float(value)
 

@@ -203,7 +203,6 @@ def test_closed_form_of_smooth_bodies():
 
 
 test_bad_input = refusals(
-    (20, 21, "a whole number of heights a force"),
     (10, 20, "at least 16"),
     (20, 20, "a flat surface"),
     of=lambda forces, heights: filter_spectra(np.ones((1, forces)), np.ones((1, heights)), 1.0),

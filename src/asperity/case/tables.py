@@ -140,11 +140,11 @@ def read_mode_table(table: TableSource) -> Array:
 
 
 def refuse_where(
-    table: TableSource, values: Array, wrong: NDArray[np.bool_], what: str, allowed: str, remedy: str = ""
+    table: TableSource, values: Array, wrong: NDArray[np.bool_], what: str, allowed: str
 ) -> None:
     """Refuse the first of the values of a table that are wrong, if there is one."""
     if wrong.any():
-        raise InputError(name_of(table), f"{what} of {values[wrong][0]:g}", allowed, remedy)
+        raise InputError(name_of(table), f"{what} of {values[wrong][0]:g}", allowed)
 
 
 def read_outline(table: TableSource) -> Array:

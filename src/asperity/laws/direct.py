@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, not_negative, require
+from asperity.arguments import Array, ArrayLike, NDArray, not_negative
 from asperity.laws import spec
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class Direct:
     Raises
     ------
     InputError
-        If the sizes do not fit or the damping is negative.
+        If the damping is negative.
     """
 
     heights: Array
@@ -72,10 +72,6 @@ class Direct:
 
     def __post_init__(self) -> None:
         not_negative("contact damping (N s/m)", self.damping)
-        (rows, ny), (nx, wide) = self.heights.shape, self.body.shape
-        received = f"a body of {self.body.shape} cells on a path of {self.heights.shape}"
-        allowed = "a body as wide as the path, not longer, with an odd number of rows"
-        require(wide == ny and nx % 2 == 1 and rows >= nx, "direct contact", received, allowed)
 
     @cached_property
     def between_rows(self) -> BSpline:

@@ -92,10 +92,8 @@ def filter_spectra(
     """
     f, z = np.atleast_2d(forces), np.atleast_2d(lines)
     states, m = f.shape
-    stride, rest = divmod(z.shape[1], m)
-    allowed = f"a whole number of heights a force, at least {FEWEST_POSITIONS}"
-    enough = not rest and m >= FEWEST_POSITIONS
-    require(enough, "scan for the filter", f"{m} forces, {z.shape[1]} heights", allowed)
+    stride = z.shape[1] // m
+    require(m >= FEWEST_POSITIONS, "scan for the filter", f"{m} forces", f"at least {FEWEST_POSITIONS}")
     middle = z.shape[0] // 2
     half = np.full(states, middle) if half_widths is None else np.minimum(half_widths, middle)
     highest = int(HIGHEST * (m // 2))
