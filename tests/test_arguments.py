@@ -43,7 +43,6 @@ NUMBERS = {
     "stride of the scan": lambda v: scanned(stride=v),
     "rtol of a scan": lambda v: scanned(rtol=v),
     "force_accuracy": lambda v: scanned(force_accuracy=v),
-    "workers": lambda v: scanned(workers=v),
     "spacing of the height map": lambda v: HeightMap(MAP.heights, v),
     "spacing of the profile": lambda v: Profile(MAP.heights[0], v),
     "index of a line": lambda v: MAP.line(v),
@@ -100,8 +99,6 @@ KEYS = {"kind": "ball-on-beam", "duration": "0.002 s", "laws": ("linear",), "see
 
 test_what_is_said_of_other_arguments = refusals(
     (lambda: HalfSpace((8, 8), 1e-6, "115 GPa"), r"received '115 GPa'.*in SI, without unit and quotes"),
-    (lambda: scanned(cache="folder"), "cache: received 'folder'; allowed: an object with get and put"),
-    (lambda: scanned(progress=1), "progress: received 1; allowed: a callable"),
     (lambda: scanned(device=0), "device: received 0; allowed: 'cpu' or 'gpu'"),
     (lambda: scanned(device=""), "device: received ''"),
     (lambda: scanned(surface=np.ma.masked_invalid(HOLED)), "1 of 160 points without a height"),
