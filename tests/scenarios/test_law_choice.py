@@ -80,6 +80,18 @@ def test_waves_that_excite_less_than_100_hz_have_no_place(shape):
     assert place_of(wave(shape, 1.0, 0.0), shape, 1.0, transfer_of) is None
 
 
+def test_correlation_lengths_are_those_of_direct_sums():
+    """Lags at which mean products of all pairs fall to 0.2, joined by lines."""
+    line = np.cos(np.arange(60.0) / 9.0)
+    products = np.correlate(line, line, "full")[59:] / (60 - np.arange(60)) / np.mean(line**2)
+    below = int(np.argmax(products <= 0.2))
+    lag = np.interp(0.2, products[[below, below - 1]], [below, below - 1])
+    found = law_choice.correlation_lengths(np.add.outer(0.0 * line, line), (2e-3, 3e-3))
+    assert found[1] == pytest.approx(3e-3 * lag, rel=1e-12)
+    turned = law_choice.correlation_lengths(np.add.outer(line, 0.0 * line), (2e-3, 3e-3))
+    assert turned[0] == pytest.approx(2e-3 * lag, rel=1e-12)
+
+
 def test_the_linear_force_is_that_of_a_mass_on_a_spring_on_a_stiff_beam():
     """A beam as stiff as a block leaves F/z = 1/(1/k - 1/(m w²))."""
     block = {"width": "2 m", "height": "60 mm", "length": "0.5 m"}

@@ -103,6 +103,12 @@ def test_areal_explains_direct_better_than_a_line_does(ball, wheel):
         assert correlation["areal"] > least > correlation["shifted"] > 0.8 > 0.8 * correlation["hertz"]
 
 
+def test_differences_to_the_linear_laws(tree):
+    level, name = tree["spectra/force_level"], "force_level_difference_to_linear_filtered"
+    np.testing.assert_allclose(tree["spectra"][name], level - level.sel(law="linear-filtered"))
+    assert tree["spectra"][name].attrs["reference"] == "linear-filtered"
+
+
 def test_the_verdict_keeps_quiet_of_bands_that_say_little(ball):
     assert float(ball["spectra/band_time_product"].max()) < 10.0
     assert "The record is too short to compare its one-third octaves" in ball.attrs["verdict"]

@@ -92,6 +92,14 @@ def test_roots_are_the_eigenvalues_of_states(seed):
     assert np.sort_complex(roots) == pytest.approx(np.sort_complex(ringing), rel=1e-8)
 
 
+def test_the_normal_force_follows_the_lateral_one():
+    """N (φ_r² α + 1/k_N) + F φ_r φ_a α = 0."""
+    wheel, omega = modes_of([1000.0], [1e-3], [0.1], [0.05]), np.array([TURN * 700.0])
+    receptances = alone(wheel, omega)
+    answer, found = receptances[0, 0] / 0.01, CreepingContact(1e7, 1e9, 50.0, 0.0).force_ratio(receptances)
+    assert found == pytest.approx(-0.005 * answer / (0.01 * answer + 1e-7))
+
+
 def test_the_mode_that_rings_is_that_of_most_energy():
     """Of two modes apart each root is its own; between them the one that is pushed more."""
     wheel = modes_of([1000.0, 2000.0], [1e-3, 1e-3], [0.0, 0.0], [0.1, 0.02])

@@ -88,7 +88,9 @@ def test_sleepers_hold_the_rail_at_the_antiresonance(make):
     assert rail.antiresonance_frequency == pytest.approx(expected, rel=1e-14)
     at, beside = np.abs(rail.receptance(expected * np.array([1.0, 1.1]), 0.0, 0.0))
     assert at < 1e-6 * beside
-    assert track(sleeper_mass=0.0).antiresonance_frequency == math.inf
+    light = track(sleeper_mass=0.0)
+    assert light.antiresonance_frequency == math.inf
+    assert light.cut_on_frequency == pytest.approx(math.sqrt(100e6 / SPACING / MASS) / (2.0 * math.pi))
 
 
 def test_waves_of_an_undamped_track_run_only_above_cut_on():
