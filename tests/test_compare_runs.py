@@ -25,26 +25,20 @@ def first(tmp_path):
     return written(tmp_path / "a.nc")
 
 
-@pytest.mark.parametrize(
-    ("change", "told"),
-    [
-        ({}, ""),
-        (
-            {"force": (1.0, np.nextafter(2.0, 3.0), np.nan)},
-            "rolling/contact_force: 1 of 3 differ, by up to 4.44e-16",
-        ),
-        ({"force": (1.0, 2.0, 3.0)}, "rolling/contact_force: 1 of 3 differ"),
-        ({"force": (1.0, 2.0)}, "rolling/contact_force: shape (3,), now (2,)"),
-        ({"dim": "step"}, "rolling/contact_force: dimensions ('time',), now ('step',)"),
-        ({"note": "of all laws"}, "rolling/contact_force/note: 'of one law', now 'of all laws'"),
-        ({"verdict": "leaves"}, "rolling/@verdict: 'stays', now 'leaves'"),
-        ({"name": "force"}, "rolling/contact_force: missing"),
-    ],
-)
+@pytest.mark.parametrize(("change", "told"), [
+    ({}, ""),
+    ({"force": (1.0, np.nextafter(2.0, 3.0), np.nan)}, "contact_force: 1 of 3 differ, by up to 4.44e-16"),
+    ({"force": (1.0, 2.0, 3.0)}, "contact_force: 1 of 3 differ"),
+    ({"force": (1.0, 2.0)}, "contact_force: shape (3,), now (2,)"),
+    ({"dim": "step"}, "contact_force: dimensions ('time',), now ('step',)"),
+    ({"note": "of all laws"}, "contact_force/note: 'of one law', now 'of all laws'"),
+    ({"verdict": "leaves"}, "@verdict: 'stays', now 'leaves'"),
+    ({"name": "force"}, "contact_force: missing"),
+])  # fmt: skip
 def test_every_difference_is_told(first, tmp_path, capsys, change, told):
     other = written(tmp_path / "b.nc", **change)
     assert main([str(first), str(other)]) == (1 if told else 0)
-    assert capsys.readouterr().out.startswith(told)
+    assert capsys.readouterr().out.startswith(f"rolling/{told}" if told else "")
     assert bool(compare(first, other, {})[0]) == bool(told)
 
 

@@ -11,20 +11,13 @@ from asperity import errors
 from asperity.errors import CaseError, ComputationError, InputError, Outcome, PhysicsWarning
 
 
-@pytest.mark.parametrize(
-    ("error", "code", "message"),
-    [
-        (
-            InputError("radius", "-1 mm", "a length greater than 0", "Give the radius of the ball."),
-            2,
-            "radius: received -1 mm; allowed: a length greater than 0. Give the radius of the ball.",
-        ),
-        (InputError("radius", 0, "a length"), 2, "radius: received 0; allowed: a length."),
-        (CaseError("case.toml", ["one", "two"]), 2, "case.toml: 2 errors\n  - one\n  - two"),
-        (CaseError("case.toml", ["only"]), 2, "case.toml: 1 error\n  - only"),
-        (ComputationError("it did not end", "a larger rtol"), 3, "it did not end. Try: a larger rtol."),
-    ],
-)
+@pytest.mark.parametrize(("error", "code", "message"), [
+    (InputError("radius", "-1 mm", "a length", "Give it."), 2,
+     "radius: received -1 mm; allowed: a length. Give it."),
+    (InputError("radius", 0, "a length"), 2, "radius: received 0; allowed: a length."),
+    (CaseError("case.toml", ["one", "two"]), 2, "case.toml: 2 errors\n  - one\n  - two"),
+    (ComputationError("it did not end", "a larger rtol"), 3, "it did not end. Try: a larger rtol."),
+])  # fmt: skip
 def test_errors_say_what_was_received_what_is_allowed_and_what_to_do(error, code, message):
     assert str(error) == message
     assert error.exit_code == code

@@ -130,15 +130,12 @@ def test_a_run_is_alone_in_its_folder(tmp_path):
         pytest.fail("it is a file")
 
 
-@pytest.mark.parametrize(
-    ("place", "why"),
-    [
-        ("new/folder", ""),
-        ("file/new", r"file is a file\); allowed: a folder that can be written to\. Another"),
-        ("link/new", r"link is a link that leads nowhere\)"),
-        (300 * "a", r"\(File name too long\)"),
-    ],
-)
+@pytest.mark.parametrize(("place", "why"), [
+    ("new/folder", ""),
+    ("file/new", r"file is a file\); allowed: a folder that can be written to\. Another"),
+    ("link/new", r"link is a link that leads nowhere\)"),
+    (300 * "a", r"\(File name too long\)"),
+])  # fmt: skip
 def test_a_folder_that_cannot_be_written_to_is_refused_before(tmp_path, place, why):
     (tmp_path / "file").write_text("")
     (tmp_path / "link").symlink_to("nowhere")
@@ -154,15 +151,12 @@ def test_what_the_disk_cannot_hold_is_refused_before_it_is_written(tmp_path, mon
     assert names(tmp_path) == []
 
 
-@pytest.mark.parametrize(
-    ("code", "error", "message"),
-    [
-        (errno.ENOSPC, ComputationError, r"the disk is full \(.* are free\)"),
-        (errno.EFBIG, ComputationError, "files may not grow as large here.*ulimit -f unlimited"),
-        (errno.EIO, ComputationError, r"could not be written \(Input/output error\)"),
-        (errno.ENAMETOOLONG, InputError, "a name that is too long"),
-    ],
-)
+@pytest.mark.parametrize(("code", "error", "message"), [
+    (errno.ENOSPC, ComputationError, r"the disk is full \(.* are free\)"),
+    (errno.EFBIG, ComputationError, "files may not grow as large here.*ulimit -f unlimited"),
+    (errno.EIO, ComputationError, r"could not be written \(Input/output error\)"),
+    (errno.ENAMETOOLONG, InputError, "a name that is too long"),
+])  # fmt: skip
 def test_what_fails_half_way_leaves_the_earlier_file(tmp_path, code, error, message):
     (tmp_path / "run.nc").write_bytes(b"old")
 

@@ -17,7 +17,7 @@ from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class, load_case, parse_case
 from asperity.case.tables import LEVELS, read_levels, read_table
 from asperity.case.toml import read_toml
-from asperity.errors import CaseError, ComputationError, InputError
+from asperity.errors import CaseError, InputError
 from asperity.parameters import Quantity
 from asperity.results import GROUPS, read_result, save
 from asperity.schema import VERSION
@@ -177,10 +177,7 @@ HOSTILE = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "kind",
-    ["ball-on-beam", *(pytest.param(kind, marks=pytest.mark.long) for kind in ("wheel-on-rail", "bodies"))],
-)
+@pytest.mark.parametrize("kind", ["ball-on-beam", pytest.param("wheel-on-rail", marks=pytest.mark.long)])
 def test_any_value_of_any_key_is_right_or_a_clear_error(kind):
     """In a case, and swept by a study."""
     base = {"kind": kind, "surface": {"rms": "1 um"}}
@@ -189,10 +186,8 @@ def test_any_value_of_any_key_is_right_or_a_clear_error(kind):
         section, _, name = entry.dotted.rpartition(".")
         for value in HOSTILE:
             value = value.replace("{}", unit) if isinstance(value, str) else value
-            refusal(
-                as_case,
-                base | ({section: base.get(section, {}) | {name: value}} if section else {name: value}),
-            )
+            inside = base.get(section, {}) | {name: value}
+            refusal(as_case, base | ({section: inside} if section else {name: value}))
             refusal(lambda swept: study_of(base, swept).members(), {entry.dotted: [value]})
 
 
@@ -212,35 +207,25 @@ def odd(tmp_path):
 
 
 @pytest.mark.parametrize("read", READERS)
-@pytest.mark.parametrize(
-    ("path", "message"),
-    [
-        ("pipe.csv", r"pipe\.csv: received a pipe or a device"),
-        ("/proc/kmsg", "kmsg: received an empty file"),
-        ("/dev/zero", "zero: received a pipe or a device"),
-        (LONG_NAME, r"received a path that cannot be followed \(File name too long\)"),
-        ("absent.csv", r"absent\.csv: received no such file"),
-        ("file/absent.csv", r"absent\.csv: received no such file"),
-    ],
-)
+@pytest.mark.parametrize(("path", "message"), [
+    ("pipe.csv", r"pipe\.csv: received a pipe or a device"),
+    ("/proc/kmsg", "kmsg: received an empty file"),
+    ("/dev/zero", "zero: received a pipe or a device"),
+    (LONG_NAME, r"received a path that cannot be followed \(File name too long\)"),
+    ("file/absent.csv", r"absent\.csv: received no such file"),
+])  # fmt: skip
 def test_what_is_no_regular_file_is_named_and_never_opened(odd, read, path, message):
     if path in ("pipe.csv", "/proc/kmsg", "/dev/zero") and not (odd / path).exists():
         pytest.skip("no such files here")
     assert re.search(message, refusal(read, odd / path))
 
 
-@pytest.mark.parametrize(
-    ("name", "reason"),
-    [
-        ("pipe.csv", "It is a pipe or a device"),
-        ("loop", "It is a path that cannot be followed"),
-        (LONG_NAME, r"It is a path that cannot be followed \(File name too long\)"),
-        (".", "It is a folder"),
-    ],
-)
+@pytest.mark.parametrize(("name", "reason"), [
+    ("loop", "It is a path that cannot be followed"),
+    (LONG_NAME, r"It is a path that cannot be followed \(File name too long\)"),
+    (".", "It is a folder"),
+])  # fmt: skip
 def test_files_of_a_case_are_regular(odd, name, reason):
-    if name == "pipe.csv" and not (odd / name).exists():
-        pytest.skip("no named pipes")
     assert re.search(f"surface.file: .*{reason}", refusal(case, f'surface.file = "{name}"', odd))
 
 
@@ -278,25 +263,19 @@ def test_heights_as_text_take_a_few_times_their_file(tmp_path, text):
 # --- names in messages
 
 
-def test_messages_are_text_on_one_line(tmp_path):
+def test_messages_are_text_on_one_line():
     message = str(InputError("a\x1b[31m", "b\u202e\nError: none", "c\x9b", "d\ud800"))
     assert message == "a\\x1b[31m: received b\\u202e\\nError: none; allowed: c\\x9b. d\\ud800"
-    assert str(ComputationError("a\x1b", "b")) == "a\\x1b. Try: b."
     assert str(CaseError("a\x1b.toml", ["wrong"])) == "a\\x1b.toml: 1 error\n  - wrong"
 
 
-@pytest.mark.parametrize(
-    ("names", "array", "message"),
-    [
-        (["\x1b[31ma", "b"], None, r"received \\x1b\[31ma, b; allowed: exactly one"),
-        (
-            [f"array{i:03}" for i in range(300)],
-            None,
-            "array000, .*array009 and 290 more; allowed: exactly one",
-        ),
-        ([f"array{i:03}" for i in range(300)], "x", "one of: array000, .*array009 and 290 more"),
-    ],
-)
+MANY_NAMES = [f"array{i:03}" for i in range(300)]
+
+
+@pytest.mark.parametrize(("names", "array", "message"), [
+    (["\x1b[31ma", "b"], None, r"received \\x1b\[31ma, b; allowed: exactly one"),
+    (MANY_NAMES, "x", "one of: array000, .*array009 and 290 more"),
+])  # fmt: skip
 def test_arrays_are_spelled_out_and_few_of_many_are_listed(tmp_path, names, array, message):
     np.savez(tmp_path / "maps.npz", **{name: np.eye(2) for name in names})
     with pytest.raises(InputError, match=message):

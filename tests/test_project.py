@@ -5,7 +5,6 @@ import re
 import tomllib
 from pathlib import Path
 
-import pytest
 import yaml
 
 import asperity
@@ -68,23 +67,6 @@ def test_the_oldest_versions_are_tested():
     assert f"numba {numba.removeprefix('numba>=')} to" in " ".join(options.__doc__.split())
 
 
-def test_addresses_are_those_of_the_repository_that_builds():
-    pytest.importorskip("hatchling")
-    hook = module_at(ROOT / "hatch_build.py")
-    assert hook.addresses({}) == {}
-    hosted = {"GITHUB_SERVER_URL": "https://host", "GITHUB_REPOSITORY": "people/asperity"}
-    assert hook.addresses(hosted)["Issues"] == "https://host/people/asperity/issues"
-
-
-@pytest.mark.parametrize("form", ["fault", "number", "idea"])
-def test_forms_of_issues_are_complete(form):
-    found = yaml.safe_load(text(f".github/ISSUE_TEMPLATE/{form}.yml"))
-    assert {"name", "description", "body"} <= set(found)
-    names = [field["id"] for field in found["body"]]
-    assert len(set(names)) == len(names)
-    assert all(field["attributes"]["label"] for field in found["body"])
-
-
 def test_every_link_of_a_page_leads_somewhere():
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("benchmarks/*.md")]:
         for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
@@ -127,7 +109,3 @@ def test_the_thesis_is_cited_without_a_title_and_its_papers_by_theirs():
     chapter = "state-dependent nonlinear " + "contact modelling"  # the title of its second chapter
     assert not [file for file in files if chapter in file.read_text(encoding="utf-8").lower()]
     assert chapter not in text("CITATION.cff").lower()
-
-
-def test_what_is_marked_as_not_seen_is_explained():
-    assert 'marked "(not seen)"' in text("docs/conventions.md")

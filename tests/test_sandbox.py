@@ -39,13 +39,10 @@ def test_what_is_received_was_sent():
         received(stream.getvalue()[:-5])
 
 
-@pytest.mark.parametrize(
-    ("fault", "message"),
-    [
-        ("input", "^a.nc: received nothing; allowed: something. Write it.$"),
-        ("any", r"KeyError \('no such\\tthingx+ …\) while it was opened; allowed: an intact text file"),
-    ],
-)
+@pytest.mark.parametrize(("fault", "message"), [
+    ("input", "^a.nc: received nothing; allowed: something. Write it.$"),
+    ("any", r"KeyError \('no such\\tthingx+ …\) while it was opened; allowed: an intact text file"),
+])  # fmt: skip
 def test_what_it_raises_is_told(fault, message, monkeypatch):
     monkeypatch.syspath_prepend(__file__.rpartition("/")[0])
     with pytest.raises(InputError, match=message):

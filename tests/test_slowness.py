@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from guard import CASES, LEAST, least, ratios, rolled_in_turn, timed
+from guard import CASES, ratios, rolled_in_turn, timed
 
 from small_cases import COARSE
 
@@ -19,14 +19,6 @@ class Clockwork:
     def time(self, case):
         self.asked += 1
         return self.times[self.asked - 1]
-
-
-def test_the_least_time_of_each_piece_counts():
-    assert least([{"a": 2.0, "b": 1.0}, {"a": 1.0, "b": 3.0, "c": 1.0}]) == {"a": 1.0, "b": 1.0}
-
-
-def test_short_pieces_are_not_judged():
-    assert ratios({"a": 1.0, "b": LEAST / 3}, {"a": 1.5, "b": LEAST / 2}) == {"a": 1.5}
 
 
 def test_what_looks_slower_gets_twice_the_rounds():

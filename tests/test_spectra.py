@@ -115,10 +115,8 @@ test_what_is_wrong_is_said = refusals(
     (lambda: spectra.psd([1.0, np.nan, 2.0], 1.0), "NaN or infinite"),
     (lambda: spectra.psd([1.0, 2.0], -1.0), "spacing: received -1.0"),
     (lambda: spectra.psd([1.0, 2.0], 1.0, segment=3), "segment: received 3"),
-    *(
-        (lambda limits=limits: spectra.third_octave_bands(*limits), "band limits")
-        for limits in ((0.0, 1.0), (2.0, 1.0), (1.0, np.inf))
-    ),
+    (lambda: spectra.third_octave_bands(0.0, 1.0), "band limits"),
+    (lambda: spectra.third_octave_bands(2.0, 1.0), "band limits"),
     (lambda: spectra.band_levels([0.0, 1.0, 3.0], [1.0, 1.0, 1.0]), "unequal steps"),
     (lambda: spectra.band_levels([0.0, 1.0], [1.0, 1.0, 1.0]), "frequency and psd"),
     (lambda: spectra.band_levels([0.0, 1.0], [1.0, 1.0]), "enough lines"),

@@ -40,28 +40,25 @@ def test_a_result_comes_back_as_it_was_and_what_was_never_stored_is_missing(stor
         store.get("../elsewhere")
 
 
-@given(
-    hnp.arrays(np.float64, hnp.array_shapes(max_dims=2, max_side=4)),
-    hnp.arrays(np.float64, hnp.array_shapes(max_dims=2, max_side=4)),
-)
+ARRAYS = hnp.arrays(np.float64, hnp.array_shapes(max_dims=2, max_side=4))
+
+
+@given(ARRAYS, ARRAYS)
 def test_keys_name_contents(first, second):
     same = first.shape == second.shape and first.tobytes() == second.tobytes()
     assert (content_key("a", first) == content_key("a", second)) is same
 
 
-@pytest.mark.parametrize(
-    ("first", "second"),
-    [
-        (("a", 1, 2), ("a", [1, 2])),
-        (("a", "1"), ("a", 1)),
-        (("a", "b", "c"), ("a", "bc")),
-        (("a", None), ("a",)),
-        (("a", np.zeros(4)), ("a", np.zeros((2, 2)))),
-        (("a", np.zeros(4)), ("a", np.zeros(8, dtype=np.float32))),
-        (("a", {"b": 1}), ("a", ["b", 1])),
-        (("a", 1), ("b", 1)),
-    ],
-)
+@pytest.mark.parametrize(("first", "second"), [
+    (("a", 1, 2), ("a", [1, 2])),
+    (("a", "1"), ("a", 1)),
+    (("a", "b", "c"), ("a", "bc")),
+    (("a", None), ("a",)),
+    (("a", np.zeros(4)), ("a", np.zeros((2, 2)))),
+    (("a", np.zeros(4)), ("a", np.zeros(8, dtype=np.float32))),
+    (("a", {"b": 1}), ("a", ["b", 1])),
+    (("a", 1), ("b", 1)),
+])  # fmt: skip
 def test_keys_tell_apart_what_differs(first, second):
     assert content_key(*first) != content_key(*second)
 
@@ -166,16 +163,13 @@ def test_results_that_no_disk_takes_are_held_in_memory_up_to_a_limit(tmp_path, m
         store.put("scan-3", {"force": np.zeros(100)})
 
 
-@pytest.mark.parametrize(
-    ("platform", "variables", "expected"),
-    [
-        ("linux", {"ASPERITY_CACHE": "chosen"}, "chosen"),
-        ("linux", {"XDG_CACHE_HOME": "xdg"}, "xdg/asperity"),
-        ("linux", {"HOME": "home"}, "home/.cache/asperity"),
-        ("darwin", {"HOME": "home"}, "home/Library/Caches/asperity"),
-        ("win32", {"LOCALAPPDATA": "local"}, "local/asperity/cache"),
-    ],
-)
+@pytest.mark.parametrize(("platform", "variables", "expected"), [
+    ("linux", {"ASPERITY_CACHE": "chosen"}, "chosen"),
+    ("linux", {"XDG_CACHE_HOME": "xdg"}, "xdg/asperity"),
+    ("linux", {"HOME": "home"}, "home/.cache/asperity"),
+    ("darwin", {"HOME": "home"}, "home/Library/Caches/asperity"),
+    ("win32", {"LOCALAPPDATA": "local"}, "local/asperity/cache"),
+])  # fmt: skip
 def test_the_cache_lies_where_the_system_keeps_caches(monkeypatch, platform, variables, expected):
     for name in ("ASPERITY_CACHE", "XDG_CACHE_HOME", "LOCALAPPDATA"):
         monkeypatch.delenv(name, raising=False)

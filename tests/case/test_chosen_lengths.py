@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity import BallOnBeam, Bodies, HeightMap, Hertz, WheelOnRail
-from asperity.case.chosen_lengths import NominalPatch, rounded
+from asperity.case.chosen_lengths import rounded
 from asperity.errors import InputError
 from asperity.running import prepare_case
 from asperity.studies.definition import study_of
@@ -40,14 +40,6 @@ def test_grid_and_window_follow_load_and_radii(case):
     assert case.surface.longest > 12.6 * max(axes)  # k a < 0.5, where `printed` sets its filter to one
     assert case.with_(seed=7).contact == case.contact
     assert set(case.with_(seed=7).given()) == {*case.given(), "seed"}  # nothing of this counts as given
-
-
-def test_the_patch_of_the_choice_is_that_of_hertz():
-    for radii in ((0.46, 0.3), (0.025, 0.025), (0.01, 0.05)):
-        hertz = Hertz(115e9, *radii)
-        patch, approach = NominalPatch.of(115e9, *radii, 100.0), hertz.approach(100.0)
-        np.testing.assert_allclose(patch.semi_axes, hertz.semi_axes(approach), rtol=0.1)
-        np.testing.assert_allclose(patch.approach, approach, rtol=0.1)
 
 
 def test_rougher_surfaces_get_wider_windows_and_shorter_waves_finer_grids():

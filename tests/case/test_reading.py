@@ -8,7 +8,7 @@ import pytest
 from case_texts import case_text
 
 from asperity import BallOnBeam, Bodies
-from asperity.case.cases import demo_case, load_case, parse_case, template
+from asperity.case.cases import load_case, parse_case, template
 from asperity.errors import InputError
 from asperity.laws import names
 
@@ -266,17 +266,6 @@ def test_keys_that_the_template_holds_in_comments_work(kind, wanted, others, sou
     assert changed == {*wanted.split(), *others.split()}
 
 
-def test_there_is_no_template_of_another_kind():
-    with pytest.raises(InputError, match='allowed: "ball-on-beam", "wheel-on-rail"'):
-        template("ball-on-rail")
-
-
-def test_the_demonstration_is_a_case():
-    case = demo_case()
-    assert {"areal", "shifted", "printed", "table", "linear"} <= set(case.laws)
-    assert case.rolled_time <= 0.2
-
-
 def test_parameters_are_listed_with_units_and_marked():
     text = 'speed = "1000 mm/s" | [ball] radius = "12 mm" | [beam] sensors = ["0.5 m"] | support = "clamped"'
     listed = {item["key"]: item for item in parse_case(case_text("ball-on-beam", text)).parameters()}
@@ -289,14 +278,3 @@ def test_parameters_are_listed_with_units_and_marked():
     }
     assert {key: (listed[key]["value"], listed[key]["is_default"]) for key in expected} == expected
     assert not {"surface.file", "surface.level", "surface.array", "beam.suspension_frequency"} & listed.keys()
-
-
-def test_parameters_show_the_values_of_the_named_track():
-    listed = {item["key"]: item for item in parse_case(WHEEL).parameters()}
-    assert listed["track.sleeper_spacing"]["value"] == "0.6 m"
-    assert listed["track.pad_stiffness"]["value"].endswith(" MN/m")
-    assert listed["track.rail_loss_factor"]["value"] == "0.02"
-    assert listed["track.pad_stiffness"]["is_default"]
-    assert "track.pad_loss_factor" not in listed  # x2000 has viscous pads
-    own = parse_case(case_text("wheel-on-rail", '[track] pad_stiffness = "123 MN/m"'))
-    assert {item["key"]: item["value"] for item in own.parameters()}["track.pad_stiffness"] == "123 MN/m"

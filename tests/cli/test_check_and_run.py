@@ -185,10 +185,9 @@ def test_a_second_check_says_the_same_and_computes_nothing_until_a_file_changes(
 
 
 @pytest.mark.parametrize("poles", ["", "poles = 1000\n"])
-@pytest.mark.parametrize("highest", ["300 Hz", "1 kHz"])
-def test_fewer_poles_are_taken_where_the_track_remembers_few_steps(highest, poles):
+def test_fewer_poles_are_taken_where_the_track_remembers_few_steps(poles):
     """A tenth of 0.12 s in steps of 1/(8 f_max)."""
-    Path("coarse.toml").write_text(f'{RAIL}[numerics]\nhighest_frequency = "{highest}"\n{poles}')
+    Path("coarse.toml").write_text(f'{RAIL}[numerics]\nhighest_frequency = "300 Hz"\n{poles}')
     call("check", "coarse.toml")
 
 
@@ -216,36 +215,24 @@ def test_the_plan_counts_contact_solutions():
 LONG = """
 kind = "ball-on-beam"
 laws = ["table"]
-speed = "1 m/s"
-[surface]
-rms = "0.05 um"
-longest = "0.4 mm"
-shortest = "40 um"
-[ball]
-radius = "25 mm"
-[beam]
-length = "2 m"
+surface = { rms = "0.05 um", longest = "0.4 mm", shortest = "40 um" }
+beam.length = "2 m"
 [contact]
 spacing = "10 um"
 window = "0.5 mm"
-approaches = [
-    "-0.2 um", "-0.1 um", "0 um", "0.1 um", "0.2 um", "0.3 um", "0.4 um", "0.6 um", "0.8 um", "1 um",
-]
+approaches = ["-0.1 um", "0 um", "0.1 um", "0.2 um", "0.3 um", "0.4 um", "0.6 um", "0.8 um", "1 um"]
 """
 
 
 def test_a_long_path_is_planned_announced_and_refused_where_no_disk_holds_it(monkeypatch):
-    """200 000 positions × 10 approaches of 8 bytes are 15 MiB."""
+    """200 000 positions × 9 approaches of 8 bytes are 13.7 MiB."""
     Path("long.toml").write_text(LONG)
     shown = words_of(call("check", "long.toml").stdout)
-    planned = re.search(
-        r"scan of the path (\d+) positions × 10 approaches, at most (\d+) solutions",
-        shown,
-    )
+    planned = re.search(r"scan of the path (\d+) positions × 9 approaches, at most (\d+) solutions", shown)
     assert planned
     assert 200_000 <= int(planned[1]) <= 200_100
-    assert int(planned[2]) == 10 * int(planned[1])
-    assert 15 < float(re.search(r"([\d.]+) MiB in", shown)[1]) < 18
+    assert int(planned[2]) == 9 * int(planned[1])
+    assert 13.7 < float(re.search(r"([\d.]+) MiB in", shown)[1]) < 17
     monkeypatch.setattr(importlib.import_module("asperity.running"), "run", None)
     said = call("run", "long.toml", "-o", "out", code=3).stderr
     assert f"Scan of the path: {planned[1]} positions" in said

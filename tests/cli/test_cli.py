@@ -32,27 +32,18 @@ def failing_with(monkeypatch, error):
     monkeypatch.setattr(importlib.import_module("asperity.running"), "run", run)
 
 
-@pytest.mark.parametrize(
-    ("error", "code", "kind", "message"),
-    [
-        (ComputationError("a", "b"), 3, "ComputationError", "a. Try: b."),
-        (
-            ZeroDivisionError("b\x1b"),
-            3,
-            "ProgramError",
-            "ZeroDivisionError: b\\x1b. Try: asperity --debug …,",
-        ),
-        (MemoryError(), 3, "ProgramError", "are meant in? If so, try a smaller contact.window"),
-        (KeyboardInterrupt(), 130, "ProgramError", "interrupted; run the same command again to continue"),
-    ],
-)
+@pytest.mark.parametrize(("error", "code", "kind", "message"), [
+    (ComputationError("a", "b"), 3, "ComputationError", "a. Try: b."),
+    (ZeroDivisionError("b\x1b"), 3, "ProgramError", "ZeroDivisionError: b\\x1b. Try: asperity --debug …,"),
+    (MemoryError(), 3, "ProgramError", "are meant in? If so, try a smaller contact.window"),
+    (KeyboardInterrupt(), 130, "ProgramError", "interrupted; run the same command again to continue"),
+])  # fmt: skip
 def test_failures_have_a_code_one_message_and_a_document(monkeypatch, error, code, kind, message):
     """Warnings before them are told once, each on a line of its own."""
     failing_with(monkeypatch, error)
     told = call("run", "small.toml", code=code).stderr
-    assert [line for line in told.splitlines() if "arning: " in line] == [
-        "Warning: finished work\\nis not kept"
-    ]
+    warned = [line for line in told.splitlines() if "arning: " in line]
+    assert warned == ["Warning: finished work\\nis not kept"]
     assert message in told.splitlines()[-1]
     assert "Traceback" not in told
     assert ("Traceback" in call("--debug", "run", "small.toml", code=code).stderr) == (code == 3)
@@ -102,14 +93,10 @@ def test_the_program_puts_away_what_it_holds_and_ends_without_taking_python_apar
     assert "taken apart" not in told
 
 
-@pytest.mark.parametrize(
-    ("encoding", "shown"),
-    [
-        ("cp1252", "-22.7 dB, 10-6 µm, delta = d0"),
-        ("cp866", "-22.7 dB, 10-6 um, delta = d0"),
-        ("ascii", "-22.7 dB, 10-6 um, delta = d0"),
-    ],
-)
+@pytest.mark.parametrize(("encoding", "shown"), [
+    ("cp1252", "-22.7 dB, 10-6 µm, delta = d0"),
+    ("ascii", "-22.7 dB, 10-6 um, delta = d0"),
+])  # fmt: skip
 def test_a_pipe_without_a_minus_sign_gets_a_hyphen(encoding, shown):
     script = (
         "from asperity.cli import main\nfrom asperity.terminal import say\n"
@@ -159,9 +146,8 @@ def test_a_shell_completes(words, completions):
     assert {each.value for each in found} == completions
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_a_shell_is_told_how_to_complete(shell):
-    assert "_ASPERITY_COMPLETE" in call("completion", shell).stdout
+def test_a_shell_is_told_how_to_complete():
+    assert all("_ASPERITY_COMPLETE" in call("completion", shell).stdout for shell in ("bash", "zsh", "fish"))
 
 
 def test_what_a_shell_asks_is_answered():

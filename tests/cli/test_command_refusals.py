@@ -37,7 +37,6 @@ CASES = {
     "several": on('file = "map.npy"\nheight_unit = "um"')
     + '[ball]\nload = "20 kN"\n[contact]\nspacing = "8 um"\nwindow = "0.5 mm"\n',
     "backslash-d": on(r'file = "C:\data\beam.x3p"'),
-    "backslash-U": on(r'file = "C:\Users\beam.x3p"'),
     "backslash-t": on(r'file = "C:\temp\beam.x3p"'),
     "single": on(r"file = 'C:\temp\beam.x3p'"),
     "unquoted": CASE.replace('"0.01 s"', "0.01 s"),
@@ -122,7 +121,6 @@ REFUSED = [
     ("check odd.toml", "odd.toml: received a byte that is no UTF-16 … Save the file as UTF-8."),
     ("check latin.toml", "latin.toml: received a byte that is no UTF-8 in line 1 … Save the file as UTF-8."),
     ("check backslash-d.toml", WINDOWS),
-    ("check backslash-U.toml", WINDOWS),
     ("check backslash-t.toml", WINDOWS),  # TOML takes \t for a tab
     ("check single.toml", r"surface.file: received 'C:\temp\beam.x3p'; allowed: the path of an"),
     ("check unquoted.toml", "double quotes"),
@@ -170,7 +168,6 @@ REFUSED = [
     (f"{VARY} speed", "--vary: received 'speed'; allowed: a key of the case, =, and its values"),
     (f"{VARY} seed=1 --vary seed=1", "--vary: received seed more than once"),
     (f"{VARY} 'speed=20 m/s,'", "sweep.speed[2]: received ''"),
-    (f"{VARY} wheel.load=inf", "sweep.wheel.load[1]: received 'inf'"),
     (f"{VARY} 'wheel.load=5 kN,5000 N'", "wheel.load: received '5000 N' more than once"),
     (f"{VARY} seed=1 --workers 2 --scheduler x", "--workers: received a number beside --scheduler"),
     (f"{VARY} seed=1 --show 'transit exposure'", "--show: received 'transit_exposure'; allowed: names of "

@@ -33,9 +33,8 @@ def test_a_rough_case_is_told_written_and_drawn():
 
 def test_states_of_a_rough_case_are_told_written_and_drawn():
     asked = ("creep", "case.toml", "--states", "--points", "2")
-    assert (
-        "under the same load, 2 samples" in call(*asked, "-o", "states.svg", "--table", "states.csv").stdout
-    )
+    told = call(*asked, "-o", "states.svg", "--table", "states.csv").stdout
+    assert "under the same load, 2 samples" in told
     table = np.genfromtxt("states.csv", delimiter=",", names=True)
     assert table.dtype.names[:4] == ("approach_m", "load_N", "rough_real_area_m2", "smooth_real_area_m2")
     stiffness, normal = table["rough_stiffness_across_Nm"], table["rough_normal_stiffness_Nm"]

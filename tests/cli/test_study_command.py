@@ -156,22 +156,6 @@ def test_a_case_is_varied_in_the_units_that_were_typed_with_a_figure_for_each_ke
     assert not (out / "study_mean.csv").exists()
 
 
-def test_names_in_a_table_are_no_formulas_and_no_markup():
-    for name in ("=cmd|x.npy", "[red]a [um].npy"):
-        with open(name, "wb") as file:
-            np.save(file, 0.02 * np.random.default_rng(0).normal(size=(40, 40)))
-    Path("study.toml").write_text(
-        '[case]\nkind = "ball-on-beam"\nlaws = ["linear"]\nstart = "0.45 m"\nduration = "5 ms"\n'
-        'settling = "0 s"\n[case.surface]\nheight_unit = "um"\npixel = "20 um"\n'
-        '[case.contact]\nspacing = "20 um"\nsamples = 1\n'
-        '[sweep]\n"surface.file" = ["=cmd|x.npy", "[red]a [um].npy"]\n'
-    )
-    assert "[red]a [um].npy" in call(*AGAIN).stdout
-    found = columns("out/study.csv")
-    assert next(iter(found.values())) == ["'=cmd|x.npy", "[red]a [um].npy"]
-    assert found["completed [1]"] == ["1", "1"]  # numbers stay as they are
-
-
 def test_columns_and_figures_are_those_that_are_asked_for(out):
     """With the words of --show, bands too."""
     said = call(*AGAIN, "--show", "rms_force, force_level", "--json").stdout

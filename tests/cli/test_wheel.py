@@ -35,9 +35,8 @@ def test_modes_of_a_named_section_are_told_and_written():
 def test_an_outline_brings_its_radius():
     outline(Path("outline.csv"))
     call("wheel", "outline.csv", *LOW, "-o", "modes.csv")
-    np.testing.assert_allclose(
-        read_mode_table(Path("modes.csv")), modes_of(section="bent-web", radius=0.42), rtol=1e-6
-    )
+    expected = modes_of(section="bent-web", radius=0.42)
+    np.testing.assert_allclose(read_mode_table(Path("modes.csv")), expected, rtol=1e-6)
 
 
 def test_a_case_brings_dimensions_and_damping():

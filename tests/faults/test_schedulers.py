@@ -31,18 +31,10 @@ def served(tmp_path):
     """A scheduler and a worker, each a process."""
     environment = os.environ | {"ASPERITY_CACHE": str(tmp_path / "far"), "ASPERITY_THREADS": "1"}
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
-    file = tmp_path / "scheduler.json"
-    own = {
-        "scheduler": ["--port", "0", "--host", "127.0.0.1"],
-        "worker": ["--nthreads", "1", "--no-nanny", "--death-timeout", "60"],
-    }
-    dask = [sys.executable, "-m", "distributed.cli.dask_"]
-    started = [
-        subprocess.Popen(
-            [*dask[:2], dask[2] + name, "--no-dashboard", "--scheduler-file", str(file), *words], **quiet
-        )
-        for name, words in own.items()
-    ]
+    file, dask = tmp_path / "scheduler.json", f"{sys.executable} -m distributed.cli.dask_"
+    own = "scheduler --port 0 --host 127.0.0.1", "worker --nthreads 1 --no-nanny --death-timeout 60"
+    where = ["--no-dashboard", "--scheduler-file", str(file)]
+    started = [subprocess.Popen([*f"{dask}{words}".split(), *where], **quiet) for words in own]
     until(file.exists)
     yield started[0], json.loads(file.read_text())["address"]
     for process in started:

@@ -42,14 +42,11 @@ test_wrong_aims_are_refused_with_all_that_is_wrong = refusals(
 )
 
 
-@pytest.mark.parametrize(
-    ("text", "match"),
-    [
-        ("rms_at_least = '1 um'", "case: received nothing"),
-        ("case = 'none.toml'\nrms_at_least = '1 um'", "none.toml"),
-        ("case = 'case.toml'\nrms_at_leest = '1 um'", "rms_at_least"),
-    ],
-)
+@pytest.mark.parametrize(("text", "match"), [
+    ("rms_at_least = '1 um'", "case: received nothing"),
+    ("case = 'none.toml'\nrms_at_least = '1 um'", "none.toml"),
+    ("case = 'case.toml'\nrms_at_leest = '1 um'", "rms_at_least"),
+])  # fmt: skip
 def test_files_that_say_too_little_or_too_much(tmp_path, text, match):
     (tmp_path / "case.toml").write_text(asperity.BallOnBeam(**CASE).to_toml())
     (tmp_path / "aim.toml").write_text(text)

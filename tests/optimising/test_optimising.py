@@ -140,9 +140,8 @@ def test_it_replaces_no_other_texture(again, tmp_path, file):
 
 def test_a_limit_is_kept_and_each_band_takes_its_share():
     """The inverse: bands that no bound holds add the same to the level, as all cost the same."""
-    found = asperity.optimise(
-        CASE, limit=120.0, longest="1.6 mm", lowest=["-90 dB"], highest=["-10 dB"], verify="areal"
-    )
+    bounds = {"longest": "1.6 mm", "lowest": ["-90 dB"], "highest": ["-10 dB"]}
+    found = asperity.optimise(CASE, limit=120.0, verify="areal", **bounds)
     assert found.settled
     assert found.trials[0].level > 125.0
     assert found.trials[-1].level == pytest.approx(120.0, abs=0.06)
@@ -166,9 +165,8 @@ def test_a_rail_is_judged_by_its_sound_power():
 
 
 def test_the_unweighted_acceleration():
-    found = asperity.optimise(
-        CASE, quantity="rms acceleration", rms_at_least="0.05 um", law="linear-filtered", verify="areal"
-    )
+    laws = {"law": "linear-filtered", "verify": "areal"}
+    found = asperity.optimise(CASE, quantity="rms acceleration", rms_at_least="0.05 um", **laws)
     tree = found.result_after
     record = tree["rolling/acceleration"].sel(law="areal")
     step = float(record["time"][1] - record["time"][0])

@@ -141,9 +141,8 @@ def test_questions_that_are_none_are_told_so(server, path, question, status, wor
 
 
 def test_what_is_announced_too_large_is_refused_at_once(server):
-    status, headers, words = asked(
-        server.app(), "/ask/surfaces?name=vast.npy", "POST", {"content-length": str(2**30)}
-    )
+    vast = {"content-length": str(2**30)}
+    status, headers, words = asked(server.app(), "/ask/surfaces?name=vast.npy", "POST", vast)
     assert (status, headers["connection"]) == (413, "close")
     assert "received 1 GiB or more; allowed: at most 256 MiB" in words
 

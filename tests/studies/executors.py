@@ -2,6 +2,8 @@
 
 from concurrent.futures import Executor, Future
 
+from small_cases import changed
+
 BALL = """
 kind = "ball-on-beam"
 duration = "0.02 s"
@@ -9,24 +11,7 @@ laws = ["hertz", "linear"]
 [surface]
 spectrum = "iso3095"
 """
-ROUGH = """
-kind = "ball-on-beam"
-laws = ["table", "areal", "linear-filtered"]
-start = "0.5 m"
-duration = "20 ms"
-settling = "5 ms"
-[surface]
-rms = "0.05 um"
-longest = "0.4 mm"
-shortest = "60 um"
-[contact]
-spacing = "20 um"
-window = "0.66 mm"
-samples = 2
-sample_length = "1.4 mm"
-[numerics]
-highest_frequency = "2 kHz"
-"""
+ROUGH = changed("ball-on-beam", laws=["table", "areal", "linear-filtered"], start="0.5 m", settling="5 ms")
 
 
 class Here(Executor):

