@@ -15,7 +15,13 @@ from typing import Any
 import numpy as np
 
 from asperity import Track, Wheel
-from asperity.radiation.track import SPEED_OF_SOUND, RailSection, SleeperTop, effective_length
+from asperity.radiation.track import (
+    SPEED_OF_SOUND,
+    RailSection,
+    SleeperTop,
+    squared_mobility,
+    squared_point_mobility,
+)
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
 from asperity.reference.materials import MATERIALS
@@ -205,5 +211,6 @@ if __name__ == "__main__":
     against_cnossos()
     wheel_against_cnossos()
     radiation_of_the_rail()
-    length = effective_length(track(PADS["medium"]), [500.0, 1000.0, 2000.0])
+    given = track(PADS["medium"]), [500.0, 1000.0, 2000.0]
+    length = squared_mobility(*given) / squared_point_mobility(*given)
     print("\nEffective lengths at 500, 1000, 2000 Hz:", ", ".join(f"{each:.1f} m" for each in length))

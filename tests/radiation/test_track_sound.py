@@ -113,8 +113,7 @@ def test_bays_that_differ_sound_as_equal_ones_in_the_mean():
 
 
 def test_limits_of_radiators():
-    """(π/2) ka of the line monopole; one where ka is large."""
-    assert sound.cylinder(1e-3, 0) == pytest.approx(0.5 * math.pi * 1e-3, rel=1e-4)
+    """One where ka is large."""
     ka = np.array([1e-4, 0.00999, 0.01001])  # where the series of the piston takes over
     assert_allclose(sound.baffled_piston(ka), 0.5 * ka**2 - ka**4 / 12.0 + ka**6 / 144.0, rtol=1e-9)
     k = 2.0 * math.pi / SPEED_OF_SOUND
@@ -164,7 +163,7 @@ ZERO = r"frequency \(Hz\): received 0.0; allowed: finite positive"
 test_bad_questions_are_refused = refusals(
     *(
         (lambda f=f: f(UIC60, [0.0, 100.0]), ZERO)
-        for f in (sound.squared_mobility, sound.squared_sleeper_mobility, sound.effective_length)
+        for f in (sound.squared_mobility, sound.squared_sleeper_mobility, sound.squared_point_mobility)
     ),
     (lambda: RailSection(0.0, 0.07, 7e-3), "foot_width of the rail's section: received 0.0; all"),
     (lambda: RailSection(0.15, 0.07, math.nan), "area of the rail's section"),

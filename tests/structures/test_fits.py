@@ -29,16 +29,13 @@ def response(s, poles, residues):
     return sum(r / (s - p) + (np.conj(r) / (s - np.conj(p)) if p.imag else 0.0) for p, r in both)
 
 
-def test_poles_and_residues_of_a_rational_function_are_found():
+def test_poles_of_rational_functions_are_found():
     poles = np.array([-20.0, -5.0 + 300.0j, -40.0 + 2000.0j, -10.0 + 2100.0j])
     residues = np.array([[3.0, 1.0 - 2.0j, 4.0j, 0.5], [1.0, 0.2j, -3.0, 2.0 + 1.0j]])
     lines = 2j * np.pi * np.geomspace(1.0, 1000.0, 300)
     start = np.array([-1.0 + 100j, -5.0 + 1000j, -10.0 + 3000j, -100.0])
-    fit = vector_fit(lines, [response(lines, poles, r) for r in residues], start)
-    order = np.argsort(np.abs(fit.poles))
-    assert fit.error < 1e-9
-    assert_allclose(fit.poles[order], poles, rtol=1e-7)
-    assert_allclose(fit.residues[:, order], residues, rtol=1e-6, atol=1e-6)
+    found = vector_fit(lines, [response(lines, poles, r) for r in residues], start)
+    assert_allclose(found[np.argsort(np.abs(found))], poles, rtol=1e-7)
 
 
 CIRCLE = np.exp(1j * np.linspace(0.01, 3.0, 200))
@@ -46,11 +43,11 @@ CIRCLE = np.exp(1j * np.linspace(0.01, 3.0, 200))
 
 def test_all_poles_are_stable_even_for_noise():
     noise = np.random.default_rng(3).normal(size=(2, 3, 200)).T @ [1.0, 1j]
-    fit = vector_fit(1j * np.linspace(1.0, 100.0, 200), noise.T, -1.0 + 1j * np.linspace(2, 90, 10))
-    assert (fit.poles.real < 0.0).all()
+    found = vector_fit(1j * np.linspace(1.0, 100.0, 200), noise.T, -1.0 + 1j * np.linspace(2, 90, 10))
+    assert (found.real < 0.0).all()
     for radius in (1.0, 0.9):
-        fit = vector_fit(CIRCLE, noise.T, 0.8 * np.exp(1j * np.linspace(0.1, 3, 10)), radius=radius)
-        assert (np.abs(fit.poles) < radius).all()
+        found = vector_fit(CIRCLE, noise.T, 0.8 * np.exp(1j * np.linspace(0.1, 3, 10)), radius=radius)
+        assert (np.abs(found) < radius).all()
 
 
 MASS, LOAD = 600.0, 65e3

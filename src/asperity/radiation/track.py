@@ -26,30 +26,28 @@ def wavenumber(frequency: Array) -> Array:
 _SMALL = 1e-2  # from here down a piston follows its series
 
 
-def cylinder(ka: ArrayLike, order: int = 1) -> Array:
-    """Radiation ratio of a cylinder of infinite length whose surface moves as cos(nθ).
+def cylinder(ka: ArrayLike) -> Array:
+    """Radiation ratio of a cylinder of infinite length that oscillates as a rigid body (line dipole).
 
     Parameters
     ----------
     ka : array_like
         Positive.
-    order : int
-        n: 0 breathes (line monopole), 1 oscillates as a rigid body (line dipole).
 
     Returns
     -------
     ndarray
-        2/(π ka |H_n'(ka)|²), of the shape of `ka`.
+        2/(π ka |H_1'(ka)|²), of the shape of `ka`.
 
     Notes
     -----
-    Outside, p = A H_n(kr) cos(nθ) with Hankel's function of the second kind; −∂p/∂r = iωρ v cos(nθ) on the
-    surface gives |A| = ρ c v/|H_n'(ka)|. Far away |H_n|² = 2/(πkr); the power that passes is divided by that
+    Outside, p = A H_1(kr) cos θ with Hankel's function of the second kind; −∂p/∂r = iωρ v cos θ on the
+    surface gives |A| = ρ c v/|H_1'(ka)|. Far away |H_1|² = 2/(πkr); the power that passes is divided by that
     of a plane wave of the same mean square velocity. Of an oscillating rigid cylinder ⟨v_n²⟩ is half
-    of its ⟨v²⟩. Limits: (π/2)(ka)³ for n = 1 and (π/2) ka for n = 0 at low ka, 1 at high ka.
+    of its ⟨v²⟩. Limits: (π/2)(ka)³ at low ka, 1 at high ka.
     """
     ka = np.asarray(ka, dtype=float)
-    return np.asarray(2.0 / (np.pi * ka * np.abs(h2vp(order, ka)) ** 2))
+    return np.asarray(2.0 / (np.pi * ka * np.abs(h2vp(1, ka)) ** 2))
 
 
 def baffled_piston(ka: ArrayLike) -> Array:
@@ -112,15 +110,6 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
 def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
     return Mobility(track, 2.0 * np.pi * above_zero(frequency)).point(force)
-
-
-def effective_length(track: Track, frequency: ArrayLike) -> Array:
-    """Length of rail that, moving as it does at the force, holds all of the rail's mean square velocity.
-
-    `squared_mobility` over `squared_point_mobility`, (f,), m; frequencies (f,), Hz, positive. Of one wave
-    with a decay rate Δ, dB/m, it is 8.686/Δ.
-    """
-    return squared_mobility(track, frequency) / squared_point_mobility(track, frequency)
 
 
 def above_zero(frequency: ArrayLike) -> Array:

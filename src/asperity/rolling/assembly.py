@@ -1,7 +1,6 @@
 """Bodies set on what they roll over: at rest, with contacts soft enough for the time step."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -187,24 +186,17 @@ ON_SUPPORT = 1e-9
 """Distance to a support that counts as none, m."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rest:
-    """Bodies at rest on n contacts."""
-
-    displacement: Array  # y of all bodies (d,), one after another, upwards
-    force: Array  # (n,), N
-    approach: Array  # (n,), as the laws see it, m
-    stiffness: Array  # (n,), of the contacts, N/m
-
-
 def at_rest(
     bodies: Sequence[Body],
     displaced: Array,
     compliance: Array,
     laws: Sequence[Evaluation],
     relative: float = TOLERANCE,
-) -> Rest:
+) -> tuple[Array, Array, Array, Array]:
     """Where bodies rest on laws, which give force, N, and stiffness, N/m, of an approach, m.
+
+    Displacements y of all bodies (d,), one after another, upwards, and of the contacts (n,) their forces, N,
+    approaches as the laws see them, m, and stiffnesses, N/m.
 
     What is rolled over is displaced by u (n,), m, whatever the forces, and all that yields by a compliance
     Q Qᵀ (n, n), m/N, of structure and of the bodies' modes. With y of the bodies and c of what yields the
@@ -219,8 +211,8 @@ def at_rest(
     pressing = np.concatenate([*(body.pressing for body in bodies), np.zeros(n)])
     loads = np.concatenate([body.static_loads for body in bodies])
     scale = np.maximum(loads, loads.clip(0.0).mean())
-    x, *contacts = equilibrium(matrix, pressing, shapes, displaced, scale, laws, relative)
-    return Rest(x[:coordinates], *contacts)
+    x, force, approach, stiffness = equilibrium(matrix, pressing, shapes, displaced, scale, laws, relative)
+    return x[:coordinates], force, approach, stiffness
 
 
 def equilibrium(
@@ -325,8 +317,9 @@ def start_at_rest(
             motion = at_zero(system)
             rail, rates = _rolled_up(system, motion, force, int(PRELOAD * ground.memory))
             displaced = rail - ground.yields @ force
-        rest = at_rest(bodies, displaced, compliance, laws, relative)
-        change, force = np.abs(rest.force - force).max(), rest.force
+        before = force
+        coordinates, force, approach, stiffness = at_rest(bodies, displaced, compliance, laws, relative)
+        change = np.abs(force - before).max()
         if change <= relative * np.abs(force).max():
             break
     largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.slopes))
@@ -339,12 +332,12 @@ def start_at_rest(
     d, first = system.core_shapes.shape[1], 0
     for index, body in enumerate(bodies):
         own, count = rates[system.body == index], len(body.mass)
-        motion.core[index, :count] = rest.displacement[first : first + count]
+        motion.core[index, :count] = coordinates[first : first + count]
         motion.core[index, d : d + count] = np.linalg.lstsq(body.contacts, -own, rcond=None)[0]
         first += count
     motion.force[:] = motion.trial[:] = motion.elastic[:] = force
-    motion.approach[:] = rest.approach
-    return rest.stiffness, motion
+    motion.approach[:] = approach
+    return stiffness, motion
 
 
 def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:

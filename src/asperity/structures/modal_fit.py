@@ -1,4 +1,4 @@
-"""Vector fitting: common poles of many responses, and their residues."""
+"""Vector fitting: common poles of many responses, and modes that they make."""
 
 from collections.abc import Callable
 from functools import partial
@@ -15,17 +15,6 @@ from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
 
 
-class RationalFit(NamedTuple):
-    """Responses as sums over common stable poles.
-
-    A response is the sum of r/(s − p) over real poles, and of r/(s − p) + r*/(s − p*) over the others.
-    """
-
-    poles: Complex  # (p,), im >= 0; those with Im > 0 stand for themselves and their conjugates
-    residues: Complex  # (m, p), of each response; real where the pole is real
-    error: float  # root mean square of the weighted error, relative to that of the weighted responses
-
-
 def vector_fit(
     points: ArrayLike,
     responses: ArrayLike,
@@ -34,8 +23,11 @@ def vector_fit(
     weights: ArrayLike | None = None,
     iterations: int = 10,
     radius: float | None = None,
-) -> RationalFit:
-    """Fit responses by rational functions with common poles and no polynomial part.
+) -> Complex:
+    """Common stable poles (p,) of rational functions without polynomial part that fit responses.
+
+    A response is the sum of r/(s − p) over real poles, and of r/(s − p) + r*/(s − p*) over the others, which
+    have Im p > 0 and stand for themselves and their conjugates.
 
     Responses (m, n) or (n,) are known at points (n,), more than two for each pole: s = iω, or with a radius
     z = e^{iωΔt}; they are those of real signals, so that conjugate points have conjugate responses. Start
@@ -51,7 +43,7 @@ def vector_fit(
     weighted = weight * np.atleast_2d(np.asarray(responses, dtype=complex))
     scale, spanning = np.linalg.norm(weighted), _spanning(weighted)
     right = np.concatenate([weighted.real, weighted.imag], axis=1).T
-    best = RationalFit(moved, np.zeros((len(weighted), moved.size), dtype=complex), np.inf)
+    best, least = moved, np.inf
     for _ in range(iterations):
         moved = _stable(_relocated(s, weight, spanning, moved), radius)
         if moved.size == 0 or not np.isfinite(moved).all():
@@ -59,9 +51,9 @@ def vector_fit(
         matrix = _stacked(weight[:, None] * partial_fractions(s, moved))
         solution = least_squares(matrix, right)
         error = float(np.linalg.norm(matrix @ solution - right) / scale) if scale > 0.0 else 0.0
-        if error < best.error:
-            best = RationalFit(moved, paired(solution, moved), error)
-    if not np.isfinite(best.error):
+        if error < least:
+            best, least = moved, error
+    if not np.isfinite(least):
         raise ComputationError("the rational fit broke down", "fewer poles, or a smoother response")
     return best
 
@@ -311,7 +303,7 @@ def _searched(
         if before <= GOOD_FIT * np.sqrt(responses.size):
             break
         try:
-            poles = vector_fit(2j * np.pi * frequency, mixed, start, weights=weights).poles
+            poles = vector_fit(2j * np.pi * frequency, mixed, start, weights=weights)
             modes, error = modes_of(_with_residual(poles, frequency))
         except (ComputationError, np.linalg.LinAlgError):
             continue

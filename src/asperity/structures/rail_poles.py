@@ -186,7 +186,7 @@ def _poles(kernel: MovingKernel, count: int) -> Complex:
         weights=1.0 / np.sqrt(size),
         iterations=ITERATIONS,
         radius=float(np.exp(-slowest)),
-    ).poles
+    )
 
 
 def _spread(kernel: MovingKernel) -> NDArray[np.int64]:

@@ -114,7 +114,6 @@ def fit_structure(
     *,
     mass: float | None = None,
     inertia: float | None = None,
-    centre: float | None = None,
 ) -> modal.ModalStructure:
     """Structure that is rolled over, by its receptances at several places under forces at some of them.
 
@@ -128,7 +127,7 @@ def fit_structure(
         Hz, above zero and rising; fine enough for a few points in each resonance.
     receptance : array_like (n, p, e) of complex
         Displacements along the force per force, m/N, e^{+iωt}; (n, p) for one force.
-    mass, inertia, centre : float, optional
+    mass, inertia : float, optional
         Of a structure that nothing holds, see `ModalStructure.with_rigid_body`.
 
     Returns
@@ -174,7 +173,7 @@ def fit_structure(
     rigid = np.zeros_like(given)
     if mass is not None:
         still = modal.ModalStructure(at, np.ones(1), 0.0, np.ones((at.size, 1)))
-        moved = still.with_rigid_body(mass, inertia=inertia, centre=centre).mode_shapes[:, :-1]
+        moved = still.with_rigid_body(mass, inertia=inertia).mode_shapes[:, :-1]
         rigid = -(moved @ moved[number].T) / (2.0 * np.pi * f[:, None, None]) ** 2 + 0j
     natural, ratios, shapes = modal_fit.fit_shapes(f, given, rigid, number)
     inside = natural <= INSIDE * f[-1]
@@ -188,7 +187,7 @@ def fit_structure(
         structure = modal.ModalStructure(fine, *modes, fit_error=error)
         if mass is None:
             return structure
-        return structure.with_rigid_body(mass, inertia=inertia, centre=centre)
+        return structure.with_rigid_body(mass, inertia=inertia)
 
 
 def fit_body(mass: float, load: float, frequency: ArrayLike, receptance: ArrayLike) -> Body:

@@ -74,20 +74,16 @@ class StiffnessTable:
         return np.asarray((real + 1j * imaginary) / self.nominal, dtype=complex)
 
 
-def stiffness_at_preload(rows: Array, preload: float | None = None) -> StiffnessTable:
+def stiffness_at_preload(rows: Array, preload: float) -> StiffnessTable:
     """Dynamic stiffness at a preload, N, from a table of several.
 
     Rows (n, 3) of frequency, Hz, real and imaginary part, N/m, or with the preload, N, (n, 4), in any order,
     are the table. Between two preloads real and imaginary part
-    are linear in preload, beyond them as there. An `InputError` says what is wrong with the table, or that it
-    has several preloads and none is asked for.
+    are linear in preload, beyond them as there. An `InputError` says what is wrong with the table.
     """
     preloads = preloads_of(rows)
-    if len(preloads) > 1 and preload is None:
-        received = f"a table at {len(preloads)} preloads, and none to take"
-        raise InputError("pad_preload (N)", received, f"{preloads[0]:g} to {preloads[-1]:g} N")
     tables = [_table(rows if rows.shape[1] < 4 else rows[rows[:, 3] == each]) for each in preloads]
-    place = np.interp(preload or 0.0, preloads, np.arange(len(preloads))) if len(preloads) > 1 else 0.0
+    place = np.interp(preload, preloads, np.arange(len(preloads)))
     below, above = tables[int(place)], tables[min(int(place) + 1, len(tables) - 1)]
     at = np.union1d(below.frequencies, above.frequencies)
     low, high = (each.at(2.0 * np.pi * at) * each.nominal for each in (below, above))

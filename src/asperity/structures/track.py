@@ -242,11 +242,13 @@ class Track(track_parameters.TrackParameters):
     @property
     def bay_tracks(self) -> list[Track]:
         """Tracks of equal bays, one for each bay of the cell, on such supports as it begins with."""
-        return [self.regular._scaled(each) for each in (self.bays or track_parameters.Bays.equal()).shares]
+        bays = self.bays or track_parameters.Bays.equal()
+        return [self.regular._scaled(*each) for each in zip(bays.pad, bays.ballast, strict=True)]
 
-    def _scaled(self, share: track_parameters.Share) -> Track:
+    def _scaled(self, pad: float, ballast: float) -> Track:
         """With pads and ballast scaled, their damping with them."""
-        scaled = {f"{part}_{what}": factor for part, factor in share._asdict().items() for what in _SCALED}
+        parts = (("pad", pad), ("ballast", ballast))
+        scaled = {f"{part}_{what}": factor for part, factor in parts for what in _SCALED}
         given = {key: factor * getattr(self, key) for key, factor in scaled.items() if getattr(self, key)}
         return replace(self, **given)
 

@@ -1,8 +1,7 @@
 """What a track is made of: its parameters, each declared once, and what must fit together."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -14,13 +13,6 @@ from asperity.structures.support import MeasuredSleeper, Relaxation
 
 MOST_BAYS = 100
 """Of a cell: waves are kept of each of them, some ten megabytes."""
-
-
-class Share(NamedTuple):
-    """Stiffness and damping of one support relative to the nominal ones."""
-
-    pad: float
-    ballast: float
 
 
 @dataclass(frozen=True)
@@ -86,11 +78,6 @@ class Bays:
     def lengths(self) -> Array:
         """Relative lengths (n,)."""
         return np.array(self.spacing)
-
-    @property
-    def shares(self) -> Iterator[Share]:
-        """Of the supports with which bays begin, one after the other."""
-        return (Share(*pair) for pair in zip(self.pad, self.ballast, strict=True))
 
 
 @dataclass(frozen=True)
