@@ -7,8 +7,8 @@ import numpy as np
 from scipy.special import h2vp, j1
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
-from asperity.radiation.mobility import ForceOverBay, Mobility
 from asperity.structures.lateral_rail import LateralTrack, contact_shapes
+from asperity.structures.mobility import ForceOverBay, Mobility
 from asperity.structures.track import Track
 
 SPEED_OF_SOUND = 343.2
@@ -91,7 +91,7 @@ def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | N
     (λ_i λ_j*)^p = Σ_ij u_i u_j*/(1 − λ_i λ_j*) over all bays. Within a bay by Gauss's rule, in that of the
     force from the force on, on both of its sides; of bays that differ the mean is over all of their cell.
     """
-    return Mobility(track, 2.0 * np.pi * above_zero(frequency)).rail(force)
+    return _mobility(track, frequency).rail(force)
 
 
 def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
@@ -104,12 +104,17 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOve
     if track.continuous:
         moved = track.support.sleeper_square(2.0 * np.pi * above_zero(frequency))
         return moved * squared_mobility(track, frequency, force) / track.sleeper_spacing
-    return Mobility(track, 2.0 * np.pi * above_zero(frequency)).sleepers(force)
+    return _mobility(track, frequency).sleepers(track, force)
 
 
 def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
-    return Mobility(track, 2.0 * np.pi * above_zero(frequency)).point(force)
+    return _mobility(track, frequency).point(force)
+
+
+def _mobility(track: Track, frequency: ArrayLike) -> Mobility:
+    omega = 2.0 * np.pi * above_zero(frequency)
+    return Mobility(track.waves(omega), omega)
 
 
 def above_zero(frequency: ArrayLike) -> Array:

@@ -12,6 +12,8 @@ from asperity.structures.track import Track
 
 Span = CellWaves | PeriodicWaves
 """Waves between two supports."""
+Squares = Callable[[int, float], Array]
+"""Squares (f,) under a unit force in a span, by number, at a place in it, m."""
 ForceOverBay = Callable[[Array], Array]
 """Mean square of the force at places (n,), m from a sleeper, at the frequencies (n, f), in any unit."""
 FEWEST_NODES = 6  # of Gauss's rule between two supports, beside one per radian of the shortest wave
@@ -25,10 +27,8 @@ class Mobility:
     beyond with the steps of the waves, give the squares there.
     """
 
-    def __init__(self, track: Track, omega: Array) -> None:
-        waves = track.waves(omega)
-        self.track, self.omega, self.steps = track, omega, waves.steps
-        self.spans: Sequence[Span] = waves.spans
+    def __init__(self, waves: CellWaves | PeriodicWaves, omega: Array) -> None:
+        self.omega, self.steps, self.spans = omega, waves.steps, waves.spans
         self.edges, shortest = waves.edges, float(np.abs(waves.wavenumbers).max())
         self.count = FEWEST_NODES + math.ceil(shortest * float(np.diff(waves.edges).max()))
 
@@ -39,10 +39,14 @@ class Mobility:
 
     def rail(self, force: ForceOverBay | None) -> Array:
         """Integral along the rail of the squared mobility (f,), mean over the places of the force."""
-        ahead, behind = self._beyond(*(self._forms(waves) for waves in ("outgoing", "incoming")))
+        return self._mean(self.along(self.spans), force)
 
-        def squares(number: int, span: Span, x0: float) -> Array:
-            right, left = _sent(span, x0)
+    def along(self, spans: Sequence[Span]) -> Squares:
+        """Integral along the rail of the square of what spans make of the waves of a force."""
+        ahead, behind = self._beyond(*(self._forms(spans, waves) for waves in ("outgoing", "incoming")))
+
+        def squares(number: int, x0: float) -> Array:
+            (right, left), span = _sent(self.spans[number], x0), spans[number]
             total = _squared(right, ahead[number]) + _squared(left, behind[number])
             for x, length in zip(*self.gauss(x0, span.spacing), strict=True):
                 total = total + length * np.abs(np.sum(right * span.outgoing(x), axis=0)) ** 2
@@ -50,36 +54,41 @@ class Mobility:
                 total = total + length * np.abs(np.sum(left * span.incoming(x), axis=0)) ** 2
             return total
 
-        return self._mean(squares, force)
+        return squares
 
-    def sleepers(self, force: ForceOverBay | None) -> Array:
+    def sleepers(self, track: Track, force: ForceOverBay | None) -> Array:
         """Sum over all half sleepers of the squared mobility (f,), mean over the places of the force."""
-        every, zero = len(self.spans) // self.track.cell_bays, np.zeros(self.omega.shape)
-        moved = [zero] * len(self.spans)
-        moved[::every] = [bay.support.sleeper_square(self.omega) for bay in self.track.bay_tracks]
+        moved = np.zeros((len(self.spans), self.omega.size))
+        bays = [bay.support.sleeper_square(self.omega) for bay in track.bay_tracks]
+        moved[:: len(self.spans) // track.cell_bays] = bays
+        return self._mean(self.at_starts(moved), force)
+
+    def at_starts(self, shares: Array) -> Squares:
+        """Sum of the squares at all places where a span begins, times shares (n, f) or (n, 1)."""
         seen = np.array([[s.outgoing(0.0), s.incoming(0.0)] for s in self.spans])  # (n, side, 2, f)
-        forms = np.array(moved)[:, None, None, None] * seen[:, :, :, None] * seen[:, :, None].conj()
+        forms = shares[:, None, None, None] * seen[:, :, :, None] * seen[:, :, None].conj()
         ahead, behind = self._beyond(forms[:, 0], forms[:, 1])
         behind = behind + forms[:, 1]  # a span begins with its own support
 
-        def squares(number: int, span: Span, x0: float) -> Array:
-            right, left = _sent(span, x0)
+        def squares(number: int, x0: float) -> Array:
+            right, left = _sent(self.spans[number], x0)
             return _squared(right, ahead[number]) + _squared(left, behind[number])
 
-        return self._mean(squares, force)
+        return squares
 
     def point(self, force: ForceOverBay | None) -> Array:
         """Squared mobility of the rail at the force (f,), mean over its places."""
 
-        def squares(number: int, span: Span, x0: float) -> Array:
+        def squares(number: int, x0: float) -> Array:
+            span = self.spans[number]
             return np.abs(np.sum(span.outgoing(x0) * _sent(span, x0)[0], axis=0)) ** 2
 
         return self._mean(squares, force)
 
-    def _forms(self, waves: str) -> Complex:
+    def _forms(self, spans: Sequence[Span], waves: str) -> Complex:
         """Integrals of products of waves over each span (n, i, j, f)."""
         forms = []
-        for span in self.spans:
+        for span in spans:
             places, lengths = self.gauss(0.0, span.spacing)
             shapes = np.array([getattr(span, waves)(x) for x in places])
             forms.append(np.einsum("x,xif,xjf->ijf", lengths, shapes, shapes.conj(), optimize=True))
@@ -103,12 +112,10 @@ class Mobility:
                 before[span % count] = step[span - 1] * (growing[span - 1] + beyond)
         return after, before
 
-    def _mean(self, squares: Callable[[int, Span, float], Array], force: ForceOverBay | None) -> Array:
+    def _mean(self, squares: Squares, force: ForceOverBay | None) -> Array:
         """Mean of ω² times squares, by the weights of Gauss's rule and of the force."""
         places, lengths = zip(*(self.gauss(0.0, span.spacing) for span in self.spans), strict=True)
-        values = np.array(
-            [squares(n, span, float(x)) for n, span in enumerate(self.spans) for x in places[n]]
-        )
+        values = np.array([squares(n, float(x)) for n, within in enumerate(places) for x in within])
         along = np.concatenate([edge + each for edge, each in zip(self.edges, places, strict=False)])
         square = 1.0 if force is None else force(along)
         weights = np.concatenate(lengths)[:, None] * np.broadcast_to(square, values.shape)
