@@ -135,7 +135,6 @@ def test_help_lists_every_command_with_a_whole_sentence():
         ("new ", {*PRESETS, "study", "what-helps", "optimisation"}),
         ("new w", {"wheel-on-rail", "what-helps"}),
         ("new --law sh", {"shifted", "shifted-unfiltered"}),
-        ("compare --law dir", {"direct"}),
         ("run --device ", {"cpu", "gpu"}),
         ("com", {"compare", "completion"}),
     ],

@@ -180,7 +180,6 @@ REFUSED = [
      "octaves)"),
     ("compare {run}", "runs to compare: received 1; allowed: two to 8 runs. Give a run.nc or its folder for"),
     ("compare {run} absent", "absent: received no such file; allowed: a result file that a run has written"),
-    ("compare {run} {run} --law areal", "law: received 'areal'; allowed: a law of the runs: hertz, linear"),
 ]  # fmt: skip
 
 

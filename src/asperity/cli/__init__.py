@@ -82,7 +82,7 @@ def demo(directory: Path, again: bool, overwrite: bool) -> None:
 
 @_begin("Write a commented case, or a study, to begin with.", document=False)
 @click.argument("kind", metavar="|".join(templates()), shell_complete=options.completed(templates))
-@options.law_option("A law of the contact force, the first the main one. May be repeated.")
+@options.laws
 def new(kind: str, laws: tuple[str, ...]) -> None:
     """Write a commented case, a study of one or its optimisation, to standard output.
 
@@ -463,15 +463,12 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
 
 @_look("What differs between runs: cases, levels, force, stiffness.", document=False)
 @click.argument("runs", nargs=-1, type=PATH, required=True)
-@options.law_option(
-    "Compare this law alone, the first as the main one. May be repeated. [default: all that runs have]"
-)
 @output(
     "Folder of comparison.html and comparison.csv, or the page itself, ….html.",
     default=Path("comparison"),
     show_default=True,
 )
-def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> None:
+def compare(runs: tuple[Path, ...], directory: Path) -> None:
     """Compare RUNS (run.nc, or their folders) with the first of them: one page and one table.
 
     What differs in the cases; levels and their differences in each one-third octave and in dB(A); force, loss
@@ -481,12 +478,12 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> N
     --------
     # page and table in 'comparison'
     asperity compare runs/smooth runs/rough
-    # three runs, by one law
-    asperity compare runs/a runs/b runs/c --law table -o what-if
+    # three runs, into a folder of your choice
+    asperity compare runs/a runs/b runs/c -o what-if
     """
     from asperity.cli.results import compare_runs
 
-    compare_runs(runs, directory, laws)
+    compare_runs(runs, directory)
 
 
 @_look("Write what a run sounds like, as WAV files.")

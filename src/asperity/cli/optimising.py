@@ -20,7 +20,7 @@ from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
 from asperity.store import content_key
-from asperity.terminal import say
+from asperity.terminal import say, say_files
 from asperity.text_files import write_csv
 
 FILES = {
@@ -55,9 +55,7 @@ def run_optimisation(
             text = toml.toml_text({"kind": found.case.kind, **keys})
             files.write_bytes(new / FILES["case"], f"{_mark(asked, text)}{text}".encode())
     say(found.sentence)
-    say(f"Case:    {written['case'].resolve()}")
-    say(f"Page:    {written['page'].resolve()}, and as numbers {FILES['table']}")
-    say(f"Runs:    {written['before'].parent.resolve()}, {written['after'].parent.resolve()}")
+    say_files(written)
     titles, rows = _table(bands, found.measure.units)
     return {
         "summary": found.sentence,

@@ -98,10 +98,14 @@ def _laws() -> Iterable[str]:
     return names()
 
 
-def law_option(help: str) -> Any:
-    """Laws by their names."""
-    completion = completed(_laws)
-    return click.option("--law", "laws", multiple=True, metavar="LAW", shell_complete=completion, help=help)
+laws = click.option(
+    "--law",
+    "laws",
+    multiple=True,
+    metavar="LAW",
+    shell_complete=completed(_laws),
+    help="A law of the contact force, the first the main one. May be repeated.",
+)
 
 
 SURFACE = [

@@ -59,6 +59,7 @@ def _kept_plan(case: AnyCase, source: str) -> dict[str, Any]:
 
 def planned(prepared: ReadyCase) -> dict[str, Any]:
     """What will be computed from a case: rows, seconds and warnings."""
+    from asperity.scenarios.law_choice import law_choice
     from asperity.scenarios.preparing import PreparedCase, expect
     from asperity.scenes.validity import foreseen
 
@@ -66,8 +67,9 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
     if isinstance(prepared, PreparedCase):
         with progress_bar() as progress:
             work = expect(prepared, progress)
-            rows = plan(prepared, work)
-            case, choice = (prepared.case, prepared.shape, prepared.textures), _law_choice(prepared)
+            case = prepared.case, prepared.shape, prepared.textures
+            choice = law_choice(*case, prepared.scene)
+            rows = plan(prepared, work, choice)
             faults = [] if work.tried is None else foreseen(*case, work.tried, choice)
         caught += [(each.grade, each.message) for each in faults if each.grade]
     else:
@@ -88,12 +90,12 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
     }
 
 
-def plan(prepared: PreparedCase, work: Work) -> Rows:
+def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> Rows:
     """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
     from asperity.scenarios.reducing import STATES
     from asperity.scenes.plan import planned_rows
 
-    case, (nx, ny), choice = prepared.case, prepared.shape.body.shape, _law_choice(prepared)
+    case, (nx, ny) = prepared.case, prepared.shape.body.shape
     contact, settling = case.contact, case.settled_time
     states = STATES if contact.approaches is None else len(contact.approaches)
     first, last = case.rolled_range
@@ -108,12 +110,8 @@ def plan(prepared: PreparedCase, work: Work) -> Rows:
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
     ]
     if work.tried is not None:  # a sample
-        rows.append(
-            (
-                "real contact",
-                f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies",
-            )
-        )
+        share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"
+        rows.append(("real contact", share))
     rows += choice.rows() if choice is not None else []
     rows += [(f"contact solutions, {name}", f"at most {count}") for name, count in work.solutions.items()]
     if scan := work.scans.get("path"):
@@ -123,10 +121,3 @@ def plan(prepared: PreparedCase, work: Work) -> Rows:
 
 def _work(work: Work) -> tuple[str, str]:
     return "work", f"about {duration(float(f'{work.seconds:.1g}'))}, less what the cache holds"
-
-
-def _law_choice(prepared: PreparedCase) -> LawChoice | None:
-    """Which law to take, and how far the laws are expected from `direct`."""
-    from asperity.scenarios.law_choice import law_choice
-
-    return law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)

@@ -53,11 +53,11 @@ def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: b
     return {"run": run.resolve(), "matched": matched, "files": {path.name: path for path in files}}
 
 
-def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> None:
+def compare_runs(paths: Sequence[Path], target: Path) -> None:
     """Compare runs into a page and a table, and say in short what differs."""
     folder = target.parent if target.suffix.lower() == ".html" else target
     refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
-    found = comparison_of(paths, laws=laws)
+    found = comparison_of(paths)
     table, names = found.table, found.names
     keys = [[i["key"], *("–" if v is None else str(v) for v in i["values"])] for i in found.keys]
     if keys:

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import xarray
 
-from asperity.arguments import nearest, shown
-from asperity.errors import InputError
 from asperity.reporting import chart, data
 from asperity.results import variable
 from asperity.schema import Attribute, Entry, contact, provenance, rolling, spectra
@@ -72,21 +70,15 @@ class ComparedRuns:
         return found
 
 
-def compared(runs: Sequence[NamedRun], levels: Sequence[Entry], chosen: Sequence[str] = ()) -> ComparedRuns:
+def compared(runs: Sequence[NamedRun], levels: Sequence[Entry]) -> ComparedRuns:
     """Lay quantities of runs side by side, with their differences to the first run.
-
-    Of all their laws, or of those chosen alone.
 
     Levels are those of the schema that have laws and bands. Of several places on a body the energy mean is
     taken; of several sources each is a level of its own, and the last of them, their sum, is shown.
     """
     every = list(dict.fromkeys(law for run in runs for law in run.laws))
-    for law in chosen:
-        if law not in every:
-            allowed = f"a law of the runs: {', '.join(every)}"
-            raise InputError("law", shown(law), allowed, nearest(law, every))
     mains = {run.laws[0] for run in runs if run.laws}
-    laws = list(dict.fromkeys(chosen)) or ([MAIN, *every] if len(mains) > 1 else every)
+    laws = [MAIN, *every] if len(mains) > 1 else every
     found = {
         "run": variable("run", np.array([run.name for run in runs]), "1", "run, the first the reference"),
         "law": variable("law", np.array(laws), "1", "contact law"),

@@ -195,7 +195,6 @@ def names_of_reports() -> list[str]:
 def compare(
     *results: xarray.DataTree | str | os.PathLike[str],
     names: Sequence[str] | None = None,
-    laws: Sequence[str] = (),
     path: str | os.PathLike[str] | None = None,
 ) -> xarray.Dataset:
     """Compare runs: what differs in their cases, levels, force, loss of contact, stiffness and filters.
@@ -207,8 +206,6 @@ def compare(
         folder. All differences are to the first.
     names : sequence of str, optional
         What the runs are called; by default as their folders, or by number.
-    laws : sequence of str
-        Laws that are compared, the first as the main one; by default all that the runs have.
     path : path, optional
         Folder that receives ``comparison.html`` and ``comparison.csv``, or the page itself, ``….html``,
         beside which the table is written.
@@ -226,7 +223,7 @@ def compare(
     Raises
     ------
     InputError
-        If there are fewer than two runs or more than eight, one cannot be read, or names or laws do not fit.
+        If there are fewer than two runs or more than eight, one cannot be read, or names do not fit.
     ComputationError
         If a file cannot be written.
 
@@ -244,7 +241,7 @@ def compare(
     >>> table["force_level_difference"].dims
     ('run', 'law', 'band')
     """
-    found = comparison_of(results, names, laws)
+    found = comparison_of(results, names)
     if path is not None:
         write_comparison(found, path)
     return found.table
@@ -253,7 +250,6 @@ def compare(
 def comparison_of(
     results: Sequence[xarray.DataTree | str | os.PathLike[str]],
     names: Sequence[str] | None = None,
-    laws: Sequence[str] = (),
 ) -> ComparedRuns:
     """Read runs, name them so that they can be told apart, and compare all levels over bands."""
     allowed = f"two to {MOST_RUNS} runs"
@@ -268,7 +264,7 @@ def comparison_of(
         raise InputError("runs to compare", "runs of bearings", "runs of bodies that roll", remedy)
     held = {name for run in runs for group in run.tree.children.values() for name in group.data_vars}
     levels = (e for e in KEPT if e.units.startswith("dB re") and e.dims[-1].endswith("band"))
-    return compared(runs, [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)], laws)
+    return compared(runs, [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)])
 
 
 def _tree(result: object) -> xarray.DataTree:
