@@ -96,20 +96,20 @@ def _over_pass_by(tree: DataTree) -> Iterator[figure.Series]:
 
 
 _SOUND = "dB(A) re 20 uPa"
-_LOOKS: dict[str, tuple[Any, ...]] = {
-    "rail": (chart.VERMILLION, (1.5, 1.5), 1.2),
-    "sleepers": (chart.GREEN, (4.0, 1.5), 1.2),
-    "wheel": (chart.BLUE, (6.0, 1.5, 1.5, 1.5), 1.2),
-    "total": (chart.BLUE, (), 1.6, "o"),
-    schema.RAIL_SIDEWAYS: (chart.VERMILLION, (6.0, 1.5), 1.2),
-    schema.WHEEL_BOTH: (chart.BLUE, (1.5, 1.5), 1.2),
-    schema.WITH_SIDEWAYS: (chart.INK, (6.0, 1.5), 1.6, "o"),
-    "measured": (chart.INK, (), 2.2, "s"),
+LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of each part
+    "rail": (chart.VERMILLION, (1.5, 1.5), 1.3, "o"),
+    "sleepers": (chart.GREEN, (4.0, 1.5), 1.3, "s"),
+    "wheel": (chart.BLUE, (6.0, 1.5, 1.5, 1.5), 1.3, "^"),
+    "total": (chart.INK, (), 1.8),
+    schema.RAIL_SIDEWAYS: (chart.VERMILLION, (6.0, 1.5), 1.3),
+    schema.WHEEL_BOTH: (chart.BLUE, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5), 1.3),
+    schema.WITH_SIDEWAYS: (chart.INK, (6.0, 1.5), 1.8),
+    "measured": ("#a8458f", (), 2.2, "s"),
 }
 
 
 def _bands(tree: DataTree, lines: figure.Lines) -> list[chart.Panel]:
-    drawn = [chart.Line(lines.at, s.values, s.label, *_LOOKS.get(s.label, ())) for s in lines.lines]
+    drawn = [chart.Line(lines.at, s.values, s.label, *LOOKS.get(s.label, ())) for s in lines.lines]
     told = [line.y for line in drawn if line.label in ("total", schema.WITH_SIDEWAYS, "measured")]
     axis = panels.levels_axis("sound pressure level / dB(A) re 20 µPa", told, span=50.0)
     return [chart.Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)]

@@ -14,7 +14,7 @@ from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Panel, 
 from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
-from asperity.scenes.figures.measured import compared_numbers, limit_sentence
+from asperity.scenes.figures.measured import LOOKS, compared_numbers, limit_sentence
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -113,16 +113,6 @@ def sound_power_table(tree: DataTree) -> ReportTable | None:
 
 # --- from the vibration itself
 
-LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of each part
-    "rail": (chart.VERMILLION, (), 1.3, "o"),
-    "sleepers": (chart.GREEN, (), 1.3, "s"),
-    "wheel": (chart.BLUE, (), 1.3, "^"),
-    WHOLE: (INK, (), 1.8),
-    schema.RAIL_SIDEWAYS: (chart.VERMILLION, (6.0, 1.5), 1.3),
-    schema.WHEEL_BOTH: (chart.BLUE, (6.0, 1.5), 1.3),
-    schema.WITH_SIDEWAYS: (INK, (6.0, 1.5), 1.8),
-}
-
 
 def with_sideways(tree: DataTree) -> str:
     """Say what the total with sideways holds; nothing where nothing moves so."""
@@ -171,7 +161,7 @@ def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
         if series.label != schema.WHEEL_VERTICAL
     ]
     for series in lines.of(UNMEASURED, law=main, radiator="rail"):
-        look = chart.VERMILLION, (1.5, 1.5), 1.3
+        look = chart.VERMILLION, (9.0, 1.5), 1.3
         own.append(Line(lines.at, series.values + weighting, "rail, nothing measured", *look))
     standard = _of_parts(lines, STANDARD, main, _OF_STANDARD | {WHOLE: (5, 2)}, weighting)
     own += [replace(line, width=1.6 if line.label.startswith(WHOLE) else 1.3) for line in standard]
@@ -236,14 +226,6 @@ def radiated_table(tree: DataTree) -> ReportTable | None:
 
 SPAN = 30.0
 """dB below the maximum that are drawn."""
-_DASHES = {
-    "rail": (1.5, 1.5),
-    "sleepers": (4.0, 1.5),
-    "wheel": (6.0, 1.5, 1.5, 1.5),
-    WHOLE: (),
-    schema.RAIL_SIDEWAYS: (1.5, 4.0),
-    schema.WHEEL_BOTH: (6.0, 1.5, 1.5, 1.5, 1.5, 1.5),
-}
 SINGLE_NUMBERS = {
     "L_pAFmax / dB(A)": schema.PASS_BY_MAXIMUM_LEVEL,
     "L_pAeq,Tp / dB(A)": schema.PASS_BY_EQUIVALENT_LEVEL,
@@ -264,7 +246,7 @@ def _pass_by(tree: DataTree, lines: Lines) -> list[Panel]:
     """Level over time: the total by each law, the parts of the main law, and when axles pass."""
     *parts, whole = _passing_parts(tree)
     totals = panels.styled(tree, lines.at, lines.of(PASSING, radiator=whole))
-    dashes = {part: _DASHES[part] for part in parts}
+    dashes = {part: LOOKS[part][1] for part in parts}
     of_parts = _of_parts(lines, PASSING, data.laws(tree, PASSING)[0], dashes)
     label = "sound pressure level, F / dB(A) re 20 µPa"
     axis = panels.levels_axis(label, [line.y for line in totals], span=SPAN, step=5.0)
