@@ -122,7 +122,7 @@ def test_contact_of_wheel_and_rail_is_outlined_by_its_ellipse(tree):
     assert len(outlines) == 2  # dark on light: seen on every colour
     for outline in outlines:
         assert [np.ptp(outline.x), np.ptp(outline.y)] == pytest.approx(sides, rel=1e-3)
-    assert "dashed ellipse" in PARTS["contact_pressure"].said(tree)
+    assert "Hertz's contact (dashed)" in PARTS["contact_pressure"].said(tree)
     for name in ("force_envelope", "force_peak", "contact_force"):
         assert any(panel.y.label.endswith("/ kN") for panel in panels_of(tree, name))
 

@@ -60,13 +60,11 @@ def _pressure(tree: DataTree, lines: Lines) -> Iterator[Panel]:
 
 def _pressure_caption(tree: DataTree) -> str:
     semi_axes = _semi_axes(tree)
-    oval = semi_axes is not None and semi_axes[0] != semi_axes[1]
-    outline = "semi-axis of Hertz's contact in rolling direction" if oval else "radius of Hertz's contact"
     told = {
         contact.WORKING_LOAD: "working load",
         contact.WORKING_APPROACH: "approach",
-        contact.HERTZ_RADIUS: f"{outline} (dashed {'ellipse' if oval else 'circle'})",
-        **({contact.HERTZ_RADIUS_ACROSS: "across"} if oval else {}),
+        contact.HERTZ_RADIUS: "semi-axis of Hertz's contact (dashed) in rolling direction",
+        contact.HERTZ_RADIUS_ACROSS: "across",
         contact.CONTACT_AREA: "area in contact",
     }
     parts = [

@@ -265,7 +265,7 @@ def _key_axis(key: xarray.DataArray) -> Axis:
 def _bands(table: xarray.Dataset, key: str) -> Panel:
     """Force level of the first law in each band, a line for each value of the key."""
     count, others = table.sizes[key], _others(table, key)
-    shown = np.unique(np.linspace(0, count - 1, min(count, MOST_LINES)).round().astype(int))
+    shown = chart.spread(count, MOST_LINES)
     here = table.isel(dict.fromkeys(others, 0)).sel({LAW.name: _main(table)})
     band, words = table[BAND.name].values, data.typed_words(table[key])
     marks = _shades(here)

@@ -83,7 +83,6 @@ class PressedSample:
             "pressure": pressure,
             "largest_pressure": float(pressure.max()),
             "area": contact.area,
-            "iterations": contact.iterations,
             "converged": contact.converged,
             "at_edge": contact.edge_share,
             "smooth_force": float(smooth),

@@ -250,8 +250,8 @@ def _mean(tree: DataTree) -> Iterator[Series]:
 def _levels(tree: DataTree, lines: Lines) -> list[chart.Panel]:
     """One-third-octave levels of the force of each contact, all or some from the first to the last."""
     every = lines.of(CONTACT_FORCE_LEVEL)
-    shown = sorted({round(x) for x in np.linspace(0, len(every) - 1, min(len(every), MOST_LINES))})
-    levels = panels.styled(tree, lines.at, [every[n] for n in shown], marker="o")
+    shown = [every[n] for n in chart.spread(len(every), MOST_LINES)]
+    levels = panels.styled(tree, lines.at, shown, marker="o")
     levels += panels.styled(tree, lines.at, [series for series in lines.lines if series.name == MEAN])
     label = "contact force level / dB re 1 N"
     return [panels.band_panel(tree, lines, label, levels, span=100.0, height=4.2)]

@@ -14,7 +14,7 @@ from asperity.scenes import schema
 from asperity.scenes.figures import force, track
 from asperity.schema import rolling
 from asperity.schema.spectra import BAND, FREQUENCY
-from asperity.spectra import a_weighting, energy_sum
+from asperity.spectra import a_weighted_total
 
 _SPECTRUM = "acceleration PSD / dB re (1 µm/s²)²/Hz", schema.ACCELERATION_REFERENCE**2
 _AT = "x = {sensor:g} m"
@@ -252,10 +252,6 @@ RAIL = (
 )
 
 
-MOST_SENSORS = 6
-"""That are listed."""
-
-
 def acceleration_answers(tree: DataTree) -> Answers | None:
     """Acceleration at the sensors by the main law: rms, A-weighted level, and the bands that hold it."""
     main = next(iter(data.laws(tree, schema.ACCELERATION)), None)
@@ -263,12 +259,7 @@ def acceleration_answers(tree: DataTree) -> Answers | None:
         return None
     rms = np.sqrt(np.nanmean(data.of_law(tree, schema.ACCELERATION, main) ** 2, axis=1))
     levels, bands = data.of_law(tree, schema.ACCELERATION_LEVEL, main), data.values(tree, BAND)
-    known = np.isfinite(levels)
-    loud = [
-        float(energy_sum(level[some] + a_weighting(bands[some]))) if some.any() else np.nan
-        for level, some in zip(levels, known, strict=True)
-    ]
-    weighted = np.array(loud)
+    weighted = a_weighted_total(levels, bands)
     sensors = data.variable_of(tree, schema.ACCELERATION)["sensor"].values.tolist()
     places = [f"x = {sensor:g} m" for sensor in sensors]
     most = int(np.nanargmax(rms))
@@ -278,12 +269,10 @@ def acceleration_answers(tree: DataTree) -> Answers | None:
         f"its energy in the bands of {deciding_bands(bands, levels[most])}."
     )
     note = f"{weighted[most]:.1f} dB(A) re 1 µm/s², at {places[most]}, the most of {len(places)} sensors"
-    shown = np.sort(np.argsort(-np.nan_to_num(rms), kind="stable")[:MOST_SENSORS])
     columns = {
-        "sensor at": text_cells(places[n] for n in shown),
-        "rms": number_cells(rms[shown], "m/s²"),
-        "A-weighted / dB(A) re 1 µm/s²": number_cells(weighted[shown], "{:.1f}"),
+        "sensor at": text_cells(places),
+        "rms": number_cells(rms, "m/s²"),
+        "A-weighted / dB(A) re 1 µm/s²": number_cells(weighted, "{:.1f}"),
     }
-    few = f"The {len(shown)} of {len(places)} sensors that vibrate most." if len(shown) < len(places) else ""
-    listed = table("vibration_sensors", "Vibration at the sensors", columns, few)
+    listed = table("vibration_sensors", "Vibration at the sensors", columns)
     return Answers(lead, numbers=(HeadlineNumber("vibration, rms", strongest, note),), tables=(listed,))
