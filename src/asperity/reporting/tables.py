@@ -339,11 +339,11 @@ def uncertainty_table(tree: DataTree) -> ReportTable | None:
     if not data.present(tree, rolling.CONTACT_FORCE):
         return None
     main = data.laws(tree, rolling.CONTACT_FORCE)[0]
-    sources, sizes, ways = zip(*_law(tree, main), *_chance(tree), *_samples(tree), strict=True)
+    sources, sizes, ways = zip(*_law(tree, main), *_chance(tree), strict=True)
     note = (
         f"Of the force levels of {main}, apart from what is not known of the case itself: materials, "
         "roughness, damping. The sources are independent: their squares add, with what finer settings "
-        "change: asperity run --converge finds it."
+        "change (asperity run --converge) and what samples leave open (One population?)."
     )
     columns = {
         "source": text_cells(sources),
@@ -393,19 +393,3 @@ def _chance(tree: DataTree) -> Iterator[Known]:
             size = f"up to {low[worst]:.1f} dB low, at {data.nominal_band(band[worst])} Hz"
             how = "mean square that resonances have not built up yet; longer settling, or more damping, helps"
             yield "start of the record", size, how
-
-
-def _samples(tree: DataTree) -> Iterator[Known]:
-    """Standard deviation of the mean stiffness of the samples under the load."""
-    count, approach = (data.number(tree, a) for a in (contact.SAMPLES, contact.WORKING_APPROACH))
-    if count is None or count < 2 or approach is None or not data.present(tree, contact.STIFFNESS_STD):
-        return
-    states = data.values(tree, contact.APPROACH)
-    mean, spread = (
-        float(np.interp(approach, states, data.values(tree, entry)))
-        for entry in (contact.STIFFNESS, contact.STIFFNESS_STD)
-    )
-    if mean > 0.0:
-        level = 20.0 * np.log10(1.0 + spread / mean / np.sqrt(count))
-        how = f"standard deviation of the mean of {count:.0f} samples, k_c under the load"
-        yield "contact stiffness, from the samples", f"{level:.1f} dB", how

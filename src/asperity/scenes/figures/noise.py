@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reference.cnossos import CNOSSOS
 from asperity.reference.grounds import HARD
 from asperity.reporting import chart, data, headline, panels
 from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Panel, Rules
@@ -272,24 +271,12 @@ def _pass_by_caption(tree: DataTree) -> str:
     where = ""
     if away is not None and above is not None:
         where = f", {away:g} m from the middle of the track and {above:g} m above the rail head"
+    ground, directions = (data.stated(tree, fact) for fact in (schema.GROUND, schema.DIRECTIVITY))
     return (
-        f"{passing} (ticks), two wheels on each{where}, over {_ground(tree)}. Rail and sleepers radiate "
-        f"along the track as its vibration decays, a wheel from its axle, {_directions(tree)}; nothing "
-        "screens them."
+        f"{passing} (ticks), two wheels on each{where}; ground: {ground or HARD}, directivity: "
+        f"{directions or 'none'}. Rail and sleepers radiate along the track as its vibration decays, a wheel "
+        "from its axle; nothing screens them."
     )
-
-
-def _ground(tree: DataTree) -> str:
-    ground = data.stated(tree, schema.GROUND)
-    if ground in (None, HARD):
-        return "reflecting ground"
-    return f"{ground}, with which the sound interferes"
-
-
-def _directions(tree: DataTree) -> str:
-    if data.stated(tree, schema.DIRECTIVITY) == CNOSSOS:
-        return "with the directivity of CNOSSOS-EU at the same power"
-    return "evenly in all directions"
 
 
 def pass_by_table(tree: DataTree) -> ReportTable | None:
