@@ -93,7 +93,7 @@ wheel: [numerics] poles = 99 → numerics.poles: received 99; allowed: an even n
 wheel: [numerics] kernel = "scatter" | poles = 50 → only together with kernel = "poles"
 wheel: speed = "500 m/s" → speed: received 500 m/s; allowed: zero or more, below the critical speed
 wheel: duration = "0.1 ms" → duration: received 0.0001 s, in which 5.6 mm are rolled; allowed: at least con
-wheel: duration = "2 ms" | [contact] filter_taps = 400 → at least contact.filter_taps spacings, 200 mm
+wheel: duration = "2 ms" | [contact] filter_taps = 400 → and contact.filter_taps spacings, 200 mm
 wheel: [surface] smooth = true | spectrum = "iso3095" → surface.smooth: received true beside a texture
 wheel: [surface] spectrum = "absent.csv" → "cnossos-average", or the path of a table of wavelengths and
 wheel: [surface] corrugation = "25 um" → surface.corrugation: received no corrugation_wavelength

@@ -99,15 +99,11 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
             allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {mass:g} kg on the contact"
             remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
             yield InputError("wheel.load", received, allowed, remedy)
-        yield from self._problem_of_length()
-
-    def _problem_of_length(self) -> Iterator[InputError]:
-        """A path is longer than what looks at it."""
         length, contact = self.speed * self.rolled_time, self.contact
-        filters = (contact.filter_taps or 0) * contact.spacing
-        if length < max(contact.window, filters):
+        least = max(contact.window, (contact.filter_taps or 0) * contact.spacing)
+        if length < least:
             received = f"{self.rolled_time:g} s, in which {length * 1e3:.4g} mm are rolled"
-            allowed = f"at least contact.window, {written(contact.window, 'm', 'mm')}"
-            if filters > contact.window:
-                allowed = f"at least contact.filter_taps spacings, {written(filters, 'm', 'mm')}"
+            allowed = (
+                f"at least contact.window, and contact.filter_taps spacings, {written(least, 'm', 'mm')}"
+            )
             yield InputError("duration", received, allowed, "A path must be longer than window and filters.")
