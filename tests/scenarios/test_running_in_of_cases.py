@@ -155,7 +155,7 @@ def test_the_rail_takes_the_lowering_and_what_still_yields_is_said(runs):
     np.testing.assert_array_equal(parts["wheel"], prepared.textures.parts["wheel"])
 
 
-NUMBER = r'a whole number at least 1 and at most 100, or "shakedown"'
+NUMBER = r'"shakedown", or a whole number at least 1 and at most 100'
 SOFT = {name: value for name, value in BALL["contact"].items() if name != "hardness"}
 
 
