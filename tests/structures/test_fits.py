@@ -228,7 +228,8 @@ def changed(name, change):
 
 
 def slow(values, frequency=SLOW):
-    return lambda _: fit_structure([0.0, 0.3, 1.0], [0.3], frequency, np.repeat(values[:, None], 3, axis=1))
+    places, force = np.array([0.0, 0.3, 1.0]), np.array([0.3])
+    return lambda _: fit_structure(places, force, frequency, np.repeat(values[:, None, None], 3, axis=1))
 
 
 def wheel(change=1.0, frequency=F[:600], receptance=OF_WHEEL[:600], mass=MASS):
@@ -247,11 +248,8 @@ test_records_and_modes_that_are_none_are_refused = pytest.mark.filterwarnings(
 )(
     refusals(
         (changed("receptance", np.conj), "imaginary part under the forces that is mostly positive"),
-        (changed("receptance", lambda h: h[:, :5]), r"shapes \(195,\) and \(195, 5, 3\)"),
-        (changed("receptance", lambda h: h * np.nan), "values that are not finite"),
         (changed("receptance", lambda h: 0.0 * h), "nothing but zeros at a frequency"),
         (changed("receptance", lambda h: h * CHANCE), "modes meet to .* dB only; .*along the force, not"),
-        (changed("frequency", lambda f: f[::-1]), "allowed: frequencies above 0 Hz and rising"),
         (changed("driven", lambda x: x + 0.004), r"forces at 0.129, .*different places among those"),
         (slow(1e300 * ONE), "e.29[67] m/N at 20 to 58 Hz; allowed: 1e-20 to 1e.20 m/N"),
         (slow(1e-312 * ONE), "at 20 to 58 Hz; allowed: 1e-20 to 1e.20 m/N.* Check the units, and the mass"),
@@ -262,8 +260,6 @@ test_records_and_modes_that_are_none_are_refused = pytest.mark.filterwarnings(
         (wheel(1e3), r"dB only.*Check the mass, the unit m/N"),
         (wheel(1e-3), r"dB only.*Check the mass, the unit m/N"),
         (wheel(receptance=OF_WHEEL.conj()[:600]), r"receptance: .* mostly positive.*Conjugate"),
-        (wheel(receptance=OF_WHEEL[1:600]), r"shapes \(600,\) and \(599,\); allowed: n frequencies, .*one"),
-        (wheel(frequency=F[:600] - 20.0), "allowed: frequencies above 0 Hz and rising"),
         (wheel(frequency=F[:5], receptance=OF_WHEEL[:5]), "5 frequencies; allowed: at least 10"),
         (modes(mass=0.0), "wheel mass"),
         (modes([100.0, 200.0], [0.01], [10.0, 10.0]), "damping ratios of the .*1 numbers; allowed: 2"),

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from asperity import errors
-from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array, require
+from asperity.arguments import Array, ArrayLike, Complex, NDArray, require
 from asperity.errors import ComputationError, InputError
 from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
@@ -195,28 +195,13 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
         return _searched(frequency, responses, 1.0 / level, level, shapes, (none, left))
 
 
-def checked_record(
-    frequency: ArrayLike, receptance: ArrayLike, places: int, forces: int
-) -> tuple[Array, Complex]:
-    """Take frequencies (n,), Hz, and receptances (n, places, forces) that make sense.
-
-    Without the last axes where there is one force, or one place as well.
-    """
-    what, allowed = "receptance", "frequencies above 0 Hz and rising"
-    f = finite_array(what, frequency, allowed, shape=(None,), rising=True, above=0.0)
-    given = np.asarray(receptance, dtype=complex)
-    received = f"shapes {f.shape} and {given.shape}"
-    if forces == 1:
-        given = given.reshape(*given.shape, *(1,) * (3 - given.ndim))
-    allowed = f"n frequencies, and (n, {places}, {forces}): one value for each of them, place and force"
-    require(given.shape == (f.size, places, forces), what, received, allowed)
-    require(np.isfinite(given).all(), what, "values that are not finite", "finite values")
-    enough = f.size >= FEWEST_FREQUENCIES
-    require(enough, what, f"{f.size} frequencies", f"at least {FEWEST_FREQUENCIES}")
-    moves = np.abs(given).any(axis=(1, 2)).all()
+def check_record(frequency: Array, receptance: Complex) -> None:
+    """Refuse receptances (n, p, e), m/N, at rising frequencies (n,), Hz, that no modes can be fitted to."""
+    what, enough = "receptance", frequency.size >= FEWEST_FREQUENCIES
+    require(enough, what, f"{frequency.size} frequencies", f"at least {FEWEST_FREQUENCIES}")
+    moves = np.abs(receptance).any(axis=(1, 2)).all()
     require(moves, what, "nothing but zeros at a frequency", "a response", "Leave it out.")
-    check_range(f, given)
-    return f, given
+    check_range(frequency, receptance)
 
 
 def level_error(fitted: Complex, given: Complex) -> float:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import scipy
 
-from asperity.arguments import Array, ArrayLike, Complex, NDArray, real_array
+from asperity.arguments import Array, Complex, NDArray
 from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, percent
 from asperity.structures import modal, modal_fit
 from asperity.structures.body import Body
@@ -107,10 +107,10 @@ CREATED = 0.05
 
 
 def fit_structure(
-    positions: ArrayLike,
-    driven: ArrayLike,
-    frequency: ArrayLike,
-    receptance: ArrayLike,
+    positions: Array,
+    driven: Array,
+    frequency: Array,
+    receptance: Complex,
     *,
     mass: float | None = None,
     inertia: float | None = None,
@@ -119,14 +119,14 @@ def fit_structure(
 
     Parameters
     ----------
-    positions : array_like (p,)
+    positions : ndarray (p,)
         Of the responses along the path, rising, m: six or more in the shortest wavelength.
-    driven : array_like (e,)
+    driven : ndarray (e,)
         Positions of the forces, m, each one of those of the responses.
-    frequency : array_like (n,)
+    frequency : ndarray (n,)
         Hz, above zero and rising; fine enough for a few points in each resonance.
-    receptance : array_like (n, p, e) of complex
-        Displacements along the force per force, m/N, e^{+iωt}; (n, p) for one force.
+    receptance : ndarray (n, p, e) of complex
+        Displacements along the force per force, m/N, e^{+iωt}.
     mass, inertia : float, optional
         Of a structure that nothing holds, see `ModalStructure.with_rigid_body`.
 
@@ -138,8 +138,8 @@ def fit_structure(
     Raises
     ------
     InputError
-        If the record is short, disordered or not finite, if it creates energy (the other time factor), or if
-        modes meet it to 6 dB only.
+        If the record is short, if it creates energy (the other time factor), or if modes meet it to 6 dB
+        only.
 
     Warns
     -----
@@ -160,13 +160,12 @@ def fit_structure(
     frequency that matters: to one and a half times it, the force on a ball on a beam was up to 0.8 dB low in
     the last one-third octave, to twice it 0.1 dB.
     """
-    at = real_array("positions of the receptances (m)", positions, "rising numbers")
-    forces = np.atleast_1d(real_array("positions of the forces (m)", driven, "numbers"))
-    f, given = modal_fit.checked_record(frequency, receptance, at.size, forces.size)
-    near = np.abs(at[:, None] - forces) if at.ndim == 1 else np.ones((1, forces.size))
+    at, f, given = positions, frequency, receptance
+    modal_fit.check_record(f, given)
+    near = np.abs(at[:, None] - driven)
     number = np.argmin(near, axis=0)
-    if near.min(axis=0).max(initial=0.0) > 1e-6 * np.ptp(at) or len(set(number)) < forces.size:
-        received = f"forces at {', '.join(f'{force:.4g}' for force in forces[:8])}"
+    if near.min(axis=0).max() > 1e-6 * np.ptp(at) or len(set(number)) < driven.size:
+        received = f"forces at {', '.join(f'{force:.4g}' for force in driven[:8])}"
         allowed = "different places among those of the responses"
         raise InputError("positions of the forces (m)", received, allowed)
     _check_energy(f, given[:, number])
@@ -190,7 +189,7 @@ def fit_structure(
         return structure.with_rigid_body(mass, inertia=inertia)
 
 
-def fit_body(mass: float, load: float, frequency: ArrayLike, receptance: ArrayLike) -> Body:
+def fit_body(mass: float, load: float, frequency: Array, receptance: Complex) -> Body:
     """Body on one contact, as a wheel, by its receptance there.
 
     The mass is taken off; what is left is fitted by modes with positive modal masses, so that the body cannot
@@ -202,10 +201,10 @@ def fit_body(mass: float, load: float, frequency: ArrayLike, receptance: ArrayLi
         Of its rigid motion, kg.
     load : float
         Static force of the contact, weight included, N.
-    frequency : array_like (n,)
+    frequency : ndarray (n,)
         Hz, above zero and rising; fine enough for a few points in each resonance. To twice what matters: with
         2 % of noise, a mode just above the end takes decibels from the band at it.
-    receptance : array_like (n,) of complex
+    receptance : ndarray (n,) of complex
         Displacement of the contact per force there, m/N, e^{+iωt}.
 
     Returns
@@ -216,21 +215,21 @@ def fit_body(mass: float, load: float, frequency: ArrayLike, receptance: ArrayLi
     Raises
     ------
     InputError
-        If the record is short, disordered or not finite, if it creates energy (the other time factor), or if
-        it is no receptance in m/N of a body of this mass: a fit error above 6 dB.
+        If the record is short, if it creates energy (the other time factor), or if it is no receptance in
+        m/N of a body of this mass: a fit error above 6 dB.
 
     Warns
     -----
     EnergyWarning, UnconvergedWarning, CoarseSamplingWarning
         As `fit_structure`.
     """
-    f, record = modal_fit.checked_record(frequency, receptance, 1, 1)
-    _check_energy(f, record)
-    given = record[:, 0, 0]
-    modes = modal_fit.fit_modes(f, given, Wheel(mass, load).receptance(f))
-    modal_fit.warn_of_wide_lines(f, *modes[:2])
+    record = receptance[:, None, None]
+    modal_fit.check_record(frequency, record)
+    _check_energy(frequency, record)
+    modes = modal_fit.fit_modes(frequency, receptance, Wheel(mass, load).receptance(frequency))
+    modal_fit.warn_of_wide_lines(frequency, *modes[:2])
     found = Wheel(mass, load, *modes)
-    error = modal_fit.level_error(found.receptance(f), given)
+    error = modal_fit.level_error(found.receptance(frequency), receptance)
     modal_fit.judge_fit("receptance", error, f"modes on a mass of {mass:.4g} kg")
     return replace(found.body, fit_error=error)
 
