@@ -54,6 +54,13 @@ ball: [surface] smooth = false → surface: received no texture; allowed: file, 
 ball: [surface] file = "map.npy" | rms = "1 um" → surface: received both file and rms; allowed: one of them
 ball: [surface] file = "absent.npy" → absent.npy
 ball: [surface] line = "line.csv" | spectrum = "iso3095" → surface: received both line and spectrum
+ball: [surface] rms = "1 um" | pixel = "1 um" → surface.pixel: received 1e-06; allowed: only together with
+ball: [surface] file = "map.npy" | hurst = 0.7 → surface.hurst: received 0.7; allowed: only together with rms
+wheel: [wheel] line_distance = "5 mm" → only together with line
+wheel: [surface] rms = "1 um" | lateral = 2 → only together with spectrum
+wheel: [surface] smooth = true | corrugation_wavelength = "40 mm" → only together with corrugation
+wheel: [surface] smooth = true | joint_length = "1 m" → only together with joint_depth
+bodies: [body] contacts = 6 → only together with type = "carriage"
 ball: [surface] rms = "1 um" | level = "+6 dB" → surface.level: received 6.0; allowed: only together with
 ball: [surface] file = "map.npy" | height_unit = "s" → a unit of length, as "um"
 ball: [surface] file = "map.npy" | fill = "yes" → true or false

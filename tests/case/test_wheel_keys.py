@@ -96,6 +96,7 @@ test_what_does_not_fit_is_refused = refusals(
     ({"section": "curved-web", "modes": MODES}, "both section and modes"),
     ({"section": "curved"}, 'Did you mean "curved-web"?'),
     ({"section": "rigid", "web_thickness": "20 mm"}, "only together with section"),
+    ({"section": "rigid", "added_damping": 0.01}, "only together with section"),
     ({"section": "curved-web", "radius": "0.15 m"}, "allowed: bore, hub and rim one outside"),
     ({"section": "curved-web", "mass": "200 kg"}, "that of the drawn wheel"),
     ({"section": rectangle(0.3)}, "a running circle of 300 mm"),

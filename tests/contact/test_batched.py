@@ -14,6 +14,7 @@ from asperity.cli import main
 from asperity.contact.batched import choose_device, find_device, gpu, processor
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import ComputationError, InputError
+from asperity.store import Store
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
@@ -111,19 +112,20 @@ def rolling(n, hardness=None, share=0.35, stride=3, **details):
     ("n", "hardness", "share", "stride"),
     [(32, None, 0.35, 1), (32, 0.5e9, 0.35, 3), (64, None, 0.35, 3), (16, None, 1.4, 2)],
 )
-def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(device, monkeypatch, n, hardness, share, stride):
+def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(
+    device, tmp_path, monkeypatch, n, hardness, share, stride
+):
     """The window of 16 cells cuts the contact off; blocks of the device are not taken for the processor's."""
     monkeypatch.setattr("asperity.contact.scan.BATCH", 8)
-    planes, kept = 1e-3 * APPROACH * np.sin(np.arange(POSITIONS)), {}
+    planes, cache = 1e-3 * APPROACH * np.sin(np.arange(POSITIONS)), Store(tmp_path)
     job = rolling(n, hardness, share, stride, planes=planes)
-    cache = SimpleNamespace(get=kept.get, put=kept.__setitem__)
     alone = scan_forces(job, cache=cache)
     for _ in range(2):
         found = scan_forces(replace(job, device=device), cache=cache)
         np.testing.assert_allclose(found.forces, alone.forces, rtol=1e-9)
         assert found.counts._replace(iterations=0) == alone.counts._replace(iterations=0)
         assert 0 < found.counts.iterations < 1.15 * alone.counts.iterations
-        assert len(kept) == 1 + 3
+        assert len(cache.files()) == 1 + 3
     assert bool(alone.counts.truncated) == (share > 1.0)
     assert 0 < np.count_nonzero(alone.forces[:3]) < 3 * POSITIONS
 
