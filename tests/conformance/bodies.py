@@ -9,32 +9,12 @@ from ledger import Check
 
 from asperity.reference.materials import material
 from asperity.structures.ball_bearing import BallBearing
-from asperity.structures.beam import Beam, Support, SupportedBeam
+from asperity.structures.beam import Support, SupportedBeam
 from asperity.structures.outline import checked_outline, mesh_of
 from asperity.structures.wheel_modes import natural_modes
 
 STEEL = material("steel")
 EQUATION = "Euler–Bernoulli, frequency equation solved by mpmath"
-
-
-def beam_frequencies():
-    """Roots of the frequency equations of Euler–Bernoulli beams, found by mpmath."""
-    wave = mp.sqrt(mp.mpf(STEEL.youngs_modulus) * mp.mpf("0.01") ** 2 / (12 * mp.mpf(STEEL.density)))
-
-    def of_free_or_clamped(x):
-        return mp.cos(x) - 1 / mp.cosh(x)
-
-    for support, equation, starts in (
-        ("simply-supported", mp.sin, (mp.pi, 5 * mp.pi)),
-        ("clamped", of_free_or_clamped, ("4.73", "17.28")),
-        ("free", of_free_or_clamped, ("4.73", "17.28")),
-    ):
-        beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, support=support, highest_frequency=2e3)
-        bending = beam.natural_frequencies[beam.natural_frequencies > 20.0]
-        row = partial(Check, body=f"steel beam 1 m × 10 mm, {support}", source=EQUATION, tolerance=1e-9)
-        for start, number, found in zip(starts, ("first", "fifth"), bending[[0, 4]], strict=True):
-            expected = mp.findroot(equation, mp.mpf(start)) ** 2 * wave / (2 * mp.pi)
-            yield row(f"{number} bending frequency", expected, found, "Hz")
 
 
 def supported_beams():

@@ -91,23 +91,6 @@ def around(n, h):
     return x[:, None] ** 2 + x**2
 
 
-def sphere_on_the_grid():
-    """Its contact radius is 0.35 of the half width."""
-    source, approach = "Hertz; tolerance: cells of constant pressure", (0.35 * 0.5) ** 2
-    force = 4 / 3 * approach**1.5
-    for n, force_error, peak_error in ((64, 5e-4, 2e-3), (128, 1e-4, 5e-4), (256, 5e-5, 1.5e-4)):
-        row = partial(Check, body=f"sphere on {n}² cells", source=source)
-        contact = HalfSpace((n, n), 1 / n, 1.0).solve(around(n, 1 / n) / 2, approach=approach, rtol=1e-10)
-        yield row("force at an approach", force, contact.force, tolerance=force_error)
-        peak = 2 / np.pi * np.sqrt(approach)
-        yield row("largest pressure", peak, contact.pressure.max(), tolerance=peak_error)
-    half_space, row = HalfSpace((128, 128), 1 / 128, 1.0), partial(row, body="sphere on 128² cells")
-    contact = half_space.solve(around(128, 1 / 128) / 2, load=force, rtol=1e-10)
-    yield row("approach under a load", approach, contact.approach, tolerance=1e-4)
-    tangent = half_space.tangent_stiffness(contact.pressure)
-    yield row("dF/dδ = 2a", 2 * np.sqrt(approach), tangent, tolerance=0.02)
-
-
 def flat_punch():
     gap = np.where(around(128, 1 / 128) < 0.25**2, 0.0, 1.0)
     contact = HalfSpace((128, 128), 1 / 128, 1.0).solve(gap, approach=1e-3)
@@ -139,23 +122,6 @@ def influence():
             expected = love(mp.mpf(width), mp.mpf(length), mp.mpf(i * width), mp.mpf(j * length))
             what = f"cell {width:g} × {length:g}: displacement {i}, {j} cells away"
             yield Check(what, expected, moved[i, j], source=source, tolerance=1e-11)
-
-
-def traps_of_convolution():
-    """A window filled with pressure: a periodic kernel, or one sampled in the frequency domain, is off."""
-    n = 63
-    moved = HalfSpace((n, n), 1.0 / n, 1.0).displacement(np.ones((n, n)))
-    centre = 4 / mp.pi * mp.log(1 + mp.sqrt(2))
-    row = partial(Check, source="uniform pressure on a square, 4 ln(1 + √2)/π")
-    what = "window full of pressure (trap: periodic kernel): displacement of its centre"
-    yield row(what, centre, moved[n // 2, n // 2], tolerance=1e-12)
-    at = 2 * moved[0, 0] - moved[1, 1]  # to the corner itself, half a cell away
-    yield row("the same: displacement of its corner, half of that", centre / 2, at, tolerance=0.03)
-    half_space = HalfSpace((65, 65), 2.2 / 65, 1.0)
-    contact = half_space.solve(around(65, 2.2 / 65) / 2, approach=0.8, rtol=1e-10)
-    what = "sphere that fills 0.81 of the window (trap: kernel sampled in the frequency domain, +2 %)"
-    source = "Hertz; tolerance: the grid"
-    yield Check(what, 4 / 3 * 0.8**1.5, contact.force, source=source, tolerance=1e-3)
 
 
 # --- rough contacts of other programs ---------------------------------------------------------
@@ -245,14 +211,6 @@ def plastic_peer():
 
 
 # --- hardness ---------------------------------------------------------------------------------
-
-
-def hardness():
-    n, spacing, cap = 32, 1e-6, 1e9
-    contact = HalfSpace((n, n), spacing, 100e9, hardness=cap).solve(np.zeros((n, n)), approach=1e-3)
-    source = "mean pressure of full plasticity is the hardness"
-    what = "flat window pressed far: force"
-    yield Check(what, cap * (n * spacing) ** 2, contact.force, "N", source=source, tolerance=1e-12)
 
 
 def full_plasticity():

@@ -2,7 +2,6 @@
 
 import gc
 import tracemalloc
-from itertools import count
 
 import numpy as np
 import pytest
@@ -90,22 +89,6 @@ def peak(work):
             tracemalloc.stop()
         peaks.append(min(tries))
     return peaks[1] - peaks[0]
-
-
-def overlaps(job, rows, planes):
-    """Instead of contacts: something that costs nothing."""
-    largest = [(rows[m : m + N] - job.body).max() - plane for m, plane in enumerate(planes)]
-    forces = np.maximum(np.add.outer(job.approaches, largest), 0.0)
-    return {"forces": forces, "counts": np.zeros(4, dtype=np.int64)}
-
-
-@pytest.mark.long
-def test_memory_does_not_grow_with_the_path(tmp_path, monkeypatch):
-    """Beyond a few bytes a position (names of blocks, planes); the strip alone would take 120 a row."""
-    monkeypatch.setattr("asperity.contact.scan.BLOCK", 64)
-    stores = (Store(tmp_path / str(n)) for n in count())
-    monkeypatch.setattr(ScanJob, "solve", overlaps)
-    assert peak(lambda rows: scan_into(next(stores), job(rows), workers=1)) < 12 * MORE
 
 
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):

@@ -96,14 +96,6 @@ def test_flaws_are_warned_of(monkeypatch):
         half_space().scan(rough(44), ball(), [0.2e-6], force_accuracy=1e-5)
 
 
-def test_a_force_accuracy_is_the_tolerance_of_a_case():
-    """1e-3 of the force asks for a residual of 4e-4."""
-    heights = rough(50)
-    found = half_space().scan(heights, ball(), [0.2e-6], force_accuracy=1e-3)
-    assert found.equals(half_space().scan(heights, ball(), [0.2e-6], rtol=1e-3 / 2.5))
-    assert not found.equals(half_space().scan(heights, ball(), [0.2e-6]))
-
-
 @pytest.mark.parametrize("hardness", [None, 1e9])
 @pytest.mark.parametrize("rtol", [4e-5, 4e-6])
 def test_single_precision_is_as_accurate_as_the_tolerance(monkeypatch, hardness, rtol):

@@ -74,17 +74,6 @@ def test_the_line_is_nowhere_raised_and_crests_are_lowered(untouched, run_in):
     assert "samples and path run in by" in surface.attrs["source"]
 
 
-def test_passes_end_in_shakedown_and_the_surface_is_smoother(run_in):
-    contact = run_in["contact"]
-    lowered = contact["running_in_lowering"].values
-    assert contact.attrs["shaken_down"] == 1
-    assert len(lowered) > 2
-    assert lowered[0] > 20 * lowered[-1]
-    assert 0.02 < contact.attrs["yielded_share"] < 0.9
-    before, after = (contact.sel(condition=name) for name in ("before", "after"))
-    assert after["track_rms"] < before["track_rms"]
-
-
 def test_stiffness_and_forces_are_of_what_is_left(untouched, run_in):
     """Without its crests the surface touches later and closes over a shorter way."""
     assert float(run_in["contact/approach"][0]) > float(untouched["contact/approach"][0])

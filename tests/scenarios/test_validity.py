@@ -26,17 +26,11 @@ laws = {laws}
 start = "0.45 m"
 duration = "6 ms"
 settling = "2 ms"
+ball.load = "20 N"
+contact = {{spacing = "{spacing} um", window = "{window} mm", samples = 3, sample_length = "2.2 mm"}}
+numerics.highest_frequency = "4 kHz"
 [surface]
 {surface}
-[ball]
-load = "20 N"
-[contact]
-spacing = "{spacing} um"
-window = "{window} mm"
-samples = 3
-sample_length = "2.2 mm"
-[numerics]
-highest_frequency = "4 kHz"
 """
 MIDDLE, ROUGH, FINE = {"rms": 0.12}, {"rms": 0.4}, {"rms": 1.0, "shortest": 20, "hurst": 0.2}
 CELLS = "share of the load on asperities of a single cell"
@@ -149,7 +143,7 @@ class TestWindow:
     def test_only_contacts_that_are_rolled_reach_the_headline(self, runs):
         """The highest of the given states is cut off, but the ball does not get there."""
         states = 'approaches = ["-0.1 um", "0 um", "0.3 um", "0.6 um", "1 um", "1.5 um", "4 um"]'
-        smooth = synthetic(0.02, window=0.44).replace("samples = 3", f"samples = 3\n{states}")
+        smooth = synthetic(0.02, window=0.44).replace("samples = 3", f"samples = 3, {states}")
         quiet = runs(parse_case(smooth))
         assert validity(quiet)[CUT_OFF]["grade"] != ""
         entry = validity(quiet)["share of the time in contacts that the window cuts off, areal"]

@@ -34,23 +34,10 @@ CASE = f"""
 kind = "{NAME}"
 duration = "20 ms"
 settling = "5 ms"
-
-[surface]
-rms = "0.05 um"
-longest = "0.2 mm"
-shortest = "50 um"
-
-[roller]
-load = "30 N"
-
-[contact]
-spacing = "20 um"
-window = "1 mm"
-samples = 2
-sample_length = "4 mm"
-
-[numerics]
-highest_frequency = "2 kHz"
+surface = {{rms = "0.05 um", longest = "0.2 mm", shortest = "50 um"}}
+roller.load = "30 N"
+contact = {{spacing = "20 um", window = "1 mm", samples = 2, sample_length = "4 mm"}}
+numerics.highest_frequency = "2 kHz"
 """
 
 

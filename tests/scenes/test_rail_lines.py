@@ -16,18 +16,13 @@ laws = ["areal", "linear"]
 speed = "56 m/s"
 duration = "{duration}"
 settling = "50 ms"
+contact = {{spacing = "1 mm", samples = 2, sample_length = "60 mm"}}
+numerics = {{highest_frequency = "4 kHz", poles = 60}}
 [surface]
 {surface}
 [wheel]
 section = "rigid"
 {wheel}
-[contact]
-spacing = "1 mm"
-samples = 2
-sample_length = "60 mm"
-[numerics]
-highest_frequency = "4 kHz"
-poles = 60
 """
 LINES = 'line = "lines.npz"\nline_unit = "um"\nline_spacing = "1 mm"\n'
 APART = 'line_distance = "5 mm"\n'
