@@ -67,10 +67,9 @@ class TestBand:
 
     def test_it_says_what_is_wrong(self):
         levels = table(np.zeros((4, 2)), place=[0.0, 1.0])
-        with pytest.raises(InputError, match="over: received 'speed' for"):
-            asperity.prediction_band(levels, over="speed")
-        with pytest.raises(InputError, match="received 2 values of place; allowed: at least 3"):
-            asperity.prediction_band(levels, over="place")
+        for few, count in ((levels[{"seed": [0, 1]}], 2), (3, 0)):
+            with pytest.raises(InputError, match=f"received {count} values of seed; allowed: at least 3"):
+                asperity.prediction_band(few)
         for share in (0.0, 1.0, "half"):
             with pytest.raises(InputError, match="a number above 0 and below 1"):
                 asperity.prediction_band(levels, share=share)

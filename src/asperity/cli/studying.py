@@ -275,8 +275,7 @@ def print_table(table: xarray.Dataset, names: Sequence[str], *, asked: bool) -> 
     cells = [[*map(_short, row)] for row in rows]
     deviations = {f"{name}{SCATTER}": name for name in shown if f"{name}{SCATTER}" in table}
     if deviations:
-        members, over = table.attrs["members"], table.attrs["over"]
-        title = f"Study: mean ± standard deviation over {members} values of {over}"
+        title = f"Study: mean ± standard deviation over {table.attrs['members']} values of {SEED}"
         scatter = tables.columns_of(table[list(deviations)].rename(deviations))[1]
         for row, spread in zip(cells, scatter, strict=True):
             reach = map(_short, spread[keys:])

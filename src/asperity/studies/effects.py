@@ -142,7 +142,7 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     effect, level = change.mean(several), base.mean(several)
     found = {
         schema.EFFECT: effect,
-        schema.EFFECT_ERROR: student(change, SEED, CONFIDENCE)[0] if several else effect * np.nan,
+        schema.EFFECT_ERROR: student(change, CONFIDENCE)[0] if several else effect * np.nan,
         schema.LEFT_OUT: _left_out(table, effect),
     }
     told = xarray.Dataset(
