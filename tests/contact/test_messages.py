@@ -58,7 +58,6 @@ def groove(*arguments):
         (run_in, (), {"passes": 101}, "passes: received 101"),
         (run_in, (FLAT, FLAT[1:]), {}, r"body that runs in: received shape \(3, 4\)"),
         (run_in, (), {"stride": 4}, "stride of running-in: received 4; allowed: a whole number from 1 to 3"),
-        (run_in, (), {"tolerance": 0.0}, "tolerance of running-in: received 0.0"),
         (Hertz, (1e11, 1.0, math.inf), {}, "Hertz radius_y: received inf"),
         (Hertz, (1e11, 0.0, 1.0), {}, "Hertz radius_x: received 0.0; allowed: a .*positive"),
         (groove, (RADIUS, RADIUS), {}, r"radii of ball and groove \(m\): received 0.00635 and -0.00635"),

@@ -131,7 +131,7 @@ SAID = [
     ("\n".join(" ".join(map(str, p)) for p in SCATTERED), HINTS, r"regular grid|not uniform"),
     ("Height (kg)\n1\n2\n", {"pixel": "1 um"}, "unit in the header: received 'kg'"),
     ("1 2 3 4\n1 inf 2 3\n", HINTS, "infinite values"),
-    (b"1 2\x00\x01", HINTS, "binary data; allowed: text"),
+    (b"1 2\x00\x01", HINTS, "bytes that are no text"),
     ("1.5\n", HINTS, "at least two along each axis"),
     (LINE, HINTS | {"decimal": "x"}, "decimal: received 'x'"),
     (LINE, HINTS | {"height_unit": "kg"}, "a unit that converts to m"),

@@ -364,7 +364,6 @@ class HalfSpace:
         passes: int | str = "shakedown",
         stride: int = 1,
         *,
-        tolerance: float | None = None,
         workers: int | None = None,
         cache: Store | None = None,
         progress: Progress | None = None,
@@ -380,11 +379,10 @@ class HalfSpace:
         load : float
             Constant load, N.
         passes : int or str
-            Number of passes; ``"shakedown"`` rolls until a pass lowers no place by more than the tolerance.
+            Number of passes; ``"shakedown"`` rolls until a pass lowers no place by more
+            than 1/1000 of the smooth bodies' approach.
         stride : int
             Rows between positions: at most about an eighth of the contact's half width.
-        tolerance : float, optional
-            Lowering in a pass that counts as none, m; by default 1/1000 of the smooth bodies' approach.
         workers, cache, progress : optional
             As in `scan`.
 
@@ -424,9 +422,7 @@ class HalfSpace:
         load, most = self.checked_load(load), max(self.shape[0] - 1, 1)
         allowed = f"a whole number from 1 to {most}"
         step = arguments.whole("stride of running-in", stride, allowed, at_least=1, at_most=most)
-        if tolerance is None:
-            tolerance = running_in.tolerance_of(self, shape, load)
-        tolerance = real("tolerance of running-in", tolerance, "a length above zero, m", above=0.0)
+        tolerance = running_in.tolerance_of(self, shape, load)
         job = running_in.RunningIn(self, shape, load, arguments.passes_of(passes), tolerance, step)
         found = running_in.run_in(heights, job, cache=cache, workers=workers, progress=progress)
         running_in.warn_of_running_in(found, job, "rtol", "Enlarge the window.")

@@ -124,10 +124,10 @@ def textures_of(case: Case) -> Textures:
         maps = strips = _cut(case, strip, before)
         sampled = f"{len(strips)} samples cut from the path"
     line = middle_line(over.strip)  # of a measured one, the run may end before the grid
-    on_path, wave = np.zeros(len(line)), case.surface.corrugation_wavelength
-    if case.surface.corrugation is not None and wave is not None:
-        keys = {"amplitude": case.surface.corrugation, "bandwidth": case.surface.corrugation_bandwidth}
-        on_path = corrugation(len(line), spacing, wavelength=wave, **keys, seed=seeds[2]).heights
+    on_path, wave, size = np.zeros(len(line)), case.surface.corrugation_wavelength, case.surface.corrugation
+    if size is not None and wave is not None:
+        how: dict[str, Any] = {"bandwidth": case.surface.corrugation_bandwidth, "seed": seeds[2]}
+        on_path = corrugation(len(line), spacing, wavelength=wave, amplitude=size, **how).heights
     around = turn.heights[:, turn.heights.shape[1] // 2]
     along = np.arange(len(line)) + _first_row(case, before)
     parts = {"rail": line + on_path, "wheel": around[along % len(around)]}

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, not_negative, positive, require
+from asperity.arguments import Array, ArrayLike, require
 from asperity.surfaces.heightmap import Profile
 
 FlatShape = Literal["fresh", "worn"]
@@ -20,26 +20,19 @@ def corrugation(
     spacing: float,
     *,
     wavelength: float,
-    amplitude: float | None = None,
-    rms: float | None = None,
+    amplitude: float,
     bandwidth: float | None = None,
     seed: int = 0,
 ) -> Profile:
     """Corrugation of a rail, heights about zero, m: a sine, or a band of waves about one wavelength, m.
 
-    Exactly one size is given, m: the amplitude, half the height between peak and trough, or the rms, by √2
-    smaller, also for a band. A band has a width in octaves, constant density, random phases and the exact rms
-    over the line, on which it closes; a sine starts at zero rising. No standard gives a spectrum of
-    corrugation; an amplitude of 25 µm at the wavelength v/f_pp of the pinned-pinned frequency is used in the
-    literature.
+    The amplitude, m, is half the height between peak and trough of a sine, √2 of the rms of a band. That has
+    a width in octaves, constant density, random phases and the exact rms over the line, on which it closes; a
+    sine starts at zero rising. No standard gives a spectrum of corrugation; an amplitude of 25 µm at the
+    wavelength v/f_pp of the pinned-pinned frequency is used in the literature.
     """
-    what, received = "size of the corrugation", "both" if rms is not None else "neither"
-    require((amplitude is None) != (rms is None), what, received, "exactly one of amplitude and rms")
-    size = rms if rms is not None else amplitude / math.sqrt(2.0) if amplitude is not None else 0.0
-    size = not_negative(what, size)
+    size = amplitude / math.sqrt(2.0)
     half = 2.0 ** (0.0 if bandwidth is None else bandwidth / 2.0)
-    what, allowed = "bandwidth of the corrugation", "zero or more octaves, finite"
-    require(1.0 <= half < math.inf, what, bandwidth, allowed)
     received = f"{wavelength / half:.4g} m as the shortest wavelength"
     allowed = f"at least two samples, {2.0 * spacing:.4g} m"
     require(2.0 * spacing <= wavelength / half < math.inf, "corrugation", received, allowed)
@@ -87,7 +80,6 @@ def _length(depth: float, radius: float, shape: str, length: float | None) -> fl
         long_enough = shape == "worn" and chord * (1.0 - 1e-9) <= length < math.inf
         allowed = f"that of a worn flat, at least its chord of {chord:.4g} m; none of a fresh one"
         require(long_enough, "length of the wheel flat", f"{length} m", allowed)
-    require(shape in ("fresh", "worn"), "shape of the wheel flat", repr(shape), "'fresh' or 'worn'")
     return chord if length is None else length
 
 
@@ -119,7 +111,6 @@ def dipped_joint(x: ArrayLike, depth: float, length: float) -> Array:
     depth/length at the joint and joins the straight rail without a kink. T. X. Wu and D. J. Thompson, J.
     Sound Vib. 267 (2003) 485-496 (rail joints with quadratic dips).
     """
-    length = positive("length of the dipped joint", length)
     allowed = f"above zero, up to {length / 20.0:.4g} m (a twentieth of its length)"
     require(0.0 < depth <= length / 20.0, "depth of the dipped joint", f"{depth} m", allowed)
     remaining = np.clip(1.0 - 2.0 * np.abs(np.asarray(x, dtype=np.float64)) / length, 0.0, None)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import codecs
 import math
 import re
 from array import array
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,14 +18,14 @@ from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import arrays, guards
 from asperity.surfaces.readers.hints import Hints, advice, spell
-from asperity.text_files import number_in
+from asperity.text_files import lines_in, number_in, read_text
 from asperity.units import factor, quantity
 
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")
-MAX_TEXT_BYTES = 1 << 30
+MAX_TEXT_BYTES = 1 << 28
 MAX_HEADER = 1 << 20  # characters of headings and comments
-PIECE = 1 << 16  # fields of a long line that are split off at a time; bytes that are looked at
+PIECE = 1 << 16  # fields of a long line that are split off at a time
 
 _CHECK = "Check the file and its separators."
 _NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
@@ -85,17 +83,14 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     of heights whose rows follow one another along x, so the first axis of the map is the line number. Lines
     beside each other may have their position in the first of three columns or more, see `units_of_lines`.
     Missing heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that
-    start with ``#``, ``%`` or ``//`` are header, see `parsed_header`; a hint is stronger than it. The file is
-    read line by line, so that memory is a few times what its numbers take.
+    start with ``#``, ``%`` or ``//`` are header, see `parsed_header`; a hint is stronger than it.
     """
     size, allowed = path.stat().st_size, f"at most {amount(MAX_TEXT_BYTES)} of text"
     remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
     require(size <= MAX_TEXT_BYTES, f"size of {path.name}", amount(size), allowed, remedy)
-    encoding = _encoding(path)
-    with path.open(encoding=encoding) as lines:
-        dialect = _dialect(lines, hints.decimal, path.name)
-    with path.open(encoding=encoding) as lines:
-        header_lines, table = _table(lines, dialect, path.name)
+    content = read_text(path, path.name, "heights as text", largest=size, latin=True)
+    dialect = _dialect(lines_in(content), hints.decimal, path.name)
+    header_lines, table = _table(lines_in(content), dialect, path.name)
     if (units := units_of_lines(header_lines, table.shape[1])) is not None:
         return _lines(table, *units, hints, path.name)
     header = parsed_header(header_lines, dialect.delimiter, table.shape[1])
@@ -106,23 +101,6 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
             raise
     heights = table * hints.heights_in(path.name, header["z"])  # lines without their positions
     return guards.surfaces_of(heights, hints.spacing_in(path.name, (header["dx"], header["dy"])), path.name)
-
-
-def _encoding(path: Path) -> str:
-    """Marked UTF-16, UTF-8, or Latin-1 for what is neither."""
-    with path.open("rb") as file:
-        if file.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
-            return "utf-16"
-        file.seek(0)
-        binary = any(b"\x00" in chunk for chunk in iter(partial(file.read, PIECE), b""))
-    remedy = "Rename the file to the extension of its format."
-    require(not binary, path.name, "binary data", "text", remedy)
-    with path.open(encoding="utf-8-sig") as text:
-        try:
-            deque(iter(partial(text.read, PIECE), ""), maxlen=0)
-        except UnicodeDecodeError:
-            return "latin-1"
-    return "utf-8-sig"
 
 
 def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
