@@ -129,7 +129,7 @@ def test_heights_are_added_all_across_or_turn_by_turn():
     assert np.array_equal(higher.rows(2, 4), below.rows(2, 4) + np.array([[2.0], [3.0]]))
     assert np.array_equal(rolled.rows(3, 8), below.rows(3, 8) + turn[[2, 0, 1, 2, 0]])
     for made in (higher, rolled):
-        assert (made.shape, made.spacing, made.size) == ((8, 2), (1.0, 2.0), (8.0, 4.0))
+        assert (made.shape, made.spacing) == ((8, 2), (1.0, 2.0))
 
 
 def zeros(shape, stride=4, blend=2):

@@ -107,7 +107,7 @@ class LawMaterials:
         path, axes, approaches = self.textures.path, self._reduced.semi_axes, self._reduced.approaches
         assert path is not None
         loaded = axes[:, 0] > 0.0
-        within = np.minimum(axes[loaded], 0.5 * path.size[1])
+        within = np.minimum(axes[loaded], 0.5 * path.shape[1] * path.spacing[1])
         spacing, start = self.shape.spacing, self.textures.start
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 

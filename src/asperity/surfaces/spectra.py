@@ -4,7 +4,7 @@ import numpy as np
 import scipy
 from scipy import fft
 
-from asperity.arguments import Array, NDArray, require
+from asperity.arguments import Array, require
 from asperity.errors import ShortRecordWarning
 from asperity.spectra import hann_window
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -141,14 +141,10 @@ class LagSums:
         return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
 
     def means(self) -> Array:
-        """Mean products, m², of pieces in which no height is missing, as `sums`."""
-        return self.sums() / np.outer(*self.pairs())
-
-    def pairs(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Numbers of pairs of pieces without a missing height: at lags along, times those at lags across."""
-        lags = np.abs(np.arange(-self.reach, self.reach + 1))
+        """Mean products, m², as `sums`."""
+        along = sum(self.rows) - len(self.rows) * np.abs(np.arange(-self.reach, self.reach + 1))
         across = self.columns - np.abs(np.arange(-self.side, self.side + 1))
-        return sum(self.rows) - len(self.rows) * lags, across
+        return self.sums() / np.outer(along, across)
 
 
 def autocorrelation_lengths(surface: HeightMap) -> tuple[float, float]:

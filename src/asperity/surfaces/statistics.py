@@ -249,7 +249,8 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     powers, slopes, spectra, segments = (sum(each) for each in zip(*pieces, strict=True))
     statistics = []
     if high > low:
-        band = (2.0 * min(strip.spacing), max((stop - first) * strip.spacing[0], strip.size[1]))
+        sides = (stop - first) * strip.spacing[0], strip.shape[1] * strip.spacing[1]
+        band = 2.0 * min(strip.spacing), max(sides)
         values = _amplitudes(powers / points, high - low)
         values |= {"dq": np.sqrt(slopes[0] / slopes[2]), "dr": slopes[1] / slopes[2]}
         shortest, longest = lengths_of(lags.means(), strip.spacing)

@@ -6,7 +6,7 @@ import weakref
 from collections.abc import Callable, Hashable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import IO, Any, Protocol
+from typing import IO, Protocol
 
 import numpy as np
 
@@ -85,24 +85,11 @@ class Strip(Protocol):
     def spacing(self) -> tuple[float, float]:
         """Distances (dx, dy), m."""
 
-    @property
-    def size(self) -> tuple[float, float]:
-        """Lengths (nx dx, ny dy), m."""
-
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
 
 
-class _Sized:
-    """Strip whose lengths follow from its points."""
-
-    @property
-    def size(self: Any) -> tuple[float, float]:
-        """Lengths (nx dx, ny dy), m."""
-        return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
-
-
-class Rows(_Sized):
+class Rows:
     """Heights (nx, ny), m, in memory as a strip, without copying or checking them; spacing (dx, dy), m."""
 
     def __init__(self, heights: Array, spacing: tuple[float, float] = (1.0, 1.0)) -> None:
@@ -113,7 +100,7 @@ class Rows(_Sized):
         return self.heights[first:stop]
 
 
-class Raised(_Sized):
+class Raised:
     """A strip with heights added to it: `added` for rows first … stop − 1, (stop − first, ny or 1), m."""
 
     def __init__(self, strip: Strip, added: Callable[[int, int], Array]) -> None:
@@ -135,7 +122,7 @@ def turning(strip: Strip, turn: Array, start: int) -> Raised:
 
 
 @dataclass(frozen=True, eq=False)
-class LongStrip(_Sized):
+class LongStrip:
     """Gaussian strip of any length, generated in pieces that blend into each other.
 
     ``piece(rows, seed)`` returns a Gaussian field (rows, ny), stationary, with zero mean; fields of different
