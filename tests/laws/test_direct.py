@@ -82,7 +82,6 @@ def test_contacts_cut_off_are_told():
 
 test_sizes_and_paths_must_fit = refusals(
     (lambda: direct().prepare([10 * DX]), r"path \(m\): received"),
-    (lambda: direct(damping=-1.0), "contact damping"),
 )
 
 

@@ -73,7 +73,6 @@ def strip(rows, columns, *axes):
 
 
 test_messages = refusals(
-    (strip, (50, 40, 5.0, 5.0), "an odd number"),
     (strip, (50, 9, 5.0, 5.0), "widest patch, 10 m.*Enlarge contact.window"),
     of=lambda make, arguments: make(*arguments),
 )

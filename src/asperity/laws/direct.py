@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, not_negative
+from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.laws import spec
 
 if TYPE_CHECKING:
@@ -50,11 +50,6 @@ class Direct:
         That.
     remedies : tuple of str
         What is made smaller if solutions miss their tolerance, and what to do if the window cuts them off.
-
-    Raises
-    ------
-    InputError
-        If the damping is negative.
     """
 
     heights: Array
@@ -69,9 +64,6 @@ class Direct:
     faults: Array | None = None
     drop: float = 0.0
     remedies: tuple[str, str] = "numerics.rtol", 'contact.window = "{:.3g} mm" holds them.'
-
-    def __post_init__(self) -> None:
-        not_negative("contact damping (N s/m)", self.damping)
 
     @cached_property
     def between_rows(self) -> BSpline:

@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, not_negative
+from asperity.arguments import Array, ArrayLike
 from asperity.kernels.piecewise import monotone_slopes
 from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import PIECE, ForceTable
 from asperity.reduction.texture import StateTexture
-
-DAMPING = "contact damping (N s/m)"
 
 
 def on_curve(
@@ -35,7 +33,7 @@ def on_curve(
     values = (np.zeros((at.size, 1)) if texture is None else texture.at(at)) - planes[:, None]
     followed = states, values, np.zeros((0, len(states))), np.zeros(0)
     force = curve.knots, curve.coefficients, float(curve.exponent), curve.bilateral
-    damper = not_negative(DAMPING, damping), damped_in_flight
+    damper = float(damping), damped_in_flight
     form = SHIFTED if datum is None else SECANT
     return Prepared(form, planes, *followed, *force, float(datum or 0.0), *damper, float(curve.upper))
 
@@ -64,7 +62,7 @@ def on_table(
         piece = slice(first, first + PIECE)
         root[piece], slopes[piece], touches[piece] = _laid_out(table, at[piece])
     no_curve = np.zeros(2), np.zeros((1, 4)), 1.5, False
-    damper = not_negative(DAMPING, damping), False
+    damper = float(damping), False
     planes = _plane_at(plane, at)
     return Prepared(TABLE, planes, states, root, slopes, touches, *no_curve, 0.0, *damper, float(states[-1]))
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from asperity.arguments import real
 from asperity.laws import spec
 
 
@@ -24,14 +23,9 @@ class Printed:
     texture : StateTexture or None
         Filtered line texture h, m, positive away from contact.
     datum : float
-        d0 of r = approach + d0, m; at least minus the first touch of the curve.
+        d0 of r = approach + d0, m; at least minus the first touch of the curve, so that r > 0 in contact.
     damping : float
         c, N s/m.
-
-    Raises
-    ------
-    InputError
-        If the datum leaves r <= 0 in contact.
     """
 
     curve: spec.ForceCurve
@@ -40,14 +34,8 @@ class Printed:
     damping: float = 0.0
     name: str = "printed"
 
-    def __post_init__(self) -> None:
-        lowest = -self.curve.first_touch
-        remedy = "Take the highest first touch of all samples as the datum."
-        least = lowest * (1.0 - 1e-9)
-        real("datum of the state (m)", self.datum, f"at least {lowest:.6g}", at_least=least, remedy=remedy)
-
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
-        """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
+        """Lay the law out on positions (n,) of the contact, m."""
         from asperity.laws.layout import on_curve
 
         following = self.curve, self.texture, positions

@@ -30,7 +30,7 @@ class Shifted:
     plane: spec.StateTexture | None = None
 
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
-        """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
+        """Lay the law out on positions (n,) of the contact, m."""
         from asperity.laws.layout import on_curve
 
         return on_curve(self.curve, self.texture, positions, damping=self.damping, plane=self.plane)

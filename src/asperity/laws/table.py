@@ -30,7 +30,7 @@ class Table:
     name: str = "table"
 
     def prepare(self, positions: spec.ArrayLike) -> spec.Prepared:
-        """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
+        """Lay the law out on positions (n,) of the contact, m."""
         from asperity.laws.layout import on_table
 
         return on_table(self.table, positions, damping=self.damping, plane=self.plane)

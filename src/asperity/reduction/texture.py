@@ -146,11 +146,10 @@ def areal_texture(
     axes = np.atleast_2d(np.asarray(semi_axes, dtype=np.float64))
     strip = Rows(heights) if isinstance(heights, np.ndarray) else heights
     n, ny = strip.shape
-    what, allowed = "width of the texture strip", "an odd number, so that one is the middle"
-    require(ny % 2, what, f"{ny} lines", allowed)
     width, widest = ny * spacing[1], 2 * axes[:, 1].max()
     allowed = f"at least the width of the widest patch, {widest:.3g} m"
-    require(widest <= width, what, f"{width:.3g} m", allowed, "Enlarge contact.window.")
+    received, remedy = f"{width:.3g} m", "Enlarge contact.window."
+    require(widest <= width, "width of the texture strip", received, allowed, remedy)
     middle = ny // 2
     halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]
     reach = max(half.shape[0] // 2 for half in halves)

@@ -17,8 +17,6 @@ def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     The heights are complete and levelled, m; the mean of the surface is removed, not that of each line. The
     integral of the PSD is Sq², weighted by the squared Hann window.
     """
-    last = surface.heights.ndim - 1
-    require(axis in range(last + 1), "axis", axis, f"0 to {last}")
     lines = np.moveaxis(_complete(surface), axis, -1)
     spacing = float(np.atleast_1d(surface.spacing)[axis])
     length, window = lines.shape[-1], hann_window(lines.shape[-1])

@@ -10,7 +10,7 @@ from typing import IO, Protocol
 
 import numpy as np
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array
 
 BYTES_KEPT = 2**29
 """Bytes of fields in the file; where there would be more, all are forgotten, and made again when read."""
@@ -150,15 +150,8 @@ class LongStrip:
     before: int = 0
     name: Hashable = field(default_factory=object, repr=False)
 
-    def __post_init__(self) -> None:
-        check_shape(self.shape)
-        received, allowed = f"{self.blend} rows", f"1 to {self.stride} rows, the stride"
-        require(1 <= self.blend <= self.stride, "blend of the strip", received, allowed)
-
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
-        inside, allowed = 0 <= first <= stop <= self.shape[0], f"rows from 0 to {self.shape[0]}"
-        require(inside, "rows of the strip", f"{first} to {stop}", allowed)
         heights = np.empty((stop - first, self.shape[1]))
         at, last = first - self.before, stop - self.before
         while at < last:
@@ -183,8 +176,3 @@ class LongStrip:
         seed = int(np.random.SeedSequence([self.seed, k % 2**32]).generate_state(1)[0])
         name = self.name, seed, self.stride, self.blend, self.shape[1]
         return fields.rows(name, lambda: self.piece(self.stride + self.blend, seed), first, stop)
-
-
-def check_shape(shape: tuple[int, int]) -> None:
-    """Refuse a number of points (nx, ny) that makes no surface."""
-    require(len(shape) == 2 and min(shape) >= 2, "shape", shape, "(nx, ny), at least 2 points each")

@@ -11,7 +11,7 @@ from asperity.arguments import Array, ArrayLike, require, two_lengths
 from asperity.surfaces.bands import strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
-from asperity.surfaces.strip import LongStrip, check_shape
+from asperity.surfaces.strip import LongStrip
 
 Continuation = Literal["refuse", "mirror", "repeat"]
 
@@ -179,7 +179,7 @@ class _SelfAffine:
 
     def heights(self, shape: tuple[int, int], seed: int) -> Array:
         """One realisation (nx, ny), m, cut from a periodic one."""
-        check_shape(shape)
+        require(len(shape) == 2 and min(shape) >= 2, "shape", shape, "(nx, ny), at least 2 points each")
         grid = [
             fft.next_fast_len(int(np.ceil(max(n + r / d, 2.0 * r / d))), real=True)
             for n, r, d in zip(shape, self.reach, self.steps, strict=True)
@@ -269,7 +269,6 @@ def from_map(
     C. R. Dietrich and G. N. Newsam, SIAM J. Sci. Comput. 18 (1997) 1088 (circulant embedding). M. Grigoriu,
     Applied Non-Gaussian Processes (1995) (translation).
     """
-    check_shape(shape)
     like = likeness(maps, spacing)
     heights = like.transform(_gaussian_like(like, shape, seed))
     return HeightMap(heights, like.spacing, f"synthesised from {like.source}, seed {seed}")
@@ -287,7 +286,6 @@ def long_strip_like(
     Gaussian pieces of the kind that `from_map` makes, blended over two lengths of the maps, then translated
     to the height distribution, which is exact in the blends too. With rows `before`, as `LongStrip` has them.
     """
-    check_shape(shape)
     like = likeness(maps, spacing)
 
     def piece(rows: int, piece_seed: int) -> Array:
