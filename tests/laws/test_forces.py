@@ -126,10 +126,10 @@ def test_a_body_at_rest_is_where_the_law_carries_its_load(load):
     def law(approach):
         return evaluate(PREPARED[1], 7, approach)
 
-    rest = at_rest([Body.rigid(1.0, load)], np.zeros(1), np.zeros((1, 1)), [law])
+    _, _, approach, stiffness = at_rest([Body.rigid(1.0, load)], np.zeros(1), np.zeros((1, 1)), [law])
     root = brentq(lambda s: law(s)[0] - load, -1e-3, 1e-2, xtol=1e-18)
-    assert_allclose(rest.approach, root, rtol=1e-7)
-    assert_allclose(rest.stiffness, law(rest.approach[0])[1])
+    assert_allclose(approach, root, rtol=1e-7)
+    assert_allclose(stiffness, law(approach[0])[1])
 
 
 @pytest.mark.parametrize(("beyond", "replaced"), [(0.15, True), (0.25, False)])
