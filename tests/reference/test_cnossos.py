@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from asperity.errors import InputError
 from asperity.reference import cnossos
 
 TRANSCRIPTION = Path(__file__).parents[3] / "shared" / "reference" / "railway_tables.json"
@@ -34,7 +33,7 @@ ISO_3095 = [  # ISO 3095:2013, upper limit of the rail roughness: cm, dB re 1 um
 
 
 @pytest.mark.parametrize("table", TABLES)
-def test_tables_stand_on_distinct_one_third_octaves_and_know_their_names(table):
+def test_tables_stand_on_distinct_one_third_octaves(table):
     first, last, count = ENDS[table]
     for name in TABLES[table]:
         coordinate, level = table(name)
@@ -43,8 +42,6 @@ def test_tables_stand_on_distinct_one_third_octaves_and_know_their_names(table):
         exponents = 10 * np.log10(coordinate)
         assert_allclose(exponents, np.rint(exponents), atol=0.11)  # nominal values, at most 2.4 % off
         assert_array_equal(np.abs(np.diff(np.rint(exponents))), 1)
-    with pytest.raises(InputError, match="received 'other'.*" + "; ".join(map(repr, TABLES[table]))):
-        table("other")
 
 
 def test_rail_roughness_is_the_limit_of_the_standard_where_that_is_given():
@@ -53,8 +50,6 @@ def test_rail_roughness_is_the_limit_of_the_standard_where_that_is_given():
     assert_allclose(table_wavelength[7:29], wavelength)
     assert_array_equal(table_level[7:29], level)
     assert_array_equal(table_level[:7], 17.1)
-    for alias, name in (("EN ISO 3095:2013", "iso3095"), ("average-network", "cnossos-average")):
-        assert_array_equal(cnossos.rail_roughness(alias)[1], cnossos.rail_roughness(name)[1])
 
 
 @pytest.mark.skipif(not TRANSCRIPTION.exists(), reason="no second transcription of the tables at hand")
@@ -88,9 +83,3 @@ def test_contact_filters_never_amplify_and_fall_with_shorter_waves():
 )
 def test_nearest_contact_filter(load, diameter, name):
     assert cnossos.nearest_contact_filter(load, diameter) == name
-
-
-@pytest.mark.parametrize(("load", "diameter"), [(0.0, 0.92), (np.nan, 0.92), (5e4, -1.0)])
-def test_nearest_contact_filter_needs_positive_numbers(load, diameter):
-    with pytest.raises(InputError, match=r"wheel (load|diameter)"):
-        cnossos.nearest_contact_filter(load, diameter)

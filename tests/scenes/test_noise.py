@@ -11,7 +11,6 @@ from asperity.scenes import noise
 from asperity.scenes.noise import rolling_sound_power
 from asperity.scenes.plan import planned_rows
 from asperity.spectra import a_weighted_total
-from refusals import refusals
 
 DISC = cnossos.wheel_roughness("disc")
 TRACK = cnossos.track_transfer("medium")
@@ -45,13 +44,6 @@ def test_pads_have_the_class_of_the_directive(stiffness, name):
 )
 def test_wheels_have_the_nearest_diameter(diameter, name):
     assert noise.wheel_label(case(wheel={"radius": diameter / 2})) == name
-
-
-test_what_is_not_positive_has_no_class = refusals(
-    (cnossos.nearest_pad_class, "stiffness of a rail pad"),
-    (cnossos.nearest_wheel_transfer, "wheel diameter"),
-    of=lambda nearest: nearest(0.0),
-)
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,6 @@
 import math
 from dataclasses import dataclass
 
-from asperity.arguments import one_of, positive
-
 CITATION = (
     "Commission Regulation (EU) No 1304/2014 (TSI Noise), as amended up to (EU) 2023/1694, points 4.2.3 and "
     "6.2.2.3 (limits of pass-by noise)."
@@ -50,11 +48,10 @@ def pass_by_limit(vehicle: str, speed: float, axles_per_length: float) -> PassBy
     that by 50 lg v, below to 80 km/h by 30 lg v; those at 80 km/h or less count as of a vehicle that runs no
     faster, as they are.
     """
-    slow, fast = LIMITS[one_of("type of vehicle", vehicle, LIMITS)]
-    ratio = positive("speed (m/s)", speed) / _FAST
+    (slow, fast), ratio = LIMITS[vehicle], speed / _FAST
     axles = 0.0
     if vehicle == WAGON:
-        axles = -10.0 * math.log10(positive("axles per length (1/m)", axles_per_length) / _AXLES_PER_LENGTH)
+        axles = -10.0 * math.log10(axles_per_length / _AXLES_PER_LENGTH)
     if ratio >= 1.0 - 1e-9:
         return PassByLimit(fast, _FAST, axles - 50.0 * math.log10(ratio), above=True)
     return PassByLimit(slow, _SLOW, axles - 30.0 * math.log10(max(speed / _SLOW, 1.0)))
