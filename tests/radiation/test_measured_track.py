@@ -6,7 +6,6 @@ import pytest
 from asperity import Track
 from asperity.radiation.track import squared_mobility
 from asperity.scenes.measured import HammerTest
-from asperity.structures.track import EN_15461_BAYS, decay_rate_of_responses
 
 BAND = 1000.0 * 10.0 ** (np.arange(-10, 8) / 10.0)  # 100 Hz to 5 kHz
 BASE = Track.named("uic60")
@@ -39,14 +38,6 @@ def test_the_decay_rate_says_the_sum_over_both_sides_of_the_rail():
     off = db(2.0 * 10.0 / np.log(10.0) / own.decay_rate / exact)
     assert np.abs(off).max() < 1.4, off
     assert np.abs(off[[0, 1, 2, 4, 5]]).max() < 0.4, off
-
-
-def test_the_decay_rate_of_a_band_is_that_of_its_summed_responses():
-    own, distances = HammerTest.of_track(BASE, BAND[[2, 10]]), 0.6 * np.array(EN_15461_BAYS)
-    for lines, rate in zip(own.frequency, own.decay_rate, strict=True):
-        moved = BASE.receptance(lines, 0.3 + distances, np.full(len(distances), 0.3)) * lines
-        summed = np.sqrt(np.sum(np.abs(moved) ** 2, axis=1))
-        assert rate == pytest.approx(float(decay_rate_of_responses(distances, summed)), rel=1e-9)
 
 
 def test_the_force_follows_the_mobility():

@@ -81,21 +81,6 @@ def pitching(mass, load, places):
     return rigid_bar(mass, mass * np.mean(places**2), places, load)
 
 
-@pytest.mark.parametrize("count", [2, 4])
-def test_equal_balls_under_a_rigid_carriage_share_it(count):
-    """Each as one ball with its share of mass and load: the carriage only heaves."""
-    shift = 0.1 * (np.arange(count) - 0.5 * (count - 1))
-    laws = [HertzLaw(2e9, rough(8e-8, 1e-5, 0.29 + place)) for place in shift]
-    alone = HertzLaw(2e9, rough(8e-8, 1e-5, 0.29))
-    one = roll_bodies(None, [Body.rigid(0.2, 6.0)], [alone], positions=[0.0], **PATH)
-    found = roll_bodies(None, [pitching(count * 0.2, count * 6.0, shift)], laws, positions=[0.0], **PATH)
-    assert one.contact_force.std() > 1.0
-    same(found.contact_force, np.tile(one.contact_force, (count, 1)), 1e-8)
-    heave, pitch = found.degrees_of_freedom[0]
-    same(heave, one.degrees_of_freedom[0][0], 1e-8)
-    assert np.abs(pitch).max() < 1e-6 * np.ptp(heave)
-
-
 def test_a_coordinate_too_fast_for_the_step_follows_at_rest():
     """A wheel whose rim sits on a spring of 200 kHz is a wheel with a softer contact, at steps of 10 µs."""
     stiff, light, mass = 6e10, 0.04, 0.46

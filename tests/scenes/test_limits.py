@@ -23,19 +23,16 @@ VEHICLE = {"vehicle": "emu", "axle_positions": [0.0, 2.5, 19.0, 21.5], "vehicle_
 DECAY = np.where(BAND < 380.0, 3.0, np.where(BAND < 760.0, 7.0, 3.0))  # above the limit
 
 
-@pytest.mark.parametrize(
-    ("vehicle", "slow", "fast"),
-    [
-        ("electric-locomotive", 84.0, 99.0),
-        ("diesel-locomotive", 85.0, None),
-        ("emu", 80.0, 95.0),
-        ("dmu", 81.0, 96.0),
-        ("coach", 79.0, None),
-        ("wagon", 83.0, None),
-    ],
-)
-def test_limits_of_table_4(vehicle, slow, fast):
+TABLE_4 = {
+    "electric-locomotive": (84.0, 99.0), "diesel-locomotive": (85.0, None), "emu": (80.0, 95.0),
+    "dmu": (81.0, 96.0), "coach": (79.0, None), "wagon": (83.0, None),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("vehicle", TABLE_4)
+def test_limits_of_table_4(vehicle):
     """Regulation (EU) No 1304/2014, as printed, and its formulas (1), (2) and (4)."""
+    slow, fast = TABLE_4[vehicle]
     at = {v: pass_by_limit(vehicle, v * KMH, 0.15) for v in (60.0, 80.0, 160.0, 249.9, 250.0, 320.0)}
     axles = 10.0 * np.log10(0.225 / 0.15) if vehicle == "wagon" else 0.0
     speeds = {60.0: 0.0, 80.0: 0.0, 160.0: -30 * np.log10(2.0), 249.9: -30 * np.log10(249.9 / 80.0)}

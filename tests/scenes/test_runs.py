@@ -52,28 +52,21 @@ def on_track(body):
     return {"kind": "bodies", "over": "track", "body": body} | ON_TRACK
 
 
-@pytest.mark.parametrize(
-    ("named", "body", "entries"),
-    [
-        (
-            {"kind": "ball-on-beam", "ball": {"load": "30 N"}} | ON_BEAM,
-            {"kind": "bodies", "body": {"load": "30 N"}} | ON_BEAM,
-            [FORCE_LEVEL, schema.ACCELERATION_LEVEL],
-        ),
-        pytest.param(
-            {"kind": "wheel-on-rail", "wheel": WHEEL | {"section": "rigid"}} | ON_TRACK,
-            on_track(WHEEL),
-            [
-                FORCE_LEVEL, schema.RADIATED_POWER_LEVEL, schema.PASS_BY_MAXIMUM_LEVEL,
-                schema.POINT_VELOCITY_LEVEL, schema.LINEAR_REFERENCE_LEVEL, schema.SOUND_POWER_LEVEL_A,
-            ],
-            marks=pytest.mark.long,
-        ),
-    ],
-    ids=["beam", "track"],
-)  # fmt: skip
-def test_what_a_preset_names_answers_as_any_body(runs, named, body, entries):
-    named, body = runs(named), runs(body)
+OF_TRACKS = [
+    schema.RADIATED_POWER_LEVEL, schema.PASS_BY_MAXIMUM_LEVEL, schema.POINT_VELOCITY_LEVEL,
+    schema.LINEAR_REFERENCE_LEVEL, schema.SOUND_POWER_LEVEL_A,
+]  # fmt: skip
+BALL, RIGID = {"load": "30 N"}, WHEEL | {"section": "rigid"}
+PRESETS = {
+    "beam": ({"kind": "ball-on-beam", "ball": BALL} | ON_BEAM, {"kind": "bodies", "body": BALL} | ON_BEAM),
+    "track": ({"kind": "wheel-on-rail", "wheel": RIGID} | ON_TRACK, on_track(WHEEL)),
+}
+
+
+@pytest.mark.parametrize("over", ["beam", pytest.param("track", marks=pytest.mark.long)])
+def test_what_a_preset_names_answers_as_any_body(runs, over):
+    named, body = map(runs, PRESETS[over])
+    entries = [FORCE_LEVEL, *([schema.ACCELERATION_LEVEL] if over == "beam" else OF_TRACKS)]
     np.testing.assert_allclose(forces(body), forces(named), rtol=1e-9, atol=3e-8)
     for entry in entries:
         np.testing.assert_allclose(held(body, entry), held(named, entry), atol=1e-6, equal_nan=True)

@@ -61,15 +61,3 @@ def test_a_sleeper_is_right_at_any_complex_frequency():
     assert (1.0 / sleeper.on(ring, BALLAST.stiffness(ring))).mean() == pytest.approx(
         1.0 / sleeper.on(middle, BALLAST.stiffness(middle)), rel=1e-12, abs=0.0
     )
-
-
-def test_what_goes_in_is_dissipated_by_the_springs():
-    """Im K = Σ Im k_i squeezed², in a chain with a sleeper that bends."""
-    soft = Spring(200e6, ConstantLoss(0.2), 0.0)
-    chain = Chain((PAD, BendingSleeper(**SLEEPER), soft, BALLAST))
-    lost = sum(
-        each.stiffness(OMEGA).imag * squeezed
-        for each, (_, squeezed) in zip(chain.elements, chain.squares(OMEGA), strict=True)
-        if isinstance(each, Spring)
-    )
-    np.testing.assert_allclose(lost, chain.stiffness(OMEGA).imag, rtol=1e-10)
