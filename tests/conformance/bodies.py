@@ -1,4 +1,4 @@
-"""Checks of beams, ball bearings and a disc."""
+"""Checks of beams, balls, wheels and springs that relax."""
 
 import math
 from functools import partial
@@ -9,12 +9,42 @@ from ledger import Check
 
 from asperity.reference.materials import material
 from asperity.structures.ball_bearing import BallBearing
-from asperity.structures.beam import Support, SupportedBeam
+from asperity.structures.beam import Beam, Support, SupportedBeam
 from asperity.structures.outline import checked_outline, mesh_of
+from asperity.structures.wheel import Wheel
 from asperity.structures.wheel_modes import natural_modes
 
 STEEL = material("steel")
 EQUATION = "Euler–Bernoulli, frequency equation solved by mpmath"
+
+
+def beam_frequencies():
+    """Roots of the frequency equations of Euler–Bernoulli beams, found by mpmath."""
+    wave = mp.sqrt(mp.mpf(STEEL.youngs_modulus) * mp.mpf("0.01") ** 2 / (12 * mp.mpf(STEEL.density)))
+
+    def of_free_or_clamped(x):
+        return mp.cos(x) - 1 / mp.cosh(x)
+
+    for support, equation, starts in (
+        ("simply-supported", mp.sin, (mp.pi, 5 * mp.pi)),
+        ("clamped", of_free_or_clamped, ("4.73", "17.28")),
+        ("free", of_free_or_clamped, ("4.73", "17.28")),
+    ):
+        beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, support=support, highest_frequency=2e3)
+        bending = beam.natural_frequencies[beam.natural_frequencies > 20.0]
+        row = partial(Check, body=f"steel beam 1 m × 10 mm, {support}", source=EQUATION, tolerance=1e-9)
+        for start, number, found in zip(starts, ("first", "fifth"), bending[[0, 4]], strict=True):
+            expected = mp.findroot(equation, mp.mpf(start)) ** 2 * wave / (2 * mp.pi)
+            yield row(f"{number} bending frequency", expected, found, "Hz")
+
+
+def beam_compliance():
+    beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, loss_factor=0.0, highest_frequency=2e5)
+    expected = 1 / (48 * mp.mpf(STEEL.youngs_modulus) * (mp.mpf("0.05") * mp.mpf("0.01") ** 3 / 12))
+    found = abs(beam.receptance(1e-3, 0.5, 0.5))
+    what = "simply supported beam: static compliance at mid-span"
+    source = "L³/48EI; tolerance: modes up to 200 kHz"
+    yield Check(what, expected, found, "µm/N", source=source, tolerance=1e-5)
 
 
 def supported_beams():
@@ -66,9 +96,44 @@ def loaded_bearings():
     yield row("axial over radial load and tan α, half of it loaded", 1.216, found, body="ball bearing of 30°")
 
 
-def clamped_disc():
-    """A disc clamped inside, by the elements of wheels."""
+def wheels():
+    found = Wheel(600.0, 65e3).receptance(np.array([250.0])).real
+    what, expected = "rigid wheel of 600 kg, 250 Hz: receptance", -1 / (600 * (2 * np.pi * 250.0) ** 2)
+    yield Check(what, expected, found, "nm/N", source="−1/Mω²", tolerance=1e-12)
+    f, zeta, m = 1100.0, 1e-3, 250.0
+    wheel = Wheel(600.0, 65e3, [f], [zeta], [m])
+    for frequency, where in ((900.0, "below"), (f, "at"), (2400.0, "above")):
+        w, w0 = 2 * mp.pi * frequency, 2 * mp.pi * f
+        expected = abs(-1 / (600 * w**2) + 1 / (m * (w0**2 - w**2 + 2j * zeta * w0 * w)))
+        found = abs(wheel.receptance(np.array([frequency])))
+        source = "rigid mass and mode, 1/m(ω₀² − ω² + 2iζω₀ω)"
+        what = f"wheel with a mode of 1100 Hz, {where} it: magnitude of the receptance"
+        yield Check(what, expected, found, "nm/N", source=source, tolerance=1e-9)
+
+
+def solids_of_revolution():
+    """Rings, a disc clamped inside and a thick cylinder without axial strain, by the elements of wheels."""
     modulus, nu, density = (mp.mpf(x) for x in (STEEL.youngs_modulus, STEEL.poisson_ratio, STEEL.density))
+
+    def found(n, inner, outer, height, held, near):
+        """Frequency nearest to one, Hz, of a section that is held in some directions at some nodes."""
+        corners = [[inner, 0.0], [outer, 0.0], [outer, height], [inner, height]]
+        mesh = mesh_of(checked_outline(corners), min(height, outer - inner) / 2)
+        fixed = np.zeros((len(mesh.nodes), 3), dtype=bool)
+        for direction in range(3):
+            fixed[:, direction] = held(mesh.nodes, direction)
+        frequency, _ = natural_modes(mesh, n, STEEL, 1.2 * float(near), fixed)
+        return frequency[np.argmin(np.abs(frequency - float(near)))]
+
+    row = partial(Check, unit="Hz", tolerance=3e-3)
+    radius, side = mp.mpf("0.5"), mp.mpf("0.008")
+    body = "steel ring of radius 0.5 m, 8 mm square"
+    for n in (0, 2, 3):
+        bent = modulus * side**2 / (12 * density * radius**4) * n**2 * (n**2 - 1) ** 2 / (n**2 + 1)
+        expected = mp.sqrt(bent if n else modulus / density / radius**2) / (2 * mp.pi)
+        what, source = (f"bending, n = {n}", "Hoppe") if n else ("breathing", "√(E/ρ)/2πR")
+        obtained = found(n, 0.496, 0.504, 0.008, lambda nodes, _: nodes[:, 0] < 0.0, expected)
+        yield row(what, expected, obtained, body=body, source=source)
 
     inner, outer, thick = mp.mpf("0.2"), mp.mpf("0.5"), mp.mpf("0.004")
     scale = mp.sqrt(modulus * thick**2 / (12 * (1 - nu**2) * density)) / (2 * mp.pi)
@@ -85,10 +150,29 @@ def clamped_disc():
         return mp.det(mp.matrix(rows))
 
     body, source = "steel disc, 0.2 m to 0.5 m, 4 mm, clamped inside", "Kirchhoff's plate, solved by mpmath"
-    mesh = mesh_of(checked_outline([[0.2, 0.0], [0.5, 0.0], [0.5, 0.004], [0.2, 0.004]]), 0.002)
-    fixed = np.tile(mesh.nodes[:, :1] < 0.2 + 1e-9, 3)
-    row = partial(Check, body=body, source=source, tolerance=3e-3)
     for n, start in ((0, "6.5"), (2, "7.5"), (4, "11.5")):
-        expected = mp.findroot(lambda k, n=n: plate(n, k), mp.mpf(start)) ** 2 * scale
-        frequency, _ = natural_modes(mesh, n, STEEL, 1.2 * float(expected), fixed)
-        yield row(f"lowest frequency, n = {n}", expected, frequency[0], "Hz")
+        root = mp.findroot(lambda k, n=n: plate(n, k), mp.mpf(start))
+        expected = root**2 * scale
+        clamped = found(n, 0.2, 0.5, 0.004, lambda nodes, _: nodes[:, 0] < 0.2 + 1e-9, expected)
+        yield row(f"lowest frequency, n = {n}", expected, clamped, body=body, source=source)
+
+    shear, lame = modulus / (2 * (1 + nu)), modulus * nu / ((1 + nu) * (1 - 2 * nu))
+    a, b, along = mp.mpf("0.08"), mp.mpf("0.16"), mp.sqrt((lame + 2 * shear) / density)
+
+    def breathing(frequency):
+        k, rows = 2 * mp.pi * frequency / along, []
+        for f in (mp.besselj, mp.bessely):
+            rows.append([
+                (lame + 2 * shear) / lame * k * mp.diff(lambda x, f=f: f(1, x), k * r) + f(1, k * r) / r
+                for r in (a, b)
+            ])  # fmt: skip
+        return mp.det(mp.matrix(rows))
+
+    body, source = (
+        "steel cylinder, 0.08 m to 0.16 m, no axial strain",
+        "stress-free in Bessel's functions, mpmath",
+    )
+    for what, start in (("breathing", 7500), ("radial thickness mode", 37500)):
+        expected = mp.findroot(breathing, mp.mpf(start))
+        flat = found(0, 0.08, 0.16, 0.02, lambda _, direction: direction == 2, expected)
+        yield row(what, expected, flat, body=body, source=source)

@@ -40,6 +40,17 @@ def tables():
         yield row(what, 0.0, found, body=f"rail roughness, {name}")
 
 
+def iso_limit():
+    printed = [
+        17.1, 15.0, 13.0, 11.0, 9.0, 7.0, 4.9, 2.9, 0.9, -1.1, -3.2, -5.0, -5.6, -6.2, -6.8, -7.4, -8.0, -8.6,
+        -9.2, -9.8, -10.4, -11.0,
+    ]  # fmt: skip
+    lengths, found = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
+    difference = np.abs(found[np.argsort(-lengths)] - np.array(printed)).max()
+    what = "ISO 3095:2013 rail roughness, 40 to 0.315 cm: largest difference in 22 bands"
+    yield LEVEL(what, 0.0, difference, source="ISO 3095:2013, limit")
+
+
 def power():
     """1 kHz at 10^1.7 m/s is the band of 50 mm: everything can be read off the tables by hand."""
     rail, disc = cnossos.rail_roughness("iso3095"), cnossos.wheel_roughness("disc")

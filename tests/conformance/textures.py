@@ -1,6 +1,9 @@
-"""Checks of roughness processing and statistics."""
+"""Checks of roughness processing, statistics and files."""
 
+import sys
+import tempfile
 from functools import partial
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
@@ -8,9 +11,15 @@ from ledger import Check
 
 from asperity.surfaces.defects import flat_length, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import band_limit
+from asperity.surfaces.levelling import band_limit, level
 from asperity.surfaces.measured_lines import remove_spikes, roll_over
+from asperity.surfaces.readers import read_surface
+from asperity.surfaces.spectra import psd_1d
 from asperity.surfaces.statistics import areal_statistics
+from asperity.surfaces.synthesis import self_affine
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "surfaces"))
+from surface_files import sdf_ascii, sdf_binary, x3p
 
 MM, UM = 1e-3, 1e-6
 
@@ -63,7 +72,20 @@ def statistics():
     yield row("Sdq of a sine", slope, found["Sdq"], source=source, tolerance=2e-3)
 
 
-def filters():
+def spectra_of_surfaces():
+    waves = {"rms": 0.4 * UM, "hurst": 0.8, "longest": 60 * UM, "shortest": 6 * UM, "seed": 5}
+    surface = self_affine((512, 512), (UM, UM), **waves)
+    wavenumber, density = psd_1d(surface, 0)
+    total, deviation = density.sum() * (wavenumber[1] - wavenumber[0]), surface.heights.std()
+    source = "Parseval, the mean square of the heights; tolerance: the window"
+    what = "one-sided PSD along x: its integral"
+    yield Check(what, deviation**2, total, "µm²", source=source, tolerance=0.05)
+    what = "self-affine surface of 0.4 µm rms: rms of one realisation"
+    source = "its spectrum; tolerance: scatter of one window"
+    yield Check(what, 0.4 * UM, deviation, "µm", source=source, tolerance=0.08)
+
+
+def filters_and_form():
     dx = 1e-5
     wave = Profile(np.sin(2 * np.pi * dx * np.arange(4096) / 0.8e-3), dx)
 
@@ -75,3 +97,31 @@ def filters():
     expected = mp.exp(-mp.pi * (mp.sqrt(mp.log(2) / mp.pi) * 2) ** 2)
     source = "ISO 16610-21, e^(−π(αλc/λ)²)"
     yield row("a wave of half the cut-off", expected, kept(1.6e-3), source=source, tolerance=5e-3)
+    u, v = np.meshgrid(np.linspace(-1, 1, 40), np.linspace(-1, 1, 30), indexing="ij")
+    bowed = HeightMap(2e-6 * u**2 - 1e-6 * u * v + 3e-6, (1e-6, 1e-6))
+    left = np.abs(level(bowed, 2).heights).max()
+    what = "levelling of a paraboloid by degree 2: what is left"
+    yield Check(what, 0.0, left, "µm", source="projection", tolerance=1e-9, absolute=True)
+
+
+def files():
+    heights = np.arange(12.0).reshape(3, 4)  # (x, y)
+    words = [[f"{v:g}" for v in row] for row in heights.T]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "a.sdf").write_bytes(sdf_binary(heights.T, 5))
+        (folder / "b.sdf").write_bytes(sdf_ascii(words))
+        np.save(folder / "d.npy", heights)
+        (folder / "c.x3p").write_bytes(x3p([heights.T * 1e-9]))
+        for file, source, hints in (
+            ("a.sdf", "ISO 25178-71, binary", {}),
+            ("b.sdf", "ISO 25178-71, ASCII", {}),
+            ("c.x3p", "ISO 25178-72", {}),
+            ("d.npy", "NumPy's format", {"height_unit": "nm", "pixel": "2 um"}),
+        ):
+            surface = read_surface(folder / file, **hints)
+            row = partial(Check, body=f"file {file[-3:].upper()}", source=source)
+            found = surface.heights[2, 1]
+            yield row("height of the point x = 2, y = 1", heights[2, 1] * 1e-9, found, "nm", tolerance=1e-9)
+            if not hints:
+                yield row("spacing across", 3 * UM, surface.spacing[1], "µm", tolerance=1e-12)

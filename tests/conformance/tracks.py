@@ -6,7 +6,8 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.structures.track import Track
+from asperity.structures.moving_kernel import moving_kernel
+from asperity.structures.track import Track, decay_rate_of_responses
 from superposed import free_rail, superposed, supports_by_hand
 
 NORDBORG = {
@@ -57,3 +58,36 @@ def winkler():
     critical = (4 * mp.mpf(s) * bending / mp.mpf(mass) ** 2) ** mp.mpf("0.25")
     source = "(4sB/m'²)^¼; tolerance: sleepers 20 mm apart"
     yield row("critical speed", critical, track.critical_speed, "m/s", source=source)
+
+
+SOFT = {
+    "bending_stiffness": 4.725e6, "mass_per_length": 60.0, "pad_stiffness": 20e6, "pad_damping": 2e3,
+    "sleeper_mass": 150.0, "ballast_stiffness": 20e6, "ballast_damping": 40e3, "sleeper_spacing": 0.6,
+}  # fmt: skip
+"""A lossless rail on soft, viscous supports."""
+
+
+def short_times():
+    """Straight after an impulse the rail answers as a free beam."""
+    track = Track(**SOFT)
+    step = 2e-6
+    kernel = moving_kernel(track, 25.0, step, positions=2, duration=4e-3)
+    bending, mass = track.bending_stiffness, track.mass_per_length
+    # hat of force about zero: ∫ √(|t − τ|) over the half after the force, Euler's √t law
+    n = 12
+    law = mp.quad(lambda s: (1 - abs(s)) * mp.sqrt((n - s) * step / (2 * mp.pi)), [-1, 0, 1]) * step
+    law *= mp.mpf(bending) ** mp.mpf("-0.25") * mp.mpf(mass) ** mp.mpf("-0.75")
+    source = "free beam, √(t/2π) B^−¼ m'^−¾ under a hat of force; tolerance: the supports"
+    found = kernel.weights[0, n]
+    yield Check("moving kernel after 24 µs", law, found, "pm/N", source=source, tolerance=0.03)
+
+
+def decay_by_the_standard():
+    distances = 0.6 * np.array(
+        [*np.arange(0, 2.51, 0.25), 3, 3.5, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 30, 36, 42, 48, 54, 66]
+    )  # fmt: skip
+    gamma = 0.35  # 1/m
+    expected = 20 * gamma * mp.log10(mp.e)
+    found = decay_rate_of_responses(distances, np.exp(-gamma * distances)[:, None])
+    source = "20 γ lg e; tolerance: the sum of EN 15461 for an integral"
+    yield Check("EN 15461: decay of e^(−0.35 x/m)", expected, found, "dB/m", source=source, tolerance=0.05)

@@ -186,23 +186,13 @@ def test_a_part_that_was_kept_is_not_rolled_again(tmp_path):
     assert other.removed == pytest.approx(whole.removed * 7850.0 / 8000.0, rel=1e-3, abs=0.0)
 
 
-@dataclass(frozen=True)
-class Given:
-    """A law of one's own: a depth for each cell, mild."""
-
-    depth: np.ndarray
-
-    def removal(self, rubbing):
-        return self.depth, np.zeros(self.depth.shape, dtype=int)
-
-
 def test_the_cache_tells_laws_apart_by_every_place_of_their_maps(tmp_path):
     """Of more places, and more digits, than numpy writes down unasked."""
     gap, rolling = wheel(34, 0.3)
     for middle in (0.0, 1e-12):
         depth = np.full((34, 34), 1e-3)
         depth[17, 17] += middle
-        law = Given(depth)
+        law = Given((depth, np.zeros((34, 34), dtype=int)))
         after = worn(rolling, np.zeros((34, 34)), gap, LOAD, law, (1e-3, 0.0), cache=Store(tmp_path))
         assert after.depth[17, 17] == pytest.approx(depth[17, 17] * SIDE / 34, rel=1e-14, abs=0.0)
 
@@ -232,7 +222,8 @@ def test_archard_wears_by_velocity_and_pressure(pressure, velocity, factor, regi
 
 
 GAP, ROLLING = wheel(8, 0.3)
-RAIL = np.zeros((9, 8))
+RAIL, NOTHING = np.zeros((9, 8)), np.zeros((8, 8))
+NO_REGIME = 3 + NOTHING.astype(int)
 ROLLED = {
     "rolling": ROLLING,
     "law": LINEAR,
@@ -242,6 +233,16 @@ ROLLED = {
 
 class Nameless:
     removal = EnergyWear.removal
+
+
+@dataclass(frozen=True)
+class Given:
+    """A law that removes what it is told, whatever that is."""
+
+    answer: object
+
+    def removal(self, rubbing):
+        return self.answer
 
 
 def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, rolling=ROLLING, **keywords):
@@ -260,6 +261,11 @@ def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, rolling=ROLLING, **keywo
         (wear, {"rolling": ROLLING.half_space}, "bodies that roll: received HalfSpace; allowed: a half"),
         (wear, {"law": 1e-4}, r"law of wear: received float; allowed: an object with removal"),
         (wear, {"law": Nameless(), "cache": Store(".")}, "received one without fields to keep it by"),
+        (wear, {"law": Given(None)}, "removal of Given: received None; allowed: depth over rolled distance"),
+        (wear, {"law": Given((NOTHING + math.nan, NOTHING))}, "removal of Given: received nan"),
+        (wear, {"law": Given((NOTHING[1:], NOTHING))}, r"removal of Given: received shape \(7, 8\)"),
+        (wear, {"law": Given((NOTHING, NOTHING))}, "removal of Given: received regimes of float64"),
+        (wear, {"law": Given((NOTHING, NO_REGIME))}, "removal of Given: received regimes of int64"),
         (wear_depth, ROLLED | {"contact": None}, "contact: received none of these bodies; allowed: one that"),
         (wear_depth, ROLLED | {"rolling": wheel(8, 0.2)[1]}, "contact: received none of these bodies"),
         (wear, {"surface": RAIL[:, :6]}, "window of wear: received 8 × 8 cells on a surface of 9 × 6"),

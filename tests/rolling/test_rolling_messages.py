@@ -43,6 +43,32 @@ TWO = {"bodies": [BALL] * 2, "laws": [LAW] * 2}
 CLIFF = StateTexture.unfiltered(np.where(np.arange(4000) < 1400, 0.0, -10.0), 1e-5, 0.29)  # of 10 m
 
 
+test_what_cannot_roll_is_told = refusals(
+    ({"bodies": [], "laws": [], "positions": []}, r"bodies: received none.*one or more"),
+    (TWO, r"positions of the bodies.*2 finite numbers, one for each body"),
+    (TWO | {"positions": [0.0, np.nan]}, r"positions of the bodies.*2 finite numbers"),
+    ({"laws": [LAW] * 2}, r"laws.*2.*1, one for each contact"),
+    (
+        TWO | {"over": BEAM, "positions": [0.0, 0.695]},
+        r"path of contact 2.*0.995 to 1.005.*on the structure",
+    ),
+    ({"sensors": [0.5]}, r"sensors: received 1 on a rigid plane"),
+    ({"bodies": [Body.rigid(0.5, 0.0)]}, r"loads of the bodies.*none that presses"),
+    ({"bodies": [body([[0, 1.0], [0, 0]])]}, r"damping of a body.*not symmetric"),
+    (
+        {"bodies": [body(NONE, [[-1e3, 0], [0, 1e3]])]},
+        r"stiffness of a body.*negative.*springs that pull back",
+    ),
+    (
+        TWO | {"over": RAIL, "positions": [0.0, 3.0]},
+        r"distance of two contacts on the rail.*3.*-2\.5, 2\.5.*rail between",
+    ),
+    ({"over": RAIL, "speed": 50.0}, r"path.*50 m/s.*kernel was computed"),
+    ({"over": RAIL, "sensors": [1.0]}, r"sensors.*a rail is known under the contacts alone"),
+    of=lambda changes: rolled(**changes),
+)
+
+
 test_what_fails_is_told = refusals(
     (
         {"laws": [HertzLaw(1e-3)]},

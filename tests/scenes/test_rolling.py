@@ -181,6 +181,14 @@ def test_a_record_after_a_run_in_is_the_end_of_a_longer_run():
 
 
 test_bad_paths_are_refused = refusals(
+    ({"speed": 0.0}, r"speed \(m/s\)"),
+    ({"duration": np.nan}, r"duration \(s\)"),
+    ({"time_step": np.inf}, r"time step \(s\)"),
+    ({"settling": -0.1}, r"settling \(s\)"),
+    ({"duration": 1e-6}, "at least one time step"),
+    ({"duration": 0.8}, r"path of contact 1 .*received 0.3 to 1.1; allowed: 0 to 1, on the structure"),
+    ({"settling": 0.4}, "path .* -0.1 to"),
+    ({"start": -0.1}, "Choose start, duration, run-in"),
     ({"sensors": [1.2]}, "positions on the beam"),
     ({"duration": 0.1}, "longer texture"),
     of=lambda change: rolled(HertzLaw(K, rough_texture(1e-7)), **change),

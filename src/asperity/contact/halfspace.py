@@ -352,6 +352,7 @@ class HalfSpace:
             tolerance,
             device=batched.find_device(device),
         )
+        scan.check_settings(workers, cache, progress)
         found = scan.scan_forces(job, cache=cache, workers=workers, progress=progress)
         scan.warn_of_flaws(found.counts, "the scan", key, job.remedy if found.counts.truncated else "")
         return scan.labelled(job, found)
@@ -419,6 +420,7 @@ class HalfSpace:
         heights = scan.heights_on(self, surface, "surface to be run in")
         shape = self._field("body that runs in", body)
         scan.check_window("running-in", self.shape, heights.shape)
+        scan.check_settings(workers, cache, progress)
         load, most = self.checked_load(load), max(self.shape[0] - 1, 1)
         allowed = f"a whole number from 1 to {most}"
         step = arguments.whole("stride of running-in", stride, allowed, at_least=1, at_most=most)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import Array, finite_array, real, real_array, require, whole
+from asperity.arguments import Array, finite_array, real, real_array, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
@@ -152,6 +152,16 @@ def check_window(what: str, cells: tuple[int, ...], surface: tuple[int, ...]) ->
         "a window as wide as the surface and not longer",
         "Choose a smaller window or provide a larger map.",
     )
+
+
+def check_settings(workers: object, cache: object, progress: object) -> None:
+    """Refuse what is no number of threads, no cache, or no progress."""
+    if workers is not None:
+        whole("workers", workers, "a number of threads, 1 or more, or None", at_least=1)
+    keeps = cache is None or (hasattr(cache, "get") and hasattr(cache, "put"))
+    require(keeps, "cache", shown(cache), "an object with get and put, as Store(), or None")
+    tells = progress is None or callable(progress)
+    require(tells, "progress", shown(progress), "a callable (done, total, message), or None")
 
 
 F = TypeVar("F")

@@ -11,7 +11,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real, require, two, whole
 from asperity.contact.friction import SlidingContact, cell_places
-from asperity.contact.scan import Counts, check_window, heights_on, total, warn_of_flaws
+from asperity.contact.scan import Counts, check_settings, check_window, heights_on, total, warn_of_flaws
 from asperity.contact.tangential import SPIN_AHEAD, FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning, UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
@@ -193,6 +193,17 @@ def _check_law(law: object) -> None:
     require(is_law, "law of wear", type(law).__name__, allowed)
 
 
+def _removal(law: WearLaw, rubs: Rubbing) -> tuple[Array, NDArray[np.intp]]:
+    """What a law removes; it may be anyone's."""
+    what, shape, last = f"removal of {type(law).__name__}", rubs.work.shape, len(REGIMES) - 1
+    allowed = f"depth over rolled distance, finite, and whole regimes from 0 to {last}, two arrays {shape}"
+    depth, regimes = two(what, law.removal(rubs), allowed)
+    rate, regime = finite_array(what, depth, allowed, shape=shape), np.asarray(regimes)
+    known = regime.shape == shape and regime.dtype.kind in "biu" and np.isin(regime, range(last + 1)).all()
+    require(known, what, f"regimes of {regime.dtype}, shape {regime.shape}", allowed)
+    return rate, regime.astype(np.intp)
+
+
 def wear_depth(rolling: FrictionalHalfSpace, contact: SlidingContact, law: WearLaw) -> Array:
     """Depth that each line along the rolling direction loses as a steadily rolling contact passes once.
 
@@ -231,7 +242,7 @@ def wear_depth(rolling: FrictionalHalfSpace, contact: SlidingContact, law: WearL
     here = isinstance(contact, SlidingContact) and contact.normal.half_space is rolling.half_space
     require(here, "contact", "none of these bodies", "one that their roll returns")
     require(contact.speed > 0.0, "contact", "one that was shifted, or stands", "one that rolls, at a speed")
-    depth, _ = law.removal(rubbing(rolling, contact, contact))
+    depth, _ = _removal(law, rubbing(rolling, contact, contact))
     return depth.sum(axis=0) * rolling.half_space.spacing[0]
 
 
@@ -380,6 +391,7 @@ def worn(
     heights, shape = heights_on(space, surface, "surface to be worn"), space.shape
     shape_of = finite_array("body that wears", body, f"lengths in m, an array {shape}", shape=shape)
     check_window("wear", shape, heights.shape)
+    check_settings(None, cache, progress)
     kept = cache is None or is_dataclass(law)
     require(kept, "law of wear", "one without fields to keep it by", "a frozen dataclass, or no cache")
     positions = len(heights) if closed else len(heights) - shape[0] + 1
@@ -469,7 +481,7 @@ def _pass(
         rubs, before = rubbing(job.bodies, after, before), after
         if first < 0:
             continue
-        rate, regime = job.law.removal(rubs)
+        rate, regime = _removal(job.law, rubs)
         depth[under] += distance * rate
         volume += distance * space.cell_area * np.bincount(regime.ravel(), rate.ravel(), len(REGIMES))
         work += distance * space.cell_area * float(rubs.work.sum())

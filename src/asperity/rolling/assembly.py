@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from asperity.arguments import Array
-from asperity.errors import ComputationError
+from asperity.errors import ComputationError, InputError
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.rail import preload_channels
 from asperity.kernels.stepping import POWERS, Motion, System
@@ -38,8 +38,7 @@ def assemble(
 
     And the paths of all contacts.
     """
-    offsets = [at + body.places for at, body in zip(positions, bodies, strict=True)]
-    path = whole.ahead(np.concatenate(offsets))
+    path = whole.ahead(_offsets(bodies, laws, positions))
     ground = ground_of(over, path, sensors)
     system = system_of(ground, bodies, body_loads(bodies), path.time_step, path.speed)
     prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
@@ -76,10 +75,26 @@ def softened(
     return system, motion, RUNAWAY * max(*system.loads, *forces)
 
 
+def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
+    """Where the contacts are ahead of the path (n,), m."""
+    if not len(bodies):
+        raise InputError("bodies", "none", "one or more")
+    if positions.shape != (len(bodies),) or not np.isfinite(positions).all():
+        allowed = f"{len(bodies)} finite numbers, one for each body"
+        raise InputError("positions of the bodies (m)", positions.tolist(), allowed)
+    offsets = np.concatenate([at + body.places for at, body in zip(positions, bodies, strict=True)])
+    if len(laws) != len(offsets):
+        raise InputError("laws", len(laws), f"{len(offsets)}, one for each contact")
+    return offsets
+
+
 def body_loads(bodies: Sequence[Body]) -> Array:
     """Scales of the contact forces (n,), N: static loads, no one less than the mean of several."""
     loads = np.concatenate([body.static_loads for body in bodies])
-    return np.maximum(loads, np.clip(loads, 0.0, None).mean()) if len(loads) > 1 else loads
+    mean = float(np.clip(loads, 0.0, None).mean())
+    if not mean > 0.0:
+        raise InputError("loads of the bodies (N)", "none that presses", "forces that press them down")
+    return np.maximum(loads, mean) if len(loads) > 1 else loads
 
 
 def system_of(

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike
-from asperity.errors import LargeDeflectionWarning
+from asperity.arguments import Array, ArrayLike, positive, real
+from asperity.errors import InputError, LargeDeflectionWarning
 from asperity.kernels.rail import Channels
 from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step
 from asperity.structures.beam import Beam, SupportedBeam
@@ -28,7 +28,12 @@ class Path:
     @classmethod
     def laid(cls, start: float, speed: float, time_step: float, duration: float, settling: float) -> Path:
         """Lay out one contact: a run-in of `settling`, s, and from `start`, m, a record of `duration`, s."""
+        for what, value in (("speed (m/s)", speed), ("duration (s)", duration), ("time step (s)", time_step)):
+            positive(what, value)
+        real("settling (s)", settling, "zero or a finite positive number", at_least=0.0)
         steps, settled = (int(np.floor(time / time_step * (1.0 + 1e-12))) for time in (duration, settling))
+        if steps < 1:
+            raise InputError("duration (s)", duration, f"at least one time step of {time_step:.6g} s")
         positions = np.asarray(start + speed * time_step * np.arange(-settled, steps + 1))
         return cls(positions[None], speed, time_step, settled)
 
@@ -78,15 +83,18 @@ class Ground:
 
 
 def ground_of(over: Modal | RailBetween | None, path: Path, sensors: Array) -> Ground:
-    """Look at what is rolled over along a path, and at sensors (k,), m."""
-    return _rail(over, path) if isinstance(over, RailBetween) else _modes(over, path, sensors)
+    """Look at what is rolled over along a path, and at sensors (k,), m; refuse where it does not fit."""
+    return _rail(over, path, sensors) if isinstance(over, RailBetween) else _modes(over, path, sensors)
 
 
 def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
     """A structure by its modes, or a plane that does not move, without any."""
     natural, ratios, n = np.zeros(0), np.zeros(0), len(path.positions)
     if over is not None:
+        _refuse_to_leave(over, path)
         natural, ratios = 2.0 * np.pi * over.natural_frequencies, over.damping_ratios
+    elif sensors.size:
+        raise InputError("sensors", f"{sensors.size} on a rigid plane", "none: it does not move")
 
     def shapes(x: Array) -> tuple[Array, Array]:
         none = np.zeros((x.size, natural.size))
@@ -113,9 +121,30 @@ def no_channels(n: int) -> Channels:
     return Channels(none, none, none, first, np.zeros(n), 0.0, *kernels)
 
 
-def _rail(rail: RailBetween, path: Path) -> Ground:
+def _refuse_to_leave(over: Modal, path: Path) -> None:
+    low, high = over.extent
+    margin = 1e-9 * (high - low)
+    for k, positions in enumerate(path.positions):
+        if not (positions[0] >= low - margin and positions[-1] <= high + margin):
+            raise InputError(
+                f"path of contact {k + 1} (m)",
+                f"{positions[0]:.6g} to {positions[-1]:.6g}",
+                f"{low:.6g} to {high:.6g}, on the structure",
+                "Choose start, duration, run-in and positions so that all contacts stay on it.",
+            )
+
+
+def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     """A rail, by poles or scattered, between contacts at fixed distances."""
     kernel, n = rail.kernel, len(path.positions)
+    given, made = (path.speed, path.time_step), (kernel.speed, kernel.time_step)
+    if not np.allclose(given, made, rtol=1e-9, atol=0.0):
+        received = f"{given[0]:.6g} m/s in steps of {given[1]:.6g} s"
+        allowed = f"{made[0]:.6g} m/s and {made[1]:.6g} s, for which the rail's kernel was computed"
+        raise InputError("path", received, allowed, "Compute the moving kernel of this path.")
+    if sensors.size:
+        allowed = "none: a rail is known under the contacts alone"
+        raise InputError("sensors", f"{sensors.size} on a rail", allowed)
     channels, weights = _channels(rail, path.starts)
     found, static = np.zeros((n, n)), np.array([each.sum(axis=1).mean() for each in weights])
     found[channels.receiver, channels.source] = static[channels.table]

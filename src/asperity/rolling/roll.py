@@ -130,7 +130,8 @@ def roll_bodies(
     Raises
     ------
     InputError
-        If a contact leaves the structure.
+        If a contact leaves the structure, a rail was made for another speed, time step or distances, or
+        numbers of bodies, laws and positions disagree.
     ComputationError
         If nothing is at rest at the start, or the motion runs away.
     """

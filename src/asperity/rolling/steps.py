@@ -26,7 +26,7 @@ import numpy as np
 from scipy.linalg import block_diag, eigh
 
 from asperity.arguments import Array, ArrayLike, NDArray
-from asperity.errors import CoarseSamplingWarning
+from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw
 from asperity.structures.body import Body
@@ -109,8 +109,14 @@ def body_step(body: Body, time_step: float) -> Array:
 
     Natural coordinates that turn by more than RESOLVED in a step only answer as those of `resolved_step`.
     """
+    for what in ("mass", "damping", "stiffness"):
+        matrix = getattr(body, what)
+        if np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max():
+            raise InputError(f"{what} of a body", "a matrix that is not symmetric", "a symmetric matrix")
     squares, basis = eigh(body.stiffness, body.mass)  # y = basis z
     largest, d = float(np.abs(squares).max()), len(squares)
+    if squares.min() < -1e-9 * largest:
+        raise InputError("stiffness of a body", "a negative one", "springs that pull back")
     squares = np.where(squares > ROUNDING * largest, squares, 0.0)
     damping = basis.T @ body.damping @ basis
     turned = np.sqrt(np.maximum(squares - 0.25 * np.diag(damping) ** 2, 0.0)) * time_step

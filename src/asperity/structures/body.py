@@ -42,8 +42,17 @@ class Body:
     """Of one that was fitted to receptances: root mean square of the differences of level, dB."""
 
     def __post_init__(self) -> None:
-        if not len(self.natural_frequencies):
-            object.__setattr__(self, "shapes", np.zeros((len(self.contacts), 0)))
+        (c, d), s = self.contacts.shape, len(self.natural_frequencies)
+        if not s:
+            object.__setattr__(self, "shapes", np.zeros((c, 0)))
+        shapes = {"mass": (d, d), "damping": (d, d), "stiffness": (d, d), "pressing": (d,), "places": (c,)}
+        for name, shape in (shapes | {"damping_ratios": (s,), "shapes": (c, s)}).items():
+            value = getattr(self, name)
+            if value.shape != shape or not np.isfinite(value).all():
+                allowed = f"finite numbers of shape {shape}"
+                raise InputError(f"{name} of a body", f"shape {value.shape}", allowed)
+        if np.linalg.eigvalsh(self.mass).min() <= 0.0:
+            raise InputError("masses of a body", "one without inertia", "positive masses")
         hung, loads = self._statics
         carried = self.contacts.T @ loads - self.stiffness @ hung - self.pressing
         if np.abs(carried).max(initial=0.0) > CARRIED * np.abs(self.pressing).max(initial=1.0):
@@ -94,6 +103,9 @@ class Body:
         Frequencies in Hz, above zero.
         """
         f = np.atleast_1d(np.asarray(frequency, dtype=float))
+        if not (f > 0.0).all():
+            allowed = "above 0: a free body has no static receptance"
+            raise InputError("frequency (Hz)", float(f.min()), allowed)
         omega = 2.0 * np.pi * f[:, None, None]
         dynamic = self.stiffness + 1j * omega * self.damping - omega**2 * self.mass
         moved = np.linalg.solve(dynamic, np.broadcast_to(self.contacts.T, (f.size, *self.contacts.T.shape)))

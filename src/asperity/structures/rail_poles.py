@@ -253,6 +253,10 @@ class RailBetween:
             return self.direct
         if abs(apart) > self.reach:
             return None
+        if apart not in self.crossing:
+            known = ", ".join(f"{at:g}" for at in sorted(self.crossing)) or "none"
+            remedy = "Compute the rail between them for the places of these contacts."
+            raise InputError("distance of two contacts on the rail (m)", f"{apart:g}", known, remedy)
         return self.crossing[apart]
 
 
