@@ -144,7 +144,7 @@ def main() -> None:
     options = parser.parse_args()
     warnings.simplefilter("ignore", PhysicsWarning)  # what is timed is not what is concluded
     computed = prepared_case(options.load, options.rms, options.duration)
-    laws = computed.laws | {"direct": direct_law(computed)}
+    laws = {name: computed.materials.build(name) for name in computed.runs} | {"direct": direct_law(computed)}
     steps: dict[str, list[float]] = {name: [] for name in laws}
     layouts: dict[str, list[float]] = {name: [] for name in laws}
     runs: dict[str, RolledBodies] = {}

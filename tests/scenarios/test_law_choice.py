@@ -183,7 +183,9 @@ def test_areal_is_taken_where_it_is_in_its_range_and_table_where_it_leaves_it():
 
 
 def test_check_and_verdict_say_what_the_map_says(runs):
-    rows = dict(plan(prepare_case(as_case(BALL)), Work({}, {}, 0, None, 0.0)))
+    ready = prepare_case(as_case(BALL))
+    choice = law_choice.law_choice(ready.case, ready.shape, ready.textures, ready.scene)
+    rows = dict(plan(ready, Work({}, {}, 0, None, 0.0), choice))
     assert rows["law to take"].startswith("table: areal leaves its range")
     assert re.search(r"areal \d+(\.\d)? \(\d+(\.\d)? to \d+(\.\d)?\)", rows["expected errors, dB"])
     result = runs(BALL)
