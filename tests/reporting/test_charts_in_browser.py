@@ -63,9 +63,9 @@ def spectrum_chart():
 
 
 def bands_chart():
-    """Lines with markers in bands, and bars below zero."""
+    """Lines with markers in bands, and hatched bars below zero."""
     level, axis = 30 + np.sin(np.arange(BANDS.size)), panels.band_axis(BANDS)
-    bars = Boxes(BANDS / 1.1, BANDS * 1.1, -level, 0 * level, "rail", GREEN, edge=INK)
+    bars = Boxes(BANDS / 1.1, BANDS * 1.1, -level, 0 * level, "rail", GREEN, hatch="/", edge=INK)
     above = Line(BANDS, level, marker="o", **AREAL), Line(BANDS, level + 2, marker="s", **LINEAR)
     return Chart((Panel(axis, Axis("level / dB"), above), Panel(axis, Axis("less / dB"), (bars,), height=2)))
 
@@ -97,7 +97,7 @@ def words_chart():
     """Bars that stand and bars that lie, by words."""
     words = ("rail", "sleepers", "wheel with its axle", "sum")
     at, high = np.arange(4.0), np.arange(80.0, 96.0, 4.0)
-    up = Boxes(at - 0.3, at + 0.3, np.full(4, 60.0), high, "areal", BLUE, law="areal")
+    up = Boxes(at - 0.3, at + 0.3, np.full(4, 60.0), high, "areal", BLUE, law="areal", hatch="x")
     flat, axis = Boxes(0 * at, high, at - 0.3, at + 0.3, "share", GREEN), panels.words_axis(words)
     stood = Panel(axis, Axis("power / dB(A)", 60, 100), (up,))
     return Chart((stood, Panel(Axis("share / %", 0, 100), axis, (flat,), beside=True)))
@@ -107,7 +107,7 @@ def scene_chart():
     """A drawing: a body and words, one axis with a name and one without."""
     body = Shape(np.array([0.0, 4.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]), fill=BLUE)
     notes = [Note(words, 1.0, 0.5) for words in ("1 m/s", "R = 2 m")]
-    foot = Boxes(*(np.array([at]) for at in (0.0, 0.5, -0.5, 0.0)), colour=GRID, edge=INK)
+    foot = Boxes(*(np.array([at]) for at in (0.0, 0.5, -0.5, 0.0)), colour=GRID, hatch="/", edge=INK)
     side, up = Axis("x / m", -1.0, 5.0), Axis("", -1.0, 2.0)
     return Chart((Panel(side, up, (body, foot, *notes), equal=True, plain=True, height=5),))
 

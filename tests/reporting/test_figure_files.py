@@ -38,7 +38,7 @@ def across(axes):
         (Line(X, Y, "force", BLUE, (3.0, 1.0)), lambda a: a.lines[0].get_xydata(), np.column_stack([X, Y])),
         (Line(X, Y, marker="^", width=0), lambda a: a.lines[0].get_linestyle() == "None", True),
         (Area(X, X - 1, X + 1), lambda a: a.collections[0].get_datalim(a.transData).bounds, (0, -1, 2, 4)),
-        (Boxes(ONE, TWO, -ONE, ONE), corners, [[0.5, -0.5], [0.5, 0.5], [1.5, 0.5], [1.5, -0.5]]),
+        (Boxes(ONE, TWO, -ONE, ONE, hatch="/"), corners, [[0.5, -0.5], [0.5, 0.5], [1.5, 0.5], [1.5, -0.5]]),
         (Boxes(ONE, ALL, -ALL, ALL), corners, [[0.5, -5], [0.5, 5], [2, 5], [2, -5]]),
         (Rules(np.array([0.5, 1.0])), across, [[0.5, 0.5], [1, 1]]),
         (Rules(ONE, "y", short=True), across, [[0.0, 0.04]]),

@@ -166,6 +166,7 @@ class Boxes:
     label: str = ""
     colour: str = INK
     opacity: float = 1.0
+    hatch: str = ""  # "/", "\\", "x", "." or "-", for those who do not see colours
     law: str = ""
     edge: str = ""  # colour of the outline
 

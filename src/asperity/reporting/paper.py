@@ -29,6 +29,7 @@ RC: dict[Any, Any] = {
     "axes.grid": True,
     "axes.axisbelow": True,
     "grid.color": chart.GRID,
+    "hatch.linewidth": 0.8,
     "text.color": chart.INK,
     "text.parse_math": False,
     "xtick.color": chart.MUTED,
@@ -50,6 +51,7 @@ LETTER, ROW, HANDLE = 0.068, 13.0, 10
 """Width of a letter in inches, height of a row of a legend in points, letters that a handle takes."""
 OPPOSITE = 32.0
 """Points that an axis opposite takes above a panel."""
+HATCHES = {"/": "///", "\\": "\\\\\\", "x": "xxx", ".": "..", "-": "---"}
 Ends = tuple[float, float]
 
 
@@ -198,8 +200,10 @@ def _draw_boxes(axes: Axes, mark: chart.Boxes, x: Ends, y: Ends, look: dict[str,
     left, right = (np.clip(edge, min(x), max(x)) for edge in (mark.left, mark.right))
     low, high = (np.clip(edge, min(y), max(y)) for edge in (mark.low, mark.high))
     corners = np.stack([left, low, left, high, right, high, right, low], axis=-1).reshape(-1, 4, 2)
-    look |= {"edgecolors": mark.edge or "none", "linewidths": 0.8 if mark.edge else 0.0}
-    look["alpha"] = mark.opacity
+    if mark.hatch:  # drawn in the colour of the outline
+        look["hatch"] = HATCHES[mark.hatch]
+    look |= {"edgecolors": mark.edge or ("white" if mark.hatch else "none")}
+    look |= {"linewidths": 0.8 if mark.edge else 0.0, "alpha": mark.opacity}
     axes.add_collection(PolyCollection(list(corners), facecolors=mark.colour, **look), autolim=False)
 
 

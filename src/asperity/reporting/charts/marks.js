@@ -143,19 +143,43 @@ function drawArea(view, mark) {
 }
 
 function drawBoxes(view, mark) {
-  const { ctx, unit } = view;
+  const { ctx, unit } = view, hatch = mark.hatch && hatching(view, mark);
   for (let n = 0; n < mark.left.length; n++) {
     const [left, right] = [view.x(mark.left[n]), view.x(mark.right[n])].map((at) => within(at, view.left - unit, view.right + unit)).sort((a, b) => a - b);
     const [top, bottom] = [view.y(mark.low[n]), view.y(mark.high[n])].map((at) => within(at, view.top - unit, view.bottom + unit)).sort((a, b) => a - b);
     if (!(right >= view.left && left <= view.right && bottom >= top)) continue;
     const box = [left, top, Math.max(right - left, unit), Math.max(bottom - top, mark.low[n] === mark.high[n] ? 0 : unit)];
     ctx.fillRect(...box);
+    if (hatch) {
+      ctx.save();
+      ctx.fillStyle = hatch;
+      ctx.fillRect(...box);
+      ctx.restore();
+    }
     if (mark.edge) {
       ctx.strokeStyle = view.colour(mark.edge);
       ctx.lineWidth = unit;
       ctx.strokeRect(...box);
     }
   }
+}
+
+function hatching({ ctx, unit, colour }, mark) {  // in the colour of the paper over a full colour, else in its own
+  const size = Math.round(8 * unit), tile = Object.assign(document.createElement("canvas"), { width: size, height: size });
+  const pen = tile.getContext("2d");
+  pen.strokeStyle = pen.fillStyle = (mark.opacity ?? 1) > 0.5 ? colour("--paper") : colour(mark.colour);
+  pen.lineWidth = unit;
+  const strokes = { "/": [[0, size, size, 0]], "\\": [[0, 0, size, size]], x: [[0, size, size, 0], [0, 0, size, size]], "-": [[0, size / 2, size, size / 2]] };
+  for (const [a, b, c, d] of strokes[mark.hatch] ?? []) {
+    for (const shift of a === c || b === d ? [0] : [-size, 0, size]) {  // so that corners meet
+      pen.beginPath();
+      pen.moveTo(a + shift, b);
+      pen.lineTo(c + shift, d);
+      pen.stroke();
+    }
+  }
+  if (mark.hatch === ".") pen.fillRect(size / 2 - unit, size / 2 - unit, 2 * unit, 2 * unit);
+  return ctx.createPattern(tile, "repeat");
 }
 
 function drawRules(view, mark) {

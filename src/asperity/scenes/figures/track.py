@@ -202,7 +202,7 @@ def _loss(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     """Errors of the force per one-third octave."""
     (error,) = (s.values for s in lines.of(_FORCE))
     edges = lines.at / panels.EDGE, lines.at * panels.EDGE, np.fmin(error, 0.0), np.fmax(error, 0.0)
-    boxes = chart.Boxes(*edges, "contact force", chart.BLUE)
+    boxes = chart.Boxes(*edges, "contact force", chart.BLUE, hatch="/")
     zero = panels.zero(colour=INK, width=0.8)
     yield Panel(panels.band_axis(lines.at), Axis("error / dB"), (boxes, zero), height=2.4)
 
