@@ -205,7 +205,10 @@ class BallBearingCase(AnyCase):
     NEEDED = "a bearing and its load"
     PREPARED_BY = "asperity.scenarios.bearing.prepare_bearing"
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
-    WRITTEN_OUT: ClassVar = {"bearing.name": '"6205"', "axial": '"100 N"'}
+    WRITTEN_OUT: ClassVar = {
+        "bearing.name": '"6205"', "axial": '"100 N"', "inner_raceway.waviness": '"0.5 um"',
+        "outer_raceway.waviness": '"0.5 um"',
+    }  # fmt: skip
 
     kind: str = key(Choice(("ball-bearing",)), "ball-bearing", "what rolls")
     speed: float = key(
