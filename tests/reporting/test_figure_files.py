@@ -164,3 +164,8 @@ def test_figures_are_files_under_their_names(tmp_path):
     files = write_figures(DataTree(), PARTS[:2], tmp_path, "pdf")
     assert files == [tmp_path / "force_bands.pdf", tmp_path / "force_psd.pdf"]
     assert all(file.read_bytes().startswith(b"%PDF") for file in files)
+
+
+def test_levels_of_spectra_are_over_their_reference():
+    """(1 mm/s²)²/Hz is 60 dB re (1 µm/s²)²/Hz, and nothing has no level."""
+    np.testing.assert_allclose(chart.decibels(np.array([1e-6, 0.0]), 1e-12), [60.0, np.nan], rtol=1e-12)

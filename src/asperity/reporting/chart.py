@@ -74,7 +74,7 @@ def sequence_styles(count: int) -> list[dict[str, Any]]:
 
 def decibels(power: Numbers, reference: float = 1.0) -> Numbers:
     """10 lg(power/reference); NaN where there is no power."""
-    return 10 * np.log10(np.where(power > 0, power * reference, np.nan))
+    return 10 * np.log10(np.where(power > 0, power / reference, np.nan))
 
 
 def envelope(signal: Numbers, columns: int) -> tuple[NDArray[np.int64], Numbers, Numbers]:
