@@ -7,7 +7,6 @@ from asperity.schema import Attribute, Entry, contact
 _entry, _attribute = partial(Entry, "surface"), partial(Attribute, "surface")
 _sampled = partial(_entry, condition=contact.SAMPLED)
 _beside = partial(_entry, condition="where texture lies beside the line")
-_rough = partial(_entry, condition="where the path is rough")
 _measured = partial(_entry, condition="where maps were measured, large enough to be told apart")
 
 X = _sampled("x", "m", "rolling direction")
