@@ -548,25 +548,33 @@ def parameter(
     within: str = "",
     *,
     default: Any = dataclasses.MISSING,
+    otherwise: str = "",
     goes_with: str = "",
 ) -> Any:
     """Declare a parameter of a physical dataclass, from which its key in a case follows.
 
-    `default` is that of the class, in SI; the rest is as in `key`.
+    `default` is that of the class, in SI; the rest is as in `optional`.
     """
-    declared = Key(kind, None, meaning, limits_in(within), example=example, goes_with=goes_with)
+    declared = Key(kind, None, meaning, limits_in(within), otherwise, example, goes_with)
     return dataclasses.field(default=default, metadata={"key": declared})
 
 
 def keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
-    """Keys of the parameters that a physical dataclass declares; `otherwise` is what holds without them."""
+    """Keys of the parameters that a physical dataclass declares.
+
+    `otherwise` is what holds without them, where they do not say it themselves.
+    """
     return _keys_of(model, otherwise)
 
 
 @cache
 def _keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
     declared = {field.name: field.metadata.get("key") for field in dataclasses.fields(model)}
-    return {name: dataclasses.replace(key, otherwise=otherwise) for name, key in declared.items() if key}
+    return {
+        name: dataclasses.replace(key, otherwise=key.otherwise or otherwise)
+        for name, key in declared.items()
+        if key
+    }
 
 
 def checked_parameters(model: Any) -> None:

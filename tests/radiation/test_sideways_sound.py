@@ -9,7 +9,7 @@ from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 from asperity import Track
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, SideOfRail, squared_lateral_mobility
-from asperity.structures.lateral_rail import LateralTrack, contact_shapes
+from asperity.structures.lateral_rail import LateralTrack
 
 TRACK = LateralTrack(Track.named("nordborg-loss-factor", rail_loss_factor=0.05))
 SIDE = SideOfRail(0.172, 0.150, 0.072)
@@ -18,9 +18,9 @@ SIDE = SideOfRail(0.172, 0.150, 0.072)
 def test_the_integral_along_the_rail_is_that_of_many_bays():
     frequency, place, bay, bays, cells = np.array([80.0, 500.0, 1500.0]), 0.012, 0.6, 60, 24
     places = (np.arange(4) + 0.5) * bay / 4
-    waves, forces = TRACK.waves(2.0 * np.pi * frequency), contact_shapes(TRACK.rail, place)
+    waves, forces = TRACK.waves(2.0 * np.pi * frequency), TRACK.contact_shapes(place)
     along = (np.arange(-bays * cells, bays * cells) + 0.5) * bay / cells
-    heights = np.linspace(-TRACK.rail.foot_depth, TRACK.rail.head_height, 201)
+    heights = np.linspace(-TRACK.foot_depth, TRACK.head_height, 201)
     simpson = np.ones(201)
     simpson[1:-1:2], simpson[2:-1:2] = 4.0, 2.0
     levers = np.stack([np.ones(201), heights])

@@ -91,7 +91,6 @@ def test_axial_modes_squeal_by_falling_friction_and_move_by_themselves(computed,
     both = wheel_receptances(computed.scene.modes, 600.0, omega / (2.0 * np.pi), 0.0)
     both += LateralTrack(computed.track.nominal).answers(omega, 0.3, 0.3, 0.0)
     (vv, vl), (_, ll) = both[..., 0]
-    vv += computed.track.nominal.waves(omega).receptance(0.3, 0.3)[0]
     stick = stick_stiffness(computed.shape.semi_axes, (MATERIALS["steel"],) * 2)
     slip, slope = 1j * omega[0] * falling[schema.CREEP_DAMPING], falling[schema.LOAD_SLOPE]
     matrix = [[1.0 / computed.stiffness + vv, vl], [slope + slip * vl, 1.0 + slip * (ll + 1.0 / stick)]]

@@ -57,7 +57,7 @@ def by_places(case, frequency, modes=None, head=PLACE):
     wheel, places = wheel_receptances(modes, 600.0, frequency, PLACE), (np.arange(12) + 0.5) * 0.05
     shares, squares = [], []
     for x in places:
-        rail = wheel + track.at_contact(frequency, x, x, head)
+        rail = wheel + track.answers(2.0 * np.pi * frequency, x, x, head)
         shares.append(-rail[1, 0] / (rail[1, 1] + 1.0 / springs[1]))
         squares.append(np.abs(wheel[0, 0] + 1.0 / springs[0] + vertical.receptance(frequency, x, x)) ** -2)
     return places, np.stack(shares), np.stack(squares) / np.mean(squares, axis=0)
@@ -154,7 +154,7 @@ def test_tread_and_head_answer_each_at_its_own_place(runs):
     assert side.attrs["rail_contact_place"] == pytest.approx(HEAD, rel=1e-6)
     assert side.attrs["contact_place"] == pytest.approx(HEAD - 0.005, rel=1e-5)
     at, modes = side["frequency"].values, case.wheel.turning_modes(4000.0, 56.0)
-    rail = LateralTrack(case.track.model()).at_contact(at, 0.3, 0.3, HEAD)
+    rail = LateralTrack(case.track.model()).answers(2.0 * np.pi * at, 0.3, 0.3, HEAD)
     wheel = wheel_receptances(modes, 600.0, at, side.attrs["contact_place"])
     for name, expected in (("rail", rail), ("wheel", wheel)):
         found = side[f"{name}_cross_receptance"].values

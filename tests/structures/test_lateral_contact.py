@@ -31,9 +31,7 @@ def plane_wheel(**changes):
 
 
 def answer(modes, place, mass=600.0, tangential=9e8):
-    track, vertical = LateralTrack(Track.named("uic60")), Track.named("uic60")
-    rail = track.at_contact(FREQUENCIES, 0.1, 0.1, place)
-    rail[0, 0] += vertical.receptance(FREQUENCIES, 0.1, 0.1)
+    rail = LateralTrack(Track.named("uic60")).answers(2.0 * np.pi * FREQUENCIES, 0.1, 0.1, place)
     return at_springs(rail + wheel_receptances(modes, mass, FREQUENCIES, place), 1.1e9, tangential)
 
 
@@ -66,8 +64,7 @@ def test_the_lateral_force_satisfies_compatibility():
     """Both forces at once; displacements of each body by itself differ by what the springs take up."""
     place, k_n, k_t = 0.012, 1.1e9, 9e8
     wheel = wheel_receptances(plane_wheel(), 600.0, FREQUENCIES, place)
-    rail = LateralTrack(Track.named("uic60")).at_contact(FREQUENCIES, 0.1, 0.1, place)
-    rail[0, 0] += Track.named("uic60").receptance(FREQUENCIES, 0.1, 0.1)
+    rail = LateralTrack(Track.named("uic60")).answers(2.0 * np.pi * FREQUENCIES, 0.1, 0.1, place)
     whole = at_springs(wheel + rail, k_n, k_t)
     forces = np.moveaxis(np.linalg.solve(np.moveaxis(whole, -1, 0), np.array([[1.0], [0.0]]))[..., 0], -1, 0)
     assert_allclose(lateral_force(whole), forces[1] / forces[0], rtol=1e-12)

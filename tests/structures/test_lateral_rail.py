@@ -8,20 +8,20 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity import Track
-from asperity.structures.lateral_rail import LateralRail, LateralTrack
+from asperity.structures.lateral_rail import LateralTrack
 from refusals import refusals
 
 UIC60 = Track.named("uic60")
 LOSSY = Track.named("nordborg-loss-factor", rail_loss_factor=0.1)
-RAIL = LateralRail()
+RAIL = LateralTrack(UIC60)
 FREQUENCIES = np.array([40.0, 250.0, 700.0, 2000.0, 5000.0])
-EULER = LateralRail(shear_stiffness=math.inf, rotary_inertia=0.0)
-STRAIGHT = replace(RAIL, centroid_height=0.0, foot_depth=0.0)  # bends and twists by itself
+OMEGA = 2.0 * np.pi * FREQUENCIES
+STRAIGHT = {"centroid_height": 0.0, "foot_depth": 0.0}  # bends and twists by itself
 
 
 def free_receptance(track, omega, x):
     """Of the rail without supports at distances (n,), (n, 2, 2, f)."""
-    free = track.rail.free_waves(omega, track.track.mass_per_length, track.track.rail.losses.at(omega))
+    free = track.free_waves(omega)
     run = np.exp(-1j * free.wavenumbers * np.abs(x)[:, None, None])
     return np.einsum("if,aif,bif,nif->nabf", free.amplitudes, free.shapes, free.shapes, run)
 
@@ -49,29 +49,23 @@ def test_the_waves_are_the_superposition_of_many_supports(place):
 
 @pytest.mark.parametrize(("shear", "rotary"), [(math.inf, 0.0), (3e8, 0.04)], ids=["Euler", "Timoshenko"])
 def test_bending_alone_is_that_of_the_vertical_rail(shear, rotary):
-    rail = replace(STRAIGHT, shear_stiffness=shear, rotary_inertia=rotary)
-    sideways = LateralTrack(UIC60, rail, pad_stiffness=60e6, ballast_stiffness=50e6)
+    rail = STRAIGHT | {"shear_stiffness": shear, "rotary_inertia": rotary}
+    sideways = LateralTrack(UIC60, pad_stiffness=60e6, ballast_stiffness=50e6, **rail)
     softer, below = 60e6 / UIC60.pad_stiffness, 50e6 / UIC60.ballast_stiffness
-    vertical = replace(
-        UIC60,
-        bending_stiffness=rail.bending_stiffness,
-        shear_stiffness=shear if rotary else None,
-        rotary_inertia=rotary or None,
-        pad_stiffness=60e6,
-        pad_damping=softer * UIC60.pad_damping,
-        ballast_stiffness=50e6,
-        ballast_damping=below * UIC60.ballast_damping,
-    )
+    rail = {"shear_stiffness": shear if rotary else None, "rotary_inertia": rotary or None}
+    pads = {"pad_stiffness": 60e6, "pad_damping": softer * UIC60.pad_damping}
+    ballast = {"ballast_stiffness": 50e6, "ballast_damping": below * UIC60.ballast_damping}
+    vertical = replace(UIC60, bending_stiffness=RAIL.bending_stiffness, **rail, **pads, **ballast)
     for x, x0 in ((0.2, 0.2), (0.3, 1.3), (7.0, 0.1)):
-        motion = sideways.waves(2.0 * np.pi * FREQUENCIES).receptance(x, x0)
+        motion = sideways.waves(OMEGA).receptance(x, x0)
         assert_allclose(motion[0, 0], vertical.receptance(FREQUENCIES, x, x0), rtol=1e-11)
         assert_allclose(motion[0, 1], 0.0, atol=1e-30)
 
 
 def test_torsion_alone_is_that_of_a_bar_on_springs():
     """(λ + 1/λ)/2 of the change over one bay, cos kL + K/(2 GJ k) sin kL."""
-    track = LateralTrack(UIC60, STRAIGHT, pad_roll_stiffness=4e5)
-    omega, bay = 2.0 * np.pi * FREQUENCIES, UIC60.sleeper_spacing
+    track = LateralTrack(UIC60, pad_roll_stiffness=4e5, **STRAIGHT)
+    omega, bay = OMEGA, UIC60.sleeper_spacing
     torsion = RAIL.torsional_stiffness * (1.0 + 1j * UIC60.rail_loss_factor)
     k = omega * np.sqrt(RAIL.polar_inertia / torsion)
     roll = 4e5 * (1.0 + 1j * omega * UIC60.pad_damping / UIC60.pad_stiffness)
@@ -106,8 +100,8 @@ def test_a_rail_that_lies_all_along_is_the_limit_of_short_bays():
     short = replace(LOSSY, sleeper_spacing=LOSSY.sleeper_spacing / 40)
     softer = {f"{part}_stiffness": getattr(LOSSY, f"{part}_stiffness") / 40 for part in ("pad", "ballast")}
     short = replace(short, sleeper_mass=LOSSY.sleeper_mass / 40, **softer)
-    f = np.array([60.0, 300.0, 1200.0, 4000.0])
-    found, limit = (LateralTrack(each).at_contact(f, 0.0, 0.9, 0.01) for each in (even, short))
+    omega = 2.0 * np.pi * np.array([60.0, 300.0, 1200.0, 4000.0])
+    found, limit = (LateralTrack(each).answers(omega, 0.0, 0.9, 0.01) for each in (even, short))
     assert_allclose(found, limit, rtol=2e-3)
 
 
@@ -116,39 +110,35 @@ def test_layers_below_the_sleeper_and_what_bends_count_sideways_too():
     bending = {"sleeper_bending_stiffness": 5e6, "sleeper_length": 2.6, "seat_distance": 1.5}
     under = {"under_sleeper_pad_stiffness": 5e7, "under_sleeper_pad_loss_factor": 0.3}
     track = LateralTrack(replace(LOSSY, **bending, **under), pad_stiffness=8e7, ballast_stiffness=6e7)
-    omega = 2.0 * np.pi * FREQUENCIES
     pad, soft, ballast = 8e7 * (1 + 0.15j), 5e7 * (1 + 0.3j), 6e7 * (1 + 0.4j)
-    below = soft * ballast / (soft + ballast) - LOSSY.sleeper_mass * omega**2
+    below = soft * ballast / (soft + ballast) - LOSSY.sleeper_mass * OMEGA**2
     expected = pad * below / (pad + below)
-    stiffness = track.support(omega)
+    stiffness = track.support(OMEGA)
     assert_allclose(stiffness[0, 0], expected, rtol=1e-12)
     assert_allclose(stiffness[0, 1], -RAIL.foot_depth * expected, rtol=1e-12)
     roll = LOSSY.pad_stiffness * (1 + 0.15j) * 0.15**2 / 12.0
     assert_allclose(stiffness[1, 1], RAIL.foot_depth**2 * expected + roll, rtol=1e-12)
-    slab = LateralTrack(
-        replace(LOSSY, sleeper_mass=10.0, ballast_stiffness=math.inf, ballast_loss_factor=None)
-    )
-    assert_allclose(slab.support(omega)[0, 0], LOSSY.pad_stiffness / 3.0 * (1 + 0.15j), rtol=1e-12)
+    rigid = {"ballast_stiffness": math.inf, "ballast_loss_factor": None}
+    slab = LateralTrack(replace(LOSSY, sleeper_mass=10.0, **rigid))
+    assert_allclose(slab.support(OMEGA)[0, 0], LOSSY.pad_stiffness / 3.0 * (1 + 0.15j), rtol=1e-12)
 
 
 def test_a_vertical_force_in_the_middle_does_not_move_the_rail_sideways():
-    found = LateralTrack(UIC60).at_contact(FREQUENCIES, 0.3, 0.3, 0.0)
-    assert np.all(found[0] == 0.0)
-    assert np.all(found[:, 0] == 0.0)
-    off = LateralTrack(UIC60).at_contact(FREQUENCIES, 0.3, 0.3, 0.01)
-    twist = LateralTrack(UIC60).waves(2.0 * np.pi * FREQUENCIES).receptance(0.3, 0.3)
-    assert_allclose(off[0, 0], 1e-4 * twist[1, 1], rtol=1e-12)
+    middle, off = (RAIL.answers(OMEGA, 0.3, 0.3, place) for place in (0.0, 0.01))
+    assert np.all(middle[[0, 1], [1, 0]] == 0.0)
+    assert_allclose(middle[0, 0], UIC60.receptance(FREQUENCIES, 0.3, 0.3), rtol=1e-12)
+    twist = RAIL.waves(OMEGA).receptance(0.3, 0.3)
+    assert_allclose(off[0, 0] - middle[0, 0], 1e-4 * twist[1, 1], rtol=1e-12)
     assert_allclose(off[1, 0], 0.01 * (twist[0, 1] + RAIL.head_height * twist[1, 1]), rtol=1e-12)
 
 
 test_bad_questions_are_refused = refusals(
-    (lambda: LateralRail(bending_stiffness=0.0), "bending_stiffness of the lateral rail: received 0"),
-    (lambda: LateralRail(rotary_inertia=-1.0), "rotary_inertia of the lateral rail: received -1"),
-    (lambda: LateralTrack(UIC60, pad_stiffness=0.0), r"lateral pad stiffness \(N/m\): received 0"),
+    (lambda: replace(RAIL, rotary_inertia=-1.0), "rotary_inertia of the lateral track: received -1"),
+    (lambda: replace(RAIL, pad_stiffness=0.0), "pad_stiffness of the lateral track: received 0"),
     (lambda: LateralTrack(UIC60, foot_width=-0.1), "width of the rail's foot"),
     (lambda: LateralTrack(UIC60).decay_rate(0.0), r"frequency \(Hz\): received 0.0; allowed: finite pos"),
     (
-        lambda: LateralTrack(replace(UIC60, sleeper_spacing=30.0), EULER).decay_rate(9e3),
+        lambda: LateralTrack(replace(UIC60, sleeper_spacing=30.0), shear_stiffness=math.inf).decay_rate(9e3),
         "decay of a rail wave over",
     ),
 )

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import h2vp, j1
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
-from asperity.structures.lateral_rail import LateralTrack, contact_shapes
+from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.mobility import ForceOverBay, Mobility
 from asperity.structures.track import Track
 
@@ -314,8 +314,8 @@ def squared_lateral_mobility(
         sides.
     """
     omega = 2.0 * np.pi * above_zero(frequency)
-    waves, rail, spacing = track.waves(omega), track.rail, track.track.sleeper_spacing
-    low, high = -rail.foot_depth, rail.head_height
+    waves, spacing = track.waves(omega), track.track.sleeper_spacing
+    low, high = -track.foot_depth, track.head_height
     slope = 0.5 * (high + low)
     height = np.array([[1.0, slope], [slope, (high**2 + high * low + low**2) / 3.0]])
     count = FEWEST_NODES + int(np.ceil(np.abs(waves.wavenumbers).max() * spacing))
@@ -329,7 +329,7 @@ def squared_lateral_mobility(
 
     bay = within(np.stack([waves.outgoing(spacing * x) for x in node]), spacing)
     product = waves.multipliers.conj()[:, None] * waves.multipliers
-    behind, forces, found = bay * product / (1.0 - product), contact_shapes(rail, place), []
+    behind, forces, found = bay * product / (1.0 - product), track.contact_shapes(place), []
     for x0 in places:
         sent = waves.coefficients * np.einsum("aj...,na->nj...", waves.incoming(x0), forces)
         rest = spacing - x0

@@ -69,10 +69,7 @@ class Sideways:
 
     def rail(self, frequency: Array | Complex, x: float) -> Complex:
         """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m; Hz."""
-        omega = 2.0 * np.pi * frequency
-        found = self.track.answers(omega, x, x, self.computed.scene.rail_place)
-        found[0, 0] += self.track.track.waves(omega).receptance(x, x)
-        return found
+        return self.track.answers(2.0 * np.pi * frequency, x, x, self.computed.scene.rail_place)
 
     def wheel(self, frequency: Array | Complex) -> Complex:
         """Receptances of the wheel at the contact (2, 2, f), m/N; frequencies in Hz."""
@@ -146,15 +143,14 @@ class Sideways:
 
     def rail_power(self) -> Array:
         """Sound power of the rail sideways (laws, f), W/Hz."""
-        case, rail = self.computed.case, self.track.rail
-        place = self.computed.scene.rail_place
+        case, place = self.computed.case, self.computed.scene.rail_place
         forms = squared_lateral_mobility(self.track, self.lines, self.places, place)
         together = self.means(self.shares.real) + 1j * self.means(self.shares.imag)
         one = self.means(np.ones((1, len(self.fine[0]))))
         of_force = forms[:, 0, 0].real * one + forms[:, 1, 1].real * self.squares
         of_force += 2.0 * (forms[:, 0, 1] * together).real
         square = np.mean(self.spread * of_force, axis=0) * self.seen_of_all
-        side = SideOfRail(rail.height, case.track.rail_foot_width, case.track.rail_head_width)
+        side = SideOfRail(self.track.height, case.track.rail_foot_width, case.track.rail_head_width)
         return side.power(self.lines, square)
 
     def wheel_power(self, sideways: bool) -> Array:

@@ -1,15 +1,13 @@
 """The rail sideways: lateral bending and torsion on periodic supports, solved exactly."""
 
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.parameters import Quantity, checked_parameters, parameter
 from asperity.structures import modal, periodic_rail
-from asperity.structures.support import BendingSleeper, MeasuredSleeper, RigidMass, Spring
+from asperity.structures.support import BendingSleeper, MeasuredSleeper, RigidMass
 from asperity.structures.track import VANISHING_DAMPING, Track
 from asperity.structures.wheel_modes import WheelModes
 
@@ -20,119 +18,9 @@ THIRD = 1.0 / 3.0
 """Lateral stiffness of a pad over its vertical one."""
 POLISHED = 2
 """Steps of Newton's on the roots of the dispersion relation."""
-_STIFF, _HEAVY, _LONG = "100 N m^2 to 1 GN m^2", "1e-6 kg m to 1000 kg m", "1 mm to 1 m"
-
-
-def _of_rail(unit: str, example: str, words: str, limits: str, default: float, **bounds: Any) -> Any:
-    """Declare a parameter of the rail, above zero where its bounds say nothing else."""
-    kind = Quantity(unit, **({"above": 0} | bounds))
-    return parameter(kind, example, words, f"{limits}: rails lie between", default=default)
-
-
-@dataclass(frozen=True)
-class LateralRail:
-    """How a rail resists sideways, beside what a `Track` says of it: UIC 60 by default.
-
-    It bends by Timoshenko and twists by St Venant about its centre of twist, which moves centroid, head and
-    foot (D. Kostovasilis, D. J. Thompson and M. F. M. Hussein, J. Sound Vib. 2017, doi
-    10.1016/j.jsv.2016.12.033, whose beam also warps).
-
-    Raises
-    ------
-    InputError
-        If a value is not positive.
-
-    Notes
-    -----
-    Its section keeps its form: that above about 1.5 kHz head and foot move against each other, as the web
-    bends (T. X. Wu and D. J. Thompson, J. Acoust. Soc. Am. 106 (1999) 1369), is left out, and so is
-    restrained warping.
-    """
-
-    bending_stiffness: float = _of_rail(
-        "N m^2", "1.08 MN m^2", "lateral bending stiffness of the rail", _STIFF, _YOUNG * 5.127e-6
-    )
-    shear_stiffness: float = _of_rail(
-        "N", "333 MN", 'its lateral shear stiffness, "inf" for Euler-Bernoulli', "1 kN to 1 TN",
-        _SHEAR * _AREA * 0.538, infinite=True,
-    )  # fmt: skip
-    rotary_inertia: float = _of_rail(
-        "kg m", "0.04 kg m", "its rotary inertia per length in lateral bending", _HEAVY,
-        _DENSITY * 5.127e-6, above=None, at_least=0,
-    )  # fmt: skip
-    torsional_stiffness: float = _of_rail(
-        "N m^2", "179 kN m^2", "torsional stiffness of the rail, G J", _STIFF, _SHEAR * 2.212e-6
-    )
-    polar_inertia: float = _of_rail(
-        "kg m", "0.28 kg m", "its polar inertia per length about its centroid", _HEAVY, _DENSITY * 3.55e-5
-    )
-    head_height: float = _of_rail(
-        "m", "124 mm", "height of the top of the rail above its centre of twist", _LONG, 0.124
-    )
-    foot_depth: float = _of_rail(
-        "m", "48 mm", "depth of its bottom below that", _LONG, 0.048, above=None, at_least=0
-    )
-    centroid_height: float = _of_rail(
-        "m", "33 mm", "height of its centroid above that", "-1 m to 1 m", 0.033, above=None
-    )
-
-    def __post_init__(self) -> None:
-        checked_parameters(self)
-
-    @property
-    def height(self) -> float:
-        """From the bottom of the foot to the top of the head, m."""
-        return self.head_height + self.foot_depth
-
-    @property
-    def head(self) -> Array:
-        """What moves the head sideways (2,): 1 by the motion of the centre of twist, m by twist."""
-        return np.array([1.0, self.head_height])
-
-    @property
-    def foot(self) -> Array:
-        """What moves the foot sideways (2,), as `head`."""
-        return np.array([1.0, -self.foot_depth])
-
-    def free_waves(
-        self, omega: Complex, mass: float, losses: Complex, foundation: Complex | float = 0.0
-    ) -> "FreeWaves":
-        """Waves of the rail without supports at angular frequencies (f,), rad/s, as of `Track.waves`.
-
-        Mass per length, kg/m; stiffness relative to the nominal one, (f,) or a scalar; stiffness per length
-        of a foundation all along the rail (2, 2, f), which takes from the inertia.
-
-        With q = k², t = EI q − ρI ω² and p = 1 + t/S, the answer to a harmonic force and torque along the
-        rail is [[p (GJ q − I ω²), p m' e ω²], [p m' e ω², q t − p m' ω²]]/Δ(q), Δ the cubic (q t − p m' ω²)
-        (GJ q − I ω²) − p (m' e ω²)², I the polar inertia about the centre of twist and e the height of the
-        centroid above it. Each root is a wave, and its residue has one shape.
-        """
-        square, e = omega**2, self.centroid_height
-        bending, torsion = self.bending_stiffness * losses, self.torsional_stiffness * losses
-        soft = self.bending_stiffness / self.shear_stiffness  # EI/S, m²: both lose alike
-        held = np.broadcast_to(foundation, (2, 2, len(omega)))
-        turning = (self.polar_inertia + mass * e**2) * square - held[1, 1]
-        moved, coupled = mass * square - held[0, 0], mass * e * square - held[0, 1]
-        rotary = self.rotary_inertia * square
-        rest = 1.0 - rotary * soft / bending  # p = rest + soft q
-        along = -(rotary + moved * soft)  # q t − p m' ω² = bending q² + along q − moved rest
-        cubic = np.broadcast_arrays(
-            torsion * bending,
-            torsion * along - turning * bending,
-            -torsion * moved * rest - turning * along - coupled**2 * soft,
-            rest * (turning * moved - coupled**2),
-        )
-        q, slope = _roots(np.stack(cubic))
-        shear = rest + soft * q
-        lateral, cross = shear * (torsion * q - turning), shear * coupled
-        twist = q * (bending * q + along) - moved * rest
-        bends = np.abs(lateral * turning) >= np.abs(twist * moved)
-        larger = np.where(bends, lateral, twist)
-        one, ratio = np.ones_like(q), cross / larger
-        k = np.sqrt(q)
-        k = np.where(k.imag > 0.0, -k, k)
-        shapes = np.stack([np.where(bends, one, ratio), np.where(bends, ratio, one)])
-        return FreeWaves(k, shapes, -0.5j * larger / (k * slope))
+_PADS, _RAILS = "pads lie between", "rails lie between"
+_STIFF, _HEAVY = f"100 N m^2 to 1 GN m^2: {_RAILS}", f"1e-6 kg m to 1000 kg m: {_RAILS}"
+_LONG = f"1 mm to 1 m: {_RAILS}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,21 +109,14 @@ def lateral_waves(free: FreeWaves, support: Complex, spacing: float) -> LateralW
 
 @dataclass(frozen=True)
 class LateralTrack:
-    """A `Track` sideways: its rail on pads and half sleepers that move sideways in the ballast.
+    """A `Track` sideways: its rail, UIC 60 by default, on pads and half sleepers that move in the ballast.
 
-    Parameters
-    ----------
-    track : Track
-        Its mass per length, losses, sleepers and spacing hold sideways, too.
-    rail : LateralRail
-    pad_stiffness, pad_roll_stiffness : float, optional
-        Of a pad, N/m sideways, and N m against roll of the rail; by default a third of the vertical one, as
-        in an example of the program rolland (40 beside 120 MN/m), and k_p b²/12 of an even pad as wide as
-        the foot.
-    ballast_stiffness : float, optional
-        Of the ballast under half a sleeper, N/m; by default the vertical one, as in the same example.
-    foot_width : float
-        b, m.
+    The rail bends by Timoshenko and twists by St Venant about its centre of twist, which moves centroid, head
+    and foot (D. Kostovasilis, D. J. Thompson and M. F. M. Hussein, J. Sound Vib. 2017, doi
+    10.1016/j.jsv.2016.12.033, whose beam also warps). Mass per length, losses, sleepers and spacing are those
+    of the track; a pad is by default a third as stiff sideways, as in an example of the program rolland (40
+    beside 120 MN/m), and against roll, k_p b²/12, as an even one as wide as the foot, b = `foot_width`, m;
+    the ballast is as stiff, as in the same example.
 
     Raises
     ------
@@ -244,9 +125,11 @@ class LateralTrack:
 
     Notes
     -----
-    Pads and ballast lose as they do vertically, by the same share at every frequency; other springs below
-    are as stiff as vertically. Sleepers move sideways as rigid bodies and do not roll. Bays are all nominal,
-    and rail dampers are left out.
+    Its section keeps its form: that above about 1.5 kHz head and foot move against each other, as the web
+    bends (T. X. Wu and D. J. Thompson, J. Acoust. Soc. Am. 106 (1999) 1369), is left out, and so is
+    restrained warping. Pads and ballast lose as they do vertically, by the same share at every frequency;
+    other springs below are as stiff as vertically. Sleepers move sideways as rigid bodies and do not roll.
+    Bays are all nominal, and rail dampers are left out.
 
     Examples
     --------
@@ -258,21 +141,68 @@ class LateralTrack:
     """
 
     track: Track
-    rail: LateralRail = LateralRail()
-    pad_stiffness: float | None = None
-    pad_roll_stiffness: float | None = None
-    ballast_stiffness: float | None = None
+    pad_stiffness: float | None = parameter(
+        Quantity("N/m", above=0), "100 MN/m", "lateral stiffness of a rail pad, which loses as vertically",
+        f"1 kN/m to 1 TN/m: {_PADS}", default=None, otherwise="a third of the vertical one",
+    )  # fmt: skip
+    pad_roll_stiffness: float | None = parameter(
+        Quantity("N m", above=0), "560 kN m",
+        "stiffness of a rail pad against roll of the rail, per rad, which loses as vertically",
+        f"1 N m to 1 GN m: {_PADS}", default=None, otherwise="that of an even pad as wide as the rail's foot",
+    )  # fmt: skip
+    ballast_stiffness: float | None = parameter(
+        Quantity("N/m", above=0), "150 MN/m",
+        "lateral stiffness of the ballast under half a sleeper, which loses as vertically",
+        "1 kN/m to 1 TN/m: ballast lies between", default=None, otherwise="the vertical one",
+    )  # fmt: skip
+    bending_stiffness: float = parameter(
+        Quantity("N m^2", above=0), "1.08 MN m^2", "lateral bending stiffness of the rail", _STIFF,
+        default=_YOUNG * 5.127e-6,
+    )  # fmt: skip
+    shear_stiffness: float = parameter(
+        Quantity("N", above=0, infinite=True), "333 MN",
+        'its lateral shear stiffness, "inf" for Euler-Bernoulli', f"1 kN to 1 TN: {_RAILS}",
+        default=_SHEAR * _AREA * 0.538,
+    )  # fmt: skip
+    rotary_inertia: float = parameter(
+        Quantity("kg m", at_least=0), "0.04 kg m", "its rotary inertia per length in lateral bending", _HEAVY,
+        default=_DENSITY * 5.127e-6,
+    )  # fmt: skip
+    torsional_stiffness: float = parameter(
+        Quantity("N m^2", above=0), "179 kN m^2", "torsional stiffness of the rail, G J", _STIFF,
+        default=_SHEAR * 2.212e-6,
+    )  # fmt: skip
+    polar_inertia: float = parameter(
+        Quantity("kg m", above=0), "0.28 kg m", "its polar inertia per length about its centroid", _HEAVY,
+        default=_DENSITY * 3.55e-5,
+    )  # fmt: skip
+    head_height: float = parameter(
+        Quantity("m", above=0), "124 mm", "height of the top of the rail above its centre of twist", _LONG,
+        default=0.124,
+    )  # fmt: skip
+    foot_depth: float = parameter(
+        Quantity("m", at_least=0), "48 mm", "depth of its bottom below that", _LONG, default=0.048
+    )
+    centroid_height: float = parameter(
+        Quantity("m"), "33 mm", "height of its centroid above that", f"-1 m to 1 m: {_RAILS}", default=0.033
+    )
     foot_width: float = 0.15
 
     def __post_init__(self) -> None:
+        checked_parameters(self)
         positive("width of the rail's foot (m)", self.foot_width)
-        for name, unit in (
-            ("pad_stiffness", "N/m"),
-            ("pad_roll_stiffness", "N m"),
-            ("ballast_stiffness", "N/m"),
-        ):
-            if (value := getattr(self, name)) is not None:
-                positive(f"lateral {name.replace('_', ' ')} ({unit})", value)
+
+    @property
+    def height(self) -> float:
+        """From the bottom of the foot to the top of the head, m."""
+        return self.head_height + self.foot_depth
+
+    def contact_shapes(self, place: float) -> Array:
+        """What moves a contact, a place (m) off the middle of the head, down and sideways (2, 2), by rows.
+
+        1 by the motion of the centre of twist, m by twist.
+        """
+        return np.array([[0.0, place], [1.0, self.head_height]])
 
     def support(self, omega: ArrayLike) -> Complex:
         """Dynamic stiffness of a support (2, 2, f) at angular frequencies (f,), rad/s, as of `Track.waves`.
@@ -289,12 +219,53 @@ class LateralTrack:
             if isinstance(element, RigidMass | BendingSleeper | MeasuredSleeper):
                 below = RigidMass(element.mass).on(omega, below)
             else:
-                below = _scaled(vertical.springs[name], shares.get(name, 1.0)).on(omega, below)
+                spring, share = vertical.springs[name], shares.get(name, 1.0)
+                softer = replace(spring, nominal=share * spring.nominal, damping=share * spring.damping)
+                below = softer.on(omega, below)
         assert below is not None
-        found = np.multiply.outer(np.outer(self.rail.foot, self.rail.foot), below)
+        foot = np.array([1.0, -self.foot_depth])
+        found = np.multiply.outer(np.outer(foot, foot), below)
         roll = _share(self.pad_roll_stiffness, vertical.pad_stiffness, even)
         found[1, 1] += roll * vertical.springs["pad"].stiffness(omega)
         return np.asarray(found)
+
+    def free_waves(self, omega: Complex, foundation: Complex | float = 0.0) -> FreeWaves:
+        """Waves of the rail without supports at angular frequencies (f,), rad/s, as of `Track.waves`.
+
+        Stiffness per length of a foundation all along the rail (2, 2, f), which takes from the inertia.
+
+        With q = k², t = EI q − ρI ω² and p = 1 + t/S, the answer to a harmonic force and torque along the
+        rail is [[p (GJ q − I ω²), p m' e ω²], [p m' e ω², q t − p m' ω²]]/Δ(q), Δ the cubic (q t − p m' ω²)
+        (GJ q − I ω²) − p (m' e ω²)², I the polar inertia about the centre of twist and e the height of the
+        centroid above it. Each root is a wave, and its residue has one shape.
+        """
+        square, e, mass = omega**2, self.centroid_height, self.track.mass_per_length
+        losses = self.track.rail.losses.at(omega)
+        bending, torsion = self.bending_stiffness * losses, self.torsional_stiffness * losses
+        soft = self.bending_stiffness / self.shear_stiffness  # EI/S, m²: both lose alike
+        held = np.broadcast_to(foundation, (2, 2, len(omega)))
+        turning = (self.polar_inertia + mass * e**2) * square - held[1, 1]
+        moved, coupled = mass * square - held[0, 0], mass * e * square - held[0, 1]
+        rotary = self.rotary_inertia * square
+        rest = 1.0 - rotary * soft / bending  # p = rest + soft q
+        along = -(rotary + moved * soft)  # q t − p m' ω² = bending q² + along q − moved rest
+        cubic = np.broadcast_arrays(
+            torsion * bending,
+            torsion * along - turning * bending,
+            -torsion * moved * rest - turning * along - coupled**2 * soft,
+            rest * (turning * moved - coupled**2),
+        )
+        q, slope = _roots(np.stack(cubic))
+        shear = rest + soft * q
+        lateral, cross = shear * (torsion * q - turning), shear * coupled
+        twist = q * (bending * q + along) - moved * rest
+        bends = np.abs(lateral * turning) >= np.abs(twist * moved)
+        larger = np.where(bends, lateral, twist)
+        one, ratio = np.ones_like(q), cross / larger
+        k = np.sqrt(q)
+        k = np.where(k.imag > 0.0, -k, k)
+        shapes = np.stack([np.where(bends, one, ratio), np.where(bends, ratio, one)])
+        return FreeWaves(k, shapes, -0.5j * larger / (k * slope))
 
     def waves(self, omega: ArrayLike) -> LateralWaves:
         """The three waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
@@ -303,10 +274,9 @@ class LateralTrack:
         if not bare.is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)
         support, spacing = self.support(omega), track.sleeper_spacing
-        rail = partial(self.rail.free_waves, omega, track.mass_per_length, track.rail.losses.at(omega))
         if track.continuous:
-            return lateral_waves(rail(support / spacing), 0.0 * support, spacing)
-        return lateral_waves(rail(), support, spacing)
+            return lateral_waves(self.free_waves(omega, support / spacing), 0.0 * support, spacing)
+        return lateral_waves(self.free_waves(omega), support, spacing)
 
     def receptance(self, frequency: ArrayLike, x: float, x0: float) -> Complex:
         """Lateral displacement of the head at `x` per lateral force on the head at `x0`.
@@ -323,22 +293,21 @@ class LateralTrack:
         ndarray (f,) of complex
             m/N. Exact for the infinite track.
         """
-        return self.at_contact(frequency, x, x0, 0.0)[1, 1]
+        _, sideways = self.contact_shapes(0.0)
+        motion = self.waves(_angular(frequency)).receptance(x, x0)
+        return np.asarray(np.einsum("a,abf,b->f", sideways, motion, sideways))
 
-    def at_contact(self, frequency: ArrayLike, x: float, x0: float, place: float) -> Complex:
-        """Receptances of the head at a place across it, (2, 2, f), m/N, without vertical bending.
+    def answers(self, omega: Array | Complex, x: float, x0: float, place: float) -> Complex:
+        """Receptances of the head at a place across it, (2, 2, f), m/N, with those of vertical bending.
 
         Displacement at `x`, vertical and lateral, per vertical and lateral force at `x0`, both at a `place` m
         from the middle, positive towards the field side; downwards, and towards the field side. A vertical
-        force off the middle twists the rail.
+        force off the middle twists the rail. Angular frequencies (f,), rad/s, that may be complex.
         """
-        return self.answers(_angular(frequency), x, x0, place)
-
-    def answers(self, omega: Array | Complex, x: float, x0: float, place: float) -> Complex:
-        """The same at angular frequencies (f,), rad/s, that may be complex."""
-        motion = self.waves(omega).receptance(x, x0)
-        moved = contact_shapes(self.rail, place)
-        return np.asarray(np.einsum("ma,abf,nb->mnf", moved, motion, moved))
+        motion, moved = self.waves(omega).receptance(x, x0), self.contact_shapes(place)
+        found = np.einsum("ma,abf,nb->mnf", moved, motion, moved)
+        found[0, 0] += self.track.waves(omega).receptance(x, x0)
+        return found
 
     def decay_rate(self, frequency: ArrayLike) -> Array:
         """Decay rate (f,), dB/m, of the wave that reaches farthest, −20 lg|λ|/L; frequencies (f,), Hz."""
@@ -346,17 +315,8 @@ class LateralTrack:
         return np.asarray(-20.0 * np.log10(largest) / self.track.sleeper_spacing)
 
 
-def _scaled(spring: Spring, share: float) -> Spring:
-    return replace(spring, nominal=share * spring.nominal, damping=share * spring.damping)
-
-
 def _share(stiffness: float | None, vertical: float, usual: float) -> float:
     return usual if stiffness is None else stiffness / vertical
-
-
-def contact_shapes(rail: LateralRail, place: float) -> Array:
-    """What moves the contact down and sideways (2, 2), by rows, as `LateralRail.head`; place m."""
-    return np.stack([[0.0, place], rail.head])
 
 
 def _angular(frequency: ArrayLike) -> Array:
