@@ -98,10 +98,10 @@ def test_ranges_have_steps_ratios_or_whole_numbers():
     """Behind --vary they stand beside other values."""
     words = ["speed = 80..300 km/h, 6 steps, 1 m/s", "seed=7, 1..3", "ball.load = 5 N, 10..80 N, 4 ratios"]
     speed, seed, load = varied("ball.toml", words).axes
-    assert speed.coordinate == pytest.approx([*np.linspace(80, 300, 6) / 3.6, 1.0])
-    assert speed.typed["typed_unit"] == "km/h"
+    assert speed.variable.values == pytest.approx([*np.linspace(80, 300, 6) / 3.6, 1.0])
+    assert speed.variable.attrs["typed_unit"] == "km/h"
     assert seed.values == (7, 1, 2, 3)
-    assert load.coordinate == pytest.approx([5, 10, 20, 40, 80])
+    assert load.variable.values == pytest.approx([5, 10, 20, 40, 80])
     assert study_of("ball.toml", {"seed": "1..20"}).axes[0].values == tuple(range(1, 21))
 
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from xarray import Variable
 
-from asperity.arguments import NDArray, require, shown
+from asperity.arguments import require, shown
 from asperity.case.any_case import AnyCase, CaseKey, entry_of, value_in_toml
 from asperity.case.content import content, described_value, holds_memory
 from asperity.case.form import Section
@@ -16,6 +17,7 @@ from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin, Text, key, keys_of
 from asperity.reference.materials import Material
 from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
+from asperity.results import variable
 from asperity.structures.track import Track
 from asperity.units import factor, quantity, unit_in
 
@@ -34,35 +36,23 @@ class SweptAxis:
         return self.entry.dotted
 
     @property
-    def meaning(self) -> str:
-        """What the key is."""
-        return self.entry.key.meaning
-
-    @property
     def told(self) -> Any:
         """The values as they stand in TOML, for tables and programs."""
         return list(self.written)
 
     @property
-    def units(self) -> str:
-        """SI unit of the coordinate; ``"1"`` where the values are words."""
-        return self.entry.unit or "1"
+    def variable(self) -> Variable:
+        """Coordinate along the axis: numbers in SI, or words as they were written.
 
-    @property
-    def typed(self) -> dict[str, Any]:
-        """Unit in which its first value was written that has one, and what it is in SI; nothing in SI."""
-        units = (unit_in(value) for value in self.written if isinstance(value, str))
-        unit = next(filter(None, units), self.units)
-        if self.units in ("1", "dB") or unit == self.units:
-            return {}
-        return {TYPED_UNIT: unit, TYPED_FACTOR: factor(unit, self.units)}
-
-    @property
-    def coordinate(self) -> NDArray[Any]:
-        """Values along the axis: numbers in SI, or words as they were written."""
-        if self.entry.unit is not None:
-            return np.array(self.values)
-        return np.array([written_out(value) for value in self.written])
+        With the unit in which its first value was written that has one, and what that is in SI.
+        """
+        units = self.entry.unit or "1"
+        written = (unit_in(value) for value in self.written if isinstance(value, str))
+        unit = next(filter(None, written), units)
+        bare = units in ("1", "dB") or unit == units
+        typed = {} if bare else {TYPED_UNIT: unit, TYPED_FACTOR: factor(unit, units)}
+        values = map(written_out, self.written) if self.entry.unit is None else self.values
+        return variable(self.name, np.array(list(values)), units, self.entry.key.meaning, **typed)
 
 
 def written_out(value: object) -> str:

@@ -6,9 +6,10 @@ import signal
 import threading
 import time
 import warnings
-from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent import futures
-from contextlib import closing, contextmanager, suppress
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, contextmanager, nullcontext, suppress
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any
 
@@ -41,40 +42,33 @@ def through(executor: futures.Executor, members: Sequence[Member]) -> Outcomes:
     A cluster gives members whose worker is lost to another one itself; elsewhere they fail.
     """
     heart, given = Heart(executor, len(members)), dict[futures.Future[Outcome], Member]()
+    starts = isinstance(executor, futures.ProcessPoolExecutor)  # a process, where members are submitted
     try:
         for member in members:
-            given[_submitted(executor, member)] = member
-        for future in _ended(given, heart):
-            try:
-                outcome = future.result()
-            except Exception as error:
-                while not heart.listen():  # a scheduler that is gone has lost them all
-                    time.sleep(BEAT)
-                outcome = Failure.of(error)
-            else:
-                heart.finished += 1
-            yield given[future], outcome
+            assert member.case is not None
+            with no_interrupt_for_children() if starts else nullcontext():
+                given[executor.submit(compute_member, member.key, member.case)] = member
+        waiting = set(given)
+        while waiting:
+            done, waiting = futures.wait(waiting, BEAT, futures.FIRST_COMPLETED)
+            if not done:
+                heart.listen()
+            for future in done:
+                try:
+                    outcome = future.result()
+                except Exception as error:
+                    while not heart.listen():  # a scheduler that is gone has lost them all
+                        time.sleep(BEAT)
+                    outcome = Failure.of(error)
+                else:
+                    heart.finished += 1
+                yield given[future], outcome
     except RuntimeError as error:  # broken, or shut down
         what = f"the executor takes no more members ({error})"
         raise ComputationError(what, "the same study again: it goes on where it was") from error
     finally:
         for future in given:
             future.cancel()
-
-
-def _ended(given: Collection[futures.Future[Outcome]], heart: Heart) -> Iterator[futures.Future[Outcome]]:
-    """Yield futures as they end, while there is life in the executor."""
-    waiting = set(given)
-    while waiting:
-        done, waiting = futures.wait(waiting, BEAT, futures.FIRST_COMPLETED)
-        yield from done
-        if not done:
-            heart.listen()
-
-
-def _submitted(executor: futures.Executor, member: Member) -> futures.Future[Outcome]:
-    assert member.case is not None
-    return executor.submit(compute_member, member.key, member.case)
 
 
 def _in_this_process(members: Sequence[Member]) -> Outcomes:
@@ -105,20 +99,11 @@ def _in_processes(
 ) -> Generator[tuple[Member, Outcome], None, list[Member]]:
     """Compute members until all are, or a process ends; return those that are not, in their order."""
     missing = dict.fromkeys(members)
-    given: dict[futures.Future[Outcome], Member] = {}
-    with _pool(workers) as pool:
-        with suppress(futures.BrokenExecutor):
-            for member in members:
-                with no_interrupt_for_children():  # a process may start here
-                    given[_submitted(pool, member)] = member
-        for future in futures.as_completed(given):
-            member = given.pop(future)
-            try:
-                outcome = future.result()
-            except futures.BrokenExecutor:
-                continue
-            del missing[member]
-            yield member, outcome
+    with _pool(workers) as pool, suppress(ComputationError):  # broken before all were submitted
+        for member, outcome in through(pool, members):
+            if not (isinstance(outcome, Failure) and outcome.error == BrokenProcessPool.__name__):
+                del missing[member]
+                yield member, outcome
     return list(missing)
 
 

@@ -36,10 +36,7 @@ def tabulated(
     swept = [axis.name for axis in study.axes]
     ordered = [(member.index, results[member.index]) for member in members if member.index in results]
     coordinates = _coordinates([table for _, table in ordered])
-    variables: dict[str, xarray.Variable] = {
-        axis.name: variable(axis.name, axis.coordinate, axis.units, axis.meaning, **axis.typed)
-        for axis in study.axes
-    }
+    variables = {axis.name: axis.variable for axis in study.axes}
     variables |= coordinates
     completed = np.zeros(study.shape, dtype=np.int8)
     for index, _ in ordered:
