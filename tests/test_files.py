@@ -1,6 +1,9 @@
-"""Files that are written completely or not at all, sealed, and swept."""
+"""Files that are written completely or not at all, sealed, and swept; columns of text; files opened apart."""
 
+import csv
 import errno
+import io
+import math
 import sys
 from contextlib import nullcontext
 from pathlib import Path
@@ -11,17 +14,10 @@ import pytest
 
 from asperity import files
 from asperity.errors import ComputationError, InputError
-from asperity.files import (
-    alone_in,
-    atomic_write,
-    discard,
-    is_sealed,
-    left_overs,
-    refuse_unwritable,
-    remove_left_overs,
-    together,
-    write_bytes,
-)
+from asperity.files import alone_in, atomic_write, is_sealed, left_overs, together, write_bytes
+from asperity.reporting.figure import columns_text
+from asperity.sandbox import received, sandboxed, send
+from asperity.text_files import csv_text, write_csv
 
 if sys.platform != "win32":
     import fcntl
@@ -65,8 +61,8 @@ def test_left_overs_are_swept_at_the_first_write_and_what_is_being_written_is_no
 
     def write(file):
         assert left_overs(tmp_path) == []
-        assert remove_left_overs(tmp_path) == 0
-        assert not discard(Path(file.name))
+        assert files.remove_left_overs(tmp_path) == 0
+        assert not files.discard(Path(file.name))
         file.write(b"whole")
 
     assert atomic_write(tmp_path / "run.nc", write).read_bytes() == b"whole"
@@ -91,7 +87,7 @@ def test_a_left_over_goes_while_it_is_locked(tmp_path, monkeypatch):
 
     (tmp_path / ".run.nc.0123abcd.part").write_bytes(b"killed")
     monkeypatch.setattr(Path, "unlink", locked_unlink)
-    assert remove_left_overs(tmp_path) == 1
+    assert files.remove_left_overs(tmp_path) == 1
     assert names(tmp_path) == []
 
 
@@ -140,7 +136,7 @@ def test_a_folder_that_cannot_be_written_to_is_refused_before(tmp_path, place, w
     (tmp_path / "file").write_text("")
     (tmp_path / "link").symlink_to("nowhere")
     with pytest.raises(InputError, match=f"^results: received .*{why}") if why else nullcontext():
-        refuse_unwritable(tmp_path / place, "results", "Another.")
+        files.refuse_unwritable(tmp_path / place, "results", "Another.")
     assert names(tmp_path) == ["file", "link"]
 
 
@@ -177,3 +173,75 @@ def test_results_are_on_the_disk_at_once_and_no_cache_waits_for_it(tmp_path, mon
     assert synced == []
     write_bytes(tmp_path / "run.nc", b"numbers", sealed=True)
     assert len(synced) == 1
+
+
+# --- comma-separated text: exact numbers, and words that no spreadsheet runs
+
+
+@pytest.mark.parametrize("word", ["=cmd|' /C calc'!A0", "+1+1", "-2+3", "@SUM(A1)"])
+def test_words_that_look_like_formulas_are_escaped(word):
+    text = csv_text([word, "b"], [[word, -1.5]])
+    heading, row = csv.reader(io.StringIO(text, newline=""))
+    assert heading == [f"'{word}", "b"]
+    assert row == [f"'{word}", "-1.5"]
+
+
+def test_numbers_are_exact_and_missing_ones_empty():
+    """Of figures as of studies."""
+    numbers = [-0.1, 1 / 3, 5e-324, 1e308, -3.0]
+    text = csv_text(["n", "m"], [(number, math.nan) for number in numbers])
+    assert columns_text({"n": np.array(numbers), "m": np.full(5, np.nan)}) == text
+    heading, *rows = csv.reader(io.StringIO(text))
+    assert heading == ["n", "m"]
+    assert [(float(number), missing) for number, missing in rows] == [(number, "") for number in numbers]
+
+
+def test_a_word_stays_in_its_field(tmp_path):
+    words = ["\t=1", "\r=1", "a\r\nb", "\ud800", 'a,"b"']
+    file = write_csv(tmp_path / "a.csv", ["a"], [[word] for word in words])
+    with open(file, newline="", encoding="utf-8") as opened:
+        shown = [row[0] for row in csv.reader(opened)]
+    assert shown == ["a", "\\t=1", "\\r=1", "a\\r\\nb", "\\ud800", 'a,"b"']
+
+
+# --- what a function returns that was called in a process of its own
+
+ARRAYS = [
+    np.arange(6.0).reshape(3, 2).T,
+    np.float64(np.nan),
+    np.empty(0),
+    np.array(["é", "", "long words"], dtype=object),
+    np.array([1, -2], dtype=np.int32),
+]
+
+
+def answered(path, fault):
+    """Answer, or fail, as a reader of a foreign file."""
+    if fault == "input":
+        raise InputError(path, "nothing", "something", "Write it.")
+    if fault:
+        raise KeyError("no such\tthing" + 1000 * "x")
+    return {"path": path, "low": -np.inf, "seed": np.int64(3)}, ARRAYS
+
+
+def test_what_is_received_was_sent():
+    send(answered("é", ""), stream := io.BytesIO())
+    description, arrays = received(stream.getvalue())
+    assert description == {"path": "é", "low": -np.inf, "seed": 3}
+    for found, sent in zip(arrays, ARRAYS, strict=True):
+        assert found.dtype == (sent.dtype if sent.dtype != object else "<U10")
+        np.testing.assert_array_equal(found, sent)
+        assert found.flags.aligned
+        assert found.flags.writeable
+    with pytest.raises(ValueError, match="buffer"):
+        received(stream.getvalue()[:-5])
+
+
+@pytest.mark.parametrize(("fault", "message"), [
+    ("input", "^a.nc: received nothing; allowed: something. Write it.$"),
+    ("any", r"KeyError \('no such\\tthingx+ …\) while it was opened; allowed: an intact text file"),
+])  # fmt: skip
+def test_what_it_raises_is_told(fault, message, monkeypatch):
+    monkeypatch.syspath_prepend(__file__.rpartition("/")[0])
+    with pytest.raises(InputError, match=message):
+        sandboxed(answered, ["a.nc", fault], "a.nc", 1, "text")

@@ -1,15 +1,22 @@
-"""What stands around the code: versions that agree, workflows that call the same commands, addresses."""
+"""What stands around the code: README and paper say what is so, versions agree, commands and links exist."""
 
+import ast
 import importlib.util
 import re
+import statistics
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
+import pytest
 import yaml
 
 import asperity
 from asperity.kernels import options
+from asperity.reference.law_accuracy import law_map
 from asperity.scenes.result import METHOD
+from command_line import call
 
 ROOT = Path(__file__).parents[1]
 READ = (".py", ".md", ".bib", ".rst", ".toml")
@@ -18,6 +25,9 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 
 def text(name):
     return (ROOT / name).read_text(encoding="utf-8")
+
+
+README, PAPER = text("README.md"), text("paper/paper.md").split("---", 2)[2]
 
 
 def workflow(name):
@@ -67,9 +77,11 @@ def test_the_oldest_versions_are_tested():
     assert f"numba {numba.removeprefix('numba>=')} to" in " ".join(options.__doc__.split())
 
 
-def test_every_link_of_a_page_leads_somewhere():
+def test_every_link_and_picture_of_a_page_leads_somewhere():
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("benchmarks/*.md")]:
-        for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+        contents = page.read_text(encoding="utf-8")
+        links = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", contents)
+        for target in links + re.findall(r'src(?:set)?="([^"]+)"', contents):
             assert "://" in target or (page.parent / target).exists(), f"{page.name}: {target}"
 
 
@@ -80,12 +92,6 @@ def test_files_that_contributors_are_sent_to_are_there():
     assert len(names) > 20
     for name in names:
         assert any((place / name).exists() for place in places), name
-
-
-def test_no_two_files_of_tests_have_one_name():
-    """They are modules without packages: of two, one would be left out."""
-    names = [path.name for path in Path(__file__).parent.rglob("test_*.py")]
-    assert len(set(names)) == len(names)
 
 
 def test_what_pages_and_examples_import_is_in_the_reference():
@@ -109,3 +115,59 @@ def test_the_thesis_is_cited_without_a_title_and_its_papers_by_theirs():
     chapter = "state-dependent nonlinear " + "contact modelling"  # the title of its second chapter
     assert not [file for file in files if chapter in file.read_text(encoding="utf-8").lower()]
     assert chapter not in text("CITATION.cff").lower()
+
+
+def test_the_readme_is_short_and_its_commands_exist():
+    assert README.count("\n") <= 120
+    for command in set(re.findall(r"^asperity (\w+)|&& asperity (\w+)", README, re.MULTILINE)):
+        call("".join(command), "--help")
+
+
+def test_the_first_lines_of_the_readme_run(tmp_path):
+    (snippet,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    words = {"cwd": tmp_path, "capture_output": True, "text": True, "encoding": "utf-8"}
+    done = subprocess.run([sys.executable, "-c", snippet], **words)
+    assert done.returncode == 0, done.stderr
+    assert "the contact force varies by " in done.stdout
+    assert (tmp_path / "force.png").stat().st_size > 10_000
+    page = (tmp_path / "page/report.html").read_text(encoding="utf-8")
+    assert done.stdout.strip().partition(";")[0] in page
+
+
+@pytest.mark.parametrize("example", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
+def test_an_example_is_short_and_asserts_what_it_says(example):
+    """It runs where the gallery is built."""
+    contents = example.read_text(encoding="utf-8")
+    tree = ast.parse(contents)
+    after = tree.body[0].end_lineno if ast.get_docstring(tree) else 0
+    stripped = (line.strip() for line in contents.splitlines()[after:])
+    assert sum(bool(line) and not line.startswith("#") for line in stripped) <= 60
+    assert sum(isinstance(node, ast.Assert) for node in tree.body) >= 2
+
+
+def test_the_paper_cites_its_list_and_its_script_draws_its_figures():
+    assert set(re.findall(r"^@\w+\{(\w+),", text("paper/paper.bib"), re.M)) == set(
+        re.findall(r"@(\w+)", PAPER)
+    )
+    script = text("paper/figures.py")
+    for name in re.findall(r"\]\((\w+\.png)\)", PAPER):
+        assert (ROOT / "paper" / name).stat().st_size > 10_000
+        assert f'"{name}"' in script
+
+
+def median(law, points):
+    return statistics.median(p.details["laws"][law] for p in points if law in p.details["laws"])
+
+
+def test_numbers_of_the_paper_are_those_of_the_map():
+    points = law_map().points
+    kept = [p for p in points if p.loss < 0.01]
+    smooth = [p for p in kept if p.place.within <= 0.1]
+    stated = " ".join(PAPER.split())
+    assert f"computed at {len(points)} points" in stated
+    assert f"`areal` is off by {median('areal', smooth):.1f} dB in the median" in stated
+    assert f"with its filter by {median('linear-filtered', smooth):.1f} dB" in stated
+    assert f"without by {median('linear', smooth):.1f} dB" in stated
+    assert median("table", kept) < 0.1
+    (share,) = re.findall(r"\| all \|.*?(\d+) % \|", text("docs/law_accuracy.md"))
+    assert f"held in {share} % of cases" in stated
