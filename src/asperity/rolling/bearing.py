@@ -17,6 +17,7 @@ from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
 from asperity.structures.ring import Around, Direction, Ring
 
+RINGS = ("inner", "outer")
 INNER, OUTER = 0, 1
 """Places of the rigid rings among the structures; those that bend follow."""
 INSTANTS = 12
@@ -44,10 +45,16 @@ class BearingRings:
     outer_bending: Ring | Around | None = None
 
     @property
+    def bending(self) -> dict[int, tuple[int, Ring | Around]]:
+        """Rings that bend, and their places among the structures, by the places of the rigid ones."""
+        given = ((INNER, self.inner_bending), (OUTER, self.outer_bending))
+        there = [(ring, each) for ring, each in given if each is not None]
+        return {ring: (place, each) for place, (ring, each) in enumerate(there, OUTER + 1)}
+
+    @property
     def structures(self) -> list[Ring | Around]:
         """All of them: both rigid ones first."""
-        bending = (self.inner_bending, self.outer_bending)
-        return [self.inner, self.outer, *(each for each in bending if each is not None)]
+        return [self.inner, self.outer, *(each for _, each in self.bending.values())]
 
 
 Sensor = tuple[str, float, Direction]
@@ -262,19 +269,14 @@ def _mechanism(
     none, both = np.zeros((1, 1)), np.array([[1.0], [-1.0]])
     pressing = np.array([-centrifugal])
     ball = Body(np.array([[bearing.ball_mass]]), none, none, both, pressing, np.zeros(2))
-    bending, place = {}, OUTER
-    for ring, each in ((INNER, rings.inner_bending), (OUTER, rings.outer_bending)):
-        if each is not None:
-            bending[ring] = place = place + 1
     edges = []
     for j in range(bearing.balls):
-        wave = _closed(ball_heights[j]) if ball_heights else None
         for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
             sides = [Side(ring, turning.azimuth(j), sign)]
-            if ring in bending:
-                sides.append(Side(bending[ring], turning.azimuth(j, ring), sign))
+            if ring in rings.bending:
+                sides.append(Side(rings.bending[ring][0], turning.azimuth(j, ring), sign))
             apart = 0.0 if ring else bearing.apart(turning.contact_angle)
-            heights = _heights(wave, turning.spot(ring), -apart)
+            heights = _heights(ball_heights[j] if ball_heights else None, turning.spot(ring), -apart)
             law, along = laws[ring], turning.on_raceway(j, ring)
             if isinstance(law, Sequence):
                 law, along = law[j], turning.on_both(j, ring)
@@ -282,22 +284,17 @@ def _mechanism(
     return Mechanism(rings.structures, [ball] * bearing.balls, edges)
 
 
-def _closed(heights: ArrayLike) -> Callable[[Array], Array]:
-    """Heights of a closed line at angles, rad, by a periodic cubic spline."""
+def _heights(line: ArrayLike | None, spots: Along, raised: float) -> Along:
+    """Heights of a closed line at the spots of a ball that touch, or none, all raised, m."""
+    if line is None:
+        return lambda first, stop: np.full(stop - first, raised)
     from scipy.interpolate import CubicSpline
 
-    line = finite_array("heights of a ball (m)", heights, "finite numbers, four or more", shape=(None,))
-    require(line.size >= 4, "heights of a ball", f"{line.size} numbers", "four or more")
-    angles = TURN * np.arange(line.size + 1) / line.size
-    spline = CubicSpline(angles, np.append(line, line[0]), bc_type="periodic")
-    return lambda angle: np.asarray(spline(angle))
-
-
-def _heights(wave: Callable[[Array], Array] | None, spots: Along, raised: float) -> Along:
-    """Heights of a ball at the spots that touch, or none, all raised, m."""
-    if wave is None:
-        return lambda first, stop: np.full(stop - first, raised)
-    return lambda first, stop: wave(spots(first, stop)) + raised
+    heights = finite_array("heights of a ball (m)", line, "finite numbers, four or more", shape=(None,))
+    require(heights.size >= 4, "heights of a ball", f"{heights.size} numbers", "four or more")
+    angles = TURN * np.arange(heights.size + 1) / heights.size
+    spline = CubicSpline(angles, np.append(heights, heights[0]), bc_type="periodic")
+    return lambda first, stop: np.asarray(spline(spots(first, stop))) + raised
 
 
 def _loaded(
@@ -331,10 +328,10 @@ def _axes(ring: Ring) -> list[Array]:
 
 def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: BallBearing, sensor: Sensor) -> Array:
     name, angle, direction = sensor
-    require(name in ("inner", "outer"), "ring of a sensor", name, '"inner" or "outer"')
-    rigid, bending = (INNER, rings.inner_bending) if name == "inner" else (OUTER, rings.outer_bending)
-    row = mechanism.row(rigid, rings.structures[rigid].towards(angle, direction))
-    if bending is not None and bearing.turning != name:
-        place = len(rings.structures) - 1 if name == "outer" else OUTER + 1
+    require(name in RINGS, "ring of a sensor", name, '"inner" or "outer"')
+    ring = RINGS.index(name)
+    row = mechanism.row(ring, rings.structures[ring].towards(angle, direction))
+    if ring in rings.bending and bearing.turning != name:
+        place, bending = rings.bending[ring]
         row = row + mechanism.row(place, bending.towards(angle, direction))
     return row

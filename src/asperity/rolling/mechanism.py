@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from asperity.arguments import Array, NDArray, positive, require
 from asperity.errors import Outcome
 from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
-from asperity.laws.spec import Law, SettlingLaw, SteppedLaw, settles
+from asperity.laws.spec import Law, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.rolling import assembly, roll, steps
 from asperity.rolling.ground import Ground, no_channels
@@ -156,7 +157,7 @@ class _OnEdges:
 
     def laid(self, first: int, stop: int) -> Any:
         """The same, for the compiled kernel."""
-        prepared = [_looked_up(edge, first, stop) for edge in self.mechanism.edges]
+        prepared = [_laid(edge, first, stop) for edge in self.mechanism.edges]
         lowest = [law.planes.min() + (0.0 if law.form == TABLE else law.values.min()) for law in prepared]
         self.within = np.minimum(
             self.within, [law.upper + h for law, h in zip(prepared, lowest, strict=True)]
@@ -165,60 +166,27 @@ class _OnEdges:
         return Prepared(**stacked(prepared, Prepared._fields)), sizes_of(prepared)
 
 
-def _laid(edge: Edge, first: int, stop: int) -> Prepared | SteppedLaw:
-    """The law of an edge; its textures are raised by the heights of the edge."""
-    prepared = edge.law.prepare(edge.positions(first, stop))
+def _laid(edge: Edge, first: int, stop: int) -> Any:
+    """The law of an edge, `Prepared` or a `SteppedLaw`, whose textures are raised by its heights."""
+    law = edge.law.prepare(edge.positions(first, stop))
     if edge.heights is None:
-        return prepared
+        return law
     heights = edge.heights(first, stop)
-    if isinstance(prepared, Prepared):
-        return prepared._replace(planes=prepared.planes - heights)
-    return RaisedSettlingLaw(prepared, heights) if settles(prepared) else RaisedLaw(prepared, heights)
+    return law._replace(planes=law.planes - heights) if isinstance(law, Prepared) else _raised(law, heights)
 
 
-def _looked_up(edge: Edge, first: int, stop: int) -> Prepared:
-    laid = _laid(edge, first, stop)
-    assert isinstance(laid, Prepared)
-    return laid
+def _raised(law: SteppedLaw, heights: Array) -> SimpleNamespace:
+    """A law that is solved in every step, as it is where bodies are closer by heights (steps,), m."""
 
+    def evaluate(step: int, approach: float) -> tuple[float, float]:
+        return law.evaluate(step, approach + float(heights[step]))
 
-@dataclass(frozen=True, eq=False)
-class RaisedLaw(SteppedLaw):
-    """A law that is solved in every step, with what is there raised by heights (steps,), m."""
+    def settle(step: int, approach: float, compliance: float) -> float:
+        assert settles(law)
+        return law.settle(step, approach + float(heights[step]), compliance)
 
-    law: SteppedLaw
-    heights: Array
-
-    def evaluate(self, step: int, approach: float) -> tuple[float, float]:
-        """Force, N, and stiffness, N/m, as of the law itself where bodies are closer by the height."""
-        return self.law.evaluate(step, approach + float(self.heights[step]))
-
-    def accept(self, step: int) -> None:
-        """Keep the last evaluation."""
-        self.law.accept(step)
-
-    def state(self) -> dict[str, NDArray[Any]]:
-        """What the law needs to go on."""
-        return self.law.state()
-
-    def restore(self, state: dict[str, NDArray[Any]]) -> None:
-        """Go on from a saved state."""
-        self.law.restore(state)
-
-    def warn_of_flaws(self) -> None:
-        """Warn of what went wrong."""
-        self.law.warn_of_flaws()
-
-
-@dataclass(frozen=True, eq=False)
-class RaisedSettlingLaw(RaisedLaw):
-    """The same of one that finds its force together with what the bodies yield to it."""
-
-    law: SettlingLaw
-
-    def settle(self, step: int, approach: float, compliance: float) -> float:
-        """Force, N, as of the law itself where bodies are closer by the height."""
-        return self.law.settle(step, approach + float(self.heights[step]), compliance)
+    other = {name: getattr(law, name) for name in ("accept", "state", "restore", "warn_of_flaws")}
+    return SimpleNamespace(evaluate=evaluate, **other, **({"settle": settle} if settles(law) else {}))
 
 
 @dataclass(frozen=True, eq=False)
@@ -286,50 +254,36 @@ def roll_mechanism(
     energies = stepper.energies()
     stepper.run(progress, checkpoint)
     _warn(stepper, course)
-    return _kept(stepper, settled, len(mechanism.bodies), roll.ledger_of(stepper, energies))
-
-
-def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
-    """Coordinates of all modes (s,) of a mechanism at rest, as it stands at a step; `load` as above, N."""
-    at = replace(mechanism, edges=[_standing(edge, step) for edge in mechanism.edges])
-    course = _OnEdges(at, 1.0, 0)
-    ground, bodies = _ground(course, np.zeros((0, at.first_modes[-1]))), at.still()
-    system = assembly.system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, at.constant)
-    motion = _start(ground, bodies, system, course.at_start())[1]
-    return motion.displacement[: at.first_modes[-1]]
-
-
-def _standing(edge: Edge, step: int) -> Edge:
-    """An edge that stays where it is at a step."""
-
-    def stay(along: Along) -> Along:
-        return lambda first, stop: np.repeat(along(step, step + 1), stop - first, axis=0)
-
-    sides = tuple(replace(side, places=stay(side.places)) for side in edge.sides)
-    heights = None if edge.heights is None else stay(edge.heights)
-    return replace(edge, positions=stay(edge.positions), sides=sides, heights=heights)
-
-
-def _kept(stepper: Stepper, settled: int, bodies: int, energy: roll.Ledger) -> RolledMechanism:
     kept, counts, record = slice(settled, None), stepper.motion.counts, stepper.record
-    cores = zip(stepper.bodies[:bodies], record.core, strict=False)
     return RolledMechanism(
         record.contact_force[:, kept],
         record.relative_displacement[:, kept],
-        tuple(core[: len(body.mass), kept] for body, core in cores),
+        tuple(
+            core[: len(body.mass), kept] for body, core in zip(mechanism.bodies, record.core, strict=False)
+        ),
         record.displacement[:, kept],
         record.acceleration[:, kept],
-        energy,
+        roll.ledger_of(stepper, energies),
         int(counts[2]),
         int(counts[1]),
         Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
     )
 
 
+def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
+    """Coordinates of all modes (s,) of a mechanism at rest, as it stands at a step; `load` as above, N."""
+    course, bodies = _OnEdges(mechanism, 1.0, 0), mechanism.still()
+    ground = _ground(course, np.zeros((0, mechanism.first_modes[-1])), [step])
+    system = assembly.system_of(ground, bodies, np.full(course.contacts, load), 1.0, 1.0, mechanism.constant)
+    laws = [_laid(edge, step, step + 1) for edge in mechanism.edges]
+    return _start(ground, bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
+
+
 def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: float | None) -> Stepper:
     """Set everything at rest under the constant forces, with contacts soft enough for the time step."""
     mechanism, h, bodies = course.mechanism, course.time_step, course.mechanism.still()
-    ground, prepared = _ground(course, sensors), course.at_start()
+    looked_at = np.unique(np.linspace(0, course.total, LOOKED_AT).astype(int)).tolist()
+    ground, prepared = _ground(course, sensors, looked_at), course.at_start()
     loads = np.full(course.contacts, load)
     system = assembly.system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
     laws = [edge.law for edge in mechanism.edges]
@@ -338,16 +292,15 @@ def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: f
     return Stepper(course, bodies, laws, course.whole, system, motion, largest, np.inf, displacements=True)
 
 
-def _ground(course: _OnEdges, sensors: Array) -> Ground:
-    """All structures as one: what they are to the contacts at the start, and at worst on the way."""
+def _ground(course: _OnEdges, sensors: Array, looked_at: Sequence[int]) -> Ground:
+    """All structures as one: what they are to the contacts at the first of some steps, and at worst."""
     mechanism, n = course.mechanism, course.contacts
     natural = 2.0 * np.pi * mechanism.joined("natural_frequencies")
     ratios = mechanism.joined("damping_ratios")
     each = steps.alternating_of_modes(steps.resolved_step(natural, ratios, course.time_step))
     shapes, slopes = np.zeros((2, 1, n, natural.size))
     least = 0.0
-    looked_at = np.unique(np.linspace(0, course.total, LOOKED_AT).astype(int))
-    for step in looked_at[::-1].tolist():  # the start last: it is kept
+    for step in reversed(looked_at):  # the first is kept
         course.shapes_into(step, shapes, slopes)
         least = min(least, float(np.linalg.eigvalsh((shapes[0] * each) @ shapes[0].T).min()))
     frequencies = natural / (2.0 * np.pi)
@@ -399,6 +352,6 @@ def _warn(stepper: Stepper, course: _OnEdges) -> None:
     for k in np.flatnonzero(doubted & [k not in stepper.stepped for k in range(len(doubted))]).tolist():
         for first in range(0, course.total + 1, CHECKED):
             stop = min(first + CHECKED, course.total + 1)
-            law = _looked_up(course.mechanism.edges[k], first, stop)
+            law = _laid(course.mechanism.edges[k], first, stop)
             beyond[k] += evaluate_all(law, np.ascontiguousarray(seen[k, first:stop]), 0)[2]
     roll.warn_of_counts([law.name for law in stepper.laws], counts, beyond.tolist(), seen.shape[1])
