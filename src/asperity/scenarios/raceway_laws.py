@@ -123,10 +123,18 @@ class Closed:
         Known from zero to the circumference at least.
     circumference : float
         m.
+    ball : Direct, optional
+        The surface of the ball that rolls on it, on the same cells, from zero to its circumference at least;
+        for a law that is `direct` itself.
+    radius : float
+        Of the circle of that ball that rolls, m; negative where the contact runs against the positions on the
+        path, with the surface in the other order.
     """
 
     law: Law
     circumference: float
+    ball: Direct | None = None
+    radius: float = 0.0
 
     @property
     def name(self) -> str:
@@ -139,46 +147,16 @@ class Closed:
         return self.law.damping
 
     def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
-        """Lay the law out on positions (n,), m, on as many turns as they are."""
-        return self.law.prepare(np.mod(np.asarray(positions, dtype=float), self.circumference))
+        """Lay the law out on positions (n,), m, on as many turns as they are.
 
-
-@dataclass(frozen=True, eq=False)
-class OnBoth:
-    """`direct` on a raceway with the surface of the ball that rolls on it.
-
-    Parameters
-    ----------
-    raceway : Closed
-        `direct` of the raceway.
-    ball : Direct
-        The surface of the ball on the same cells, from zero to its circumference at least.
-    radius : float
-        Of the circle of the ball that rolls, m; negative where the contact runs against the positions on the
-        raceway, with the surface in the other order.
-    """
-
-    raceway: Closed
-    ball: Direct
-    radius: float
-
-    @property
-    def name(self) -> str:
-        """Name of the law."""
-        return self.raceway.name
-
-    @property
-    def damping(self) -> float:
-        """Contact damping, N s/m."""
-        return self.raceway.damping
-
-    def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
-        """Lay the law out on positions (n, 2): on the raceway, m, and the angle of the ball's spot, rad."""
-        places, spots = np.asarray(positions, dtype=float).T
-        found = self.raceway.prepare(places)
+        With a ball (n, 2): these, and the angle of its spot that touches, rad.
+        """
+        at = np.asarray(positions, dtype=float)
+        if self.ball is None:
+            return self.law.prepare(np.mod(at, self.circumference))
+        found = self.law.prepare(np.mod(at[:, 0], self.circumference))
         assert isinstance(found, DirectOnPath)
-        around = 2.0 * math.pi * abs(self.radius)
-        found.other = self.ball.prepare(np.mod(self.radius * spots, around))
+        found.other = self.ball.prepare(np.mod(self.radius * at[:, 1], 2.0 * math.pi * abs(self.radius)))
         return found
 
 
@@ -194,6 +172,8 @@ class OnRaceway:
         What it rolls over.
     load : float
         Largest static load of a ball, N; states cover eight times as much.
+    damping : float
+        Of the contact, N s/m.
     hardness : float, optional
         Pressure at which asperities flow, Pa.
     accuracy : float
@@ -209,6 +189,7 @@ class OnRaceway:
     contact: Hertz
     surface: Raceway
     load: float
+    damping: float = 0.0
     hardness: float | None = None
     accuracy: float = FORCE_ACCURACY
     cache: Store | None = None
@@ -398,17 +379,22 @@ class OnRaceway:
         grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
         OutOfRangeWarning.warn(message, grade)
 
-    def _direct(self, heights: Array, faults: Array, dx: float, damping: float) -> Direct:
+    def _direct(self, heights: Array, faults: Array, dx: float) -> Direct:
         """`direct` of closed heights and faults (rows, lines), m, dx apart along."""
         half, dy = len(self.shape.body) // 2, self.surface.spacing[1]
         closed, edges = (self._around(each, half + 1) for each in (heights, faults))
         given = closed, self.shape.body, (dx, dy), self.contact.modulus, -(half + 1) * dx, self.hardness
         drop = float(self.contact.approach(self.load))
-        whole = Direct(*given, rtol=rtol_for(self.accuracy), damping=damping, remedies=REMEDIES)
+        whole = Direct(*given, rtol=rtol_for(self.accuracy), damping=self.damping, remedies=REMEDIES)
         return replace(whole, faults=edges, drop=drop) if edges.any() else whole
 
-    def with_ball(self, raceway: Closed, ball: Raceway, *, forwards: bool) -> OnBoth:
-        """`direct` of this raceway with a ball, whose spots come up as positions rise, or against them."""
+    @cached_property
+    def direct(self) -> Direct:
+        """The law `direct`, once for all balls."""
+        return self._direct(self.wavy, self.surface.faults, self.surface.spacing[0])
+
+    def with_ball(self, ball: Raceway, *, forwards: bool) -> Closed:
+        """`direct` of it with a ball, whose spots come up as positions rise, or against them."""
         from scipy.ndimage import map_coordinates
 
         (dx, dy), lines, (rows, wide) = self.surface.spacing, self.shape.body.shape[1], ball.heights.shape
@@ -422,39 +408,32 @@ class OnRaceway:
             return found if forwards else np.roll(found[::-1], 1, axis=0)
 
         waves, faults = on_cells(ball.heights + ball.line[:, None], 3), on_cells(ball.faults, 1)
+        on_ball = self._direct(waves, faults, ball.circumference / count)
         radius = ball.circumference / (2.0 * math.pi) * (1.0 if forwards else -1.0)
-        return OnBoth(
-            raceway, self._direct(waves, faults, ball.circumference / count, raceway.damping), radius
-        )
+        return replace(self.law("direct"), ball=on_ball, radius=radius)
 
-    def law(self, name: str, damping: float) -> Law:
-        """A law of `LAWS` by its name, with a contact damping, N s/m."""
+    def law(self, name: str) -> Closed:
+        """A law of `LAWS` by its name."""
+        return Closed(self._open(name), self.surface.circumference)
+
+    def _open(self, name: str) -> Law:
         if spec_of(name).solved_every_step:
-            return self._direct(self.wavy, self.surface.faults, self.surface.spacing[0], damping)
+            return self.direct
         plane = self._texture(self.felt)
         if Need.SCAN in spec_of(name).needs:
-            return Table(self.table, damping, plane)
+            return Table(self.table, self.damping, plane)
         if name == "hertz":
             texture = self._texture(self.wavy[:, self.wavy.shape[1] // 2] + self.over_faults)
-            return HertzLaw(self.contact.stiffness_constant, texture, damping)
+            return HertzLaw(self.contact.stiffness_constant, texture, self.damping)
         forces = self.curve.force(self.approaches)
         axes = np.array([self.contact.semi_axes(self.contact.approach(each)) for each in forces])
         loaded = forces > 0.0
         heights = self.averaged(self.wavy, axes[loaded])
-        return Areal(self.curve, self._texture(heights, self.approaches[loaded]), damping, plane=plane)
+        return Areal(self.curve, self._texture(heights, self.approaches[loaded]), self.damping, plane=plane)
 
 
 def raceway_laws(
-    names: Iterable[str],
-    contact: Hertz,
-    surface: Raceway,
-    load: float,
-    *,
-    damping: float = 0.0,
-    hardness: float | None = None,
-    accuracy: float = FORCE_ACCURACY,
-    cache: Store | None = None,
-    progress: Progress | None = None,
+    names: Iterable[str], contact: Hertz, surface: Raceway, load: float, **of_contact: Any
 ) -> dict[str, Law]:
     """Laws of a ball on a raceway, on positions along it of any number of turns, m.
 
@@ -469,14 +448,8 @@ def raceway_laws(
     load : float
         Largest static load of a ball, N. States go up to eight times as much where the raceway is sound;
         beyond the last state F^(2/3) of `table` goes on with its end slope, the curve of `areal` with its.
-    damping : float
-        Of the contact, N s/m.
-    hardness : float, optional
-        Pressure at which asperities flow, Pa, for `table`.
-    accuracy : float
-        Largest relative error of a scanned force.
-    cache, progress : optional
-        As in `asperity.contact.scan.solved_blocks`.
+    **of_contact
+        Damping, hardness, accuracy, cache and progress, as of `OnRaceway`.
 
     Returns
     -------
@@ -489,13 +462,11 @@ def raceway_laws(
     follows the average under the patch, `hertz` the middle line. Both take a fault as the height that it has
     for the contact under the load (`OnRaceway.over_faults`): exact there, and off under other loads.
     """
-    on = OnRaceway(
-        contact, surface, positive("load of a ball (N)", load), hardness, accuracy, cache, progress
-    )
+    on = OnRaceway(contact, surface, positive("load of a ball (N)", load), **of_contact)
     chosen = [one_of("law of a raceway", name, LAWS) for name in names]
     if surface.faults.any() and set(chosen) & {"areal", "hertz"}:
         on.warn_of_faults()
-    return {name: Closed(on.law(name, damping), surface.circumference) for name in chosen}
+    return {name: on.law(name) for name in chosen}
 
 
 def raceway_with_balls(
@@ -505,15 +476,13 @@ def raceway_with_balls(
     load: float,
     *,
     forwards: bool,
-    damping: float = 0.0,
-    hardness: float | None = None,
-    accuracy: float = FORCE_ACCURACY,
+    **of_contact: Any,
 ) -> list[Law]:
     """`direct` of each ball with a surface of its own, as `asperity.rolling.bearing.roll_bearing` takes it.
 
     Parameters
     ----------
-    contact, surface, load, damping, hardness, accuracy
+    contact, surface, load, **of_contact
         As in `raceway_laws`.
     balls : sequence of Raceway
         Surface of each ball, on any cells; it is laid on those of the raceway.
@@ -525,9 +494,8 @@ def raceway_with_balls(
     list of Law
         On positions (n, 2): on the raceway, m, and the angle of the spot of the ball that touches, rad.
     """
-    on = OnRaceway(contact, surface, load, hardness, accuracy, balls=balls)
-    raceway = Closed(on.law("direct", damping), surface.circumference)
-    return [on.with_ball(raceway, ball, forwards=forwards) for ball in balls]
+    on = OnRaceway(contact, surface, load, balls=balls, **of_contact)
+    return [on.with_ball(ball, forwards=forwards) for ball in balls]
 
 
 def ball_heights(contact: Hertz, surface: Raceway, load: float) -> Array:
