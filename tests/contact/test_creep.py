@@ -7,7 +7,7 @@ import pytest
 from test_friction import ellipse
 
 from asperity import Friction
-from asperity.contact.creep import RolledSample, RollingEllipse, creep_curve, kalker_coefficients
+from asperity.contact.creep import RollingEllipse, creep_curve, kalker_coefficients, over_smooth, rolled_over
 from asperity.errors import InputError
 from asperity.surfaces.synthesis import self_affine
 from refusals import refusals
@@ -69,15 +69,12 @@ def test_grooves_along_the_rolling_direction_stand_still_in_the_contact():
     """As they look the same wherever they are, they roll steadily: the one pattern that does."""
     smooth, rolling, *_ = ellipse(0.8, 0.3, (25, 27))
     grooves = np.tile(long_sample(25, 27, rolling.half_space.spacing, 0.2 * smooth.approach)[12], (140, 1))
-    sample = RolledSample.along(smooth, grooves)
-    assert sample.distance == pytest.approx(4.0 * rolling.half_space.spacing[0])
-    first, last = sample.contacts[0], sample.contacts[-1]
-    assert last.pressure == pytest.approx(first.pressure, abs=1e-4 * first.pressure.max())
-    for motion, axis in (((1e-3, 0.0, 0.0), 0), ((0.0, 2e-3, 0.1), 1)):
-        still, steady = (
-            rolling.roll(each, motion[:2], motion[2], distance=sample.distance) for each in (first, smooth)
-        )
-        force, slips = sample.over_smooth(rolling, motion, axis)
+    motions, distance = ((1e-3, 0.0, 0.0), (0.0, 2e-3, 0.1)), 4.0 * rolling.half_space.spacing[0]
+    for axis, (steady, found) in enumerate(rolled_over(rolling, smooth, grooves, motions)):
+        first, last, (*creepage, spin) = found[0].normal, found[-1].normal, motions[axis]
+        assert last.pressure == pytest.approx(first.pressure, abs=1e-4 * first.pressure.max())
+        still = rolling.roll(first, creepage, spin, distance=distance)
+        force, slips = over_smooth(steady, found, axis)
         assert force == pytest.approx(still.force[axis] / steady.force[axis], rel=1e-3)
         assert slips == pytest.approx(still.slip_area / first.area, abs=0.02)
 
@@ -85,18 +82,20 @@ def test_grooves_along_the_rolling_direction_stand_still_in_the_contact():
 def test_an_asperity_that_rolls_through_is_sheared_as_in_a_shift():
     """A spike that carries all of the load sticks: its force grows with the distance, wherever it is."""
     smooth, rolling, *_ = ellipse(1.0, 0.3, 25, friction=1e6)
-    spike = np.zeros((100, 25))
-    spike[50, 12] = 1e3 * smooth.approach
-    sample = RolledSample.along(smooth, spike)
-    touching = [each for each in sample.contacts if np.count_nonzero(each.pressure) == 1]
+    spike = np.zeros((125, 25))
+    spike[68, 12] = 1e3 * smooth.approach
+    ((_, found),) = rolled_over(rolling, smooth, spike, [(1e-6, 0.0, 0.0)])
+    touching = [each.normal for each in found if np.count_nonzero(each.normal.pressure) == 1]
     assert len(touching) > 3
-    shift = rolling.shift(touching[0], (1e-9, 0.0)).force[0] / 1e-9
-    state, found = rolling.shift(touching[0]), []
+    shift, distance = (
+        rolling.shift(touching[0], (1e-9, 0.0)).force[0] / 1e-9,
+        4 * rolling.half_space.spacing[0],
+    )
+    state, forces = rolling.shift(touching[0]), []
     for contact in touching[1:]:
-        state = rolling.roll(contact, (1e-6, 0.0), before=state, distance=sample.distance)
-        found.append(state.force[0])
-    steps = 1e-6 * sample.distance * np.arange(1, len(touching))
-    assert found == pytest.approx(shift * steps, rel=1e-4)
+        state = rolling.roll(contact, (1e-6, 0.0), before=state, distance=distance)
+        forces.append(state.force[0])
+    assert forces == pytest.approx(shift * 1e-6 * distance * np.arange(1, len(touching)), rel=1e-4)
 
 
 def test_samples_follow_the_smooth_contact():

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from asperity import Friction, FrictionalHalfSpace, HalfSpace, Hertz, material
-from asperity.contact.creep import RollingEllipse
-from asperity.contact.quasi_steady import CreepingBodies, forces_of
+from asperity.contact.creep import CreepingBodies, RollingEllipse, forces_of
 
 STEEL, RADIUS, LOAD, SPEED = material("steel"), 0.46, 65e3, 10.0
 NU = STEEL.poisson_ratio

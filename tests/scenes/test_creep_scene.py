@@ -9,12 +9,11 @@ import pytest
 from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.contact.hertz import stick_stiffness
 from asperity.reference.materials import MATERIALS
-from asperity.scenarios.creep import friction_of
 from asperity.scenarios.preparing import prepare
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
-from asperity.scenes.creep import creep_group
-from asperity.scenes.figures.creep import CREEP, creep_answers, friction_table
+from asperity.scenes.creep import creep_group, friction_of
+from asperity.scenes.figures.sideways import CREEP, creep_answers, friction_table
 from asperity.scenes.result import computed_result
 from asperity.schema import tree
 from asperity.structures.lateral_rail import LateralTrack, wheel_receptances

@@ -5,12 +5,11 @@ from typing import ClassVar
 
 from asperity.case.beam import BeamKeys
 from asperity.case.body import Rolling
-from asperity.case.creep import CreepKeys
 from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import NoiseKeys
-from asperity.case.sideways import SidewaysKeys
+from asperity.case.sideways import CreepKeys, SidewaysKeys
 from asperity.errors import InputError
 from asperity.parameters import Choice, key
 

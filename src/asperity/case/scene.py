@@ -21,8 +21,7 @@ from asperity.reference.materials import contact_modulus
 from asperity.units import written
 
 if TYPE_CHECKING:
-    from asperity.case.creep import CreepKeys
-    from asperity.case.sideways import Meeting, SidewaysKeys
+    from asperity.case.sideways import CreepKeys, Meeting, SidewaysKeys
     from asperity.radiation.pass_by import Passage
 
 MOST_STEPS = 10**8

@@ -1,8 +1,9 @@
-"""What moves sideways: where wheel and rail touch, how a rail resists there, and when the contact slips."""
+"""What moves sideways: where wheel and rail touch, how a rail resists; how wheels creep and slip."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -64,6 +65,61 @@ class SidewaysKeys(Section, parameters=keys_of(LateralTrack, otherwise="of a UIC
         known = {name: value for name, value in told.items() if value is not None}
         return LateralTrack(track, **known, foot_width=foot_width)
 
+
+_ANY = "angle_of_attack or longitudinal or lateral or spin"
+_CREEPAGE, _NONE = Number(at_least=-0.1, at_most=0.1), "none"
+
+
+class CreepKeys(Section):
+    """Creepages of the wheel over the rail; the contact sticks up to sideways.friction."""
+
+    angle_of_attack: float | None = optional(
+        Quantity("rad"),
+        "8 mrad",
+        "angle from the rail to where the wheel heads, to the field side; minus its tangent adds to lateral",
+        _NONE,
+        "-100 mrad to 100 mrad: creepages are small",
+    )
+    longitudinal: float | None = optional(
+        _CREEPAGE, 0.001, "velocity over the rail over that of rolling, along; positive: it brakes", _NONE
+    )
+    lateral: float | None = optional(
+        _CREEPAGE, -0.002, "the same to the field side, beside that of an angle of attack", _NONE
+    )
+    spin: float | None = optional(
+        Quantity("rad/m"),
+        "0.1 rad/m",
+        "turning of the wheel about the normal, from along to the field side, per length rolled",
+        _NONE,
+        "-10 rad/m to 10 rad/m: wheels do not pivot",
+    )
+    kinetic: float = key(
+        Number(at_least=0, at_most=1), 1.0, "share of sideways.friction that is left in slip", goes_with=_ANY
+    )
+    falling_velocity: float | None = optional(
+        Quantity("m/s", above=0),
+        "0.5 m/s",
+        "slip velocity over which friction falls to that share, by exp(-v/falling_velocity)",
+        "it falls at once",
+        "1 mm/s to 100 m/s: nothing else is known",
+        goes_with=_ANY,
+    )
+
+    @property
+    def creepage(self) -> tuple[float, float, float]:
+        """Of the wheel along, to the field side, and spin, rad/m; all zero where the case gives none."""
+        across = (self.lateral or 0.0) - math.tan(self.angle_of_attack or 0.0)
+        return self.longitudinal or 0.0, across, self.spin or 0.0
+
+    def problems(self) -> Iterator[InputError]:
+        """Friction that falls over a velocity falls."""
+        if self.falling_velocity is not None and self.kinetic == 1.0:
+            yield InputError(
+                "falling_velocity", "friction that stays", "kinetic below 1", "As kinetic = 0.5."
+            )
+
+
+# --- where the sections of wheel and rail touch
 
 REACH = 0.1
 """Farthest place of a section that is not measured, but a circle, m."""

@@ -1,15 +1,16 @@
 """``asperity creep``: creep of what rolls in a case, over creepage or over states, told, as CSV and drawn."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from asperity.arguments import real, require, whole
+from asperity.arguments import Array, real, require, whole
 from asperity.case.cases import load_case
 from asperity.cli.running import prepared_case
-from asperity.contact.creep import CreepCurve
+from asperity.contact.creep import CreepCurve, creep_curve
 from asperity.contact.friction import Friction
 from asperity.errors import InputError
 from asperity.progress import progress_bar
@@ -17,14 +18,18 @@ from asperity.reduction.traction import TractionStates
 from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Area, Axis, Chart, Line, Mark, Panel
 from asperity.reporting.data import engineering
 from asperity.reporting.figure import write_chart, write_columns
-from asperity.scenarios.creep import creep_of, friction_of, states_of
 from asperity.scenarios.preparing import PreparedCase
+from asperity.scenes import creep
 from asperity.terminal import say, say_table
 
 NAMES = {"longitudinal": "creepage along", "lateral": "creepage across", "spin": "spin × √(ab)"}
 STIFFNESSES = ("normal stiffness", "stiffness along", "stiffness across", "real area")
 CREEPS = ("longitudinal creep", "lateral creep", "spin creep")
 MOST_POINTS = 1000
+Scattered = Mapping[str, tuple[Array, Array | None]]
+"""Means over samples, and their standard deviations where there are several."""
+Told = tuple[str, dict[str, Array], Chart]
+"""Title, columns of the table, and chart."""
 
 
 def show_creep(
@@ -51,11 +56,15 @@ def show_creep(
         raise InputError("case", f"one of kind {case.kind}", "a kind whose bodies roll over a surface")
     with progress_bar() as progress:
         if states:
-            found = _told_states(states_of(prepared, count, progress), str(source))
+            found = _told_states(creep.states_of(prepared, count, progress), str(source))
         else:
-            law = friction_of(prepared.case) if friction is None else Friction(friction)
-            curve = creep_of(prepared, law, direction or "longitudinal", count, progress)
-            found = _told_curve(curve, prepared, str(source))
+            law = creep.friction_of(prepared.case) if friction is None else Friction(friction)
+            rolling, smooth = creep.smooth_with_friction(prepared, law)
+            curve = creep_curve(
+                rolling, smooth, prepared.shape.semi_axes, direction or "longitudinal", count=count,
+                samples=creep.rough_strips(prepared), speed=prepared.case.speed, progress=progress,
+            )  # fmt: skip
+            found = _told_curve(curve, smooth.force, str(source))
     title, columns, chart = found
     if table is not None:
         write_columns(columns, table)
@@ -65,26 +74,30 @@ def show_creep(
         say(f"Picture: {picture.resolve()}")
 
 
-Told = tuple[str, dict[str, Any], Chart]
-"""Title, columns of the table, and chart."""
-
-
-def _told_curve(curve: CreepCurve, prepared: PreparedCase, source: str) -> Told:
-    given, columns, (smooth, *rough) = prepared.shape.load, _columns(curve), curve.slopes
-    load, friction = engineering(given, "N"), f"{curve.limit / given:.4g}"
-    title = f"{source}: {load}, friction {friction}, {curve.direction}"
-    _say_columns(f"{title}: creep force over friction", columns)
-    at, linear = f"At the smallest {NAMES[curve.direction]}", "of Kalker's linear force"
-    words = f"{at} the smooth contact has {smooth:.4f} {linear}"
+def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
+    """Forces over what friction carries; of rough samples their mean."""
+    limit, name, (slope, *rough) = curve.limit, NAMES[curve.direction], curve.slopes
+    title = f"{source}: {engineering(load, 'N')}, friction {limit / load:.4g}, {curve.direction}"
+    smooth, samples = curve.force[0] / limit, curve.force[1:] / limit
+    drawn: dict[str, tuple[Array, Array | None]] = {"smooth": (smooth, None)}
+    words = f"At the smallest {name} the smooth contact has {slope:.4f} of Kalker's linear force"
     if rough:
+        drawn["rough"] = samples.mean(axis=0), samples.std(axis=0)
         words += f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {len(rough)} samples)"
+    drawn |= {"linear theory": (curve.linear / limit, None), "FASTSIM": (curve.fastsim / limit, None)}
+    columns = {name: curve.creepage}
+    for label, (mean, scatter) in drawn.items():
+        columns |= {label: mean} | ({} if scatter is None else {"its scatter": scatter})
+    columns["share that slips"] = curve.slip_share[0]
+    _say_columns(f"{title}: creep force over friction", columns)
     say(f"{words}.")
-    return title, columns, _chart(curve)
+    axes = Axis(name, 0.0, float(curve.creepage[-1])), Axis("creep force over friction", 0.0, 1.05)
+    return title, columns, Chart((_panel(*axes, curve.creepage, drawn),))
 
 
 def _told_states(states: TractionStates, source: str) -> Told:
     """Rough over smooth under the same load in words, the functions themselves as columns."""
-    load, change, panels = states.load.mean(axis=0), states.change, list[Panel]()
+    load, change = states.load.mean(axis=0), states.change
     title = f"{source}: rough contact over smooth under the same load, {len(states.load)} samples"
     told = {
         name: [f"{m:.3f} ± {s:.2g}" if m == m else "short sample" for m, s in zip(*each, strict=True)]
@@ -96,15 +109,10 @@ def _told_states(states: TractionStates, source: str) -> Told:
         rough, smooth = values.mean(axis=1)
         columns |= {f"rough {name} [{unit}]": rough, f"smooth {name} [{unit}]": smooth}
         columns |= {f"ratio of {name} [1]": change[name][0], f"scatter of {name} [1]": change[name][1]}
-    for group in (STIFFNESSES, CREEPS):
-        marks: list[Mark] = []
-        for name, colour in zip(group, (BLUE, VERMILLION, GREEN, MUTED), strict=False):
-            mean, scatter = change[name]
-            marks.append(Area(load, mean - scatter, mean + scatter, "", colour, 0.2))
-            marks.append(Line(load, mean, name, colour))
-        axes = Axis("load / N", log=True), Axis("rough over smooth")
-        panels.append(Panel(*axes, tuple(marks), beside=bool(panels)))
-    return title, columns, Chart(tuple(panels))
+    axes = Axis("load / N", log=True), Axis("rough over smooth")
+    groups = ({name: change[name] for name in group} for group in (STIFFNESSES, CREEPS))
+    first, second = (_panel(*axes, load, drawn) for drawn in groups)
+    return title, columns, Chart((first, replace(second, beside=True)))
 
 
 def _say_columns(title: str, columns: Mapping[str, Any]) -> None:
@@ -113,29 +121,11 @@ def _say_columns(title: str, columns: Mapping[str, Any]) -> None:
     say_table(title, [*columns], cells, width=120)
 
 
-def _columns(curve: CreepCurve) -> dict[str, Any]:
-    """Forces over what friction carries."""
-    found = {NAMES[curve.direction]: curve.creepage, "smooth": curve.force[0] / curve.limit}
-    if len(curve.force) > 1:
-        rough = curve.force[1:] / curve.limit
-        found |= {"rough": rough.mean(axis=0), "its scatter": rough.std(axis=0)}
-    found |= {"linear theory": curve.linear / curve.limit, "FASTSIM": curve.fastsim / curve.limit}
-    return found | {"share that slips": curve.slip_share[0]}
-
-
-def _chart(curve: CreepCurve) -> Chart:
-    x = np.append(0.0, curve.creepage)
-
-    def line(y: Any, label: str, colour: str, **look: Any) -> Mark:
-        return Line(x, np.append(0.0, y / curve.limit), label, colour, **look)
-
-    marks = [
-        line(each, "rough samples" if i == 0 else "", MUTED, width=0.8)
-        for i, each in enumerate(curve.force[1:])
-    ]
-    marks += [line(curve.force[0], "smooth", BLUE, width=1.6), line(curve.fastsim, "FASTSIM", VERMILLION)]
-    marks.append(
-        line(np.where(curve.linear <= 1.2 * curve.limit, curve.linear, np.nan), "linear theory", GREEN)
-    )
-    across = Axis("creep force over friction", 0.0, 1.05)
-    return Chart((Panel(Axis(NAMES[curve.direction], 0.0, float(x[-1])), across, tuple(marks), height=4.2),))
+def _panel(across: Axis, up: Axis, x: Array, drawn: Scattered) -> Panel:
+    """A panel of curves over x, with their scatter."""
+    marks: list[Mark] = []
+    for (name, (mean, scatter)), colour in zip(drawn.items(), (BLUE, VERMILLION, GREEN, MUTED), strict=False):
+        if scatter is not None:
+            marks.append(Area(x, mean - scatter, mean + scatter, "", colour, 0.2))
+        marks.append(Line(x, mean, name, colour))
+    return Panel(across, up, tuple(marks))

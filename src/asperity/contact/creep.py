@@ -1,11 +1,10 @@
-"""Creep forces of a contact that rolls: Kalker's coefficients, FASTSIM, samples, curves over creepage."""
+"""Creep forces of a contact that rolls: Kalker's coefficients, FASTSIM, samples, curves, loads that vary."""
 
 import math
 import warnings
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import lru_cache
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -137,89 +136,56 @@ class RollingEllipse:
         return total.real, total.imag
 
 
-@dataclass(frozen=True, eq=False)
-class RolledSample:
-    """A rough surface that moves through a contact with the material, as asperities do where bodies roll.
-
-    Attributes
-    ----------
-    smooth : Contact
-        Without roughness, under the load.
-    contacts : list of Contact
-        Under the same load, one after the other.
-    stride : int
-        Rows between them.
-    uncounted : int
-        Those from which the force does not count: they start from the smooth contact.
-    """
-
-    smooth: Contact
-    contacts: list[Contact]
-    stride: int
-    uncounted: int
-
-    @classmethod
-    def along(cls, smooth: Contact, heights: Array) -> "RolledSample":
-        """Press the body of a smooth contact on places along a sample of heights (rows, ny), m.
-
-        Raises
-        ------
-        InputError
-            If the sample has no room for it.
-        """
-        space, body = smooth.half_space, smooth.undeformed_gap
-        rows, spare = len(body), len(heights) - len(body)
-        length = contact_rows(smooth)
-        allowed = f"at least {rows + LEAST_LENGTHS * length} rows, the window and {LEAST_LENGTHS} contacts"
-        remedy = "Lengthen it, in a case by contact.sample_length."
-        require(
-            spare >= LEAST_LENGTHS * length, "sample to roll over", f"{len(heights)} rows", allowed, remedy
-        )
-        stride = math.ceil(length / STEPS)
-        steps, contacts, start = min(LENGTHS * length, spare) // stride, list[Contact](), None
-        first = (spare - steps * stride) // 2
-        for row in range(first, first + steps * stride + 1, stride):
-            contacts.append(space.solve(body - heights[row : row + rows], load=smooth.force, start=start))
-            start = np.roll(contacts[-1].pressure, -stride, axis=0)
-        return cls(smooth, contacts, stride, UNCOUNTED * length // stride)
-
-    @property
-    def distance(self) -> float:
-        """Between them, m."""
-        return self.stride * self.smooth.half_space.spacing[0]
-
-    def over_smooth(
-        self, rolling: FrictionalHalfSpace, motion: ArrayLike, axis: int, speed: float = 1.0
-    ) -> tuple[float, float]:
-        """Mean creep force along an axis over that of the smooth contact, and the share that slips.
-
-        In transient rolling with a motion (ξ, η, φ), in which each asperity comes in without traction.
-        """
-        steady, found = self.states(rolling, motion, speed)
-        shares = [
-            (each.force[axis] / steady.force[axis], each.slip_area / each.normal.area) for each in found
-        ]
-        force, share = np.mean(shares, axis=0).tolist()
-        return force, share
-
-    def states(
-        self, rolling: FrictionalHalfSpace, motion: ArrayLike, speed: float
-    ) -> tuple[SlidingContact, list[SlidingContact]]:
-        """The smooth contact in steady rolling, and those that count in transient rolling, in like steps."""
-        xi, eta, spin = np.asarray(motion, dtype=float).tolist()
-        along: dict[str, Any] = {"distance": self.distance, "speed": speed, "rtol": ROLLED_RTOL}
-        steady = state = rolling.roll(self.smooth, (xi, eta), spin, **along)
-        found = []
-        for contact in self.contacts:
-            start = replace(state, traction=np.roll(state.traction, -self.stride, axis=1))
-            state = rolling.roll(contact, (xi, eta), spin, before=state, start=start, **along)
-            found.append(state)
-        return steady, found[self.uncounted :]
-
-
 def contact_rows(contact: Contact) -> int:
     """Rows of the grid in which there is contact."""
     return int(np.count_nonzero(contact.pressure.any(axis=1)))
+
+
+def has_room(smooth: Contact, heights: Array) -> bool:
+    """Whether a sample of heights (rows, ny) is long enough for a smooth contact to roll over it."""
+    return len(heights) - len(smooth.pressure) >= LEAST_LENGTHS * contact_rows(smooth)
+
+
+def rolled_over(
+    rolling: FrictionalHalfSpace, smooth: Contact, heights: Array, motions: ArrayLike, speed: float = 1.0
+) -> Iterator[tuple[SlidingContact, list[SlidingContact]]]:
+    """Roll the body of a smooth contact over a sample of heights (rows, ny), m, under the same load.
+
+    The rough surface moves through the contact with the material, as asperities do where bodies roll: each
+    comes in without traction. Yields, for each of the motions (ξ, η, φ), the smooth contact in steady rolling
+    and those over the sample that count in transient rolling, in steps of the same length.
+
+    Raises
+    ------
+    InputError
+        If the sample has no room for it.
+    """
+    space, body, length = smooth.half_space, smooth.undeformed_gap, contact_rows(smooth)
+    rows, spare, stride = len(body), len(heights) - len(body), math.ceil(length / STEPS)
+    allowed = f"at least {rows + LEAST_LENGTHS * length} rows, the window and {LEAST_LENGTHS} contacts"
+    remedy = "Lengthen it, in a case by contact.sample_length."
+    require(has_room(smooth, heights), "sample to roll over", f"{len(heights)} rows", allowed, remedy)
+    steps, contacts, pressure = min(LENGTHS * length, spare) // stride, list[Contact](), None
+    first = (spare - steps * stride) // 2
+    for row in range(first, first + steps * stride + 1, stride):
+        contacts.append(space.solve(body - heights[row : row + rows], load=smooth.force, start=pressure))
+        pressure = np.roll(contacts[-1].pressure, -stride, axis=0)
+    roll = partial(rolling.roll, distance=stride * space.spacing[0], speed=speed, rtol=ROLLED_RTOL)
+    for xi, eta, spin in np.asarray(motions, dtype=float).tolist():
+        steady = state = roll(smooth, (xi, eta), spin)
+        found = []
+        for contact in contacts:
+            start = replace(state, traction=np.roll(state.traction, -stride, axis=1))
+            state = roll(contact, (xi, eta), spin, before=state, start=start)
+            found.append(state)
+        yield steady, found[UNCOUNTED * length // stride :]
+
+
+def over_smooth(steady: SlidingContact, found: list[SlidingContact], axis: int) -> tuple[float, float]:
+    """Mean force of rough contacts along an axis over that of the smooth one, and the share that slips."""
+    shares = [(each.force[axis] / steady.force[axis], each.slip_area / each.normal.area) for each in found]
+    force, share = np.mean(shares, axis=0).tolist()
+    return force, share
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,8 +294,8 @@ def creep_curve(
     force, share = np.zeros((1 + len(samples), len(xi))), np.zeros((1 + len(samples), len(xi)))
 
     def rolled(sample: Array) -> Array:
-        along = RolledSample.along(smooth, sample)
-        return np.array([along.over_smooth(rolling, motion, axis, speed) for motion in points]).T
+        found = rolled_over(rolling, smooth, sample, points, speed)
+        return np.array([over_smooth(*each, axis) for each in found]).T
 
     with warnings.catch_warnings():  # that spin makes a contact pivot is what its curve shows
         warnings.filterwarnings("ignore", "A spin of", OutOfRangeWarning)
@@ -338,7 +304,115 @@ def creep_curve(
             last = rolling.roll(smooth, motion[:2], motion[2], start=last, speed=speed)
             force[0, j], share[0, j] = against(last.force), last.slip_area / smooth.area
         found = counted(in_order(rolled, samples), len(samples), "creep forces of rough samples", progress)
-        for i, (over_smooth, slips) in enumerate(found, 1):
-            force[i], share[i] = over_smooth * force[0], slips
+        for i, (ratio, slips) in enumerate(found, 1):
+            force[i], share[i] = ratio * force[0], slips
     fast = [against(ellipse.fastsim_force(each[:2], each[2], full)) for each in points]
     return CreepCurve(direction, xi, full, force, share, stuck * xi, np.array(fast))
+
+
+# --- friction that follows the load, quasi-steady: at each as if it had always been there
+
+SIZES = np.linspace(0.2, 1.0, 17)
+"""Sizes of the contact, cube roots of the load over the largest one, at which it is solved."""
+MOST, HALVINGS = 100.0, 12
+"""Times the creepages, and part of them, between which full slip is sought; halvings of that interval."""
+CREEP_CHANGE, LOAD_CHANGE = 0.05, 0.25
+"""Shares by which creepage and load are changed for slopes of the force; less moves single cells."""
+ROUNDING = 1e-9
+"""Share of what friction carries below which a force is none: it would be opposite by symmetry."""
+
+
+@dataclass(frozen=True, eq=False)
+class CreepingBodies:
+    """Two smooth bodies that roll with creepages that are given.
+
+    Parameters
+    ----------
+    rolling : FrictionalHalfSpace
+        Bodies and friction.
+    gap : ndarray (nx, ny)
+        Of the bodies at zero approach, m.
+    creepage : (float, float, float)
+        ξ, η and spin φ, 1/m, of the first body as in `FrictionalHalfSpace.roll`; not all zero.
+    speed : float
+        Rolling speed, m/s.
+    largest_load : float
+        N.
+
+    Notes
+    -----
+    Quasi-steady: the load changes little while a place passes through the contact, so that waves of the force
+    are long against it, v/f > 2a. The pressure is that of smooth bodies without friction.
+    """
+
+    rolling: FrictionalHalfSpace
+    gap: Array = field(repr=False)
+    creepage: tuple[float, float, float]
+    speed: float
+    largest_load: float
+
+    def at(self, load: float, scale: float = 1.0, across: float = 0.0) -> SlidingContact:
+        """The contact under a load, N, with the creepages times a scale, and a lateral one added.
+
+        Creepages that are out of range are not told of.
+        """
+        xi, eta, spin = (scale * each for each in self.creepage)
+        contact = self.rolling.half_space.solve(self.gap, load=load)
+        with OutOfRangeWarning.ignored():
+            return self.rolling.roll(contact, (xi, eta + across), spin, speed=self.speed)
+
+    @cached_property
+    def _shares(self) -> Array:
+        """Forces along and across, and moment, over the load (3, k)."""
+        loads = self.largest_load * SIZES**3
+        return np.array([forces_of(self.at(load)) for load in loads.tolist()]).T / loads
+
+    def follow(self, force: Array) -> Array:
+        """Forces on the first body along and across, N, and moment, N m (3, ...), of a normal force (...), N.
+
+        Zero where there is none.
+        """
+        load = np.maximum(force, 0.0)
+        size = np.cbrt(load / self.largest_load)
+        return np.stack([load * np.interp(size, SIZES, shares) for shares in self._shares])
+
+    def power(self, forces: Array) -> Array:
+        """What forces and moment (3, ...) of steady rolling turn into heat, W: −V (F·ξ + M φ).
+
+        On a grid nearer than `SlidingContact.dissipated_power`, whose error is of first order.
+        """
+        return np.asarray(-self.speed * np.tensordot(self.creepage, forces, axes=1))
+
+    @cached_property
+    def full_slip_load(self) -> float:
+        """Load up to which all slips, N; at least that of the smallest contact, infinite if of any."""
+        least = float(self.largest_load * SIZES[0] ** 3)
+        return _change(lambda load: self.at(load).stick_area > 0.0, least, self.largest_load)
+
+    def full_slip_scale(self, load: float) -> float:
+        """Share of the creepages from which on all slips under a load, N; infinite if that is not found."""
+        return _change(lambda scale: self.at(load, scale).stick_area == 0.0, 1.0 / MOST, MOST)
+
+    def slopes(self, load: float) -> tuple[float, float]:
+        """Slopes of the lateral force on the first body under a load, N: over creepage, N, and over load."""
+        radius = math.sqrt(self.at(load).normal.area / math.pi)
+        step = CREEP_CHANGE * math.hypot(*self.creepage[:2], radius * self.creepage[2])
+        less, more = (self.at(load, across=sign * step).force[1] for sign in (-1.0, 1.0))
+        low, high = (self.at(load * (1.0 + sign * LOAD_CHANGE)).force[1] for sign in (-1.0, 1.0))
+        return (more - less) / (2.0 * step), (high - low) / (2.0 * LOAD_CHANGE * load)
+
+
+def forces_of(found: SlidingContact) -> Array:
+    """Forces on the first body along and across, N, and moment about the normal, N m (3,)."""
+    forces, arms = np.array((*found.force, found.moment)), (1.0, 1.0, math.sqrt(found.normal.area))
+    return np.where(np.abs(forces) > ROUNDING * found.limit * np.array(arms), forces, 0.0)
+
+
+def _change(holds: Callable[[float], bool], low: float, high: float) -> float:
+    """Where something begins to hold between two positive numbers; infinite if it does not."""
+    if not holds(high):
+        return math.inf
+    for _ in range(HALVINGS):
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return math.sqrt(low * high)

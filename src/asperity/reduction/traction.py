@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, require
-from asperity.contact.creep import DIRECTIONS, LEAST_LENGTHS, RolledSample, contact_rows
+from asperity.contact.creep import DIRECTIONS, has_room, over_smooth, rolled_over
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.contact.scan import Counts, warn_of_flaws
 from asperity.contact.tangential import FrictionalHalfSpace
@@ -172,10 +172,11 @@ def _tangents(stuck: FrictionalHalfSpace, contact: Contact, smooth: Contact, sam
         shifts = ((MOTION, 0.0), (0.0, MOTION))
         matrix = -np.array([stuck.shift(each, shift).force for shift in shifts]).T / MOTION
         row[:8] = each.force, each.edge_share > TRUNCATED, each.area, each.stiffness, *matrix.ravel()
-    if len(sample) - len(contact.pressure) >= LEAST_LENGTHS * contact_rows(smooth):
-        rolled = RolledSample.along(smooth, sample)
-        for i, motion in enumerate(MOTION * np.array(list(DIRECTIONS.values()))):
+    if has_room(smooth, sample):
+        motions = MOTION * np.array(list(DIRECTIONS.values()))
+        rolled = rolled_over(stuck, smooth, sample, motions)
+        for i, ((xi, eta, spin), states) in enumerate(zip(motions.tolist(), rolled, strict=True)):
             axis = min(i, 1)
-            steady = -stuck.roll(smooth, (motion[0], motion[1]), motion[2]).force[axis] / MOTION
-            found[:, 8 + i] = steady * rolled.over_smooth(stuck, motion, axis)[0], steady
+            steady = -stuck.roll(smooth, (xi, eta), spin).force[axis] / MOTION
+            found[:, 8 + i] = steady * over_smooth(*states, axis)[0], steady
     return found

@@ -1,17 +1,26 @@
-"""How a wheel creeps on a rail: stick and slip, friction in time, and whether it squeals."""
+"""Friction of a case under its working load and over states; how a wheel creeps on a rail, and squeals."""
 
 import numpy as np
 
 from asperity.arguments import Array, Complex
-from asperity.contact.creep import LEAST_LENGTHS, RolledSample, contact_rows
-from asperity.contact.friction import SlidingContact, cell_places
-from asperity.contact.quasi_steady import CreepingBodies, forces_of
-from asperity.errors import OutOfRangeWarning
-from asperity.scenarios.creep import friction_of, rough_strips, smooth_with_friction
+from asperity.case.scene import Case
+from asperity.contact import creep
+from asperity.contact.friction import Friction, SlidingContact, cell_places
+from asperity.contact.halfspace import Contact
+from asperity.contact.tangential import FrictionalHalfSpace
+from asperity.errors import InputError, OutOfRangeWarning
+from asperity.progress import Progress
+from asperity.reduction import stiffness, texture
+from asperity.reduction.traction import TractionStates, middle_of, traction_states
+from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.reducing import LIGHTEST_STATE
 from asperity.scenes import compute, schema
 from asperity.scenes.sideways import Sideways
 from asperity.schema import Values
 from asperity.structures.squeal import CreepingContact, poles_of, ringing_modes
+
+LEAST_CELLS = 4.0
+"""Cells in the shorter semi-axis of the smooth contact in the lowest state."""
 
 SOURCES = (
     "J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990) (friction).",
@@ -20,24 +29,73 @@ SOURCES = (
 )
 
 
+def friction_of(case: Case) -> Friction:
+    """What a case says of friction, or a coefficient of 0.3 where it says nothing of creep."""
+    if "creep" not in case.inner:
+        return Friction(0.3)
+    return Friction(case.sideways.friction, case.creep.kinetic, case.creep.falling_velocity)
+
+
+Whole = PreparedCase | compute.Computed
+"""A case with its geometry and textures."""
+
+
+def smooth_with_friction(of: Whole, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
+    """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
+    case, shape = of.case, of.shape
+    space, bodies = (
+        shape.half_space(case.contact.hardness),
+        (case.rolling.material, case.rolled_over.material),
+    )
+    smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
+    return FrictionalHalfSpace(space, bodies, friction), smooth
+
+
+def rough_strips(of: Whole) -> list[Array]:
+    """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m."""
+    weights, nx = texture.punch_weights(of.shape.spacing, of.shape.class_axes), len(of.shape.body)
+    rough = [strip.heights for strip in of.textures.strips if strip.heights.any()]
+    return [heights - stiffness.weighted_mean(middle_of(heights, nx), weights) for heights in rough]
+
+
+def states_of(prepared: PreparedCase, count: int, progress: Progress | None = None) -> TractionStates:
+    """State functions of tangential contact of a rough case, at `count` approaches.
+
+    From where all samples carry a light load, and the smooth contact has some cells, to where one carries
+    the largest that the window holds.
+    """
+    case, shape, samples = prepared.case, prepared.shape, rough_strips(prepared)
+    if not samples:
+        remedy = "Give it a file or rms, of a rail a spectrum."
+        raise InputError("surface", "none, or as a line alone", "a rough surface with samples", remedy)
+    space = shape.half_space(case.contact.hardness)
+    resolved = (LEAST_CELLS * max(shape.spacing) / min(shape.axes(1.0))) ** 3
+    loads = max(LIGHTEST_STATE * shape.class_load, resolved), shape.largest_force
+    gaps = [shape.body - middle_of(sample, len(shape.body)) for sample in samples]
+    low, high = np.array([[space.solve(gap, load=load).approach for load in loads] for gap in gaps]).T
+    approaches = low.max() + (high.min() - low.max()) * np.linspace(0.0, 1.0, count) ** 2
+    bodies = case.rolling.material, case.rolled_over.material
+    return traction_states(space, bodies, shape.body, samples, approaches, progress)
+
+
 def creep_group(computed: compute.Computed) -> Values:
     """Lay out friction under the working load and in time, and the stability of the wheel on the rail."""
     case, shape, speed = computed.case, computed.shape, computed.case.speed
     if "creep" not in case.inner or not any(case.creep.creepage):
         return {}
     creepage = case.creep.creepage
-    rolling, smooth = smooth_with_friction(case, shape, friction_of(case))
+    rolling, smooth = smooth_with_friction(computed, friction_of(case))
     first = shown = rolling.roll(smooth, creepage[:2], creepage[2], speed=speed)
     rows = [_facts(first)]
-    for strip in rough_strips(shape, computed.textures):
-        if len(strip) - len(shape.body) >= LEAST_LENGTHS * contact_rows(smooth):  # room to roll over it
+    for strip in rough_strips(computed):
+        if creep.has_room(smooth, strip):
             with OutOfRangeWarning.ignored():  # what is out of it has been told of the smooth contact
-                steady, states = RolledSample.along(smooth, strip).states(rolling, creepage, speed)
+                ((steady, states),) = creep.rolled_over(rolling, smooth, strip, [creepage], speed)
             missed = rows[0] - _facts(steady)  # by its long steps
             rows.append(np.mean([_facts(each) for each in states], axis=0) + missed)
             shown = states[-1] if shown is first else shown
     force, (x, y) = computed.stacked("contact_force"), cell_places(rolling.half_space)
-    bodies = CreepingBodies(rolling, shape.body, creepage, speed, max(float(force.max()), shape.load))
+    bodies = creep.CreepingBodies(rolling, shape.body, creepage, speed, max(float(force.max()), shape.load))
     followed, (stick, slip, *forces) = bodies.follow(force), np.transpose(rows)
     power = bodies.power(followed)
     return {
@@ -66,10 +124,10 @@ def creep_group(computed: compute.Computed) -> Values:
 
 def _facts(found: SlidingContact) -> Array:
     """Areas that stick and slip, forces and moment (5,)."""
-    return np.array((found.stick_area, found.slip_area, *forces_of(found)))
+    return np.array((found.stick_area, found.slip_area, *creep.forces_of(found)))
 
 
-def _squeal(computed: compute.Computed, bodies: CreepingBodies) -> Values:
+def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
     """Free motions of the wheel on the rail at mid-span, of a wheel whose axial modes are known."""
     scene, side = computed.scene, Sideways(computed)
     modes = scene.modes

@@ -19,7 +19,6 @@ from asperity.reporting.page import drawable_figures, page
 from asperity.results import read_result
 from asperity.scenes.figures import (
     bearing,
-    creep,
     effects,
     force,
     measured,
@@ -80,7 +79,9 @@ CHAPTERS = (
     ),
     Chapter("track", "Track and wheel", (*track.TRACK, track.LOSS_FACTORS), (measured.measured_table,)),
     Chapter("sideways", "Sideways", sideways.SIDEWAYS, (sideways.sideways_table,)),
-    Chapter("creep", "Creep and friction", creep.CREEP, (creep.friction_table,), creep.creep_answers),
+    Chapter(
+        "creep", "Creep and friction", sideways.CREEP, (sideways.friction_table,), sideways.creep_answers
+    ),
     Chapter("rail", "Motion of the rail", motion.RAIL),
     Chapter("energy", "Energy", (), (motion.energy_table,)),
     Chapter(

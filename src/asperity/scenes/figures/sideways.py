@@ -1,17 +1,19 @@
-"""What moves sideways: lateral force and friction, receptances and decay."""
+"""What moves sideways: lateral force, receptances and decay; friction of a wheel that creeps, and squeal."""
 
 from collections.abc import Iterator
 
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import INK, MUTED, Line, Mark, Note, Panel, Rules
-from asperity.reporting.figure import Figure, Lines, Of
+from asperity.reporting import data, headline, panels
+from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Panel, Rules
+from asperity.reporting.figure import Figure, Lines, Of, field
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.reporting.texture_figures import map_panel
 from asperity.scenes import schema
+from asperity.scenes.figures import force
 from asperity.scenes.figures.measured import over_bands
-from asperity.schema import spectra
+from asperity.schema import rolling, spectra
 
 FORCE = schema.LATERAL_FORCE_LEVEL
 
@@ -90,11 +92,11 @@ SIDEWAYS = (
         "Receptances and decay sideways",
         Of(schema.SIDEWAYS_FREQUENCY),
         (
-            Of(schema.RAIL_LATERAL_RECEPTANCE, "", "rail, sideways", (chart.VERMILLION, (), 1.6)),
-            Of(schema.RAIL_CROSS_RECEPTANCE, "", "rail, by a vertical force", (chart.VERMILLION, (1.5, 1.5))),
-            Of(schema.WHEEL_LATERAL_RECEPTANCE, "", "wheel, axial", (chart.BLUE, (), 1.6)),
-            Of(schema.WHEEL_CROSS_RECEPTANCE, "", "wheel, by a vertical force", (chart.BLUE, (1.5, 1.5))),
-            Of(schema.LATERAL_DECAY_RATE, "", "rail, sideways", (chart.VERMILLION, (), 1.6)),
+            Of(schema.RAIL_LATERAL_RECEPTANCE, "", "rail, sideways", (VERMILLION, (), 1.6)),
+            Of(schema.RAIL_CROSS_RECEPTANCE, "", "rail, by a vertical force", (VERMILLION, (1.5, 1.5))),
+            Of(schema.WHEEL_LATERAL_RECEPTANCE, "", "wheel, axial", (BLUE, (), 1.6)),
+            Of(schema.WHEEL_CROSS_RECEPTANCE, "", "wheel, by a vertical force", (BLUE, (1.5, 1.5))),
+            Of(schema.LATERAL_DECAY_RATE, "", "rail, sideways", (VERMILLION, (), 1.6)),
             over_bands(
                 schema.MEASURED_LATERAL_DECAY_RATE,
                 schema.LATERAL_DECAY_RATE,
@@ -127,3 +129,148 @@ def sideways_table(tree: DataTree) -> ReportTable | None:
         "slips, and the force is less. Sound power with what moves sideways: under rolling noise."
     )
     return table("sideways_table", "Sideways", columns, note)
+
+
+# --- how a wheel creeps on a rail: stick and slip, friction in time, and which of its modes squeal
+
+FRICTION, HEAT, GROWTH = schema.FRICTION_FORCE, schema.FRICTION_POWER, schema.GROWTH_RATE
+
+
+def _stick(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Traction and slip velocity of a contact, from above."""
+    y = data.values(tree, schema.CREEP_Y)
+    traction, slip = (data.values(tree, entry) for entry in (schema.TRACTION, schema.SLIP_VELOCITY))
+    for name, unit, values in (("traction", "MPa", 1e-6 * traction), ("slip velocity", "mm/s", 1e3 * slip)):
+        scale = (f"{name} / {unit}", 0.0, float(values.max()) or 1.0)
+        shown = np.where((traction > 0.0) & (values > 0.0), values, np.nan)
+        yield map_panel(lines.at, y, shown, scale, title=name, height=4.1, beside=name != "traction")
+
+
+def _full_slip(tree: DataTree) -> str:
+    """Say where full slip begins, by creepage and by load."""
+    scale, load = (data.number(tree, each) for each in (schema.FULL_SLIP_SCALE, schema.FULL_SLIP_LOAD))
+    begins = "is not reached" if scale is None else f"begins at {scale:.3g} times these creepages"
+    under = "under any load of the run" if load is None else f"up to {data.engineering(load, 'N')}"
+    return f"Full slip {begins}, by smooth bodies under the working load; with them all slips {under}."
+
+
+def _friction(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Friction force along and to the field side, and heat, around the largest force of the main law."""
+    time, unit = panels.time_axis(tree, lines.at)
+    largest = max(float(np.abs(series.values).max()) for series in lines.of(FRICTION))
+    size, symbol = data.force_unit(largest)
+    for way in schema.WAYS:  # but for what is nearly nothing
+        found = lines.of(FRICTION, way=way)
+        if any(np.abs(series.values).max() > 1e-3 * largest for series in found):
+            drawn = panels.styled(tree, lines.at / unit, found, size=size)
+            yield Panel(time, Axis(f"{way} / {symbol}"), tuple(drawn), height=2.4)
+    drawn = panels.styled(tree, lines.at / unit, lines.of(HEAT), size=1e3)
+    yield Panel(time, Axis("heat / kW", 0.0), tuple(drawn), height=2.0)
+
+
+def _growing(tree: DataTree) -> list[int]:
+    """Numbers of the motions that grow, the fastest first."""
+    growth = np.nan_to_num(data.values(tree, GROWTH), nan=-np.inf)
+    return [int(n) for n in np.argsort(-growth, kind="stable") if growth[n] > 0.0]
+
+
+def squeal_sentence(tree: DataTree) -> str:
+    """Say whether the wheel squeals, and in which modes; n are nodal diameters."""
+    if not data.present(tree, GROWTH):
+        return "Whether it squeals is not known, for want of the wheel's axial modes."
+    growing, growth = _growing(tree), data.values(tree, GROWTH)
+    modes = f"{np.isfinite(growth).sum()} modes of the wheel on the rail"
+    if not growing:
+        return f"Squeal: no, all {modes} decay (linear stability)."
+    of = (schema.SQUEAL_DIAMETERS, schema.SQUEAL_FREQUENCY, schema.AXIAL_SHARE)
+    fastest = np.transpose([data.values(tree, entry)[growing[:3]] for entry in of]).tolist()
+    told = [f"{'axial' if axial > 0.5 else 'radial'} n = {n:.0f} at {at:.0f} Hz" for n, at, axial in fastest]
+    first = f"{', '.join(told)}, the first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}"
+    return f"Squeal: yes, {len(growing)} of {modes} grow (linear stability); fastest {first}."
+
+
+def _squeal(tree: DataTree, lines: Lines) -> list[Panel]:
+    """Growth rate of each motion over its frequency, named by its nodal diameters where it grows."""
+    growth, growing = data.values(tree, GROWTH), _growing(tree)
+    reach = 1.2 * max(float(growth[growing].max(initial=0.0)), 5.0)
+    looks = ((np.flatnonzero(growth <= 0.0), "decays", MUTED, "o"), (growing, "grows", VERMILLION, "^"))
+    points = [
+        Line(lines.at[kept], growth[kept], name, colour, width=0.0, marker=marker)
+        for kept, name, colour, marker in looks
+    ]
+    named = {float(data.values(tree, schema.SQUEAL_DIAMETERS)[n]): n for n in reversed(growing)}
+    notes = [Note(f" {count:.0f}", lines.at[n], growth[n]) for count, n in named.items()]
+    along = panels.frequency_axis(float(np.nanmin(lines.at)) / 1.1, float(np.nanmax(lines.at)) * 1.1)
+    return [Panel(along, Axis("growth rate / (1/s)", -reach, reach), (panels.zero(), *points, *notes))]
+
+
+def _squeal_caption(tree: DataTree) -> str:
+    damping, slope = (data.number(tree, fact) or 0.0 for fact in (schema.CREEP_DAMPING, schema.LOAD_SLOPE))
+    return (
+        "Small motions of the wheel on the rail at mid-span, with nodal diameters where they grow; some "
+        "decay faster than the axis shows. Linear, by quasi-steady friction in line with the springs of the "
+        f"contact: it damps by {data.engineering(damping, 'N s/m')}, and follows the load by {slope:.3g}."
+    )
+
+
+CREEP = (
+    Figure(
+        "stick_and_slip",
+        "Where it sticks and where it slips",
+        Of(schema.CREEP_X, "x"),
+        (field(schema.TRACTION, schema.CREEP_Y, "q"), field(schema.SLIP_VELOCITY, schema.CREEP_Y, "v")),
+        _stick,
+        lambda tree: (
+            "The first sample, or smooth bodies, under the working load. What has traction and no slip "
+            f"velocity sticks. {_full_slip(tree)}"
+        ),
+        (schema.TRACTION, schema.SLIP_VELOCITY, schema.CREEP_Y),
+    ),
+    Figure(
+        "friction_force",
+        "Friction force on the wheel",
+        Of(rolling.TIME),
+        (Of(FRICTION, "{way}, {law}", "{law}"), Of(HEAT, "heat, {law}", "{law}")),
+        _friction,
+        "Around the largest contact force of the main law, at the first contact. Quasi-steady: that of "
+        "smooth bodies in steady rolling under the contact force of the moment; zero without contact.",
+        rows=force.around_peak,
+    ),
+    Figure(
+        "squeal",
+        "Which modes squeal",
+        Of(schema.SQUEAL_FREQUENCY),
+        (Of(GROWTH), Of(schema.SQUEAL_DIAMETERS), Of(schema.AXIAL_SHARE)),
+        _squeal,
+        _squeal_caption,
+    ),
+)
+
+
+def friction_table(tree: DataTree) -> ReportTable | None:
+    """Stick, forces and heat of each contact under the working load, then by each law as means over time."""
+    if not (laws := data.laws(tree, schema.MEAN_FRICTION_POWER)):
+        return None
+    area, full = (schema.STICK_AREA, schema.SLIP_AREA), data.values(tree, schema.FULL_SLIP_SHARE)
+    power = schema.SPIN_MOMENT, schema.SAMPLE_HEAT, schema.MEAN_FRICTION_POWER
+    stick, slip, moment, heat, mean_heat = (data.values(tree, entry) for entry in (*area, *power))
+    in_time = [data.of_law(tree, FRICTION, law) for law in laws]
+    samples, none = [f"sample {n}" for n in range(1, len(stick))], np.full(len(laws), np.nan)
+    forces = np.vstack([data.values(tree, schema.SAMPLE_FRICTION), np.mean(in_time, axis=-1)]).T
+    columns = {
+        "contact": text_cells(["smooth", *samples, *(f"in time, {law}" for law in laws)]),
+        "sticks / %": number_cells([*(100.0 * stick / (stick + slip)), *none], "{:.1f}"),
+        "time in full slip / %": number_cells([*np.full_like(stick, np.nan), *(100.0 * full)], "{:.1f}"),
+        **{f"force {way}": number_cells(each, "N") for way, each in zip(schema.WAYS, forces, strict=True)},
+        "spin moment": number_cells([*moment, *none], "N m"),
+        "heat": number_cells([*heat, *mean_heat], "W"),
+    }
+    note = "Friction on the wheel: under the working load, and mean over time, forces at the first contact."
+    return table("friction_table", "Friction", columns, note)
+
+
+def creep_answers(tree: DataTree) -> headline.Answers | None:
+    """Say whether a wheel that creeps squeals."""
+    if not data.present(tree, schema.STICK_AREA):
+        return None
+    return headline.Answers(more=squeal_sentence(tree))
