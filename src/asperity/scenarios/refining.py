@@ -133,7 +133,6 @@ class Setting:
     limit: str = ""  # why there is no way
     # whether textures are laid out anew: the surface of the finer case is then restricted for the coarser one
     laid_anew: bool = False
-    scans_kept: bool = False  # whether all scans of the case are found in the cache
 
 
 def shared_settings(case: Case, textures: Textures, approaches: Array) -> tuple[list[Setting], list[Setting]]:
@@ -167,7 +166,7 @@ def shared_settings(case: Case, textures: Textures, approaches: Array) -> tuple[
     if not textures.maps:
         reduced = [Setting(each.name, (), NO_SAMPLES) for each in reduced]
     grid = Setting("grid", (Way(f"{_length(spacing)} → {_length(fine)}", finer),), laid_anew=True)
-    first = [grid, *reduced, Setting("time step", (shorter,), scans_kept=True)]
+    first = [grid, *reduced, Setting("time step", (shorter,))]
     return first, [Setting(PATH_LENGTH, (Way(f"{case.rolled_time:.3g} s → its first half"),))]
 
 

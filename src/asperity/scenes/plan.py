@@ -89,12 +89,12 @@ def own_settings(case: Case) -> list[Setting]:
             return [Setting("poles", (), "the rail is scattered from its kernel, without poles")]
         words = f"up to {case.numerics.poles or POLES} → the kernel that they are fitted to"
         scattered = Way(words, {"numerics.kernel": "scatter", "numerics.poles": None})
-        return [Setting("poles", (scattered,), scans_kept=True)]
+        return [Setting("poles", (scattered,))]
     if not isinstance(over, beam.BeamKeys):
         return []
     before = over.highest_mode(case.numerics.highest_frequency)
     words = f"up to {written(before, 'Hz', 'kHz')} → up to {written(2.0 * before, 'Hz', 'kHz')}"
-    return [Setting("modes", (Way(words, {f"{case.over_name}.modes_up_to": 2.0 * before}),), scans_kept=True)]
+    return [Setting("modes", (Way(words, {f"{case.over_name}.modes_up_to": 2.0 * before}),))]
 
 
 @dataclass(frozen=True)
