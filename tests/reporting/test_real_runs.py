@@ -12,7 +12,7 @@ from asperity.scenes.report import CHAPTERS, figures_of, page_of
 
 TABLES = {
     "ball-on-beam": {"statistics", "reference", "contact_loss", "energy_balance"},
-    "wheel-on-rail": {"statistics", "contact_loss", "sound_power_table"},
+    "wheel-on-rail": {"statistics", "contact_loss", "sound_power"},
     "bodies": {"statistics", "contact_loss", "where_contacts_are", "energy_balance"},
 }
 

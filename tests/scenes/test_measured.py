@@ -9,7 +9,7 @@ from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.errors import MeasuredTrackWarning
 from asperity.running import prepare_case
 from asperity.scenes.figures.measured import MEASURED, measured_table
-from asperity.scenes.figures.noise import RADIATED, noise_answers, radiated_table
+from asperity.scenes.figures.noise import RADIATED, noise_answers, sound_power_table
 from asperity.scenes.figures.track import TRACK
 from asperity.scenes.measured import HammerTest
 from asperity.scenes.plan import planned_rows
@@ -91,9 +91,9 @@ def test_a_plan_warns_of_it_too():
 
 
 def test_the_report_shows_both(damped):
-    table = radiated_table(damped)
-    assert [row[0].text for row in table.rows] == ["linear, track as measured", "linear, all computed"]
-    measured, computed = (float(row[-1].text) for row in table.rows)
+    table = sound_power_table(damped)
+    assert [row[1].text for row in table.rows[:2]] == ["by vibration", "nothing measured"]
+    measured, computed = (float(row[table.head.index("total")].text) for row in table.rows[:2])
     assert computed > measured + 1.0
     card = noise_answers(damped).numbers[0]
     assert card.value == f"{measured:.1f} dB(A)"

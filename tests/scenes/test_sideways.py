@@ -17,7 +17,7 @@ from asperity.scenarios.scene import scene_of
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
 from asperity.scenes.figures.measured import limits_table
-from asperity.scenes.figures.noise import PASS_BY, RADIATED, noise_answers, pass_by_answers, radiated_table
+from asperity.scenes.figures.noise import PASS_BY, RADIATED, noise_answers, pass_by_answers, sound_power_table
 from asperity.scenes.figures.sideways import SIDEWAYS, sideways_table
 from asperity.scenes.noise import pass_by_group
 from asperity.scenes.result import spectra_group
@@ -213,8 +213,18 @@ def test_power_and_pass_by_say_the_vertical_part_the_sideways_part_and_the_sum(p
     rail, sleepers, *_, lateral, wheel, whole = heard["normalised_level"].values[0].round(1)
     parts = f"rail {rail}, sleepers {sleepers}, rail sideways {lateral}, wheel {wheel}"
     assert limits_table(tree).rows[0][1].text == f"{whole} dB(A): {parts}"
-    row = [cell.text for cell in radiated_table(tree).rows[0][1:]]
-    assert row == [f"{each:.1f}" for each in (*sent, side[0], side[2], side[3])]
+    table = sound_power_table(tree)
+    row = {head: cell.text for head, cell in zip(table.head, table.rows[0], strict=True)}
+    names = (
+        "rail",
+        "sleepers",
+        "wheel",
+        "total",
+        schema.RAIL_SIDEWAYS,
+        schema.WHEEL_BOTH,
+        schema.WITH_SIDEWAYS,
+    )
+    assert [row[name] for name in names] == [f"{each:.1f}" for each in (*sent, side[0], *side[2:])]
     assert all("total with sideways" in str(each.laid_out(tree).panels) for each in (RADIATED, PASS_BY))
 
 

@@ -49,7 +49,7 @@ CHAPTERS = (
         "noise",
         "Rolling noise",
         (noise.RADIATED,),
-        (noise.radiated_table, noise.wheel_table, noise.sound_power_table),
+        (noise.sound_power_table, noise.wheel_table),
         noise.noise_answers,
     ),
     Chapter(

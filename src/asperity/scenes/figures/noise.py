@@ -11,7 +11,7 @@ from asperity.reference.grounds import HARD
 from asperity.reporting import chart, data, headline, panels
 from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series
-from asperity.reporting.tables import Cell, ReportTable, number_cells, table, text_cells
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import LOOKS, compared_numbers, limit_sentence
 from asperity.schema import Entry
@@ -50,21 +50,6 @@ def by_part(tree: DataTree, entry: Entry) -> dict[str, float]:
     return {name: level for name, level in found.items() if np.isfinite(level)}
 
 
-def _levels_table(
-    words: tuple[str, str, str],
-    rows: Mapping[str, Mapping[str, float]],
-    note: str,
-    more: Mapping[str, list[Cell]],
-) -> ReportTable:
-    """Levels in dB(A) by what radiates, a row each; name, title and first head in words, and more columns."""
-    name, title, head = words
-    parts = dict.fromkeys(part for levels in rows.values() for part in levels)
-    levels = {
-        part: number_cells((row.get(part, np.nan) for row in rows.values()), "{:.1f}") for part in parts
-    }
-    return table(name, title, {head: text_cells(rows), **levels, **more}, note)
-
-
 def _weighting(tree: DataTree) -> Iterator[Series]:
     """Column of the A-weighting over bands."""
     yield Series("A-weighting", "dB", a_weighting(data.values(tree, BAND)), BAND)
@@ -79,35 +64,6 @@ def _of_parts(
         for part in dashes
         for series in lines.of(entry, law=law, **{entry.dims[1]: part})
     ]
-
-
-# --- by CNOSSOS-EU
-
-
-def sound_power_table(tree: DataTree) -> ReportTable | None:
-    """A-weighted sound power per law and source, and of all together its differences to the linear laws."""
-    laws, note = data.laws(tree, STANDARD_A), ""
-    if not laws:
-        return None
-    rows = {law: _of_law(tree, STANDARD_A, law) for law in laws}
-    standard = data.stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
-    if standard is not None:
-        rows["CNOSSOS-EU"] = {part: float(standard.sel(source=part)) for part in parts_of(tree, STANDARD_A)}
-        name = standard.attrs.get("contact_filter", "")
-        note = f" Last row: the same roughness with the contact filter of CNOSSOS-EU itself ({name})."
-    totals = {law: levels[WHOLE] for law, levels in rows.items()}
-    over = {
-        f"over {base}": number_cells(
-            (np.nan if law == base else level - totals[base] for law, level in totals.items()), data.signed
-        )
-        for base in data.baselines_among(tree, laws)
-    }
-    note = (
-        f"dB(A) re 1 pW, over the bands that were computed; differences of the {WHOLE}. Positive: linear "
-        f"contact underestimates.{note}"
-    )
-    words = "sound_power_table", "Sound power by CNOSSOS-EU, A-weighted", "law"
-    return _levels_table(words, rows, note, over)
 
 
 # --- from the vibration itself
@@ -201,24 +157,47 @@ RADIATED = Figure(
 )
 
 
-def radiated_table(tree: DataTree) -> ReportTable | None:
-    """A-weighted sound power per law and radiator."""
-    laws, beside, sideways = (data.laws(tree, entry) for entry in (OWN_A, UNMEASURED_A, SIDE_A))
-    if not laws:
+_PARTS = (*BOTH, TRACK, "wheel", WHOLE, schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH, schema.WITH_SIDEWAYS)
+_MODELS = {"by vibration": OWN_A, "nothing measured": UNMEASURED_A, "by CNOSSOS-EU": STANDARD_A}
+
+
+def _powers(tree: DataTree) -> dict[tuple[str, str], dict[str, float]]:
+    """A-weighted sound power by what radiates, of each law by each model."""
+    found = {}
+    for model, entry in _MODELS.items():
+        for law in data.laws(tree, entry):
+            beside = entry is OWN_A and law in data.laws(tree, SIDE_A)
+            levels = _of_law(tree, entry, law) | (_of_law(tree, SIDE_A, law) if beside else {})
+            both = levels.get("track") or energy_sum([levels[part] for part in BOTH])
+            found[law, model] = {TRACK: float(both)} | levels
+    standard = data.stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
+    if standard is not None:
+        track, wheel, whole = standard.values.tolist()
+        model = f"its contact filter, {standard.attrs['contact_filter']}"
+        found["CNOSSOS-EU", model] = {TRACK: track, "wheel": wheel, WHOLE: whole}
+    return found
+
+
+def sound_power_table(tree: DataTree, main: bool = False) -> ReportTable | None:
+    """A-weighted sound power by what radiates, per law and model, or of the main law alone."""
+    powers = _powers(tree)
+    if not powers:
         return None
-    measured = ", track as measured" if beside else ""
-    rows = {
-        f"{law}{measured}": _of_law(tree, OWN_A, law)
-        | (_of_law(tree, SIDE_A, law) if law in sideways else {})
-        for law in laws
-    }
-    rows |= {f"{law}, all computed": _of_law(tree, UNMEASURED_A, law) for law in beside}
-    for levels in rows.values():
-        levels.pop(schema.WHEEL_VERTICAL, None)
-    told = " ".join(filter(None, [silence(tree), with_measured(tree), with_sideways(tree)]))
-    note = f"dB(A) re 1 pW, over the bands that were computed. {told}"
-    words = "radiated_power_table", "Sound power from vibration, A-weighted", "law"
-    return _levels_table(words, rows, note, {})
+    laws = list(dict.fromkeys(law for law, _ in powers))
+    rows = {of: levels for of, levels in powers.items() if not main or of[0] == laws[0]}
+    columns = dict(zip(("law", "model"), map(text_cells, zip(*rows, strict=True)), strict=True))
+    for part in _PARTS:
+        if any(part in levels for levels in rows.values()):
+            columns[part] = number_cells((each.get(part, np.nan) for each in rows.values()), "{:.1f}")
+    for base in [] if main else data.baselines_among(tree, laws):
+        over = (
+            levels[WHOLE] - powers[base, model][WHOLE] if law != base and (base, model) in powers else np.nan
+            for (law, model), levels in rows.items()
+        )
+        columns[f"over {base}"] = number_cells(over, data.signed)
+    note = "dB(A) re 1 pW, over the bands that were computed; differences are those of the total."
+    note = " ".join(filter(None, [note, silence(tree), with_measured(tree), with_sideways(tree)]))
+    return table("sound_power_of_main_law" if main else "sound_power", "Sound power by source", columns, note)
 
 
 # --- the pass-by: level over time beside the track, and its single numbers
@@ -317,10 +296,10 @@ PASS_BY = Figure(
 
 def noise_answers(tree: DataTree) -> headline.Answers | None:
     """Sound power of the main law by both models, and what decides it."""
-    own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
-    if not own and not standard:
+    if (powers := sound_power_table(tree, main=True)) is None:
         return None
-    side, whole = by_part(tree, SIDE_A), own
+    own, standard, side = (by_part(tree, entry) for entry in (OWN_A, STANDARD_A, SIDE_A))
+    whole = own
     lead, more = _by_vibration(tree, own, side)
     held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
     plain = by_part(tree, UNMEASURED_A).get(WHOLE)
@@ -338,7 +317,7 @@ def noise_answers(tree: DataTree) -> headline.Answers | None:
         for how, of, note in models
         if WHOLE in of
     )
-    return headline.Answers(lead, more, cards, (_sources_table(own | side, standard),))
+    return headline.Answers(lead, more, cards, (powers,))
 
 
 def _by_vibration(tree: DataTree, own: Mapping[str, float], side: Mapping[str, float]) -> tuple[str, str]:
@@ -363,25 +342,6 @@ def _bands(tree: DataTree, part: str) -> str:
     band = data.values(tree, BAND)
     level = data.of_law(tree, OWN, data.laws(tree, OWN)[0])[parts_of(tree, OWN).index(part)]
     return headline.deciding_bands(band, level + a_weighting(band))
-
-
-def _sources_table(own: Mapping[str, float], standard: Mapping[str, float]) -> ReportTable:
-    """Sound power by source and model."""
-    both = [own[name] for name in BOTH if name in own]
-    track = {TRACK: float(energy_sum(both))} if len(both) == 2 else {}
-    by_label = {TRACK: standard["track"]} if "track" in standard else {}
-    models = {"by vibration, own model": {**own, **track}, "by CNOSSOS-EU": {**standard, **by_label}}
-    shown = {name: levels for name, levels in models.items() if levels}
-    heads = {name: name for name in (*BOTH, TRACK, "wheel")} | {WHOLE: "sum"}
-    heads |= {name: name for name in (schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH) if name in own}
-    heads |= {schema.WITH_SIDEWAYS: "sum with sideways"} if schema.WITH_SIDEWAYS in own else {}
-    rows = {
-        name: {head: levels.get(part, np.nan) for part, head in heads.items()}
-        for name, levels in shown.items()
-    }
-    note = "" if "wheel" in own or not own else "–: not known. The first sum is without the wheel."
-    words = "sound_power_sources", "Sound power by source", "dB(A) re 1 pW"
-    return _levels_table(words, rows, note, {})
 
 
 _HEADLINES = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_MAXIMUM_LEVEL}
