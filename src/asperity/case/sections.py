@@ -325,13 +325,11 @@ class NoiseKeys(form.Section):
             return f"ground of {written(self.flow_resistivity, 'Pa s/m^2', 'kPa s/m^2')}"
         return self.ground or grounds.HARD
 
-    def sound_path(self, band: Array, receiver: "Receiver | None" = None) -> "SoundPath | None":
-        """What stands between rails and a receiver, in one-third octaves, Hz, where anything does."""
+    def sound_path(self, band: Array, receiver: "Receiver | None" = None) -> "SoundPath":
+        """What stands between rails and a receiver, in one-third octaves, Hz."""
         from asperity.radiation.sound_path import PorousGround, SoundPath
 
         resistivity = self.flow_resistivity or grounds.GROUNDS.get(self.ground or grounds.HARD)
-        if resistivity is None and self.directivity == cnossos.EVEN and self.rail_distance is None:
-            return None
         ground = None if resistivity is None else PorousGround(resistivity)
         apart = self.rail_distance or 0.0
         return SoundPath(band, receiver or self.receiver, ground, self.ground_depth, self.directivity, apart)

@@ -1,32 +1,17 @@
-"""Sound pressure beside the track while axles pass: sources along the rail over reflecting ground.
-
-All sources are incoherent. Unless a `asperity.radiation.sound_path.SoundPath` says otherwise they radiate
-evenly in all directions and stand on reflecting ground, so that p² = W ρc Q/(4π d²) with Q = 2 at a distance
-d, and lie in the middle of the track.
-"""
+"""Axles that pass a receiver beside the track, and the levels of a pass-by."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import solve_banded
-from scipy.special import exp1
 
-from asperity.arguments import Array, ArrayLike, Complex
+from asperity.arguments import Array, ArrayLike
 from asperity.errors import ComputationError
-from asperity.radiation.track import IMPEDANCE
 from asperity.spectra import level_of
 
-if TYPE_CHECKING:
-    from asperity.radiation.sound_path import SoundPath
-
-DIRECTIVITY_FACTOR = 2.0
-"""Q: all of the power goes above the ground."""
-_FACTOR = IMPEDANCE * DIRECTIVITY_FACTOR / (4.0 * np.pi)  # of p² = W ρc Q/(4π d²)
-_FAR = 40.0  # |z| from which exp(z) E1(z) follows its asymptotic series
-_TERMS = 20
-_STEPS = 25  # of a record, per distance of the receiver
+STEPS = 25
+"""Of a record, per distance of the receiver."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +20,6 @@ class Receiver:
 
     distance: float = 7.5
     height: float = 1.2
-
-    def shortest(self, height: float) -> float:
-        """Distance, m, from a source of this height above the rail head, m, that is just opposite."""
-        return float(np.hypot(self.distance, self.height - height))
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,95 +80,8 @@ class Passage:
         beyond = -start * self.speed
         lead = 10.0 * receiver.distance + 3.0 * longest + 3.0 * beyond  # at 1/d² −10 dB are at 2.2 `beyond`
         first, last = start * self.speed - lead, end * self.speed + lead
-        count = int(np.ceil((last - first) / receiver.distance * _STEPS)) + 1
+        count = int(np.ceil((last - first) / receiver.distance * STEPS)) + 1
         return np.linspace(first, last, count) / self.speed
-
-
-def divergence(length: float, distance: float, along: ArrayLike) -> Array:
-    """Mean of 1/d² over a source that is spread along the rail, 1/m².
-
-    Parameters
-    ----------
-    length : float
-        ℓ of the source, m, spread as exp(−2|ξ|/ℓ)/ℓ around its middle; zero for one place.
-    distance : float
-        From the line of the source, m.
-    along : array_like
-        Place of its middle along the line, m from the point opposite the receiver.
-
-    Returns
-    -------
-    ndarray
-        Of the shape of `along`.
-
-    Notes
-    -----
-    ∫ exp(−2|ξ|/ℓ)/(d² + (s + ξ)²) dξ/ℓ, exact: with 1/(d² + u²) = Im 1/(u − id)/d it is
-    Im [g(2(s − id)/ℓ) + g(2(−s − id)/ℓ)]/(ℓ d), g(z) = exp(z) E₁(z).
-    """
-    s = np.asarray(along, dtype=float)
-    if length == 0.0:
-        return np.asarray(1.0 / (distance**2 + s**2))
-    ahead, behind = (_scaled_exp1(2.0 / length * (each - 1j * distance)) for each in (s, -s))
-    return np.asarray((ahead + behind).imag / (length * distance))
-
-
-def squared_pressure(
-    source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike, path: "SoundPath | None" = None
-) -> Array:
-    """Mean square sound pressure (..., b, t), Pa², of what all axles make radiate, at times (t,), s.
-
-    On a path with the bands of the source, where one is given.
-    """
-    spread = _divergences(source, passage, receiver, np.asarray(time, dtype=float), path)
-    return _FACTOR * np.asarray(source.power, dtype=float)[..., None] * spread
-
-
-def exposure(
-    source: AxleSource, passage: Passage, receiver: Receiver, path: "SoundPath | None" = None
-) -> Array:
-    """Integral of the squared sound pressure over the whole passage (..., b), Pa² s: W ρc Q/(4 d v) per axle.
-
-    However far the power is spread along the rail; on a path with its integral in place of π/d.
-    """
-    if path is not None:
-        share = len(passage.axles) / passage.speed * path.integral(source.height)
-        return _FACTOR * share * np.asarray(source.power, dtype=float)
-    crossing = 4.0 * receiver.shortest(source.height) * passage.speed
-    return 4.0 * np.pi * _FACTOR * len(passage.axles) / crossing * np.asarray(source.power, dtype=float)
-
-
-def _divergences(
-    source: AxleSource, passage: Passage, receiver: Receiver, time: Array, path: "SoundPath | None"
-) -> Array:
-    """Sum of `divergence` over the axles (b, t), 1/m², of each band's length."""
-    bands = np.shape(source.power)[-1:]
-    lengths = np.broadcast_to(np.asarray(source.length, dtype=float), bands)
-    distance = receiver.shortest(source.height)
-    first = passage.speed * float(time.min()) - float(passage.axles[-1])
-    last = passage.speed * float(time.max())
-    farthest = max(-first, last)  # the same on either side
-    grid = np.linspace(0.0, farthest, 2 * int(np.ceil(farthest / receiver.distance * _STEPS)) + 2)
-    places = [np.abs(passage.speed * time - at) for at in passage.axles]
-    if path is None:
-        spread = np.stack([divergence(length, distance, grid) for length in lengths.tolist()])
-    else:
-        spread = path.spread(source.height, lengths, grid)
-    return np.stack([np.sum([np.interp(each, grid, one) for each in places], axis=0) for one in spread])
-
-
-def _scaled_exp1(z: Complex) -> Complex:
-    """exp(z) E₁(z), off the negative real axis."""
-    far = np.abs(z) > _FAR
-    found = np.empty(z.shape, dtype=complex)
-    found[~far] = np.exp(z[~far]) * exp1(z[~far])
-    inverse = 1.0 / z[far]
-    term = total = inverse
-    for n in range(1, _TERMS + 1):
-        term = -n * inverse * term
-        total = total + term
-    found[far] = total
-    return found
 
 
 REFERENCE_PRESSURE = 20e-6
@@ -198,16 +92,7 @@ DROP = 10.0
 """What the level has risen by, and falls by, in the measurement time of TEL, dB (ISO 3095:2013)."""
 
 
-@dataclass(frozen=True, eq=False)
-class PassByLevels:
-    """Levels of a pass-by by source, dB re 20 µPa, (s,) each; NaN where the train has no length."""
-
-    maximum: Array  # L_pAFmax, with time weighting F
-    equivalent: Array  # L_pAeq,Tp, from when the front is opposite to when the rear is
-    transit_exposure: Array  # TEL: the energy of the whole measured time, over Tp
-
-
-def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, float] | None) -> PassByLevels:
+def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, float] | None) -> Array:
     """Levels of a pass-by by source, of which the last is the whole.
 
     Parameters
@@ -221,7 +106,9 @@ def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, flo
 
     Returns
     -------
-    PassByLevels
+    ndarray (3, s)
+        L_pAFmax, with time weighting F; L_pAeq,Tp, from when the front is opposite to when the rear is; and
+        TEL, the energy of the whole measured time over Tp; dB re 20 µPa, NaN where the train has no length.
 
     Raises
     ------
@@ -237,12 +124,11 @@ def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, flo
     step = float(instants[-1] - instants[0]) / (len(instants) - 1)
     maximum = pressure_level(time_weighted(parts, step).max(axis=-1))
     if passed is None:
-        unknown = np.full(maximum.shape, np.nan)
-        return PassByLevels(maximum, unknown, unknown)
+        return np.array([maximum, *np.full((2, len(parts)), np.nan)])
     duration = passed[1] - passed[0]
     measured = _measured(instants, parts[-1], passed)
-    equivalent, exposed = (integral(instants, parts, *each) / duration for each in (passed, measured))
-    return PassByLevels(maximum, pressure_level(equivalent), pressure_level(exposed))
+    means = [integral(instants, parts, *each) / duration for each in (passed, measured)]
+    return np.array([maximum, *map(pressure_level, means)])
 
 
 def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) -> Array:

@@ -1,4 +1,8 @@
-"""How sound comes from the rails to a receiver: over what ground, from which rail, how evenly it leaves."""
+"""How sound comes from the rails to a receiver: over what ground, from which rail, how evenly it leaves.
+
+All sources are incoherent. As far as nothing else is said they radiate evenly over reflecting ground, so that
+p² = W ρc Q/(4π d²) with Q = 2 at a distance d.
+"""
 
 import math
 from dataclasses import dataclass
@@ -8,13 +12,16 @@ from numpy.typing import ArrayLike
 from scipy.special import wofz
 
 from asperity.arguments import Array, Complex, require
-from asperity.radiation.pass_by import Receiver, time_weighted
+from asperity.radiation.pass_by import STEPS, AxleSource, Passage, Receiver, time_weighted
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, wavenumber
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND
 
 AIR_DENSITY = IMPEDANCE / SPEED_OF_SOUND
 """kg/m³."""
+DIRECTIVITY_FACTOR = 2.0
+"""Q: all of the power goes above the ground."""
+_FACTOR = IMPEDANCE * DIRECTIVITY_FACTOR / (4.0 * np.pi)  # of p² = W ρc Q/(4π d²)
 _FEWEST_NODES = 8  # of Gauss's rule over a band, beside one per radian of the interference
 
 
@@ -112,7 +119,7 @@ class PorousGround:
 
 
 _PLACES = 400  # along the rail at which paths are computed; in between they are interpolated
-_NODES = 200  # of Gauss's rule over all directions
+_ANGLES = 200  # at which sound comes, from opposite to along the rail: even at both ends, midpoints do
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +166,27 @@ class SoundPath:
             self.ground is None or above >= 0.0, "receiver", f"{above:g} m above the ground", "zero or more"
         )
 
+    def squared_pressure(self, source: AxleSource, passage: Passage, time: ArrayLike) -> Array:
+        """Mean square sound pressure (..., b, t), Pa², of what all axles make radiate, at times (t,), s."""
+        run = passage.speed * np.asarray(time, dtype=float)
+        farthest = max(float(passage.axles[-1] - run.min()), float(run.max()))  # the same on either side
+        grid = np.linspace(0.0, farthest, 2 * math.ceil(farthest / self.receiver.distance * STEPS) + 2)
+        lengths = np.broadcast_to(np.asarray(source.length, dtype=float), len(self.band))
+        places = [np.abs(run - at) for at in passage.axles]
+        spread = [
+            np.sum([np.interp(each, grid, one) for each in places], axis=0)
+            for one in self.spread(source.height, lengths, grid)
+        ]
+        return _FACTOR * np.asarray(source.power, dtype=float)[..., None] * np.stack(spread)
+
+    def exposure(self, source: AxleSource, passage: Passage) -> Array:
+        """Integral of the squared sound pressure over the whole passage (..., b), Pa² s.
+
+        However far the power is spread along the rail; over hard ground W ρc Q/(4 d v) per axle.
+        """
+        share = len(passage.axles) / passage.speed * self.integral(source.height)
+        return np.asarray(_FACTOR * share * np.asarray(source.power, dtype=float))
+
     def inverse_square(self, height: float, along: Array) -> Array:
         """What stands for 1/d² of a source above reflecting ground (b, n), 1/m².
 
@@ -185,7 +213,7 @@ class SoundPath:
         ℓ is (b,), m; places (n,), m, rise evenly from zero, opposite the receiver.
         """
         step = float(along[1] - along[0])
-        count = len(along) + math.ceil(2.0 * float(length.max()) / step)  # beyond it exp(−4) is felt
+        count = len(along) + math.ceil(4.0 * float(length.max()) / step)  # beyond it exp(−8) is felt
         places = step * np.arange(count)
         lateral = self.receiver.distance
         coarse = lateral * np.sinh(np.linspace(0.0, np.arcsinh(places[-1] / lateral), _PLACES))
@@ -200,10 +228,9 @@ class SoundPath:
 
     def integral(self, height: float) -> Array:
         """Integral of `inverse_square` along the whole rail (b,), 1/m; over hard ground π/d."""
-        node, weight = np.polynomial.legendre.leggauss(_NODES)
-        angle, lateral = 0.25 * np.pi * (node + 1.0), self.receiver.distance
+        angle, lateral = 0.5 * np.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES, self.receiver.distance
         found = self.inverse_square(height, lateral * np.tan(angle)) * lateral / np.cos(angle) ** 2
-        return 0.5 * np.pi * found @ weight
+        return np.asarray(np.pi * found.mean(axis=-1))
 
 
 def _strength(azimuth: Array, elevation: Array, band: Array) -> Array:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple
 from functools import cache
 from typing import Any
 
@@ -340,8 +339,7 @@ LONGEST = 1000.0
 
 def sources_of(case: Any) -> tuple[str, ...]:
     """What the level beside the track is computed by, beyond the sound power."""
-    path = case.noise.sound_path(np.array([1000.0]))
-    ground = () if path is None or path.ground is None else (grounds.CITATION,)
+    ground = (grounds.CITATION,) if case.noise.sound_path(np.array([1000.0])).ground else ()
     return ground if case.noise.vehicle is None else (*ground, tsi_noise.CITATION)
 
 
@@ -364,8 +362,8 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
         """Times, squared pressure and exposure (laws, radiators, …), and the single numbers of both."""
         path, time = keys.sound_path(band, at), passage.times(at, length)
         parts = (
-            [weights @ pass_by.squared_pressure(each, passage, at, time, path) for each in sources],
-            [pass_by.exposure(each, passage, at, path) for each in sources],
+            [weights @ path.squared_pressure(each, passage, time) for each in sources],
+            [path.exposure(each, passage) for each in sources],
         )
 
         def of(numbers: Sequence[int]) -> list[Array]:
@@ -373,7 +371,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
             chosen = ([every[n] for n in numbers] for every in parts)
             squared, exposed = (np.stack([*each, np.sum(each, axis=0)], axis=1) for each in chosen)
             levels = [pass_by.pass_by_levels(time, law, passage.passed) for law in squared]
-            return [squared, exposed, *map(np.stack, zip(*map(astuple, levels), strict=True))]
+            return [squared, exposed, *np.stack(levels, axis=1)]
 
         found = of(whole)
         if beside:  # rail and sleepers up and down, too, but not the wheel
