@@ -80,7 +80,7 @@ NARROW = circle(0.3, first=-10e-3, last=10e-3, points=41)
 
 test_sections_that_cannot_touch_are_refused = refusals(
     (CONE, NARROW, "sections that meet 2.5 mm from an edge of what is known of them; allowed: a con"),
-    (section(lambda y: -y), None, "meet 0.0 mm from an edge.*change sideways.wheel_shift"),
+    (section(lambda y: -y), None, "meet 0.0 mm from an edge.*shift them less, or shrink contact.window"),
     (section(lambda y: y, first=0.05, last=0.09), NARROW, "at least 8 mm inside, half of contact.win"),
     (CONE, section(lambda y: 100.0 * y), "rail_profile: received a section that overhangs"),
     (Profile([0.0, 0.0, 0.0], 0.04), None, "wheel.profile: received 3 points; allowed: at least 4"),

@@ -40,9 +40,9 @@ REFUSED = [
     ),
     (
         lambda: wheel(track={"rail_profile": section(-1 / 0.3, 5e-3)}),
-        r"track\.rail_profile: received a section 10 mm wide",
+        "wheel.profile and track.rail_profile: received sections that meet 5.0 mm from an edge",
     ),
-    (lambda: wheel(wheel={"profile": section(20.0)}), "bodies that"),
+    (lambda: wheel(wheel={"profile": section(20.0)}), "sections that meet 0.0 mm from an edge"),
 ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from asperity.parameters import Choice, Number, Quantity, key, keys_of, optional
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.track import Track
 from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.levelling import level
 from asperity.surfaces.readers import hints, read_surface
 
 if TYPE_CHECKING:
@@ -204,25 +205,31 @@ class Meeting:
         inside = max(min(found - low, high - found), 0.0)
         received = f"sections that meet {1e3 * inside:.1f} mm from an edge of what is known of them"
         allowed = f"a contact at least {1e3 * clear:.3g} mm inside, half of contact.window"
-        remedy = "Measure more of them, change sideways.wheel_shift, or shrink contact.window."
+        remedy = "Measure more of them, shift them less, or shrink contact.window."
         require(inside >= clear, keys, received, allowed, remedy)
         return cls(tread, head, float(found))
 
 
-def _lying(measured: Path | Profile | None, radius: float, key: str, angle: float, shift: float) -> Any:
+def _lying(
+    measured: Path | Profile | None, radius: float, key: str, angle: float | None, shift: float
+) -> Any:
     """Section of a body, measured or a circle, turned about its middle and shifted, see `Meeting`.
 
-    Turned by an angle, rad, that lifts the field side of a rail; shifted towards that side, m.
+    Turned by an angle, rad, that lifts the field side of a rail; shifted towards that side, m. Without an
+    angle it is levelled, and its middle is that of what was measured.
     """
     if measured is None:
         y: Any = min(REACH, SHARE * radius) * np.linspace(-1.0, 1.0, POINTS)
         z: Any = -(y**2) / (radius + np.sqrt(radius**2 - y**2))
     else:
         section = read_section(measured, key)
+        if angle is None:
+            section = replace(level(section), start=None)
         z, count = section.heights, len(section.heights)
         first = -0.5 * (count - 1) * section.spacing if section.start is None else section.start
         y = first + section.spacing * np.arange(count)
         z = z - np.interp(0.0, y, z)
+    angle = angle or 0.0
     across = y * math.cos(angle) - z * math.sin(angle) + shift
     depth = -(y * math.sin(angle) + z * math.cos(angle))
     allowed = f"heights over places that rise, turned by {1e3 * angle:.3g} mrad, too"
@@ -232,10 +239,20 @@ def _lying(measured: Path | Profile | None, radius: float, key: str, angle: floa
 
 
 def meeting_of(case: Case) -> Meeting:
-    """Lay the sections of what rolls, and of the rail, inclined towards the middle of the track, together."""
-    body, over, keys = case.rolling, case.rolled_over, case.sideways
-    names = f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"
-    angle = math.atan(INCLINATIONS[keys.rail_inclination or "0"])
-    tread = _lying(body.profile, body.across, names[0], 0.0, keys.wheel_shift)
-    head = _lying(over.profile, over.radius_across, names[1], angle, 0.0)
-    return Meeting.of(tread, head, " and ".join(names), 0.5 * case.contact.window)
+    """Lay the sections of what rolls, and of what is rolled over, together: levelled, or as they lie.
+
+    As they lie, where the inclination of a rail towards the middle of the track is given.
+    """
+    body, over, (tread, head) = case.rolling, case.rolled_over, section_keys(case)
+    inclination, shift = None, 0.0
+    if "sideways" in case.inner and case.sideways.rail_inclination is not None:
+        inclination = math.atan(INCLINATIONS[case.sideways.rail_inclination])
+        shift = case.sideways.wheel_shift
+    upper = _lying(body.profile, body.across, tread, None if inclination is None else 0.0, shift)
+    lower = _lying(over.profile, over.radius_across, head, inclination, 0.0)
+    return Meeting.of(upper, lower, f"{tread} and {head}", 0.5 * case.contact.window)
+
+
+def section_keys(case: Case) -> tuple[str, str]:
+    """Keys of the sections of what rolls and of what is rolled over, across the path."""
+    return f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"

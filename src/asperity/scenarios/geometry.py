@@ -1,12 +1,9 @@
 """What presses on what: the gap of the bodies on the contact grid, and Hertz's answer to it."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
-import scipy
 
 from asperity.arguments import Array, require
 from asperity.case import scene, sections, sideways
@@ -14,7 +11,6 @@ from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning
-from asperity.surfaces import heightmap, levelling
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in loads of the class of the working load."""
@@ -183,43 +179,10 @@ def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: flo
         )
 
 
-_FINE = 10
-"""Points per cell on which the lowest point of a measured gap is looked for."""
-
-
-def _section(
-    measured: Path | heightmap.Profile | None, radius: float, key: str
-) -> tuple[Callable[[Array], Array], float]:
-    """Depth below the middle of one body across the path, and half the width where it is known, m."""
-    if measured is None:
-        curvature = 1.0 / radius
-        return lambda y: 0.5 * curvature * y**2, math.inf
-    levelled = levelling.level(sideways.read_section(measured, key))
-    count = len(levelled.heights)
-    known = (np.arange(count) - 0.5 * (count - 1)) * levelled.spacing
-    spline = scipy.interpolate.make_interp_spline(known, -levelled.heights, k=3)
-
-    def depth(y: Array) -> Array:
-        received, reach = f"a section {2e3 * known[-1]:.4g} mm wide", np.abs(y).max()
-        allowed = f"at least {2e3 * reach:.4g} mm, the window about the point of contact"
-        remedy = "Measure a wider section, or shrink contact.window."
-        require(reach <= known[-1], key, received, allowed, remedy)
-        return np.asarray(spline(y))
-
-    return depth, float(known[-1])
-
-
 def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
-    y, body, over = across_window(case.contact), case.rolling, case.rolled_over
-    keys = f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"
-    both = " and ".join(keys)
-    if case.meeting is not None:
-        gap = case.meeting.gap(y)
-    else:
-        tread, wide = _section(body.profile, body.across, keys[0])
-        head, broad = _section(over.profile, over.radius_across, keys[1])
-        gap = _lowest_in_the_middle(lambda at: tread(at) + head(at), min(wide, broad), y)
+    y, both = across_window(case.contact), " and ".join(sideways.section_keys(case))
+    gap = (case.meeting or sideways.meeting_of(case)).gap(y)
     allowed = "sections that touch in one place, convex against each other"
     require(gap.min() >= -1e-9, both, "bodies that touch outside the window's middle", allowed)
     gap = np.maximum(gap, 0.0)
@@ -232,20 +195,3 @@ def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, H
         hertz = replace(hertz, radius_y=float(0.5 / curvature))
         half = hertz.semi_axes(hertz.approach(load))[1]
     return gap, hertz
-
-
-def _lowest_in_the_middle(depths: Callable[[Array], Array], reach: float, y: Array) -> Array:
-    """Gap across, m, moved so that the bodies first touch in the middle of the window."""
-    middle = 0.0
-    if np.isfinite(reach) and reach > y[-1]:
-        fine = np.linspace(y[-1] - reach, reach - y[-1], _FINE * len(y))
-        lowest = int(np.argmin(depths(fine)))
-        around = (float(fine[max(lowest - 1, 0)]), float(fine[min(lowest + 1, len(fine) - 1)]))
-        middle = scipy.optimize.minimize_scalar(
-            lambda at: float(depths(np.array([at]))[0]),
-            bounds=around,
-            method="bounded",
-            options={"xatol": 1e-7},
-        ).x
-    gap = depths(y + middle)
-    return np.asarray(gap - gap[len(y) // 2])
