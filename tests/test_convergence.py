@@ -10,12 +10,12 @@ import xarray
 import asperity
 from asperity import convergence as converging
 from asperity.case.cases import as_case
-from asperity.convergence import changed_case, halves, on_the_surface_of, settings_for
+from asperity.convergence import changed_case, halves, on_the_surface_of
 from asperity.errors import InputError
 from asperity.reporting.page import page
 from asperity.reporting.tables import changes_table, settings_table
 from asperity.running import prepare_case
-from asperity.scenarios.refining import Way, restricted
+from asperity.scenarios.refining import Way, restricted, settings_for
 from asperity.scenes.report import CHAPTERS
 from asperity.schema import Entry, convergence
 from asperity.surfaces.heightmap import HeightMap

@@ -16,8 +16,8 @@ from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress, counted
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.preparing import PreparedCase, prepare
-from asperity.scenarios.refining import Setting, Way, restricted, shared_settings
-from asperity.scenes import compute, plan
+from asperity.scenarios.refining import Setting, Way, restricted, settings_for
+from asperity.scenes import compute
 from asperity.scenes import schema as scene
 from asperity.scenes.result import computed_result
 from asperity.scenes.validity import compared_bands
@@ -76,12 +76,6 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
     tree["convergence"] = DataTree(group)
     tree.attrs[provenance.VERDICT.name] = " ".join(told)
     return tree
-
-
-def settings_for(prepared: PreparedCase, states: np.ndarray) -> list[Setting]:
-    """All settings of a case; its states (k,), m."""
-    first, last = shared_settings(prepared.case, prepared.textures, states)
-    return [*first, *plan.own_settings(prepared.case), *last]
 
 
 def _named(setting: Setting, progress: Progress) -> Progress:

@@ -10,8 +10,8 @@ from asperity.reporting import chart
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import BAY_TIME, expect
 from asperity.scenes.figures.track import TRACK, sleeper_times, sleepers_between
-from asperity.scenes.plan import planned_rows
 from asperity.scenes.report import figures_of
+from asperity.scenes.track import planned_track
 from asperity.threads import thread_count
 from refusals import refusals
 from small_cases import HEARD
@@ -106,8 +106,8 @@ test_bays_that_cannot_be_are_refused = refusals(
 def test_the_plan_counts_bays_and_time():
     case = over(bays=8, spacing_scatter=0.05)
     prepared, regular = prepare_case(case), prepare_case(over())
-    rows = dict(planned_rows(prepared))
+    rows = dict(planned_track(prepared))
     assert "8 in 4.8 m, then they repeat" in rows["bays that differ"]
-    assert "bays that differ" not in dict(planned_rows(regular))
+    assert "bays that differ" not in dict(planned_track(regular))
     work = [expect(each, lambda *_: None).seconds for each in (prepared, regular)]
     assert work[0] - work[1] > 0.5 * 8 * BAY_TIME / thread_count()

@@ -12,7 +12,7 @@ from asperity.scenes.figures.measured import MEASURED, measured_table
 from asperity.scenes.figures.noise import RADIATED, noise_answers, sound_power_table
 from asperity.scenes.figures.track import TRACK
 from asperity.scenes.measured import HammerTest
-from asperity.scenes.plan import planned_rows
+from asperity.scenes.track import planned_track
 from small_cases import HEARD
 
 BAND = 1000.0 * 10.0 ** (np.arange(-8, 6) / 10.0)  # 160 Hz to 3.15 kHz
@@ -86,7 +86,7 @@ def test_a_plan_warns_of_it_too():
     rates, _ = own_data(WheelOnRail(**HEARD))
     rates[3, 1] *= 0.3
     with pytest.warns(MeasuredTrackWarning, match="farthest from 1: 0.3 ") as caught:
-        planned_rows(prepare_case(with_track(decay_rates=rates)))
+        planned_track(prepare_case(with_track(decay_rates=rates)))
     assert "see 315 Hz." in str(caught[-1].message)
 
 

@@ -9,7 +9,7 @@ from asperity.reference import cnossos
 from asperity.running import prepare_case
 from asperity.scenes import noise
 from asperity.scenes.noise import rolling_sound_power
-from asperity.scenes.plan import planned_rows
+from asperity.scenes.track import planned_track
 from asperity.spectra import a_weighted_total
 
 DISC = cnossos.wheel_roughness("disc")
@@ -71,14 +71,14 @@ def test_a_label_that_does_not_fit_is_told_with_what_to_do(sections, told):
 
 
 def test_a_check_says_whose_sound_power_is_computed():
-    found = dict(planned_rows(prepare_case(case())))
+    found = dict(planned_track(prepare_case(case())))
     assert found["sound power"] == (
         "of rail, sleepers and wheel; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
     )
-    rigid = dict(planned_rows(prepare_case(case(wheel={"section": "rigid"}))))["sound power"]
+    rigid = dict(planned_track(prepare_case(case(wheel={"section": "rigid"}))))["sound power"]
     assert rigid.startswith("of rail and sleepers: of this wheel it is not known how")
     hard = {"pad_stiffness": 1200e6}
     with pytest.warns(OutOfRangeWarning, match="in range 800 to 1000"):
-        planned_rows(prepare_case(case(track=hard)))
+        planned_track(prepare_case(case(track=hard)))
     without = prepare_case(case(track=hard, laws=["hertz"]))
-    assert "CNOSSOS" not in dict(planned_rows(without))["sound power"]
+    assert "CNOSSOS" not in dict(planned_track(without))["sound power"]

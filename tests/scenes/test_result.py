@@ -8,8 +8,8 @@ import pytest
 import asperity
 from asperity.case.cases import parse_case
 from asperity.laws import names
+from asperity.optimising.definition import ACCELERATION, measures_of
 from asperity.reference.tracks import iso_3095_decay_rate
-from asperity.scenes.plan import ACCELERATION, measures_of
 from asperity.scenes.track import described_losses, loss_factor_error, relaxed
 from asperity.spectra import nominal_frequency
 from asperity.structures.track import Track

@@ -93,19 +93,22 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
 def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> Rows:
     """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
     from asperity.scenarios.reducing import STATES
-    from asperity.scenes.plan import planned_rows
+    from asperity.scenes.track import planned_track
 
     case, (nx, ny) = prepared.case, prepared.shape.body.shape
     contact, settling = case.contact, case.settled_time
     states = STATES if contact.approaches is None else len(contact.approaches)
     first, last = case.rolled_range
     points = round((last - first) / contact.spacing) + 1
+    offsets = prepared.scene.offsets
+    places = f"{min(offsets):g} to {max(offsets):g} m ahead of the position"
     run_in = f", and {settling:g} s before it" if settling else ""
     rows = [
         ("textures", prepared.textures.origin),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
         ("time", f"{case.rolled_time:g} s{run_in}, {work.steps} steps of {case.time_step * 1e6:.4g} µs"),
-        *planned_rows(prepared),
+        *([("contacts", f"{len(offsets)}, {places}")] if len(offsets) > 1 else []),
+        *planned_track(prepared),
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
     ]

@@ -1,25 +1,30 @@
-"""What an optimisation asks: a case, limits, and the texture by its one-third octaves of wavelength."""
+"""What an optimisation asks: a quantity of a case, limits, and the texture by its one-third octaves."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
+from xarray import DataTree
 
 from asperity.arguments import Array, NDArray
-from asperity.case import any_case, cases, form, scene
+from asperity.case import any_case, cases, form, rolled_over, scene
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
-from asperity.errors import InputError
+from asperity.errors import ComputationError, InputError
 from asperity.optimising.allocation import Limits
 from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
 from asperity.scenarios import preparing, records
-from asperity.scenes.plan import A_WEIGHTED, MEASURE_NAMES
-from asperity.spectra import HALF_BAND, third_octave_bands
+from asperity.scenes import schema
+from asperity.schema import Entry, spectra
+from asperity.spectra import HALF_BAND, a_weighting, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile
 
 C = TypeVar("C", bound=scene.Case)
+A_WEIGHTED, ACCELERATION = "A-weighted level", "rms acceleration"
+"""What a texture may be judged by."""
 ROWS = 2**17
 """Most rows of a path whose levels are taken."""
 HOLLOW = 80.0
@@ -27,6 +32,84 @@ HOLLOW = 80.0
 LOWEST_HEARD = 20.0
 """Hz."""
 FEWEST_BANDS = 2
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A quantity that textures of a kind of case are judged by."""
+
+    meaning: str  # what it is the level of
+    units: str  # of the level
+    # its energy per Hz (f,) relative to the square of its reference, of a law in a result
+    energy: Callable[[DataTree, str], Array]
+    weighted: bool = True  # as the ear does
+    beside: tuple[str, ...] = ()  # laws without which it is not known
+
+    def density(self, tree: DataTree, law: str) -> Array:
+        """Energy per Hz (f,) relative to the square of its reference, weighted."""
+        weight = 10.0 ** (a_weighting(line_frequencies(tree)) / 10.0) if self.weighted else 1.0
+        return weight * self.energy(tree, law)
+
+
+def measures_of(case: scene.Case) -> dict[str, Measure]:
+    """What textures of a case are judged by, by name: sound where a track is rolled over, else motion."""
+    if isinstance(case.rolled_over, rolled_over.TrackKeys):
+        power = "sound power level of rolling, A-weighted"
+        at_points = "acceleration level of the rail at the points passed by, energy mean"
+        return {
+            A_WEIGHTED: Measure(power, "dB(A) re 1 pW", _sound_power, beside=("linear",)),
+            ACCELERATION: Measure(at_points, "dB re 1e-6 m/s²", _of_points, weighted=False),
+        }
+    if case.rolled_over.sensor_positions:
+        meaning = f"acceleration level of the {case.over_name}, energy mean over its sensors"
+        return {
+            A_WEIGHTED: Measure(f"{meaning}, A-weighted", "dB(A) re 1e-6 m/s²", _of_sensors),
+            ACCELERATION: Measure(meaning, "dB re 1e-6 m/s²", _of_sensors, weighted=False),
+        }
+    meaning = "contact force level, energy mean over the contacts, A-weighted"
+    return {A_WEIGHTED: Measure(meaning, "dB(A) re 1 N", partial(_psd, spectra.FORCE_PSD))}
+
+
+def line_frequencies(tree: DataTree) -> Array:
+    """Frequencies of the spectra of a result (f,), Hz."""
+    return np.asarray(tree[spectra.FREQUENCY.path].values)
+
+
+def _psd(entry: Entry, tree: DataTree, law: str) -> Array:
+    """PSD of a law over frequency (f,), mean over the places at which it is known."""
+    found = tree[entry.group].to_dataset()[entry.name].sel(law=law)
+    places = [dim for dim in found.dims if dim != spectra.FREQUENCY.name]
+    return np.asarray(found.mean(places).values)
+
+
+def _of_sensors(tree: DataTree, law: str) -> Array:
+    return _psd(schema.ACCELERATION_PSD, tree, law) / schema.ACCELERATION_REFERENCE**2
+
+
+def _of_points(tree: DataTree, law: str) -> Array:
+    velocity = _psd(schema.POINT_VELOCITY_PSD, tree, law)
+    return velocity * (2.0 * np.pi * line_frequencies(tree) / schema.ACCELERATION_REFERENCE) ** 2
+
+
+def _sound_power(tree: DataTree, law: str) -> Array:
+    """Energy of a band, shared out over its lines as the force is: it has no finer spectrum."""
+    held = tree[schema.SOUND_POWER_LEVEL.group].to_dataset()
+    if schema.SOUND_POWER_LEVEL.name not in held:
+        what = "the sound power of rolling is not known"
+        raise ComputationError(what, "a rough rail, and bands between 50 Hz and 10 kHz")
+    power = held[schema.SOUND_POWER_LEVEL.name].sel(law=law, source="total").values
+    centre, frequency = held[schema.NOISE_BAND.name].values, line_frequencies(tree)
+    force = _psd(spectra.FORCE_PSD, tree, law)
+    step = frequency[1] - frequency[0]
+    density = np.zeros_like(force)
+    for middle, level in zip(centre, power, strict=True):
+        inside = np.abs(np.log10(frequency / middle)) <= 0.05
+        if inside.any() and force[inside].sum() > 0.0 and np.isfinite(level):
+            density[inside] = 10.0 ** (level / 10.0) * force[inside] / (force[inside].sum() * step)
+    return density
+
+
+# --- the texture
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +214,7 @@ class Aim(form.Section):
     """What the texture of a case shall be."""
 
     quantity: str = key(
-        Choice(MEASURE_NAMES),
+        Choice((A_WEIGHTED, ACCELERATION)),
         A_WEIGHTED,
         "what it is judged by: sound power of a wheel, else motion; or the unweighted acceleration",
     )

@@ -12,11 +12,19 @@ from asperity.arguments import Array
 from asperity.case import cases, content, scene
 from asperity.errors import InputError, PhysicsWarning
 from asperity.optimising.allocation import Limits, Trial, rms_of, search
-from asperity.optimising.definition import Aim, Bands, bands_of, with_texture
+from asperity.optimising.definition import (
+    Aim,
+    Bands,
+    Measure,
+    bands_of,
+    line_frequencies,
+    measures_of,
+    with_texture,
+)
 from asperity.progress import Progress, shown_progress
 from asperity.running import run
 from asperity.scenarios.preparing import prepare
-from asperity.scenes import plan, result
+from asperity.scenes import result
 from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
@@ -56,7 +64,7 @@ class Optimised:
     """
 
     aim: Aim
-    measure: plan.Measure
+    measure: Measure
     limits: Limits
     before: Bands
     after: Bands
@@ -69,7 +77,7 @@ class Optimised:
     def level(self, after: bool, law: str) -> float:
         """Level of the quantity, dB, of one of the two textures with a law that was rolled over both."""
         tree = self.result_after if after else self.result_before
-        frequency = plan.line_frequencies(tree)
+        frequency = line_frequencies(tree)
         density = self.measure.density(tree, law)
         return float(level_of(density.sum() * (frequency[1] - frequency[0])))
 
@@ -77,7 +85,7 @@ class Optimised:
         """Level of the quantity (b,), dB, while each changed band is passed, of one of the results."""
         density = self.measure.density(tree, law)
         edges = self.after.edges(self.case.speed)
-        return level_of(band_energies(plan.line_frequencies(tree), density, *edges))
+        return level_of(band_energies(line_frequencies(tree), density, *edges))
 
     @property
     def changes(self) -> dict[str, float]:
@@ -172,7 +180,7 @@ def optimise(
 
 def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
     """Find the texture of a case by an aim, as `optimise` does."""
-    measures = plan.measures_of(case)
+    measures = measures_of(case)
     if aim.quantity not in measures:
         raise InputError("quantity", f'"{aim.quantity}" of {case.kind}', " or ".join(measures))
     measure = measures[aim.quantity]
@@ -199,7 +207,7 @@ def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
     return Optimised(aim, measure, limits, before, after, tuple(trials), settled, found, *results)
 
 
-def _rolled(base: scene.Case, aim: Aim, measure: plan.Measure, bands: Bands, progress: Progress) -> Trial:
+def _rolled(base: scene.Case, aim: Aim, measure: Measure, bands: Bands, progress: Progress) -> Trial:
     """Roll over a texture with the law of the search; what came of it is kept by all that it depends on."""
     laws = tuple(dict.fromkeys((aim.law, *measure.beside)))
     case = with_texture(base, bands).with_(laws=laws)
@@ -208,7 +216,7 @@ def _rolled(base: scene.Case, aim: Aim, measure: plan.Measure, bands: Bands, pro
         # those of the texture found are told
         with PhysicsWarning.ignored(), one_thread_in_linear_algebra():
             tree = result.computed_result(prepare(case), progress, [])
-        return {"frequency": plan.line_frequencies(tree), "density": measure.density(tree, aim.law)}
+        return {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
 
     kept = made(Store(), content.case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)
     frequency, density = kept["frequency"], kept["density"]

@@ -8,12 +8,15 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array
+from asperity.case import beam, rolled_over
 from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.scenarios.geometry import window_cells
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.textures import Textures
 from asperity.schema.convergence import PATH_LENGTH
 from asperity.spectra import psd
+from asperity.structures.rail_poles import POLES
 from asperity.surfaces.heightmap import HeightMap
 from asperity.units import written
 
@@ -135,12 +138,12 @@ class Setting:
     laid_anew: bool = False
 
 
-def shared_settings(case: Case, textures: Textures, approaches: Array) -> tuple[list[Setting], list[Setting]]:
-    """Settings that all kinds of case have: those named before what a kind has of its own, and after it.
+def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
+    """All settings of a case; `approaches` (k,), m, are the states of the run.
 
-    `approaches` (k,), m, are the states of the run. The grid gets nodes between its own: window, strips and
-    time step stay.
+    The grid gets nodes between its own: window, strips and time step stay.
     """
+    case, textures = prepared.case, prepared.textures
     spacing, window, count = case.contact.spacing, case.contact.window, case.contact.samples
     half, step, strip = window_cells(case.contact) // 2, case.time_step, {}
     fine, wider, narrower = 0.5 * spacing, (4 * half + 1) * spacing, (2 * (half // 2) + 1) * spacing
@@ -166,8 +169,30 @@ def shared_settings(case: Case, textures: Textures, approaches: Array) -> tuple[
     if not textures.maps:
         reduced = [Setting(each.name, (), NO_SAMPLES) for each in reduced]
     grid = Setting("grid", (Way(f"{_length(spacing)} → {_length(fine)}", finer),), laid_anew=True)
-    first = [grid, *reduced, Setting("time step", (shorter,))]
-    return first, [Setting(PATH_LENGTH, (Way(f"{case.rolled_time:.3g} s → its first half"),))]
+    half_path = Way(f"{case.rolled_time:.3g} s → its first half")
+    return [
+        grid,
+        *reduced,
+        Setting("time step", (shorter,)),
+        *_own_settings(case),
+        Setting(PATH_LENGTH, (half_path,)),
+    ]
+
+
+def _own_settings(case: Case) -> list[Setting]:
+    """How finely what is rolled over is resolved: modes of a beam, or the kernel behind a track's poles."""
+    over = case.rolled_over
+    if isinstance(over, rolled_over.TrackKeys):
+        if case.numerics.kernel != "poles":
+            return [Setting("poles", (), "the rail is scattered from its kernel, without poles")]
+        words = f"up to {case.numerics.poles or POLES} → the kernel that they are fitted to"
+        scattered = Way(words, {"numerics.kernel": "scatter", "numerics.poles": None})
+        return [Setting("poles", (scattered,))]
+    if not isinstance(over, beam.BeamKeys):
+        return []
+    before = over.highest_mode(case.numerics.highest_frequency)
+    words = f"up to {written(before, 'Hz', 'kHz')} → up to {written(2.0 * before, 'Hz', 'kHz')}"
+    return [Setting("modes", (Way(words, {f"{case.over_name}.modes_up_to": 2.0 * before}),))]
 
 
 def _length(length: float) -> str:

@@ -8,11 +8,14 @@ import numpy as np
 
 from asperity import spectra
 from asperity.arguments import Array, ArrayLike
-from asperity.errors import Finding, Grade, LossFactorWarning
+from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
+from asperity.laws import Role, in_role
 from asperity.reduction.texture import along_path
 from asperity.reference.tracks import iso_3095_decay_rate
+from asperity.scenarios.laws import working_point
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.scene import BodyAtContact, Scene, mean_square_transfer
-from asperity.scenes import compute, noise, schema, validity
+from asperity.scenes import compute, measured, noise, schema, validity
 from asperity.schema import Values
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
@@ -284,3 +287,50 @@ def described_losses(error: LossFactorError) -> Iterator[tuple[str, str]]:
     ]
     shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]
     yield "loss factors in time", f"error of the contact force, dB: {', '.join(shown)}"
+
+
+def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
+    """Characteristic numbers of a track that is rolled over, in words, and what is known of its sound."""
+    case, track = prepared.case, prepared.scene.over
+    if not isinstance(track, Track):
+        return []
+    _, stiffness = working_point(case.contact, prepared.shape, None)
+    scene, highest = prepared.scene, case.numerics.highest_frequency
+    losses = loss_factor_error(track, scene.first, stiffness, highest)
+    bands = spectra.third_octave_bands(LOWEST, highest)[0]
+    doubts = findings_of_losses(losses) + measured.findings_of_measured(case.track, track.nominal, bands)
+    known = "rail, sleepers and wheel"
+    if reason := noise.silent_wheel(case):
+        known = f"rail and sleepers: {reason}"
+    if in_role(Role.BARE, case.laws) is not None:
+        known += (
+            f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"
+        )
+        doubts += noise.findings_of_labels(case)
+    warn_of_findings(doubts)
+    frequencies = f"critical speed {track.critical_speed:.4g} m/s"
+    if not track.continuous:
+        passing = f"sleeper passing {case.speed / track.sleeper_spacing:.4g} Hz"
+        frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, {passing}, {frequencies}"
+    points = ", ".join(f"{position:g} m" for position in scene.points)
+    return [
+        ("track", frequencies),
+        *_rows_of_bays(track),
+        *case.track.described_tables,
+        *described_losses(losses),
+        ("rail motion recorded at", points),
+        ("sound power", f"of {known}"),
+    ]
+
+
+def _rows_of_bays(track: Track) -> Iterator[tuple[str, str]]:
+    """How bays differ, in words; nothing where they do not."""
+    if track.bays is None:
+        return
+    lengths, count = track.sleeper_spacing * track.bays.lengths, track.cell_bays
+    parts = [f"{lengths.min():.3g} to {lengths.max():.3g} m long"]
+    for name in ("pad", "ballast"):
+        stiffness = 1e-6 * getattr(track, f"{name}_stiffness") * np.array(getattr(track.bays, name))
+        if np.ptp(stiffness):
+            parts.append(f"{name} {stiffness.min():.3g} to {stiffness.max():.3g} MN/m")
+    yield "bays that differ", f"{count} in {track.period:.4g} m, then they repeat: {', '.join(parts)}"
