@@ -22,6 +22,8 @@ WITHIN = 2
 """Places of the spectrum by which a line may be beside its harmonic."""
 SPLITS = (1, 2, 3, 4, 6, 8, 12, 16)
 """Numbers of bands of equal width among which the most impulsive one is sought."""
+FAINT = 0.1
+"""Share of the clearest family below which another one is not told apart from what modulates it."""
 LEAST_POWER = 0.02
 """Share of the mean square that it holds: filters leave next to nothing, where every click stands out."""
 Spectrum = tuple[Array, Array]
@@ -276,6 +278,15 @@ def explained_lines(
         if tried[best].found:
             amplitude = _without(frequency, amplitude, tried[best])
     return found
+
+
+def clear_families(found: Mapping[str, LineFamily], least: float = 0.0) -> list[str]:
+    """Names of the families that are there, in their order.
+
+    Without those that are faint beside the clearest (`FAINT`), or whose fundamental is below `least`.
+    """
+    there = {name: float(lines.amplitude[0]) for name, lines in found.items() if lines.found}
+    return [name for name, line in there.items() if line >= max(least, FAINT * max(there.values()))]
 
 
 def _without(frequency: Array, amplitude: Array, lines: LineFamily) -> Array:

@@ -11,8 +11,8 @@ from asperity.arguments import Array, require
 from asperity.case.bearing import BearingKeys, read_bearing, read_signal
 from asperity.reference.bearings import PRINTED_BY
 from asperity.reporting.figure import write_chart
-from asperity.scenes.bearing import static_group
-from asperity.scenes.figures.bearing import DRAWING, ball_contacts_table, envelope_chart
+from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, static_group, tones_group
+from asperity.scenes.figures.bearing import DRAWING, ENVELOPE, ball_contacts_table
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
 from asperity.surfaces.readers.hints import on_command_line, spelled
@@ -20,8 +20,6 @@ from asperity.terminal import say, say_table
 from asperity.units import quantity
 
 WIDTH = 122
-FAINT = 0.1
-"""Share of the clearest fault below which another one is not told apart from what modulates it."""
 TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "band", "lines", "faults",
         "verdict")  # fmt: skip
 """Names of what is said to programs."""
@@ -128,18 +126,17 @@ def _heard(
     turning = keys.bearing.kinematics(speed, contact_angle=None if keys.axial else 0.0)
     within = _band(values, sampled, band, 5.0 * turning.ball_pass_inner)
     spectrum = diagnostics.envelope_spectrum(values, sampled, within)
-    tones = {part: turning.tone(part) for part in PARTS}
-    families = {part: (tone, turning.modulation(part)) for part, tone in tones.items()}
-    found = diagnostics.explained_lines(spectrum, families | {"turns": (speed, 0.0)})
-    faults = _faults(found)
+    explained = diagnostics.explained_lines(spectrum, turning.families | {"turns": (speed, 0.0)})
+    found = {part: lines for part, lines in explained.items() if part in PARTS}
+    faults = diagnostics.clear_families(found)
     _say_lines(found, faults, speed, within)
     there = [f"lines of the {NAMES[each]} at {found[each].frequency[0]:.1f} Hz" for each in faults]
     verdict = f"There are {' and '.join(there)}." if there else "No lines of rings or balls stand out."
     say(verdict)
     if picture is not None:
-        marked = {part: np.stack([found[part].frequency, found[part].amplitude], axis=1) for part in faults}
-        chart = envelope_chart(spectrum, tones, marked, "unit of the file", speed)
-        write_chart(chart, f"{name}: {verdict}", picture)
+        highest = REACH * HARMONICS * max(tone for tone, _ in turning.families.values())
+        drawn = envelope_group({"signal": spectrum}, [found], [faults], highest, "unit of the file")
+        write_chart(ENVELOPE.laid_out(tree(tones_group(turning) | drawn)), f"{name}: {verdict}", picture)
     names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
     told = {part: {name: getattr(found[part], name) for name in names} for part in PARTS}
     return {"speed": speed, "band": within, "lines": told, "faults": faults, "verdict": verdict}
@@ -152,13 +149,6 @@ def _band(values: Array, rate: float, band: str | None, least: float) -> tuple[f
     edges = [] if band == "all" else [quantity(part.strip(), "Hz") for part in band.split(",")]
     require(len(edges) in (0, 2), "--band", band, '"all", or two frequencies, as "2 kHz, 4 kHz"')
     return (edges[0], edges[1]) if edges else None
-
-
-def _faults(found: dict[str, diagnostics.LineFamily]) -> list[str]:
-    """Parts whose lines are there, the clearest first; not those that are faint beside it."""
-    there = [part for part in found if part in PARTS and found[part].found]
-    most = max((found[part].amplitude[0] for part in there), default=0.0)
-    return [part for part in there if found[part].amplitude[0] >= FAINT * most]
 
 
 def _say_lines(

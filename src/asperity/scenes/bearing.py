@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import xarray
@@ -15,8 +15,10 @@ from asperity.case.ball_bearing import BallBearingCase
 from asperity.diagnostics import (
     ISO_BANDS,
     LineFamily,
+    Spectrum,
     amplitude_spectrum,
     band_velocities,
+    clear_families,
     envelope_spectrum,
     explained_lines,
     impulsive_band,
@@ -39,8 +41,6 @@ RESOLVED = 0.003
 """Share by which a line may lie beside the tone of pure rolling, beyond the slip of the cage."""
 SILENT = 1e-5
 """Amplitude of a line, m/s², that no accelerometer feels: what is left of rounding and of the start."""
-FAINT = 0.1
-"""Share of the clearest line of a part below which others are not told apart from what modulates it."""
 BY_PARTS = "areal"
 """The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
 RESIDUAL = 1e-3
@@ -111,6 +111,13 @@ def static_group(found: LoadedBearing, turning: Kinematics) -> Values:
         bearing.PITCH_DIAMETER: of.pitch_diameter,
         bearing.CONTACT_ANGLE: found.contact_angle,
         bearing.LEFT_OUT: LEFT_OUT,
+        **tones_group(turning),
+    }
+
+
+def tones_group(turning: Kinematics) -> Values:
+    """Lay out what turns how fast."""
+    return {
         bearing.PART: list(PARTS),
         bearing.TONE: [turning.tone(part) for part in PARTS],
         bearing.MODULATION: [turning.modulation(part) for part in PARTS],
@@ -154,32 +161,48 @@ def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Value
 def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
     """Lay out velocities in bands at all sensors; spectrum, envelope and lines in it at the first one."""
     rate, turning, signals = case.sampling_rate, case.kinematics, [run.acceleration for run in runs.values()]
-    tones = {part: (turning.tone(part), turning.modulation(part)) for part in PARTS}
-    highest = REACH * HARMONICS * max(tone for tone, _ in tones.values())
+    highest = REACH * HARMONICS * max(tone for tone, _ in turning.families.values())
     low, high = case.envelope_band or impulsive_band(signals[0][0], rate, highest)
     lines = [amplitude_spectrum(law[0], rate) for law in signals]
     frequency = lines[0][0]
     kept = (frequency > 0.0) & (frequency <= case.highest_frequency)
-    struck = [envelope_spectrum(law[0], rate, (low, high)) for law in signals]
-    within = struck[0][0] <= highest
+    struck = {name: envelope_spectrum(run.acceleration[0], rate, (low, high)) for name, run in runs.items()}
     slip = max(case.cage_slip) + RESOLVED
-    found = [explained_lines(each, tones, slip=slip, harmonics=HARMONICS) for each in struck]
+    found = [
+        explained_lines(each, turning.families, slip=slip, harmonics=HARMONICS) for each in struck.values()
+    ]
     judged = [[band_velocities(one, rate, quantity="acceleration") for one in law] for law in signals]
     return {
         spectra.LAW: list(runs),
         spectra.FREQUENCY: frequency[kept],
         bearing.VELOCITY_AMPLITUDE: [each[kept] / (2.0 * np.pi * frequency[kept]) for _, each in lines],
-        bearing.LAW: list(runs),
         bearing.SENSOR: case.sensors,
         bearing.JUDGED_BAND: [f"{first:g} to {last:g} Hz" for first, last in ISO_BANDS],
         bearing.BAND_VELOCITY: judged,
-        bearing.ENVELOPE_FREQUENCY: struck[0][0][within],
-        bearing.ENVELOPE: [each[within] for _, each in struck],
         bearing.ENVELOPE_LOW: low,
         bearing.ENVELOPE_HIGH: high,
+        **envelope_group(struck, found, [clear_families(each, SILENT) for each in found], highest),
+    }
+
+
+def envelope_group(
+    struck: Mapping[str, Spectrum],
+    found: Sequence[Mapping[str, LineFamily]],
+    clear: Sequence[Sequence[str]],
+    highest: float,
+    units: str = bearing.ENVELOPE.units,
+) -> Values:
+    """Lay out spectra of envelopes by name up to a frequency, Hz, lines of the parts, and which are clear."""
+    frequency = next(iter(struck.values()))[0]
+    within = frequency <= highest
+    envelopes = np.array([each[within] for _, each in struck.values()])
+    return {
+        bearing.LAW: list(struck),
+        bearing.ENVELOPE_FREQUENCY: frequency[within],
+        bearing.ENVELOPE: bearing.ENVELOPE.variable(envelopes, units=units),
         bearing.HARMONIC: 1 + np.arange(HARMONICS),
         **{entry: [_of_lines(each, what) for each in found] for entry, what in LINES.items()},
-        bearing.LINES_FOUND: [_stand_out(each) for each in found],
+        bearing.LINES_FOUND: [[float(part in each) for part in PARTS] for each in clear],
     }
 
 
@@ -190,17 +213,11 @@ LINES = {
 }
 
 
-def _of_lines(found: dict[str, LineFamily], what: str) -> list[Array]:
+def _of_lines(found: Mapping[str, LineFamily], what: str) -> list[Array]:
     """Numbers of the lines of each part (parts, harmonics), of side bands the larger; NaN if not reached."""
     values = [getattr(found[part], what) for part in PARTS]
     each = [value.max(axis=1) if value.ndim == 2 else value for value in values]
     return [np.pad(value, (0, HARMONICS - len(value)), constant_values=np.nan) for value in each]
-
-
-def _stand_out(found: dict[str, LineFamily]) -> list[float]:
-    """Whether the lines of each part stand out, from what is around them and beside those of other parts."""
-    least = max(SILENT, FAINT * max(float(each.amplitude[0]) for each in found.values()))
-    return [float(found[part].found and found[part].amplitude[0] >= least) for part in PARTS]
 
 
 def _verdict(heard: Values, deciding: Sequence[str]) -> str:

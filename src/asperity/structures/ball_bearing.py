@@ -363,6 +363,11 @@ class Kinematics:
         """Turns of a fault of a part past a load that stands still: distance of its side bands."""
         return (self.outer, self.inner, self.cage)[PARTS.index(one_of("part", part, PARTS))]
 
+    @property
+    def families(self) -> dict[str, tuple[float, float]]:
+        """Tone of each part and distance of its side bands, for `asperity.diagnostics.explained_lines`."""
+        return {part: (self.tone(part), self.modulation(part)) for part in PARTS}
+
     def waviness(self, part: str, order: int, lobes: int) -> tuple[float, ...]:
         """Tones that a small waviness of a part makes in an axially loaded bearing.
 

@@ -1,6 +1,5 @@
 """A ball bearing on its page: how it carries its load, what moves, how quiet it is, which part is heard."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,10 +11,8 @@ from asperity.reporting.chart import (
     BLUE,
     GREEN,
     INK,
-    MUTED,
     VERMILLION,
     Axis,
-    Chart,
     Line,
     Mark,
     Numbers,
@@ -41,14 +38,12 @@ RINGS = {"inner": (VERMILLION, ()), "outer": (BLUE, (5.0, 1.5))}
 """Looks of lines of the contacts with each ring."""
 COLOURS = {"outer": BLUE, "inner": VERMILLION, "ball": GREEN}
 """Of the parts of a bearing."""
-CONTEXT = 1.15
-"""How far beyond the highest line the spectrum is drawn."""
 RIGHT_ANGLES = tuple((each, f"{each:g}") for each in (-180.0, -90.0, 0.0, 90.0, 180.0))
 AROUND = Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_ANGLES)
 
 
 def _main(tree: DataTree) -> str:
-    return next(iter(data.laws(tree, bearing.BAND_VELOCITY)), "")
+    return next(iter(data.laws(tree, bearing.LINES_FOUND)), "")
 
 
 def _degrees(azimuth: Numbers) -> Numbers:
@@ -260,7 +255,8 @@ def _envelope(tree: DataTree, lines: Lines) -> list[Panel]:
     ]
     drawn = [replace(each, width=0.9) for each in panels.styled(tree, lines.at, lines.lines)]
     along = Axis("frequency / Hz", 0.0, highest, second=_orders(tree))
-    across = Axis("amplitude of the envelope / (m/s²)", low=0.0)
+    units = str(data.variable_of(tree, bearing.ENVELOPE).attrs["units"]).replace("m/s2", "(m/s²)")
+    across = Axis(f"amplitude of the envelope / {units}", low=0.0)
     return [Panel(along, across, (*_tones(tree, highest), *drawn, *marks), height=4.4)]
 
 
@@ -377,31 +373,3 @@ def bearing_answers(tree: DataTree) -> Answers | None:
     load, peak = (float(data.values(tree, each).max()) for each in (bearing.BALL_LOAD, bearing.PEAK_PRESSURE))
     heaviest = HeadlineNumber("heaviest load of a ball", f"{load:.3g} N", f"{peak / 1e9:.2f} GPa at rest")
     return Answers(f"{lead}.", more, (*numbers, heaviest))
-
-
-# --- without a run, from a signal
-
-
-def envelope_chart(
-    spectrum: tuple[Numbers, Numbers],
-    tones: Mapping[str, float],
-    found: Mapping[str, Numbers],
-    unit: str,
-    speed: float,
-) -> Chart:
-    """Envelope spectrum over frequency, Hz, with tones expected and harmonics found of each part (h, 2).
-
-    Opposite stand multiples of the speed, turns per second.
-    """
-    highest = CONTEXT * max([5.0 * max(tones.values()), *(float(lines[-1, 0]) for lines in found.values())])
-    frequency, amplitude = (each[spectrum[0] <= highest] for each in spectrum)
-    marks: list[Mark] = [Line(frequency, amplitude, colour=MUTED, width=0.8)]
-    for part, tone in tones.items():
-        named = f"{part}: {tone:.1f} Hz and multiples, expected"
-        at = tone * np.arange(1.0, 6.0)
-        marks.append(chart.Rules(at[at < highest], label=named, colour=COLOURS[part], dashes=(2.0, 2.0)))
-    for part, lines in found.items():
-        marks.append(Line(lines[:, 0], lines[:, 1], f"{part}: found", COLOURS[part], width=0.0, marker="o"))
-    along = Axis("frequency / Hz", 0.0, highest, second=chart.Second("orders of the speed", 1.0 / speed))
-    across = Axis(f"amplitude of the envelope / {unit}", low=0.0)
-    return Chart((Panel(along, across, tuple(marks), height=4.2),))
