@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from asperity.arguments import Array, require
+from asperity.case import toml
 from asperity.case.any_case import AnyCase
-from asperity.case.bearing import LOAD, LOADS, BearingGeometry
 from asperity.case.body import DAMPING
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section, section
@@ -22,8 +22,20 @@ from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.surface import INDEX
 from asperity.case.tables import Column, TableFile, TableSource, read_table
 from asperity.errors import InputError, PhysicsWarning
-from asperity.parameters import Choice, File, Flag, Key, ListOf, Number, Quantity, key, keys_of, optional
-from asperity.structures.ball_bearing import PARTS
+from asperity.parameters import (
+    Choice,
+    File,
+    Flag,
+    Key,
+    ListOf,
+    Number,
+    Origin,
+    Quantity,
+    key,
+    keys_of,
+    optional,
+)
+from asperity.structures.ball_bearing import BEARINGS, PARTS, BallBearing
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, closed_trace
 from asperity.units import written
@@ -52,6 +64,56 @@ _BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("r
 _RATIO, _SLIPS = Number(at_least=0, at_most=0.99), ListOf(Number(at_least=0, at_most=0.2), least=2)
 _COUNT = Number(at_least=1, whole=True)
 _LENGTH, _RINGS = Quantity("m", above=0), "0.1 mm to 1 m: rings lie between"
+DIMENSIONS = keys_of(BallBearing, otherwise="that of the named bearing")
+NEEDED = ("balls", "ball_diameter", "pitch_diameter")
+LOAD, LOADS = Quantity("N", at_least=0), "0 N to 100 MN: bearings carry less"
+SPEEDS = "0 Hz to 10 kHz: bearings turn slower"
+
+
+class BearingGeometry(Section, parameters=DIMENSIONS):
+    """A ball bearing, named or by its dimensions."""
+
+    ALTERNATIVES = (("clearance", "contact_angle"),)
+
+    name: str | None = optional(Choice(tuple(BEARINGS)), "6205", "named bearing", "the dimensions are given")
+
+    @property
+    def bearing(self) -> BallBearing:
+        """The bearing."""
+        given = {name: getattr(self, name) for name in DIMENSIONS if getattr(self, name) is not None}
+        return BallBearing(**given) if self.name is None else BallBearing.named(self.name, **given)
+
+    def problems(self) -> Iterator[InputError]:
+        """All dimensions of a bearing without a name, which must be one that can be."""
+        missing = [name for name in NEEDED if getattr(self, name) is None]
+        if self.name is None and missing:
+            remedy = f"Named bearings: {', '.join(BEARINGS)}."
+            yield InputError("name", f"none, and no {' and no '.join(missing)}", "these, or a name", remedy)
+            return
+        try:
+            _ = self.bearing
+        except InputError as error:
+            yield error
+
+
+class BearingKeys(BearingGeometry):
+    """A ball bearing and what it carries."""
+
+    radial: float = key(LOAD, "0 N", "radial load on the inner ring", LOADS)
+    axial: float = key(LOAD, "0 N", "axial load on the inner ring", LOADS)
+    speed: float | None = optional(
+        Quantity("Hz", at_least=0), "1800 1/min", "speed of the ring that turns", "it stands still", SPEEDS
+    )
+
+
+def read_bearing(source: str, options: Mapping[str, Any]) -> BearingKeys:
+    """Read a bearing by its name, or from a TOML file; options, as they are typed, are stronger."""
+    keys: dict[str, Any] = {"name": source}
+    if source not in BEARINGS:
+        remedy = f"Named bearings: {', '.join(BEARINGS)}."
+        keys = toml.read_toml(toml.read_definition(source, "bearing", remedy), "bearing", source)
+        toml.refuse_vast(keys, source)
+    return BearingKeys.read(keys | {k: v for k, v in options.items() if v is not None}, Origin.file(source))
 
 
 class ShaftKeys(Section):

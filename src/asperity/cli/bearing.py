@@ -8,13 +8,13 @@ import numpy as np
 
 from asperity import diagnostics
 from asperity.arguments import Array, require
-from asperity.case.bearing import BearingKeys, read_bearing, read_signal
-from asperity.reference.bearings import PRINTED_BY
+from asperity.case.ball_bearing import BearingKeys, read_bearing
 from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, static_group, tones_group
 from asperity.scenes.figures.bearing import DRAWING, ENVELOPE, ball_contacts_table
 from asperity.schema import tree
-from asperity.structures.ball_bearing import PARTS, BallBearing, Kinematics
+from asperity.structures.ball_bearing import PARTS, PRINTED_BY, BallBearing, Kinematics
+from asperity.studies.signals import read_signal
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity

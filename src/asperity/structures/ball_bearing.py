@@ -10,12 +10,29 @@ from typing import TYPE_CHECKING, Any, Literal
 from asperity.arguments import ArrayLike, not_negative, one_of, real, require, whole
 from asperity.contact.hertz import Hertz, in_groove
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
-from asperity.reference.bearings import BEARINGS, CLEARANCE, CONFORMITY, HARDNESS, STATIC_PRESSURE
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
 
 if TYPE_CHECKING:
     from asperity.structures.bearing_statics import LoadedBearing
 
+PRINTED_BY = (
+    "the Bearing Data Center of Case Western Reserve University, for SKF 6205-2RS JEM and 6203-2RS JEM"
+)
+"""Diameters of balls and pitch circle, there in inches, here rounded to 10 µm."""
+
+BEARINGS: dict[str, dict[str, float]] = {
+    "6203": {"balls": 8, "ball_diameter": 6.75e-3, "pitch_diameter": 28.50e-3},
+    "6205": {"balls": 9, "ball_diameter": 7.94e-3, "pitch_diameter": 39.04e-3},
+}
+"""By the keywords of `BallBearing`, m."""
+CONFORMITY = 0.52
+"""Radius of a groove over the diameter of the ball, where none is printed; 0.515 to 0.53 is usual."""
+CLEARANCE = 10e-6
+"""Diametral clearance of the named bearings, m, chosen here."""
+STATIC_PRESSURE = 4.2e9
+"""Peak pressure, Pa, from which on a dent of about 1/10 000 of the ball's diameter remains (ISO 76:2006)."""
+HARDNESS = 7.0e9
+"""Of hardened rings, Pa: about 700 HV, chosen here."""
 PARTS = ("outer", "inner", "ball")
 """What can be wavy or faulty."""
 STEEL = MATERIALS["steel"]
@@ -162,7 +179,7 @@ class BallBearing:
         Parameters
         ----------
         name : str
-            As in `asperity.reference.bearings.BEARINGS`, where the dimensions are cited.
+            As in `BEARINGS`, where the dimensions are cited.
         **others
             Parameters, in SI.
 

@@ -6,17 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, OutOfRangeWarning
-from asperity.reference.bearings import STATIC_PRESSURE
-
-if TYPE_CHECKING:
-    from asperity.structures.ball_bearing import BallBearing
+from asperity.structures.ball_bearing import STATIC_PRESSURE, BallBearing
 
 STEPS = 24
 """Angles of the cage over the passing of a ball."""

@@ -2,9 +2,12 @@
 
 import io
 import os
-from collections.abc import Iterable, Mapping
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +15,28 @@ import numpy as np
 import xarray
 
 from asperity import files
-from asperity.arguments import Array, file_path, one_of, require, shown
-from asperity.case import any_case, bearing
+from asperity.arguments import (
+    Array,
+    ArrayLike,
+    NDArray,
+    file_path,
+    finite_array,
+    one_of,
+    positive,
+    require,
+    shown,
+)
+from asperity.case import any_case
 from asperity.case.ball_bearing import BallBearingCase
 from asperity.errors import InputError
 from asperity.results import save, variable
-from asperity.sensing import through_path, with_noise
 from asperity.store import content_key
 from asperity.structures.ball_bearing import PARTS
 from asperity.studies.axes import VARIANT, written_out
 from asperity.studies.definition import Member
 from asperity.studies.member import SIGNAL
-from asperity.text_files import write_csv
+from asperity.surfaces.readers import arrays, guards
+from asperity.text_files import lines_of_cells, number_in, read_text, write_csv
 from asperity.units import quantity, unit_in
 
 FORMATS = ("nc", "npy", "wav")
@@ -38,6 +51,9 @@ FAULT: dict[str, Any] = {
 FULL = 32_767
 """Number of a WAV file, of 16 bits, that stands for full scale."""
 MOST_LEVEL = 200.0  # dB
+MOST_TERMS = 10_000
+"""Largest number in the ratio of two sampling rates, which is taken as one of whole numbers."""
+LARGEST_TEXT = 64 * 2**20  # bytes
 
 
 @dataclass(frozen=True)
@@ -98,8 +114,8 @@ class SignalSet:
         rate = self.path_rate
         rate = quantity(rate, "Hz") if isinstance(rate, str) else rate
         if rate is not None or file.suffix.lower() == ".wav":
-            return bearing.read_signal(file, rate)
-        times, values = (bearing.read_signal(file, 1.0, column=n)[0] for n in (1, 2))
+            return read_signal(file, rate)
+        times, values = (read_signal(file, 1.0, column=n)[0] for n in (1, 2))
         steps = np.diff(times)
         even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.01 * steps.mean()
         require(even, f"times in {file.name}", "uneven ones", "equal steps, s", "Or give the sampling rate.")
@@ -216,3 +232,152 @@ def _titled(dotted: str) -> str:
     """Name of a key with its unit."""
     unit = any_case.entry_of(BallBearingCase, dotted).unit if dotted != VARIANT else None
     return f"{dotted} [{unit}]" if unit and unit != "1" else dotted
+
+
+# --- signals from files, behind a path and in noise
+
+
+def read_signal(
+    path: Path, rate: float | None = None, *, array: str | None = None, column: int | None = None
+) -> tuple[Array, float]:
+    """Read a signal (n,) and its sampling rate, Hz, from ``.npy``, ``.npz``, ``.wav`` or a text table.
+
+    `rate` is that which a file does not state, `array` the one of several in an archive, `column` the one of
+    several, from 1. Samples of a WAV file are in shares of full scale.
+    """
+    file = guards.readable_file(path)
+    kind = file.suffix.lower()
+    with guards.hostile(file.name, kind.lstrip(".") or "text"):
+        if kind == ".wav":
+            stated, values = _of_wav(file)
+            rate = rate or stated
+        elif kind == ".npz":
+            values = arrays.array_in(arrays.array_of_archive(file, array, "signals")[1], file.name)
+        elif kind == ".npy":
+            values = arrays.array_in(file.read_bytes(), file.name)
+        else:
+            values = _of_text(file)
+    require(rate, "sampling rate", "nothing", "samples per second", 'Give it, as in --rate "12 kHz".')
+    values = guards.scaled(values, 1.0, file.name)
+    if values.ndim == 2:
+        count = values.shape[1]
+        received, allowed = f"{count} columns", f"one of 1 to {count}"
+        chosen = 1 if column is None and count == 1 else column or 0
+        require(1 <= chosen <= count, f"column in {file.name}", received, allowed, "Choose it with --column.")
+        values = values[:, chosen - 1]
+    require(values.ndim == 1, file.name, f"an array of shape {values.shape}", "a signal, or columns of them")
+    return values, float(rate or 0.0)
+
+
+def _of_wav(file: Path) -> tuple[float, NDArray[Any]]:
+    from scipy.io import wavfile
+
+    with warnings.catch_warnings(action="ignore"):  # of pieces that it does not know
+        rate, values = wavfile.read(file)
+    if values.dtype.kind == "u":
+        values = values.astype(float) - 128.0
+        return float(rate), values / 128.0
+    full = float(np.iinfo(values.dtype).max) + 1.0 if values.dtype.kind == "i" else 1.0
+    return float(rate), values / full
+
+
+def _of_text(file: Path) -> NDArray[Any]:
+    """Numbers of a table, below lines of words."""
+    rows: list[list[float]] = []
+    for line, cells in lines_of_cells(read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT)):
+        try:
+            numbers = [number_in(cell) for cell in cells]
+        except ValueError:
+            require(not rows, file.name, f"words in line {line}", "numbers below the heading")
+            continue
+        even = not rows or len(numbers) == len(rows[0])
+        require(even, file.name, f"{len(numbers)} cells in line {line}", f"{len(rows[0]) if rows else 0}")
+        rows.append(numbers)
+    require(rows, file.name, "no numbers", "a table of numbers")
+    return np.array(rows)
+
+
+def through_path(signal: ArrayLike, rate: float, response: ArrayLike, response_rate: float) -> Array:
+    """Signal behind a path whose impulse response was measured, at whatever sampling rate.
+
+    Parameters
+    ----------
+    signal : array_like (n,)
+        In any unit.
+    rate : float
+        Its samples per second, Hz.
+    response : array_like (m,)
+        Weights of a filter at its own sampling rate: 1 alone leaves the signal as it is. What was measured
+        in 1/s is divided by its sampling rate. No longer than the signal.
+    response_rate : float
+        Samples per second of the response, Hz.
+
+    Returns
+    -------
+    ndarray (n,)
+        In the unit of the signal times that of the response; it starts from rest.
+
+    Notes
+    -----
+    The transfer function ``H(f) = Σ h_k exp(−2πi f k/response_rate)`` is taken at the frequencies of the
+    signal itself, so that nothing is lost by resampling. Above half of `response_rate` nothing is known of
+    the path, and nothing passes.
+
+    Examples
+    --------
+    >>> from asperity.studies.signals import through_path
+    >>> through_path([1.0, 0.0, 0.0, 0.0], 8e3, [0.5, 0.25], 8e3).round(12).tolist()
+    [0.5, 0.25, 0.0, 0.0]
+    """
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    values = finite_array("signal", signal, "a series of finite numbers", shape=(None,))
+    weights = finite_array("impulse response", response, "a series of finite numbers", shape=(None,))
+    rates = positive("sampling rate (Hz)", rate), positive("sampling rate of the path (Hz)", response_rate)
+    ratio = Fraction(rates[0] / rates[1]).limit_denominator(MOST_TERMS)
+    received, allowed = f"{rates[0]:g} and {rates[1]:g} Hz", f"up to {MOST_TERMS} times apart"
+    require(0 < ratio < MOST_TERMS, "sampling rates of the signal and the path", received, allowed)
+    received = f"{weights.size / rates[1]:.4g} s"
+    allowed = f"above 0, and at most {values.size / rates[0]:.4g} s, as the signal"
+    remedy = "Cut it where it has died away."
+    require(0 < weights.size * ratio <= values.size, "impulse response", received, allowed, remedy)
+    ours, theirs = ratio.as_integer_ratio()  # samples of the same time
+    pieces = next_fast_len(ceil((values.size + weights.size * ratio) / ours), real=True)
+    lines, transfer = rfft(values, pieces * ours), rfft(weights, pieces * theirs)
+    known = min(lines.size, transfer.size)
+    return np.asarray(irfft(lines[:known] * transfer[:known], pieces * ours)[: values.size])
+
+
+def with_noise(
+    signal: ArrayLike, seed: int | Sequence[int], *, below: float | None = None, rms: float | None = None
+) -> Array:
+    """Signal with white noise of a normal distribution.
+
+    Parameters
+    ----------
+    signal : array_like (n,)
+        In any unit.
+    seed : int or sequence of int
+        Of the noise: the same seed makes the same noise.
+    below : float
+        Level by which the rms of the noise lies below that of the signal, less its mean, dB; or
+    rms : float
+        Rms of the noise, in the unit of the signal.
+
+    Returns
+    -------
+    ndarray (n,)
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity.studies.signals import with_noise
+    >>> sine = np.sin(np.arange(10_000))
+    >>> noise = with_noise(sine, 1, below=20.0) - sine
+    >>> bool(abs(noise.std() / sine.std() - 0.1) < 0.002)
+    True
+    """
+    values = finite_array("signal", signal, "a series of finite numbers", shape=(None,))
+    require((below is None) != (rms is None), "level of the noise", "both or none", "one of below and rms")
+    spread = rms or 0.0 if below is None else float(values.std()) * 10.0 ** (-below / 20.0)
+    return np.asarray(values + spread * np.random.default_rng(seed).standard_normal(values.size))
