@@ -118,8 +118,10 @@ def test_what_a_part_makes_alone_is_told(runs):
     for band, share in zip(("300 to 1800 Hz", "1800 to 10000 Hz"), above[1:], strict=True):
         assert f"µm/s in {band} ({100 * share:.0f} % from the fault)" in tree.attrs["verdict"]
     assert "no film of lubricant" in tree.attrs["verdict"]
+    assert "Its envelope has lines of the outer raceway (108" in tree.attrs["verdict"]
     smooth = runs(SMOOTH)
     assert "source" not in group(smooth)
+    assert "envelope" not in smooth.attrs["verdict"]  # nothing is struck
 
 
 def test_bands_beyond_the_sampling_are_missing_and_a_band_that_is_given_is_taken():

@@ -79,7 +79,9 @@ def bearing_result(
     }
     at_rest = static_group(case.static, case.kinematics)
     result = tree(scenario | at_rest | motion_group(case, runs) | heard | apart)
-    result.attrs = root_attributes(case, case.title, SOURCES, _verdict(heard, _deciding(apart)), caught)
+    result.attrs = root_attributes(
+        case, case.title, SOURCES, _verdict(heard, _deciding(apart), bool(case.faults)), caught
+    )
     return result
 
 
@@ -220,8 +222,11 @@ def _of_lines(found: Mapping[str, LineFamily], what: str) -> list[Array]:
     return [np.pad(value, (0, HARMONICS - len(value)), constant_values=np.nan) for value in each]
 
 
-def _verdict(heard: Values, deciding: Sequence[str]) -> str:
-    """How quiet the bearing is, by what in each band, and which part is heard."""
+def _verdict(heard: Values, deciding: Sequence[str], faulty: bool) -> str:
+    """How quiet the bearing is, by what in each band, and which part is heard if it has faults.
+
+    Without, beats of waves of the parts lie in the envelope, some of them where lines of others would.
+    """
     velocities = heard[bearing.BAND_VELOCITY][0][0]
     told = ", ".join(
         f"{1e6 * rms:.3g} µm/s in {band}{part}"
@@ -231,7 +236,8 @@ def _verdict(heard: Values, deciding: Sequence[str]) -> str:
     lines = zip(PARTS, heard[bearing.LINES_FOUND][0], heard[bearing.LINE_FREQUENCY][0], strict=True)
     parts = " and of the ".join(f"{NAMES[part]} ({at[0]:.4g} Hz)" for part, found, at in lines if found)
     lead = f"Radial velocity by {heard[bearing.LAW][0]}: {told or 'no band is sampled'}"
-    return f"{lead}. Its envelope has lines of {f'the {parts}' if parts else 'no part'}. {LEFT_OUT}"
+    struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if faulty else ""
+    return f"{lead}.{struck} {LEFT_OUT}"
 
 
 # --- which part makes it so
