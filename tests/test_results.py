@@ -73,6 +73,12 @@ def test_a_result_that_fails_to_be_written_leaves_the_old_one(path):
     assert list(path.parent.iterdir()) == [path]
 
 
+def flipped(path):
+    contents = bytearray(path.read_bytes())
+    contents[len(contents) // 2] ^= 8
+    path.write_bytes(contents)
+
+
 def emptied(path):
     """A netCDF-4 file of something else."""
     xr.Dataset({"force": ("time", [1.0])}).to_netcdf(path, engine="h5netcdf")
@@ -103,6 +109,7 @@ SPOILT = [
     (os.unlink, r"run\.nc: received no such file", True),
     (lambda path: path.write_text("time, force"), "not netCDF-4", True),
     (lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]), "a damaged file", True),
+    (flipped, "its digest does not fit its contents", True),
     (lambda path: path.write_bytes(b"\x89HDF\r\n\x1a\n and no more"), "a damaged file", True),
     (emptied, "of another kind", False),
     (filled, "more than 100 times its size in numbers", False),

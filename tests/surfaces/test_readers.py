@@ -14,6 +14,7 @@ from surface_files import SDF_TYPES, npy, sdf_ascii, sdf_binary, x3p, zipped
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import read_surface, read_surfaces
+from refusals import refusals
 
 # 4 points along x, 3 along y, no symmetry, nm
 HEIGHTS = np.add.outer(10.0 * np.arange(4), np.arange(3))
@@ -202,10 +203,10 @@ REFUSED = [  # file, its contents, hints, and what the message says
 ]
 
 
-@pytest.mark.parametrize(("name", "contents", "hints", "message"), REFUSED)
-def test_what_a_file_does_not_say_is_asked_for(write, name, contents, hints, message):
-    with pytest.raises(InputError, match=message):
-        read_surface(write(name, contents), **hints)
+test_what_a_file_does_not_say_is_asked_for = refusals(
+    *REFUSED,
+    of=lambda name, contents, hints, write: read_surface(write(name, contents), **hints),
+)
 
 
 def test_maps_are_no_lines(write):

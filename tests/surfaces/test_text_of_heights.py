@@ -6,6 +6,7 @@ import pytest
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.readers import read_surface
+from refusals import refusals
 
 # 3 lines along x, 4 points across, in um
 ROWS = [[0.5, 1.25, -2.0, 3.0], [4.0, 5.5, 6.0, 7.75], [8.0, -9.5, 10.0, 11.0]]
@@ -145,10 +146,10 @@ SAID = [
 ]
 
 
-@pytest.mark.parametrize(("content", "hints", "message"), SAID)
-def test_what_is_wrong_is_said(read, content, hints, message):
-    with pytest.raises(InputError, match=message):
-        read(content, **hints)
+test_what_is_wrong_is_said = refusals(
+    *SAID,
+    of=lambda content, hints, read: read(content, **hints),
+)
 
 
 SIDE_BY_SIDE = np.array([[0.51, 1.0], [-0.25, 2.0], [0.0, 3.5]])  # µm
