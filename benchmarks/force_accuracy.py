@@ -71,7 +71,7 @@ class Problem:
     hardness: float | None
     radius: float
 
-    def scanned(self, rtol: float, single: bool = False) -> ScannedForces[NDArray]:
+    def scanned(self, rtol: float, single: bool = False) -> ScannedForces:
         """Scan on one thread."""
         half_space = HalfSpace(self.body.shape, self.spacing, MODULUS, self.hardness)
         job = ScanJob(half_space, Rows(self.heights), self.body, self.approaches, rtol=rtol, device=None)

@@ -37,7 +37,6 @@ def scanned(positions: int, approaches: int, workers: int, stored: bool) -> dict
 
     from asperity import HalfSpace, Hertz
     from asperity.contact.scan import FORCE_ACCURACY, ScanJob, rtol_for, scan_forces
-    from asperity.reduction.table import scan_into
     from asperity.store import Store
     from asperity.surfaces.strip import Rows
     from asperity.surfaces.synthesis import long_self_affine
@@ -54,17 +53,13 @@ def scanned(positions: int, approaches: int, workers: int, stored: bool) -> dict
     digest = hashlib.sha256()
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter()
-        if stored:
-            result = scan_into(Store(Path(folder)), job, workers=workers)
-            seconds, size = time.perf_counter() - began, Store(Path(folder)).size()
-            for first in range(0, positions, 4096):
-                digest.update(result.forces.columns(first, first + 4096).tobytes())
-        else:
-            whole = replace(job, surface=Rows(strip.rows(0, strip.shape[0])))
-            held = scan_forces(whole, workers=workers)
-            seconds, size = time.perf_counter() - began, 0
-            for first in range(0, positions, 4096):
-                digest.update(np.ascontiguousarray(held.forces[:, first : first + 4096]).tobytes())
+        cache = Store(Path(folder)) if stored else None
+        surface = strip if stored else Rows(strip.rows(0, strip.shape[0]))
+        job = replace(job, surface=surface)
+        forces = scan_forces(job, mapped=stored, cache=cache, workers=workers).forces
+        seconds, size = time.perf_counter() - began, cache.size() if cache else 0
+        for first in range(0, positions, 4096):
+            digest.update(np.ascontiguousarray(forces[:, first : first + 4096]).tobytes())
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return {"seconds": seconds, "MiB": peak, "disk": size / 2**20, "digest": digest.hexdigest()}
 

@@ -27,8 +27,7 @@ from step_clock import Clock
 from asperity import Hertz as HertzContact
 from asperity.laws import HertzLaw, Law, Linear, Shifted, Table
 from asperity.reduction.filter import filtered_texture
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import ForceTable
+from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
 from asperity.rolling.roll import roll_bodies

@@ -9,8 +9,7 @@ from asperity.errors import TruncatedContactWarning
 from asperity.laws import Areal, Direct, Printed, Shifted, Table
 from asperity.laws.layout import force
 from asperity.reduction.filter import filtered_texture
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import ForceTable
+from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import areal_texture
 from asperity.rolling.assembly import STEPPED_TOLERANCE, at_rest
 from asperity.structures.body import Body

@@ -10,8 +10,7 @@ from scipy.optimize import brentq
 from asperity.kernels.pointforce import evaluate, evaluate_all, with_damping
 from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table, names
 from asperity.laws.layout import _straight_to_touch, force, on_curve
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import ForceTable
+from asperity.reduction.stiffness import ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.assembly import at_rest
 from asperity.structures.body import Body

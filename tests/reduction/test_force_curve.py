@@ -5,8 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import ForceTable
+from asperity.reduction.stiffness import ForceCurve, ForceTable
 from refusals import refusals
 
 K = 3.2e10

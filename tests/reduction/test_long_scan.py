@@ -1,6 +1,7 @@
-"""Scans of long paths: memory does not grow, a scan goes on, stored forces are those in memory."""
+"""Scans of long paths: memory does not grow, a scan goes on, mapped forces are those in memory."""
 
 import gc
+import tempfile
 import tracemalloc
 
 import numpy as np
@@ -8,8 +9,7 @@ import pytest
 
 from asperity import HalfSpace
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
-from asperity.errors import ComputationError
-from asperity.reduction.table import ForceTable, scan_into
+from asperity.reduction.stiffness import ForceTable
 from asperity.reduction.texture import areal_texture
 from asperity.store import Store
 from asperity.surfaces.strip import LongStrip
@@ -45,31 +45,30 @@ def test_positions_and_blocks_count_from_the_anchor(anchor, tmp_path):
     """Against a tight scan of every row from the first on: each position is a row, in any blocks."""
     every = scan_forces(job(300, rtol=1e-10, device=None)).forces
     path = job(300, stride=3, anchor=anchor, rtol=1e-10, device=None)
-    held, stored = scan_forces(path), scan_into(Store(tmp_path), path)
+    held, mapped = scan_forces(path), scan_forces(path, mapped=True, cache=Store(tmp_path))
     expected = every[:, anchor % 3 :: 3]
     assert anchor // 3 in path.starts or anchor // 3 >= path.positions
-    assert stored.forces.shape == held.forces.shape == expected.shape
+    assert held.forces.shape == expected.shape
     np.testing.assert_allclose(held.forces, expected, rtol=1e-7, atol=1e-9 * every.max())
-    for first, stop in [(0, 95), (0, 1), (10, 40), (15, 17), (80, 200), (7, 7)]:
-        assert np.array_equal(stored.forces.columns(first, stop), held.forces[:, first:stop])
-    assert stored.counts == held.counts
+    assert np.array_equal(mapped.forces, held.forces)
+    assert mapped.counts == held.counts
     assert held.counts.solved == np.count_nonzero(held.forces)
 
 
-@pytest.mark.usefixtures("short_blocks")
-def test_a_table_of_stored_forces_is_that_of_held_ones_until_they_are_cleared_away(tmp_path, monkeypatch):
-    path, store = job(300), Store(tmp_path)
-    held = ForceTable(scan_forces(path).forces, APPROACHES, 0.0, DX, np.zeros(path.positions))
-    at = np.linspace(0.0, 285 * DX, 700)
-    expected = held.at(at)
-    monkeypatch.setattr("asperity.reduction.table.PIECE", 50)
-    stored = ForceTable(scan_into(store, path).forces, APPROACHES, 0.0, DX, np.zeros(path.positions))
-    np.testing.assert_allclose(stored.at(at), expected, rtol=1e-11, atol=1e-12)
-    np.testing.assert_allclose(stored.at(at[::-1])[::-1], expected, rtol=1e-11, atol=1e-12)
-    for file in store.files():
-        file.unlink()
-    with pytest.raises(ComputationError, match="no longer in the cache"):
-        stored.at(at)
+def test_a_table_is_read_in_pieces_and_in_memory_where_no_file_is_written(monkeypatch):
+    path, at = job(300), np.linspace(0.0, 285 * DX, 700)
+
+    def table(**how):
+        return ForceTable(scan_forces(path, **how).forces, APPROACHES, 0.0, DX, np.zeros(path.positions))
+
+    expected = table().at(at)
+    monkeypatch.setattr("asperity.reduction.stiffness.PIECE", 50)
+    mapped = table(mapped=True)
+    np.testing.assert_allclose(mapped.at(at), expected, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(mapped.at(at[::-1])[::-1], expected, rtol=1e-11, atol=1e-12)
+    assert isinstance(mapped.forces.base, np.memmap)
+    monkeypatch.setattr(tempfile, "tempdir", "/no such folder")
+    assert np.array_equal(table(mapped=True).forces, mapped.forces)
 
 
 MORE = 6000  # rows
@@ -121,8 +120,8 @@ def counted(solved, solve=ScanJob.solve):
 @pytest.mark.usefixtures("short_blocks")
 def test_a_longer_scan_goes_on_with_nothing_recomputed_that_was_kept(tmp_path, monkeypatch):
     store, solved, kept, positions = Store(tmp_path), [], 64, 96
-    scan_into(store, job(kept + N - 1), workers=1)
+    scan_forces(job(kept + N - 1), cache=store, workers=1)
     monkeypatch.setattr(ScanJob, "solve", counted(solved))
-    resumed = scan_into(store, job(positions + N - 1), workers=1).forces.columns(0, positions)
+    resumed = scan_forces(job(positions + N - 1), cache=store, workers=1).forces
     assert sum(solved) == np.count_nonzero(resumed[:, kept:])
     assert np.array_equal(resumed, scan_forces(job(positions + N - 1), workers=2).forces)

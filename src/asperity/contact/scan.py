@@ -1,12 +1,13 @@
 """A body moved along a surface: what is asked of the scan, its blocks on threads or a device, its flaws."""
 
+import tempfile
 import time
 from collections import deque
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -164,8 +165,6 @@ def check_settings(workers: object, cache: object, progress: object) -> None:
     require(tells, "progress", shown(progress), "a callable (done, total, message), or None")
 
 
-F = TypeVar("F")
-
 BLOCK = 256
 """Positions solved in one go, from a cold start: the unit of parallel work and of what is kept on disk."""
 TOUCHED = 8192
@@ -276,19 +275,11 @@ class ScanJob:
         return f"A window of {side * 1e3:.3g} mm holds them."
 
 
-class SolvedBlock(NamedTuple):
-    """Solutions at the positions of a block."""
-
-    key: str  # name in the store
-    forces: Array  # (k, positions), N
-    counts: Counts
-
-
 @dataclass(frozen=True, eq=False)
-class ScannedForces(Generic[F]):
+class ScannedForces:
     """Forces of a scan, with how well the solutions went."""
 
-    forces: F  # F_c(x_m, r_i), N, shape (n_approaches, n_positions): an array, or StoredForces
+    forces: Array  # F_c(x_m, r_i), N, shape (n_approaches, n_positions)
     counts: Counts
     single: bool  # whether the iteration was in single precision
 
@@ -300,12 +291,13 @@ def solved_blocks(
     progress: Progress | None = None,
     message: str = "scanning the contact",
     beside: Sequence[ScanJob] = (),
-) -> Generator[SolvedBlock]:
-    """Blocks of a scan in order, from the cache or solved, on so many threads (by default `thread_count`).
+) -> Generator[tuple[Array, Counts]]:
+    """Forces (k, positions), N, and counts of the blocks of a scan, in order, from the cache or solved.
 
-    A scan that was interrupted goes on after the last block kept; the number of threads changes no digit.
-    Processes that need the same scan share its work: while another one solves a block, the last one that
-    nobody solves is solved here, of this scan or of those that are done `beside` it.
+    On so many threads, by default `thread_count`: their number changes no digit. A scan that was interrupted
+    goes on after the last block kept. Processes that need the same scan share its work: while another one
+    solves a block, the last one that nobody solves is solved here, of this scan or of those that are done
+    `beside` it.
     """
     count = (workers or thread_count()) if job.device is None else 1  # one block fills a device
     spare = deque((other, start) for other in (beside or [job]) for start in other.starts)
@@ -322,22 +314,38 @@ def solved_blocks(
                     return
         time.sleep(PATIENCE)
 
-    def block(start: int) -> SolvedBlock:
+    def block(start: int) -> tuple[Array, Counts]:
         rows, planes = job.under(start)
-        key = "" if cache is None else job.key(rows, planes)
         solve = partial(job.solve, rows, planes)
-        kept = solve() if cache is None else made(cache, key, solve, help_along)
-        return SolvedBlock(key, kept["forces"], Counts(*kept["counts"].tolist()))
+        kept = solve() if cache is None else made(cache, job.key(rows, planes), solve, help_along)
+        return kept["forces"], Counts(*kept["counts"].tolist())
 
     with closing(in_order(block, job.starts, min(count, len(job.starts)))) as blocks:
-        yield from counted(blocks, job.positions, message, progress, lambda found: found.forces.shape[1])
+        yield from counted(blocks, job.positions, message, progress, lambda found: found[0].shape[1])
 
 
-def scan_forces(job: ScanJob, **how: Any) -> ScannedForces[Array]:
-    """Scan, and hold the forces in memory; further arguments as in `solved_blocks`."""
-    blocks = list(solved_blocks(job, **how))
-    forces = np.concatenate([block.forces for block in blocks], axis=1)
-    return ScannedForces(forces, total(block.counts for block in blocks), job.single)
+def scan_forces(job: ScanJob, *, mapped: bool = False, **how: Any) -> ScannedForces:
+    """Scan, and hold the forces in memory, or mapped from a temporary file where one can be written.
+
+    Memory then holds the blocks in work alone, whatever the path. Further arguments as in `solved_blocks`.
+    """
+    with suppress(OSError):
+        if mapped:
+            return _mapped(job, **how)
+    forces, counts = zip(*solved_blocks(job, **how), strict=True)
+    return ScannedForces(np.concatenate(forces, axis=1), total(counts), job.single)
+
+
+def _mapped(job: ScanJob, **how: Any) -> ScannedForces:
+    """Scan into a temporary file, position after position, which is gone with the forces."""
+    counts = []
+    with tempfile.TemporaryFile(prefix="asperity-") as file:
+        for forces, found in solved_blocks(job, **how):
+            file.write(np.ascontiguousarray(forces.T).data)
+            counts.append(found)
+        file.flush()
+        held = np.memmap(file, np.float64, "r", shape=(job.positions, len(job.approaches)))
+    return ScannedForces(held.T, total(counts), job.single)
 
 
 def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int = 0) -> Array:
@@ -365,7 +373,7 @@ def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int
     return result
 
 
-def labelled(job: ScanJob, scanned: ScannedForces[Array]) -> "xarray.DataArray":
+def labelled(job: ScanJob, scanned: ScannedForces) -> "xarray.DataArray":
     """Forces as `HalfSpace.scan` returns them."""
     import xarray
 

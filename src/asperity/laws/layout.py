@@ -6,8 +6,7 @@ from asperity.arguments import Array, ArrayLike
 from asperity.kernels.piecewise import monotone_slopes
 from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import PIECE, ForceTable
+from asperity.reduction.stiffness import PIECE, ForceCurve, ForceTable
 from asperity.reduction.texture import StateTexture
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from asperity.arguments import ArrayLike as ArrayLike
     from asperity.kernels.pointforce import Prepared as Prepared
     from asperity.reduction.stiffness import ForceCurve as ForceCurve
-    from asperity.reduction.table import ForceTable as ForceTable
+    from asperity.reduction.stiffness import ForceTable as ForceTable
     from asperity.reduction.texture import StateTexture as StateTexture
 
 Dashes = Literal["-"] | tuple[float, tuple[float, ...]]

@@ -1,4 +1,4 @@
-"""The force-approach curve f(approach), from which the state-dependent contact stiffness follows."""
+"""The force over the approach: the curve of an ensemble of samples, and a table all along a path."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,8 +8,10 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
+from asperity.kernels.along import OVERLAP, splines_along
 from asperity.kernels.piecewise import continued_to_touch, cubic_coefficients, monotone_slopes
 from asperity.progress import Progress, counted
+from asperity.reduction.texture import grid_index
 from asperity.threads import in_order
 
 
@@ -273,3 +275,38 @@ def stiffness_ensemble(
     return StiffnessEnsemble(
         np.asarray(approaches, dtype=np.float64), forces, tangents, datum, len(approaches) - cut_off
     )
+
+
+PIECE = 8192
+"""Positions worked on in one go."""
+
+
+@dataclass(frozen=True, eq=False)
+class ForceTable:
+    """Contact force at positions of the path and states of the contact, at least two."""
+
+    # (s, m), at state i and position m, N, not negative; not falling with the approach but by accuracy
+    forces: Array
+    approaches: Array  # (s,), of the states, m, increasing
+    start: float  # position of the first point on the path, m
+    spacing: float  # distance of the points, m
+    touches: Array  # (m,), approach at which contact begins, m
+
+    def at(self, positions: ArrayLike) -> Array:
+        """Forces (n, s), N, at positions (n,), m, by cubic splines: not negative, not falling with states."""
+        count = self.forces.shape[1]
+        index = grid_index("force table", count, self.start, self.spacing, positions)
+        result = np.empty((index.size, len(self.approaches)))
+        for i in range(0, index.size, PIECE):
+            piece = index[i : i + PIECE]
+            first = max(0, int(piece.min()) - OVERLAP)
+            stop = min(count, int(piece.max()) + 2 + OVERLAP)
+            known = np.ascontiguousarray(self.forces[:, first:stop])
+            result[i : i + PIECE] = splines_along(known, piece - first)
+        # a spline may undershoot beside a place where contact is lost
+        return np.maximum.accumulate(np.maximum(result, 0.0, out=result), axis=1)
+
+    def touch_at(self, positions: ArrayLike) -> Array:
+        """Approach at first touch at positions (n,), m, interpolated linearly."""
+        at = self.start + self.spacing * np.arange(self.forces.shape[1])
+        return np.interp(np.asarray(positions, dtype=float), at, self.touches)

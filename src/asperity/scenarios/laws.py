@@ -10,11 +10,12 @@ import numpy as np
 
 from asperity.arguments import Array, shown
 from asperity.case import scene, sections
-from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, warn_of_flaws
+from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, scan_forces, warn_of_flaws
 from asperity.errors import InputError
 from asperity.laws import Law, LawSpec, Materials, Need, spec_of
 from asperity.progress import Progress
-from asperity.reduction import filter, table
+from asperity.reduction import filter
+from asperity.reduction.stiffness import ForceTable
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
@@ -112,14 +113,15 @@ class LawMaterials:
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
     @cached_property
-    def scan(self) -> ScannedForces[table.StoredForces]:
+    def scan(self) -> ScannedForces:
         """The scan of the path."""
         job = ScanJob(
             self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
             self._reduced.approaches, table_stride(self.shape), rtol_for(self.case.numerics.force_accuracy),
             self._scanned_planes, self.textures.before,
         )  # fmt: skip
-        scanned = table.scan_into(self.cache, job, progress=self.progress, message="scanning the path")
+        how = {"cache": self.cache, "progress": self.progress, "message": "scanning the path"}
+        scanned = scan_forces(job, mapped=True, **how)
         warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
         return scanned
 
@@ -138,7 +140,7 @@ class LawMaterials:
         stride = table_stride(self.shape)
         return slice(self.textures.before % stride, None, stride)
 
-    def _table(self) -> table.ForceTable:
+    def _table(self) -> ForceTable:
         """The scan of the path, to look forces up in."""
         rows, dx, body = self._scanned_rows, self.shape.spacing[0], self.shape.body
         if self.textures.defects is not None:
@@ -147,7 +149,7 @@ class LawMaterials:
             assert self._reduced.touches is not None
             touches = self._reduced.touches[rows]
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
-        return table.ForceTable(self.scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
+        return ForceTable(self.scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
 
 
 def table_stride(shape: Geometry) -> int:

@@ -24,8 +24,7 @@ from asperity.laws.hertz import HertzLaw
 from asperity.laws.spec import SteppedLaw
 from asperity.laws.table import Table
 from asperity.progress import Progress
-from asperity.reduction.stiffness import ForceCurve, patches, stiffness_ensemble
-from asperity.reduction.table import ForceTable
+from asperity.reduction.stiffness import ForceCurve, ForceTable, patches, stiffness_ensemble
 from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
 from asperity.scenarios.reducing import chosen_states
@@ -324,7 +323,7 @@ class OnRaceway:
         return chosen_states(places, self.shape, self.space)
 
     @cached_property
-    def around(self) -> ScannedForces[Array]:
+    def around(self) -> ScannedForces:
         """Forces (states, positions) once around; where nothing is in the window they are solved once."""
         window, lines = self.shape.body.shape
         new, counts = self._met(self.surface.heights + self.surface.faults), []

@@ -326,11 +326,11 @@ def line_filters(
 
 def _scanned_strips(
     jobs: Sequence[scan.ScanJob], cache: Store | None, progress: Progress
-) -> list[scan.ScannedForces[Array]]:
+) -> list[scan.ScannedForces]:
     """Forces at constant approach along each strip."""
     workers = thread_count() if jobs[0].device is None else 1  # one block fills a device
 
-    def scanned(job: scan.ScanJob) -> scan.ScannedForces[Array]:
+    def scanned(job: scan.ScanJob) -> scan.ScannedForces:
         # one strip is a block or two: strips beside each other keep all processors busy
         return scan.scan_forces(job, cache=cache, workers=math.ceil(workers / len(jobs)), beside=jobs)
 

@@ -4,7 +4,6 @@ import json
 import time
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -45,7 +44,7 @@ class Computed:
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
     materials: LawMaterials  # of the first contact: textures, geometry, state functions
     runs: dict[str, RolledBodies]  # time histories, by law
-    scan: ScannedForces[Any] | None  # of the path
+    scan: ScannedForces | None  # of the path
     running_in: RunInCase | None  # what passes before did to the textures; None where there were none
     seconds: dict[str, float]  # wall time of each part, s
     # (laws, points, n), displacement, m, and velocity, m/s, of the rail at the points that are passed
