@@ -7,11 +7,11 @@ import pytest
 from click.testing import CliRunner
 
 from asperity.case.cases import parse_case
-from asperity.case.surface import read_recipe
+from asperity.case.surface import Recipe, read_recipe
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
 from asperity.scenarios.records import read_maps
-from asperity.surfaces import heightmap, levelling, steps
+from asperity.surfaces import heightmap, levelling
 from refusals import refusals
 
 BEGUN = """height_unit = "um"
@@ -52,7 +52,7 @@ def test_a_stored_recipe_gives_a_case_the_map_of_the_command_line(measured, tmp_
     found = read_maps(parse_case(case('recipe = "recipe.toml"'), tmp_path / "case.toml").surface)[0]
     surface = heightmap.HeightMap(measured * 1e-6, (2e-6, 2e-6)).without_spikes().transposed().filled()
     surface = levelling.level(surface.crop((10e-6, 20e-6), (180e-6, 160e-6)), 2)
-    expected = steps.rotated(levelling.band_limit(surface, longest=1e-4, shortest=8e-6), np.radians(30.0))
+    expected = levelling.rotated(levelling.band_limit(surface, longest=1e-4, shortest=8e-6), np.radians(30.0))
     assert found.spacing == expected.spacing
     np.testing.assert_array_equal(found.heights, expected.heights)
     points = " × ".join(map(str, expected.shape))
@@ -80,9 +80,9 @@ test_recipes_that_are_wrong = refusals(
 
 def test_pieces_are_given_by_as_many_lengths_as_they_need():
     line, surface = heightmap.Profile(np.arange(9.0), 1.0), heightmap.HeightMap(np.eye(9), (1.0, 1.0))
-    assert steps.stepped(line, crop=[2.0, 3.0]).heights.tolist() == [2.0, 3.0, 4.0]
-    assert steps.stepped(surface, crop=[2.0, 3.0, 4.0, 2.0]).shape == (4, 2)
+    assert Recipe(crop=[2.0, 3.0]).stepped(line).heights.tolist() == [2.0, 3.0, 4.0]
+    assert Recipe(crop=[2.0, 3.0, 4.0, 2.0]).stepped(surface).shape == (4, 2)
     with pytest.raises(InputError, match="crop: received 2 lengths; allowed: four of a map"):
-        steps.stepped(surface, crop=[2.0, 3.0])
+        Recipe(crop=[2.0, 3.0]).stepped(surface)
     with pytest.raises(InputError, match="crop: received 4 lengths; allowed: two of a line"):
-        steps.stepped(line, crop=[2.0, 3.0, 4.0, 2.0])
+        Recipe(crop=[2.0, 3.0, 4.0, 2.0]).stepped(line)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from asperity import HalfSpace
-from asperity.contact.in_place import ContactInPlace
+from asperity.contact.scan import ContactInPlace
 from asperity.surfaces.synthesis import self_affine
 from like_measured import either, sheet
 

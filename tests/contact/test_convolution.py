@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from asperity.kernels.continuation import continue_pressure, correct_start, misfits
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
 from asperity.kernels.lanes import width
+from asperity.kernels.scanning import continue_pressure, correct_start, misfits
 
 PRECISIONS = {np.float64: 1e-14, np.float32: 1e-6}
 

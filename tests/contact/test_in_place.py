@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity import HalfSpace
-from asperity.contact.in_place import ContactInPlace
+from asperity.contact.scan import ContactInPlace
 
 MODULUS, DX, N, RADIUS, RTOL = 115e9, 5e-6, 41, 10e-3, 1e-7
 X = (np.arange(N) - N // 2) * DX

@@ -7,9 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from asperity import BallOnBeam
 from asperity.errors import CaseError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import band_limit, level, resample
+from asperity.surfaces.levelling import band_limit, inscribed, level, resample, rotated
 from asperity.surfaces.spectra import texture_direction
-from asperity.surfaces.steps import inscribed, rotated
 from refusals import refusals
 
 UM = 1e-6

@@ -4,11 +4,11 @@ import os
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from asperity.arguments import FORMS, Array, shown
+from asperity.arguments import FORMS, Array, require, shown
 from asperity.case import content, tables, toml
 from asperity.case.form import Section
 from asperity.errors import InputError
@@ -27,11 +27,13 @@ from asperity.parameters import (
     key,
     optional,
 )
-from asperity.surfaces import steps
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import rotated
 from asperity.surfaces.readers import read_surface, read_surfaces
+from asperity.surfaces.readers.hints import spell
 from asperity.units import factor, written
 
+S = TypeVar("S", HeightMap, Profile, HeightMap | Profile)
 LENGTH = Quantity("m", above=0)
 POSITION = Quantity("m", at_least=0)
 ANGLE = Quantity("rad")
@@ -366,11 +368,6 @@ class Recipe(Section):
     direction: float | None = key(ANGLE, None, "direction of rolling, from x towards y")
 
     @property
-    def steps(self) -> dict[str, Any]:
-        """What is done after reading, as `surfaces.steps.stepped` takes it."""
-        return {name: getattr(self, name) for name in STEPS}
-
-    @property
     def hints(self) -> dict[str, Any]:
         """What is said of the file, as `read_measured` takes it."""
         found = {name: value for name, value in self.given().items() if name not in STEPS}
@@ -380,7 +377,25 @@ class Recipe(Section):
 
     def surfaces(self, file: Path) -> list[HeightMap | Profile]:
         """Read the map, the line, or all maps of an ensemble, and prepare them."""
-        return [steps.stepped(surface, **self.steps) for surface in read_measured(file, **self.hints)]
+        return [self.stepped(surface) for surface in read_measured(file, **self.hints)]
+
+    def stepped(self, surface: S) -> S:
+        """Cut a piece, remove a form, filter, and turn into the direction of rolling."""
+        is_map, done = isinstance(surface, HeightMap), cast(Any, surface)
+        if self.crop is not None:
+            of_map = "four of a map: x, y and both sides"
+            of_line = "two of a line: where the piece begins, and its length"
+            right, count = len(self.crop) == (4 if is_map else 2), f"{len(self.crop)} lengths"
+            require(right, spell("crop"), count, of_map if is_map else of_line)
+            done = done.crop(self.crop[:2], self.crop[2:]) if is_map else done.crop(*self.crop)
+        if self.form is not None:
+            done = done.levelled(self.form)
+        if self.longest is not None or self.shortest is not None:
+            done = done.band_limited(self.longest, self.shortest)
+        if self.direction is not None:
+            require(is_map, spell("direction"), "a line", "a height map", "Leave it out.")
+            done = rotated(done, self.direction)
+        return done
 
 
 def read_measured(

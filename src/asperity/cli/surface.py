@@ -25,7 +25,6 @@ from asperity.surfaces.levelling import level
 from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.spectra import psd_1d, psd_radial
-from asperity.surfaces.steps import stepped
 from asperity.terminal import say
 from asperity.text_files import write_csv
 
@@ -61,8 +60,8 @@ def show_surface(
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
     with spelled(on_command_line):
         surfaces: Surfaces = recipes.read_measured(file, **steps.hints)
-        lines = [stepped(line, **steps.steps) for line in _side_by_side(surfaces, steps.lines)]
-        surfaces = surfaces if lines else [stepped(surface, **steps.steps) for surface in surfaces]
+        lines = [steps.stepped(line) for line in _side_by_side(surfaces, steps.lines)]
+        surfaces = surfaces if lines else [steps.stepped(surface) for surface in surfaces]
     if store is not None:
         write_bytes(store, recipes.recipe_text(typed).encode())
         say(f"Recipe: {store.resolve()}")

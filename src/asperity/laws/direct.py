@@ -15,7 +15,7 @@ from asperity.laws import spec
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
-    from asperity.contact.in_place import ContactInPlace
+    from asperity.contact.scan import ContactInPlace
 
 AT_REST = 1e-6
 """Largest tolerance of contacts at rest, before anything rolls: they must carry the load to five digits."""
@@ -75,7 +75,7 @@ class Direct:
     def prepare(self, positions: ArrayLike) -> DirectOnPath:
         """Lay the law out on positions (n,) of the contact, m."""
         from asperity.contact.halfspace import HalfSpace
-        from asperity.contact.in_place import ContactInPlace
+        from asperity.contact.scan import ContactInPlace
         from asperity.reduction.texture import grid_index
 
         (dx, _), half = self.spacing, self.body.shape[0] // 2

@@ -20,10 +20,9 @@ from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces import measured_lines, synthesis
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import band_limit, level, resample
+from asperity.surfaces.levelling import QUARTER, band_limit, level, resample, rotated
 from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.readers.hints import in_case, spelled
-from asperity.surfaces.steps import QUARTER, rotated
 from asperity.surfaces.strip import Rows, Strip
 
 MOST_POINTS = 2.0**27
