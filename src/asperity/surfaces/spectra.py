@@ -101,48 +101,26 @@ def autocorrelation(surface: HeightMap) -> Array:
     """
     z = _complete(surface)
     require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
-    rows, columns = z.shape
-    products = LagSums(rows, columns, rows // 2)
-    products.add(z)
-    mean = products.means()
-    return np.asarray(mean / mean[rows // 2, columns // 2])
+    products, pairs = lag_products(z, len(z) // 2)
+    mean = products / pairs
+    return np.asarray(mean / mean[len(z) // 2, z.shape[1] // 2])
 
 
-class LagSums:
-    """Sums of products of heights at lags, of a map or of pieces of a strip, added one after the other.
+def lag_products(heights: Array, reach: int) -> tuple[Array, Array]:
+    """Sums of products of heights about the mean, m², at lags up to `reach` along x and half of all across.
 
-    Pieces have at most `rows` rows, each of `columns` points; `reach` is the largest lag along x, points.
-    Products at lags are, transformed, the squares of spectra: pieces add up there, and are transformed back
-    once.
+    And the numbers of pairs: both (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle.
     """
-
-    def __init__(self, rows: int, columns: int, reach: int) -> None:
-        self.columns, self.reach, self.side = columns, reach, columns // 2
-        self.length = fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags wanted
-        self.width = fft.next_fast_len(columns + self.side)
-        self.power = np.zeros((self.length // 2 + 1, self.width))
-        self.rows: list[int] = []
-
-    def add(self, heights: Array) -> None:
-        """Add a piece, (rows, columns) about the mean, m."""
-        self.rows.append(len(heights))
-        spectrum = fft.rfft(heights, self.length, axis=0, workers=thread_count())
-        spectrum = fft.fft(spectrum, self.width, axis=1, overwrite_x=True, workers=thread_count())
-        self.power += spectrum.real**2 + spectrum.imag**2
-
-    def sums(self) -> Array:
-        """Sums of products, m², (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle."""
-        across = np.conj(fft.rfft(self.power, axis=1, workers=thread_count())[:, : self.side + 1])
-        across /= self.width
-        half = fft.irfft(across, self.length, axis=0, overwrite_x=True, workers=thread_count())
-        half = np.concatenate([half[self.length - self.reach :], half[: self.reach + 1]])
-        return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
-
-    def means(self) -> Array:
-        """Mean products, m², as `sums`."""
-        along = sum(self.rows) - len(self.rows) * np.abs(np.arange(-self.reach, self.reach + 1))
-        across = self.columns - np.abs(np.arange(-self.side, self.side + 1))
-        return self.sums() / np.outer(along, across)
+    (rows, columns), workers = heights.shape, thread_count()
+    side, length = columns // 2, fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags
+    spectrum = fft.rfft(heights, length, axis=0, workers=workers)
+    spectrum = fft.fft(spectrum, fft.next_fast_len(columns + side), axis=1, overwrite_x=True, workers=workers)
+    across = fft.ifft(spectrum.real**2 + spectrum.imag**2, axis=1, overwrite_x=True, workers=workers)
+    half = fft.irfft(across[:, : side + 1], length, axis=0, overwrite_x=True, workers=workers)
+    half = np.concatenate([half[length - reach :], half[: reach + 1]])
+    lags = (np.abs(np.arange(-n, n + 1)) for n in (reach, side))
+    pairs = np.outer(*(n - lag for n, lag in zip((rows, columns), lags, strict=True)))
+    return np.hstack([half[::-1, :0:-1], half]), pairs  # the same at a lag and its opposite
 
 
 def autocorrelation_lengths(surface: HeightMap) -> tuple[float, float]:

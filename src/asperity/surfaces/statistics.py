@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from functools import reduce
+from itertools import pairwise, starmap
 
 import numpy as np
 import scipy
@@ -11,7 +12,7 @@ from asperity.arguments import Array, require
 from asperity.spectra import psd
 from asperity.surfaces import cleaning, levelling, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.spectra import LagSums, autocorrelation_lengths, lengths_of, texture_direction
+from asperity.surfaces.spectra import autocorrelation_lengths, lag_products, lengths_of, texture_direction
 from asperity.surfaces.strip import Strip
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
@@ -237,25 +238,23 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
         low, high = min(low, float(heights.min())), max(high, float(heights.max()))
     del heights
     points = (stop - first) * strip.shape[1]
-    mean = total / points
-    lengths = [end - start for start, end in bounds]
-    lags = LagSums(max(lengths), strip.shape[1], min(lengths) // 2)
-    pieces = []
-    for start, end in bounds:
+    mean, reach = total / points, min(end - start for start, end in bounds) // 2
+
+    def sums(start: int, end: int) -> tuple[Array, ...]:
         before, beyond = max(first, start - MARGIN), min(stop, end + MARGIN)
         rows, inner = strip.rows(before, beyond) - mean, slice(start - before, end - before)
-        pieces.append(_sums(rows, inner, strip.spacing, segment))
-        lags.add(rows[inner])
-    powers, slopes, spectra, segments = (sum(each) for each in zip(*pieces, strict=True))
+        return *_sums(rows, inner, strip.spacing, segment), *lag_products(rows[inner], reach)
+
+    added = reduce(lambda these, those: tuple(map(np.add, these, those)), starmap(sums, bounds))
+    powers, slopes, spectra, segments, products, pairs = added
     statistics = []
     if high > low:
         sides = (stop - first) * strip.spacing[0], strip.shape[1] * strip.spacing[1]
-        band = 2.0 * min(strip.spacing), max(sides)
         values = _amplitudes(powers / points, high - low)
         values |= {"dq": np.sqrt(slopes[0] / slopes[2]), "dr": slopes[1] / slopes[2]}
-        shortest, longest = lengths_of(lags.means(), strip.spacing)
+        shortest, longest = lengths_of(products / pairs, strip.spacing)
         values |= {"al": shortest, "tr": shortest / longest}
-        statistics = _statistics("S", values, band)
+        statistics = _statistics("S", values, (2.0 * min(strip.spacing), max(sides)))
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
     return StripSurvey(statistics, wavenumber, np.asarray(spectra / segments))
 
