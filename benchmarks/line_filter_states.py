@@ -20,8 +20,8 @@ from dataclasses import replace
 import numpy as np
 
 from asperity import laws
-from asperity.case.ball_on_beam import BallOnBeam
-from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.case.beam import BallOnBeam
+from asperity.case.bodies import WheelOnRail
 from asperity.laws.layout import force
 from asperity.progress import progress_bar
 from asperity.reference.cnossos import rail_roughness

@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from asperity.case.ball_on_beam import BallOnBeam
+from asperity.case.beam import BallOnBeam
 from asperity.case.cases import parse_case
 from asperity.errors import PhysicsWarning
 from asperity.progress import progress_bar

@@ -38,7 +38,7 @@ WAITING = {
         "numpy", "numba", "scipy", "xarray", "matplotlib", "pint", "pydantic", "rich", "jinja2", "starlette",
         "uvicorn",
     ],
-    "import asperity.laws, asperity.case.scene, asperity.case.ball_on_beam": [
+    "import asperity.laws, asperity.case.scene, asperity.case.beam": [
         "numba", "scipy.fft", "scipy.optimize", "xarray", "matplotlib",
     ],
     "import asperity.scenarios.preparing": LATE,  # what is written out, is loaded when first named

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from asperity.case.bodies import WheelOnRail
 from asperity.case.tables import read_mode_table
-from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.structures.outline import WheelSection
 from command_line import call
 

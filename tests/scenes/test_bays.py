@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from asperity.case.bodies import WheelOnRail
 from asperity.case.cases import load_case
-from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.errors import CaseError
 from asperity.reporting import chart
 from asperity.running import prepare_case

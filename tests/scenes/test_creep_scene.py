@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.case.bodies import WheelOnRail
 from asperity.contact.hertz import stick_stiffness
 from asperity.reference.materials import MATERIALS
 from asperity.scenarios.preparing import prepare

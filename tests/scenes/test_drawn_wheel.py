@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.case.bodies import WheelOnRail
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.scenarios.scene import mean_square_transfer
 from asperity.scenes import schema

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.case.bodies import WheelOnRail
 from asperity.errors import MeasuredTrackWarning
 from asperity.running import prepare_case
 from asperity.scenes.figures.measured import MEASURED, measured_table

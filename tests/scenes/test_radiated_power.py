@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.case.bodies import WheelOnRail
 from asperity.radiation.track import SleeperTop
 from asperity.reporting.chart import Line
 from asperity.scenes.figures.noise import RADIATED, noise_answers, sound_power_table

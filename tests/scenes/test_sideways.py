@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from asperity.case.bodies import Bodies
-from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.case.bodies import Bodies, WheelOnRail
 from asperity.contact.hertz import stick_stiffness
 from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel

@@ -1,17 +1,20 @@
-"""Bodies roll, one or many, over any structure: the scene with all its choices."""
+"""Bodies roll, one or many, over any structure: the scene with all its choices; and a wheel on a rail."""
 
 from collections.abc import Iterator
 from typing import ClassVar
 
 from asperity.case.beam import BeamKeys
-from asperity.case.body import Rolling
+from asperity.case.body import OF_SEVERAL, Rolling
 from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
-from asperity.case.scene import Case
+from asperity.case.scene import Case, time_step_on_grid
 from asperity.case.sections import NoiseKeys
 from asperity.case.sideways import CreepKeys, SidewaysKeys
+from asperity.case.surface import Surface
 from asperity.errors import InputError
 from asperity.parameters import Choice, key
+from asperity.structures.body import GRAVITY
+from asperity.units import written
 
 STRUCTURES = ("plane", "beam", "track", "structure")
 """What may be rolled over; but for the plane, each is a section of the case."""
@@ -85,3 +88,100 @@ class Bodies(OverTrack):
             yield InputError("structure.file", "nothing", "the file of its modes, or receptances", remedy)
             return
         yield from super().problems()
+
+
+# --- a wheel on a rail
+
+STEPS_PER_PERIOD = 8  # of the highest frequency
+CLOSE = 1.2  # a time step may be changed by this factor to bring positions onto the grid
+
+
+class RailSurface(Surface):
+    """Texture of a rail, laid out in strips: lines are known across, and every law can be rolled."""
+
+    IN_STRIPS = True
+
+
+DEFAULTS = {
+    "speed": "56 m/s",
+    "laws": ["areal", "shifted", "printed", "linear-filtered", "linear"],
+    "start": "0 m",
+    "duration": "1 s",
+    "settling": "0.3 s",
+}
+
+
+class WheelOnRail(OverTrack, defaults=DEFAULTS):
+    """A wheel rolls on a rail of infinite length on discrete supports.
+
+    Each key's meaning, default and allowed values are printed by ``asperity new wheel-on-rail``. Positions
+    count along the rail, in m from a sleeper. Every law is allowed: textures are laid out as strips.
+
+    Examples
+    --------
+    >>> from asperity import WheelOnRail
+    >>> case = WheelOnRail(surface={"spectrum": "iso3095"}, track={"pad_stiffness": 150e6})
+    >>> case.with_(speed="200 km/h").track.model().pad_stiffness
+    150000000.0
+    """
+
+    TITLE = "A wheel rolls on an infinite track."
+    ROLLING, OVER = "wheel", "track"
+    DISPLACEMENTS = ("rail_displacement", "wheel_displacement")
+    WRITTEN_OUT: ClassVar = {"surface.spectrum": '"iso3095"', "wheel.roughness": '"disc"'}
+    SHOWN: ClassVar = {"wheel": tuple(name for name in Rolling.keys if name not in OF_SEVERAL)}
+
+    kind: str = key(Choice(("wheel-on-rail",)), "wheel-on-rail", "what rolls")
+    surface: Surface = section(
+        RailSurface,
+        "texture of the rail: measured or synthesised, with defects on top",
+        lateral=1.0,
+        continuation="refuse",
+    )
+    wheel: Rolling = section(
+        Rolling,
+        "the wheel that rolls",
+        radius="0.46 m",
+        mass="600 kg",
+        load="65 kN",
+        transverse_radius="inf",
+        section="straight-web",
+    )
+    track: TrackKeys = section(TrackKeys, "the track that is rolled over")
+
+    @property
+    def title(self) -> str:
+        """Say what rolls over what in this case."""
+        return f"Wheel on rail at {self.speed:.3g} m/s"
+
+    @property
+    def time_step(self) -> float:
+        """Time step in s: as given, or near 1/(8 f_max).
+
+        Where that changes it by less than 20 %, the distance rolled in one step is a whole multiple, or a
+        whole fraction, of ``contact.spacing``.
+        """
+        if self.numerics.time_step is not None:
+            return self.numerics.time_step
+        per_cell = self.contact.spacing / self.speed
+        wanted = 1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency)
+        cells = round(wanted / per_cell)
+        step = cells * per_cell if cells else time_step_on_grid(wanted, per_cell)
+        return step if 1 / CLOSE <= step / wanted <= CLOSE else wanted
+
+    def own_problems(self) -> Iterator[InputError]:
+        """A load that asks for its unit, and a path that is long enough."""
+        weight = GRAVITY * self.wheel.contact_mass
+        if self.wheel.contact_load < weight * (1.0 - 1e-9):
+            received, mass = written(self.wheel.contact_load, "N", "kN"), self.wheel.contact_mass
+            allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {mass:g} kg on the contact"
+            remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
+            yield InputError("wheel.load", received, allowed, remedy)
+        length, contact = self.speed * self.rolled_time, self.contact
+        least = max(contact.window, (contact.filter_taps or 0) * contact.spacing)
+        if length < least:
+            received = f"{self.rolled_time:g} s, in which {length * 1e3:.4g} mm are rolled"
+            allowed = (
+                f"at least contact.window, and contact.filter_taps spacings, {written(least, 'm', 'mm')}"
+            )
+            yield InputError("duration", received, allowed, "A path must be longer than window and filters.")

@@ -7,7 +7,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case import cases, tables
-from asperity.case.wheel_on_rail import WheelOnRail
+from asperity.case.bodies import WheelOnRail
 from asperity.errors import InputError
 from asperity.reference.wheels import SECTIONS
 from asperity.reporting.chart import BLUE, Axis, Chart, Panel, Shape
