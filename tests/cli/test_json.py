@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.cli.program import FORMAT
+from asperity.cli.commands import FORMAT
 from asperity.results import read_result
 from asperity.terminal import json_ready
 from command_line import SMALL, call

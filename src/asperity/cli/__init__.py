@@ -9,9 +9,8 @@ import click
 
 from asperity import __version__
 from asperity.case import PRESETS
-from asperity.cli import options
-from asperity.cli.options import PATH, output
-from asperity.cli.program import Program
+from asperity.cli import commands
+from asperity.cli.commands import PATH, Program, output
 from asperity.errors import InputError
 from asperity.terminal import say
 
@@ -62,8 +61,8 @@ _look, _around = _listed("Look, listen and compare"), _listed("Around it")
 
 @_begin("Run a small example that needs no input.", document=False, long_work=True)
 @output("Folder of the results.", default=Path("asperity-demo"), show_default=True)
-@options.again
-@options.overwrite("the run of another case")
+@commands.again
+@commands.overwrite("the run of another case")
 def demo(directory: Path, again: bool, overwrite: bool) -> None:
     """Run a small example that needs no input, and say where its report lies.
 
@@ -81,8 +80,8 @@ def demo(directory: Path, again: bool, overwrite: bool) -> None:
 
 
 @_begin("Write a commented case, or a study, to begin with.", document=False)
-@click.argument("kind", metavar="|".join(templates()), shell_complete=options.completed(templates))
-@options.laws
+@click.argument("kind", metavar="|".join(templates()), shell_complete=commands.completed(templates))
+@commands.laws
 def new(kind: str, laws: tuple[str, ...]) -> None:
     """Write a commented case, a study of one or its optimisation, to standard output.
 
@@ -113,9 +112,9 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 
-@_begin("What is in a measured file: size, statistics, spectrum, picture.", params=options.SURFACE)
+@_begin("What is in a measured file: size, statistics, spectrum, picture.", params=commands.SURFACE)
 @click.argument("file", type=PATH)
-@options.picture("The picture. [default: NAME-surface.png here, with array and index in its name]")
+@commands.picture("The picture. [default: NAME-surface.png here, with array and index in its name]")
 def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture.
 
@@ -143,7 +142,7 @@ def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
 @_begin("Modes of a wheel by the drawing of its section.", document=False, long_work=True)
 @click.argument("section")
 @click.option("--highest", metavar="FREQUENCY", help="Upper end of the spectra. [default: 5 kHz]")
-@options.picture("Draw the section to a file, .svg, .pdf or .png.", "--picture")
+@commands.picture("Draw the section to a file, .svg, .pdf or .png.", "--picture")
 @output("Table of the modes, which wheel.modes of a case names.", "table", "FILE")
 def wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> None:
     """Find the modes of a wheel by its SECTION: a named one, an outline (CSV), or a case with a drawn wheel.
@@ -165,9 +164,9 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
     show_wheel(section, highest, table, picture)
 
 
-@_begin("What a ball bearing carries, its tones, and what its signal says.", params=options.BEARING)
+@_begin("What a ball bearing carries, its tones, and what its signal says.", params=commands.BEARING)
 @click.argument("bearing", metavar="NAME|FILE")
-@options.picture("Picture of the load zone, or of the envelope spectrum.")
+@commands.picture("Picture of the load zone, or of the envelope spectrum.")
 def bearing(
     bearing: str,
     picture: Path | None,
@@ -208,7 +207,7 @@ def bearing(
     "--states", is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."
 )
 @click.option("--table", type=PATH, help="Write it to a file, CSV.")
-@options.picture("Draw it to a file, .svg, .pdf or .png.")
+@commands.picture("Draw it to a file, .svg, .pdf or .png.")
 def creep(case: Path, picture: Path | None, **choices: Any) -> None:
     """Find the creep force of what rolls in a CASE under its working load, in steady rolling.
 
@@ -233,9 +232,9 @@ def creep(case: Path, picture: Path | None, **choices: Any) -> None:
 
 @_compute("Is a case valid, what will it compute, and how long?", long_work=True)
 @click.argument("case", type=PATH)
-@options.run_folder
-@options.device
-@options.overwrite("the run of another case")
+@commands.run_folder
+@commands.device
+@commands.overwrite("the run of another case")
 def check(case: Path, directory: Path | None, overwrite: bool) -> Document:
     """Check a CASE: show its values, what will be computed, and how long that takes.
 
@@ -262,13 +261,13 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> Document:
 
 @_compute("Compute a case: results, report and CSVs.", long_work=True)
 @click.argument("case", type=PATH)
-@options.run_folder
-@options.report
-@options.converge
-@options.what_helps
-@options.device
-@options.again
-@options.overwrite("the run of another case")
+@commands.run_folder
+@commands.report
+@commands.converge
+@commands.what_helps
+@commands.device
+@commands.again
+@commands.overwrite("the run of another case")
 def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     """Compute a CASE: writes run.nc, report.html and the CSV of every figure.
 
@@ -301,7 +300,7 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
     "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
 )
-@options.what_helps
+@commands.what_helps
 @click.option(
     "--show",
     multiple=True,
@@ -309,12 +308,12 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     help="Columns of the table and quantities of the figures, as in the headings of study.csv, with commas. "
     "May be repeated. [default: the usual ones]",
 )
-@options.run_folder
+@commands.run_folder
 @click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]")
 @click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
-@options.signals
-@options.overwrite("another study")
-@options.device
+@commands.signals
+@commands.overwrite("another study")
+@commands.device
 def study(
     study: Path, vary: tuple[str, ...], what_helps: bool, directory: Path | None, **choices: Any
 ) -> Document:
@@ -353,10 +352,10 @@ def study(
 
 @_compute("Find the texture that rolls quietest within bounds.", long_work=True)
 @click.argument("optimisation", type=PATH)
-@options.run_folder
-@options.report
-@options.overwrite("another texture")
-@options.device
+@commands.run_folder
+@commands.report
+@commands.overwrite("another texture")
+@commands.device
 def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Document:
     """Find the texture that rolls quietest within bounds, or the roughest that keeps a level.
 
@@ -411,7 +410,7 @@ def serve(port: int, directory: Path) -> None:
 
 
 @_look("Write the report of a run again, or a summary of one page.", name="report", document=False)
-@options.run_argument
+@commands.run_argument
 @click.option(
     "--summary", is_flag=True, help="Result, three figures, validity and origin on one sheet of A4."
 )
@@ -432,7 +431,7 @@ def report_again(run: Path, summary: bool, directory: Path | None) -> None:
 
 
 @_look("Draw the figures of a run to files, for a paper.", document=False)
-@options.run_argument
+@commands.run_argument
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
     "--format",
@@ -487,7 +486,7 @@ def compare(runs: tuple[Path, ...], directory: Path) -> None:
 
 
 @_look("Write what a run sounds like, as WAV files.")
-@options.run_argument
+@commands.run_argument
 @click.option(
     "--what",
     metavar="NAME",
@@ -514,7 +513,7 @@ def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -
 
 
 @_look("Say what to cite for a run.")
-@options.run_argument
+@commands.run_argument
 def cite(run: Path) -> Document:
     """Say what to cite for a RUN (run.nc, or its folder): the program and its sources.
 

@@ -60,7 +60,7 @@ def run_study(
 
     Either processes of this machine compute it, one per processor by default, or the workers of the Dask
     scheduler at an address. `overwrite` says whether another study in the folder may be replaced, `show`
-    names what is printed and drawn instead of what is usual. `signals` are those of `options.SIGNALS`.
+    names what is printed and drawn instead of what is usual. `signals` are those of `commands.SIGNALS`.
     """
     from asperity.studies.cluster import cluster
     from asperity.studies.running import study as computed
