@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from asperity.case.cases import load_case, parse_case
-from asperity.cli.planning import plan
-from asperity.cli.running import earlier_result, name_of_run
+from asperity.cli.running import earlier_result, name_of_run, plan
 from asperity.results import read_result
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import expect

@@ -11,7 +11,7 @@ import pytest
 
 from asperity import WheelOnRail
 from asperity.case.cases import as_case
-from asperity.cli.planning import plan
+from asperity.cli.running import plan
 from asperity.reference.law_accuracy import Place, law_map, mapped_points
 from asperity.running import prepare_case
 from asperity.scenarios import law_choice

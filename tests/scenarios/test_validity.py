@@ -10,7 +10,7 @@ import pytest
 
 from asperity import HalfSpace
 from asperity.case.cases import parse_case
-from asperity.cli.planning import plan, planned
+from asperity.cli.running import plan, planned
 from asperity.contact.scan import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.running import prepare_case

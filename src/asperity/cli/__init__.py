@@ -249,8 +249,7 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> Document:
     asperity check case.toml --json | jq .work.seconds
     """
     from asperity.case.cases import load_case
-    from asperity.cli.planning import show_plan
-    from asperity.cli.running import refuse_full, refuse_other
+    from asperity.cli.running import refuse_full, refuse_other, show_plan
 
     loaded, target = load_case(case), directory or Path("runs") / case.stem
     refuse_full(loaded, target)

@@ -230,6 +230,12 @@ def overwrite(what: str) -> Any:
     return click.option("--overwrite", is_flag=True, help=f"Replace {what} in the folder.")
 
 
+def taken_folder(directory: Path, received: str, what: str) -> InputError:
+    """Error about a folder whose results are those of something else than this."""
+    remedy = "Choose another folder with -o, or replace it with --overwrite."
+    return InputError(str(directory), received, f"a new folder, or that of the same {what}", remedy)
+
+
 SIGNALS = {
     "signals": ("FOLDER", "Of ball bearings: write the acceleration of each, and labels.csv."),
     "format": ("FORMAT", "Of these signals: nc, npy or wav. [default: nc]"),

@@ -10,6 +10,7 @@ import numpy as np
 from asperity import files
 from asperity.case import any_case, toml
 from asperity.case.content import content, file_digest
+from asperity.cli.commands import taken_folder
 from asperity.errors import InputError
 from asperity.laws import spec_of
 from asperity.optimising.definition import load_aim
@@ -83,9 +84,7 @@ def _refuse_other(asked: str, case: Path) -> None:
     with suppress(InputError):
         mark, _, text = toml.read_definition(case, "case", "").partition("\n")
     if f"{mark}\n" != _mark(asked, text):
-        remedy = "Choose another folder with -o, or replace it with --overwrite."
-        allowed = "a new folder, or that of the same optimisation"
-        raise InputError(str(case.parent), f"a folder that holds another {case.name}", allowed, remedy)
+        raise taken_folder(case.parent, f"a folder that holds another {case.name}", "optimisation")
 
 
 def _write(found: Optimised, bands: study_figures.TextureBands, directory: Path, *, report: bool) -> None:

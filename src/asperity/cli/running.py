@@ -1,4 +1,4 @@
-"""Runs a case into a folder, unless it holds the run already: of the same program, from the same files."""
+"""Checks a case; runs it into a folder, unless that holds the run already: of the same program and files."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import hashlib
 import json
 import os
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 import asperity
 from asperity import files
@@ -16,16 +18,19 @@ from asperity.arguments import no_file
 from asperity.case.any_case import AnyCase, ReadyCase
 from asperity.case.cases import of_bodies
 from asperity.case.content import content, file_digest
-from asperity.errors import InputError
+from asperity.cli.commands import taken_folder
+from asperity.errors import Grade, InputError
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import bearing, provenance, rolling
 from asperity.store import Store, content_key
-from asperity.terminal import detail, remark, say, say_files
+from asperity.terminal import detail, remark, say, say_files, say_table
+from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
     from xarray import DataTree
 
-    from asperity.scenarios.preparing import ScanSize
+    from asperity.scenarios.law_choice import LawChoice
+    from asperity.scenarios.preparing import PreparedCase, ScanSize, Work
 
 RESULT, PAGE = "run.nc", "report.html"
 CONVERGENCE, EFFECTS = "convergence", "effects"
@@ -88,7 +93,7 @@ def run_case(
                 refuse_other(case, directory)
             tree = _run_alone(case, directory, source, report=report, more=more)
     else:
-        _warn(tree)
+        _warn(_warnings(tree))
         remark("Nothing to do: this case has been run, with the same files and program (--again runs it).")
     if verdict := tree.attrs.get("verdict", ""):
         say(verdict)
@@ -127,7 +132,7 @@ def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, mor
         tree: DataTree = run(prepared, progress=progress)
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name
-    _warn(tree)
+    _warn(_warnings(tree))
     if CONVERGENCE not in more:
         del prepared  # what it holds is not needed beside what is written
     _write(tree, directory, report=report)
@@ -203,9 +208,9 @@ def _warnings(tree: DataTree) -> list[dict[str, Any]]:
     return [{"grade": "warning", **warning} for warning in json.loads(tree.attrs.get("warnings", "[]"))]
 
 
-def _warn(tree: DataTree) -> None:
-    for warning in _warnings(tree):
-        times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
+def _warn(warnings: Iterable[dict[str, Any]]) -> None:
+    for warning in warnings:
+        times = f" ({warning['count']} times)" if warning.get("count", 1) > 1 else ""
         say(f"{warning['grade'].capitalize()}: {warning['message']}{times}", err=True)
 
 
@@ -295,6 +300,101 @@ def refuse_other(case: AnyCase, directory: Path) -> None:
     elif (directory / PAGE).exists():
         received = "a report.html without its run.nc"
     if received:
-        allowed = "a new folder, or the folder of an earlier run of the same case"
-        remedy = "Choose another folder with -o, or replace it with --overwrite."
-        raise InputError(str(directory), received, allowed, remedy)
+        raise taken_folder(directory, received, "case")
+
+
+# --- what will be computed
+
+
+def show_plan(case: AnyCase, source: str) -> dict[str, Any]:
+    """Print the values of a case, and what will be computed from it.
+
+    Returns what a program wants to know of it. An `InputError` says that the case cannot be computed.
+    """
+    store, name = Store(), name_of_run(case)
+    key = content_key("plan", name, processors(), os.environ.get(THREADS, ""))
+    kept = store.get(key) if name else None  # of an earlier check, if all that it depends on is the same
+    found = planned(prepared_case(case, source)) if kept is None else json.loads(kept["plan"].tobytes())
+    if kept is None:
+        store.put(key, {"plan": np.frombuffer(json.dumps(found).encode(), dtype=np.uint8)})
+    _warn(found["warnings"])
+    items = case.parameters()
+    changed = {number for number, item in enumerate(items) if not item["is_default"]}
+    values = [
+        (item["key"], item["value"], item["default"] or "none" if n in changed else "", item["note"])
+        for n, item in enumerate(items)
+    ]
+    headings = ("key", "value", "default", "what it is")
+    say_table(f"{source}: a valid case", headings, values, width=120, bold=changed)
+    rows = [(row["name"], row["value"]) for row in found["plan"]]
+    say_table("What will be computed", (), rows, width=120)
+    return {"case": source, "kind": case.kind, "parameters": items, **found}
+
+
+def planned(prepared: ReadyCase) -> dict[str, Any]:
+    """What will be computed from a case: rows, seconds and warnings."""
+    from asperity.scenarios.law_choice import law_choice
+    from asperity.scenarios.preparing import PreparedCase, expect
+    from asperity.scenes.validity import foreseen
+
+    caught = [(getattr(each.message, "grade", Grade.WARNING), str(each.message)) for each in prepared.caught]
+    if isinstance(prepared, PreparedCase):
+        with progress_bar() as progress:
+            work = expect(prepared, progress)
+            case = prepared.case, prepared.shape, prepared.textures
+            choice = law_choice(*case, prepared.scene)
+            rows = plan(prepared, work, choice)
+            faults = [] if work.tried is None else foreseen(*case, work.tried, choice)
+        caught += [(each.grade, each.message) for each in faults if each.grade]
+    else:
+        from asperity.scenarios.bearing import PreparedBearing, expected
+
+        assert isinstance(prepared, PreparedBearing)
+        rows, work = expected(prepared)
+        rows.append(_work(work))
+    return {
+        "plan": [{"name": name, "value": value} for name, value in rows],
+        "work": {
+            "seconds": work.seconds,
+            "solutions": work.solutions,
+            "steps": work.steps,
+            "bytes": sum(scan.bytes for scan in work.scans.values()),
+        },
+        "warnings": [{"grade": grade.value, "message": message} for grade, message in caught],
+    }
+
+
+def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> list[tuple[str, str]]:
+    """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
+    from asperity.scenarios.reducing import STATES
+    from asperity.scenes.track import planned_track
+
+    case, (nx, ny) = prepared.case, prepared.shape.body.shape
+    contact, settling = case.contact, case.settled_time
+    states = STATES if contact.approaches is None else len(contact.approaches)
+    first, last = case.rolled_range
+    points = round((last - first) / contact.spacing) + 1
+    offsets = prepared.scene.offsets
+    places = f"{min(offsets):g} to {max(offsets):g} m ahead of the position"
+    run_in = f", and {settling:g} s before it" if settling else ""
+    rows = [
+        ("textures", prepared.textures.origin),
+        ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
+        ("time", f"{case.rolled_time:g} s{run_in}, {work.steps} steps of {case.time_step * 1e6:.4g} µs"),
+        *([("contacts", f"{len(offsets)}, {places}")] if len(offsets) > 1 else []),
+        *planned_track(prepared),
+        ("laws", ", ".join(case.laws)),
+        ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
+    ]
+    if work.tried is not None:  # a sample
+        share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"
+        rows.append(("real contact", share))
+    rows += choice.rows() if choice is not None else []
+    rows += [(f"contact solutions, {name}", f"at most {count}") for name, count in work.solutions.items()]
+    if scan := work.scans.get("path"):
+        rows.append(("scan of the path", described_scan(scan)))
+    return [*rows, _work(work)]
+
+
+def _work(work: Work) -> tuple[str, str]:
+    return "work", f"about {duration(float(f'{work.seconds:.1g}'))}, less what the cache holds"

@@ -12,6 +12,7 @@ import xarray
 
 from asperity import files
 from asperity.arguments import shown
+from asperity.cli.commands import taken_folder
 from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
@@ -155,9 +156,7 @@ def _refuse_other(study: Study, directory: Path) -> None:
     except (InputError, ValueError, KeyError, TypeError):  # damaged, or of another kind
         same = False
     if not same:
-        remedy = "Choose another folder with -o, or replace it with --overwrite."
-        allowed = "a new folder, or the folder of the same study"
-        raise InputError(str(directory), "the study.nc of another study", allowed, remedy)
+        raise taken_folder(directory, "the study.nc of another study", "study")
 
 
 # --- files
