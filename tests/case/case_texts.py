@@ -38,6 +38,8 @@ def write_files(folder):
     (folder / "modes.csv").write_text(modes)
     rows = "".join(f"{100 * n}, {-1e-9 / n:.3g}, -1e-11\n" for n in range(1, 30))
     (folder / "receptance.csv").write_text("frequency (Hz), real (m/N), imaginary (m/N)\n" + rows)
+    pad = "f (Hz), real (MN/m), imaginary (MN/m)\n10, 90, 9\n300, 120, 18\n2000, 160, 40\n"
+    (folder / "pad.csv").write_text(pad)
     for name in ("line.csv", "map.npy", "tread.csv", "rail.csv", "beam.x3p", "wheels.csv", "recipe.toml"):
         (folder / name).write_bytes(b"heights")
     return folder / "case.toml"

@@ -4,12 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from case_texts import case_text
 
 from asperity import Track, WheelOnRail
 from asperity.case.cases import parse_case
 from asperity.case.tables import read_dynamic_stiffness
-from asperity.errors import CaseError, InputError, UnconvergedWarning
+from asperity.errors import CaseError, UnconvergedWarning
 from asperity.scenes.noise import sleeper_top
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pad_stiffness.csv"
@@ -86,51 +85,6 @@ def test_the_example_is_a_case_that_reads_as_it_was_written(tmp_path):
     assert again == case
     assert again.track.model() == case.track.model()
     assert "Made up" in EXAMPLE.read_text(encoding="utf-8").splitlines()[0]
-
-
-@pytest.mark.parametrize(("text", "message"), [
-    (PARTS.replace("18", "-18"), "an imaginary part below zero at 300 Hz"),
-    (BY_LOSS.replace("150,75; 0,1", "150,75; -0,1"), "below zero from 10 to 2000 Hz, by which the pad"),
-    (PARTS.replace("120", "0"), "a real part of zero or less at 300 Hz"),
-    (PARTS + "300, 1, 1\n", "numbers that do not rise"),
-    (PARTS.rpartition("300")[0], "1 frequencies"),
-    (PARTS.replace("(MN/m)", "(m/N)"), "real part in N/m"),
-    (PARTS.replace("10, 90, 9", "10, 90"), "'10, 90' in line 2"),
-    ("frequency (Hz), loss factor\n1, 1\n", "magnitude"),
-])  # fmt: skip
-def test_bad_tables_are_refused_with_their_place(text, message, tmp_path):
-    with pytest.raises(InputError, match=r"pad\.csv") as told:
-        read_dynamic_stiffness(pad(tmp_path, text))
-    assert message in str(told.value)
-    with pytest.raises(CaseError) as told:
-        case_of(pad(tmp_path, text))
-    assert message in str(told.value)
-    assert "track.pad_table" in str(told.value)
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ('pad_table = "pad.csv"\npad_damping = "9 kN s/m"', "both pad_table and pad_damping"),
-        ('pad_table = "pad.csv"\npad_preload = "30 kN"', "30 kN for a table that is at no preload"),
-        ('pad_preload = "30 kN"', "only together with pad_table"),
-        ('under_sleeper_pad_damping = "9 kN s/m"', "only together with under_sleeper_pad_stiffness"),
-        ('ballast_mass = "300 kg"', "only together with subgrade_stiffness"),
-        ('sleeper_length = "2.4 m"', "only together with sleeper_bending_stiffness"),
-        ('rail_damper_mass = "15 kg"', "no rail_damper_frequency"),
-        ('sleeper_table = "pad.csv"', "the heading 'real part (MN/m)'"),
-        ('sleeper_bending_stiffness = "6 MN m^2"\nseat_distance = "2.6 m"', "received seat_distance = 2.6 m"),
-        (
-            'subgrade_stiffness = "90 MN/m"\nsubgrade_damping = "9 kN s/m"\nsubgrade_loss_factor = 0.1',
-            "both subgrade_damping and subgrade_loss_factor",
-        ),
-    ],
-)  # fmt: skip
-def test_keys_that_do_not_fit_are_named(keys, message, tmp_path, source):
-    pad(tmp_path, PARTS)
-    with pytest.raises(CaseError) as told:
-        parse_case(case_text("wheel-on-rail", f"[track]\n{keys}"), source)
-    assert message in str(told.value)
 
 
 # --- sleepers

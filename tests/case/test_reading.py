@@ -55,57 +55,29 @@ def test_a_minimal_case_has_the_documented_defaults(kind):
 
 GIVEN = {
     "ball-on-beam": (
-        """speed = "2 m/s" | laws = ["direct", "table"] | seed = 7 | duration = "0.2 s" | start = "0.1 m"
-        [surface] file = "map.npy" | array = "polished" | height_unit = "um" | pixel = "1.5625 um" | index = 2
-        fill = true | direction = "30 deg"
-        [ball] radius = "12.5 mm" | mass = "60 g" | load = "5 N"
-        [beam] length = "0.8 m" | width = "5 cm" | support = "free" | suspension_frequency = "3 Hz"
-        sensors = ["0 m", "0.8 m"]
+        """laws = ["direct", "table"]
+        [surface] file = "map.npy" | pixel = "1.5625 um" | index = 2 | fill = true | direction = "30 deg"
+        [beam] length = "0.8 m" | support = "free" | sensors = ["0 m", "0.8 m"]
         [contact] window = "0.64 mm" | spacing = "10 um" | approaches = ["-0.5 um", "0 um"]
-        hardness = "3 GPa" | filter_taps = 64 | normalise = "tangent" | linearise = "rough"
-        sample_length = "2 mm"
-        [numerics] highest_frequency = "4 kHz" | time_step = "5 us" | rtol = 1e-8""",
+        [numerics] time_step = "5 us\"""",
         {
-            "laws": ("direct", "table"), "surface.array": "polished", "surface.index": 2,
-            "surface.fill": True, "surface.pixel": 1.5625e-6, "surface.direction": math.pi / 6,
-            "ball.mass": 0.06, "ball.load": 5.0,
-            "beam.support": "free", "beam.suspension_frequency": 3.0, "beam.sensor_positions": (0.0, 0.8),
-            "contact.approaches": (-5e-7, 0.0), "contact.hardness": 3e9, "contact.cells": 64,
-            "time_step": 5e-6, "contact.filter_taps": 64, "contact.normalise": "tangent",
-            "contact.linearise": "rough",
+            "laws": ("direct", "table"), "surface.index": 2, "surface.fill": True,
+            "surface.pixel": 1.5625e-6, "surface.direction": math.pi / 6, "beam.support": "free",
+            "beam.sensor_positions": (0.0, 0.8), "contact.approaches": (-5e-7, 0.0), "contact.cells": 64,
+            "time_step": 5e-6,
         },
     ),
     "wheel-on-rail": (
-        """speed = "200 km/h" | laws = ["direct", "table"] | start = "3 m" | duration = "0.5 s"
-        settling = "0 s"
+        """speed = "200 km/h" | start = "3 m" | duration = "0.5 s" | settling = "0 s"
         [surface] spectrum = "levels.csv" | level = "+3 dB" | lateral = "inf"
-        corrugation = "25 um" | corrugation_wavelength = "40 mm" | corrugation_bandwidth = 0.3
-        joint_depth = "1 mm" | joint_length = "0.8 m" | joint_position = "9 m"
-        [wheel] radius = "0.4 m" | mass = "500 kg" | load = "50 kN" | transverse_radius = "2 m"
-        modes = "modes.csv" | line = "wheels.csv" | line_array = "worn" | line_unit = "um"
-        line_spacing = "1 mm" | line_distance = "5 mm" | processing = ["spikes", "curvature"]
-        flat_depth = "0.5 mm" | flat_shape = "worn" | flat_position = "1 m"
-        [track] name = "uic60" | bending_stiffness = "6 MN m^2" | mass_per_length = "61 kg/m"
-        rail_loss_factor = 0.01 | shear_stiffness = "240 MN" | rotary_inertia = "0.2 kg m"
-        pad_stiffness = "250 MN/m" | pad_damping = "20 kN s/m" | sleeper_mass = "140 kg"
-        ballast_stiffness = "100 MN/m" | ballast_loss_factor = 0.4 | sleeper_spacing = "0.65 m"
-        rail_profile = "rail.csv" | points = ["9 m", "9.325 m"]
-        decay_rates = "rates.csv" | mobility = "mobility.csv"
-        [contact] spacing = "0.4 mm" | window = "16 mm"
-        [numerics] highest_frequency = "4 kHz" | time_step = "20 us" | kernel = "poles" | poles = 80
-        [noise] rail_radiation = "ratios.csv" | sleeper_length = "2.4 m" | sleeper_width = "0.2 m"
-        wheel_width = "140 mm" | vehicle_length = "20 m" | measured_bands = "bands.csv"
-        measured_maximum_level = "88 dB" | measured_equivalent_level = "84 dB"
-        measured_exposure_level = "86 dB\"""",
+        [wheel] line = "wheels.csv" | processing = ["spikes", "curvature"] | modes = "modes.csv"
+        [track] pad_stiffness = "250 MN/m" | ballast_loss_factor = 0.4 | points = ["9 m", "9.325 m"]
+        rail_profile = "rail.csv" | decay_rates = "rates.csv" | mobility = "mobility.csv"
+        [noise] rail_radiation = "ratios.csv" | vehicle_length = "20 m" | measured_bands = "bands.csv\"""",
         {
-            "speed": 200 / 3.6, "surface.lateral": math.inf, "surface.corrugation": 25e-6,
-            "rolled_range": (3.0, 3.0 + 100 / 3.6), "surface.corrugation_wavelength": 0.04,
-            "wheel.processing": ("spikes", "curvature"),
-            "wheel.flat_depth": 5e-4, "wheel.flat_shape": "worn", "numerics.poles": 80, "time_step": 20e-6,
-            "point_positions": (9.0, 9.325), "track.bending_stiffness": 6e6, "track.mass_per_length": 61.0,
-            "track.shear_stiffness": 240e6, "track.rotary_inertia": 0.2, "track.pad_stiffness": 250e6,
-            "track.pad_damping": 20e3, "track.sleeper_mass": 140.0, "track.ballast_stiffness": 100e6,
-            "track.ballast_loss_factor": 0.4, "track.ballast_damping": None,
+            "speed": 200 / 3.6, "rolled_range": (3.0, 3.0 + 100 / 3.6), "surface.lateral": math.inf,
+            "surface.level": 3.0, "wheel.processing": ("spikes", "curvature"),
+            "point_positions": (9.0, 9.325), "track.pad_stiffness": 250e6, "track.ballast_damping": None,
         },
     ),
 }  # fmt: skip

@@ -88,6 +88,16 @@ wheel: [wheel] flat_depth = "5 mm" → received 5 mm; allowed: at most 0.01 of t
 wheel: [wheel] flat_depth = "1 mm" | flat_position = "3 m" → received 3 m; allowed: less than the
 wheel: [wheel] load = "5 kN" → wheel.load: received 5 kN; allowed: at least 5.88399 kN, the weight of 600 kg
 wheel: [track] pad_damping = "18 kN s/m" | pad_loss_factor = 0.2 → both pad_damping and pad_loss_factor
+wheel: [track] pad_table = "pad.csv" | pad_damping = "9 kN s/m" → both pad_table and pad_damping
+wheel: [track] pad_table = "pad.csv" | pad_preload = "30 kN" → 30 kN for a table that is at no preload
+wheel: [track] pad_preload = "30 kN" → only together with pad_table
+wheel: [track] under_sleeper_pad_damping = "9 kN s/m" → only together with under_sleeper_pad_stiffness
+wheel: [track] ballast_mass = "300 kg" → only together with subgrade_stiffness
+wheel: [track] subgrade_stiffness = "9 MN/m" | subgrade_damping = "9 kN s/m" | subgrade_loss_factor = 1 → both
+wheel: [track] rail_damper_mass = "15 kg" → no rail_damper_frequency
+wheel: [track] sleeper_length = "2.4 m" → only together with sleeper_bending_stiffness
+wheel: [track] sleeper_bending_stiffness = "6 MN m^2" | seat_distance = "2.6 m" → received seat_distance = 2.6
+wheel: [track] sleeper_table = "pad.csv" → the heading 'real (MN/m)'
 wheel: [track] shear_stiffness = "240 MN" → track: received no rotary_inertia
 wheel: [track] pad_stiffness = "300 MN" → a stiffness greater than 0, with its unit, as "300 MN/m"
 wheel: [sideways] contact_place = "40 mm" → received 40 mm; allowed: at most 36 mm off the middle

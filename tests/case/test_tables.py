@@ -19,6 +19,8 @@ RATIOS = "frequency (Hz), ratio\n"
 RECEPTANCE = "f (Hz), real (m/N), imaginary (m/N)\n"
 RATES = "frequency (Hz), decay rate (dB/m)\n"
 MOBILITY = "frequency (Hz), mobility ((m/s)/N)\n"
+PAD = "f (Hz), real part (MN/m), imaginary part (MN/m)\n"
+BY_LOSS = "f (Hz); dynamic stiffness (kN/mm); loss factor; preload (kN)\n"
 COMPLEX = "f (Hz), real (m/s/N), imaginary (m/s/N)\n"
 TWELVE = "".join(f"{n}, 1, 1\n" for n in range(1, 13))
 READ = {
@@ -28,6 +30,7 @@ READ = {
     "receptance": (tables.read_receptance, '[wheel] receptance = "receptance.csv"', "wheel.receptance"),
     "rates": (measured.read_decay_rates, '[track] decay_rates = "rates.csv"', "track.decay_rates"),
     "bands": (measured.read_band_levels, '[noise] measured_bands = "bands.csv"', "noise.measured_bands"),
+    "pad": (tables.read_dynamic_stiffness, '[track] pad_table = "pad.csv"', "track.pad_table"),
     "mobility": (measured.read_mobility, '[track] mobility = "mobility.csv"', "track.mobility"),
 }
 
@@ -123,6 +126,18 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("mobility", "f (Hz), size (kg)\n100, 1\n", "'size (kg)'; allowed: magnitude or real part in"),
         ("mobility", COMPLEX + "100, -1e-5, 0\n200, 1e-5, 0\n300, 1e-5, 0", "power to the hammer at 100 Hz"),
         ("mobility", COMPLEX + "100, 1e-5\n", "'100, 1e-5' in line 2; allowed: a table with the columns"),
+        ("pad", PAD + "10, 90, 9\n300, 120, -18\n900, 160, 40", "an imaginary part below zero at 300 Hz"),
+        (
+            "pad",
+            BY_LOSS + "1; 9; -1; 9\n8; 9; -1; 9\n9; 9; -1; 9",
+            "below zero from 1 to 9 Hz, by which the pad",
+        ),
+        ("pad", PAD + "10, 90, 9\n300, 0, 18\n900, 160, 40", "a real part of zero or less at 300 Hz"),
+        ("pad", PAD + "10, 90, 9\n10, 1, 1", "numbers that do not rise"),
+        ("pad", PAD + "10, 90, 9", "1 frequencies"),
+        ("pad", PAD.replace("(MN/m)", "(m/N)") + "10, 90, 9", "real part in N/m"),
+        ("pad", PAD + "10, 90", "'10, 90' in line 2"),
+        ("pad", "frequency (Hz), loss factor\n1, 1", "magnitude"),
         ("bands", "f (Hz), L (dB)\n100, 60\n200, 70\n201, 60", "twice the band of 201 Hz"),
         ("bands", "t (s), L (dB)\n1, 60\n2, 70\n3, 60", "the heading 't (s)'; allowed: frequency in Hz"),
     ],
