@@ -326,7 +326,7 @@ def test_a_study_may_sweep_them():
     assert second.case.beam.material.density == pytest.approx(3000.0)
     assert first.key != second.key
     own = "youngs_modulus 70 GPa, poisson_ratio 0.3, density 3 g/cm^3"
-    assert plan.axes[0].coordinate.tolist() == ["aluminium", own]
+    assert plan.axes[0].variable.values.tolist() == ["aluminium", own]
     assert "beam.material = youngs_modulus 70 GPa" in second.label
 
 
