@@ -137,17 +137,28 @@ FACTOR = 3.0
 """By which a decay rate or a mobility may be off that of the computed track before it is warned of."""
 
 
-def hammer_tests(keys: TrackKeys, track: Track, band: Array) -> tuple[HammerTest, HammerTest] | None:
-    """What was measured on a track, and what would be on the computed one, in bands by their centres, Hz.
+def hammer_tests(keys: TrackKeys, track: Track, band: Array) -> tuple[HammerTest, HammerTest, Values] | None:
+    """What was measured on a track, what would be on the computed one, and both laid out over bands.
 
-    None where the keys say nothing of the kind.
+    In bands by their centres, Hz. None where the keys say nothing of the kind.
     """
     if keys.decay_rates is None and keys.mobility is None:
         return None
-    computed = HammerTest.of_track(track, band)
-    rates = None if keys.decay_rates is None else read_decay_rates(keys.decay_rates)[:2]
+    computed, rates, lateral, laid_out = HammerTest.of_track(track, band), None, None, Values()
+    if keys.decay_rates is not None:
+        centres, vertical, lateral = read_decay_rates(keys.decay_rates)
+        rates = centres, vertical
     mobility = None if keys.mobility is None else read_mobility(keys.mobility)
-    return computed.measured(rates, mobility), computed
+    found = computed.measured(rates, mobility)
+    if rates is not None:
+        laid_out[schema.MEASURED_DECAY_RATE] = found.decay_rate
+        laid_out[schema.EXPECTED_DECAY_RATE] = computed.decay_rate
+        if lateral is not None:
+            laid_out[schema.MEASURED_LATERAL_DECAY_RATE] = in_bands(band, centres, lateral)
+    if mobility is not None:
+        laid_out[schema.MEASURED_MOBILITY] = found.rms_mobility
+        laid_out[schema.EXPECTED_MOBILITY] = computed.rms_mobility
+    return found, computed, laid_out
 
 
 def measured_track(run: compute.Computed) -> tuple[Values, Array, Array] | None:
@@ -156,41 +167,30 @@ def measured_track(run: compute.Computed) -> tuple[Values, Array, Array] | None:
     Factors of the sound power of rail and sleepers, and of the length of rail that radiates, over those of
     the computed track. None where the case says nothing of the kind.
     """
-    keys = run.case.track
-    if (tests := hammer_tests(keys, run.track.nominal, run.band)) is None:
+    if (tests := hammer_tests(run.case.track, run.track.nominal, run.band)) is None:
         return None
-    found, computed = tests
+    found, computed, laid_out = tests
     lines = computed.frequency
     other = run.scene.first.receptance(lines.ravel()).reshape(lines.shape) + 1.0 / run.stiffness
     longer, louder = found.longer(computed), found.louder(computed, other)
     known = np.isfinite(found.decay_rate) | np.isfinite(found.rms_mobility)
-    change = np.where(known, 10.0 * np.log10(longer * louder), np.nan)
-    laid_out: Values = {schema.MEASURED_POWER_CHANGE: change}
-    if keys.decay_rates is not None:
-        laid_out |= {schema.MEASURED_DECAY_RATE: found.decay_rate}
-        laid_out |= {schema.EXPECTED_DECAY_RATE: computed.decay_rate}
-        centres, _, lateral = read_decay_rates(keys.decay_rates)
-        if lateral is not None:
-            laid_out |= {schema.MEASURED_LATERAL_DECAY_RATE: in_bands(run.band, centres, lateral)}
-    if keys.mobility is not None:
-        own, expected = found.rms_mobility, computed.rms_mobility
-        force = 10.0 * np.log10(louder * (expected / own) ** 2)
-        laid_out |= {schema.MEASURED_MOBILITY: own, schema.EXPECTED_MOBILITY: expected}
-        laid_out |= {schema.MEASURED_FORCE_CHANGE: force}
+    laid_out[schema.MEASURED_POWER_CHANGE] = np.where(known, 10.0 * np.log10(longer * louder), np.nan)
+    if schema.MEASURED_MOBILITY in laid_out:
+        force = 10.0 * np.log10(louder * (computed.rms_mobility / found.rms_mobility) ** 2)
+        laid_out[schema.MEASURED_FORCE_CHANGE] = force
     return laid_out, longer * louder, longer
 
 
 def findings_of_measured(keys: TrackKeys, track: Track, band: Array) -> list[Finding]:
     """Hold what was measured to the computed track, in bands by their centres (b,), Hz."""
-    if (tests := hammer_tests(keys, track, band)) is None:
-        return []
-    measured, computed = tests
+    *_, laid_out = hammer_tests(keys, track, band) or (Values(),)
     compared = (
-        ("decay_rates", "decay rate", measured.decay_rate / computed.decay_rate),
-        ("mobility", "point mobility", measured.rms_mobility / computed.rms_mobility),
+        ("decay_rates", "decay rate", schema.MEASURED_DECAY_RATE, schema.EXPECTED_DECAY_RATE),
+        ("mobility", "point mobility", schema.MEASURED_MOBILITY, schema.EXPECTED_MOBILITY),
     )
     found = []
-    for key, quantity, ratio in compared:
+    for key, quantity, own, expected in compared:
+        ratio = laid_out[own] / laid_out[expected] if own in laid_out else np.full(1, np.nan)
         if np.isnan(ratio).all():
             continue
         apart = np.exp(np.abs(np.log(ratio)))
@@ -242,19 +242,24 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Rece
     if vehicle is None:
         return {}
     limit = tsi_noise.pass_by_limit(vehicle, passage.speed, len(passage.axles) / passage.length)
-    elsewhere = _of_receiver(receiver)
+    here, asked = (receiver.distance, receiver.height), tsi_noise.RECEIVER
+    there = bool(np.allclose(here, asked, rtol=0.0, atol=1e-9))
+    told, wanted = ("{:g} m from the track, {:g} m high".format(*each) for each in (here, asked))
+    greatest = tsi_noise.GREATEST_SPEED
+    of_speed = f"80 km/h and the greatest, up to {3.6 * greatest:g} km/h (TSI Noise)"
+    slow_enough = passage.speed <= greatest * (1 + 1e-9)
     laid_out: Values = {
         schema.VEHICLE: vehicle,
         schema.NORMALISED_LEVEL: at(receiver) + limit.normalisation,
         schema.REFERENCE_SPEED: limit.speed,
         schema.REFERENCE_CONDITIONS: [
-            elsewhere,
-            _of_speed(passage.speed),
+            _condition("receiver", told, f"{wanted} (TSI Noise)", there),
+            _condition("speed", f"{3.6 * passage.speed:.4g} km/h", of_speed, slow_enough),
             *_of_roughness(over_frequency),
             _of_decay(over_frequency),
         ],
     }
-    if limit.level is not None and elsewhere["met"]:
+    if limit.level is not None and there:
         laid_out[schema.TSI_LIMIT] = limit.level
         if limit.above:
             laid_out[schema.NORMALISED_LEVEL_ABOVE] = at(Receiver(*tsi_noise.ABOVE)) + limit.normalisation
@@ -263,21 +268,6 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Rece
 
 def _condition(name: str, here: str, asked: str, met: bool) -> Condition:
     return {"condition": name, "here": here, "asked": asked, "met": met}
-
-
-def _of_receiver(receiver: Receiver) -> Condition:
-    asked, here = tsi_noise.RECEIVER, (receiver.distance, receiver.height)
-    told, wanted = ("{:g} m from the track, {:g} m high".format(*each) for each in (here, asked))
-    return _condition(
-        "receiver", told, f"{wanted} (TSI Noise)", bool(np.allclose(here, asked, rtol=0.0, atol=1e-9))
-    )
-
-
-def _of_speed(speed: float) -> Condition:
-    asked = f"80 km/h and the greatest, up to {3.6 * tsi_noise.GREATEST_SPEED:g} km/h (TSI Noise)"
-    return _condition(
-        "speed", f"{3.6 * speed:.4g} km/h", asked, speed <= tsi_noise.GREATEST_SPEED * (1 + 1e-9)
-    )
 
 
 def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
