@@ -355,7 +355,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
     radiators, whole = over_frequency[schema.RADIATOR.name].values.tolist(), range(len(sources))
     if beside:
         sources += _sideways(case, band, beside, length)
-        radiators += [schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH, schema.WITH_SIDEWAYS]
+        radiators += schema.SIDEWAYS_RADIATORS
 
     @cache
     def heard(at: pass_by.Receiver) -> tuple[Array, ...]:
@@ -429,6 +429,6 @@ def _sideways(case: Any, band: Array, beside: Values, longest: float) -> list[pa
     """What radiates sideways of one axle; waves reach no farther than the `longest` up and down, m."""
     frequency, decay = beside[schema.SIDEWAYS_FREQUENCY], beside[schema.LATERAL_DECAY_RATE]
     length = np.mean(ONE_WAVE / np.interp(band[:, None] * WITHIN, frequency, decay), axis=1)
-    of_rail, _, of_wheel, _ = np.moveaxis(beside[schema.LATERAL_POWER_LEVEL], 1, 0)
+    of_rail, of_wheel, _ = np.moveaxis(beside[schema.LATERAL_POWER_LEVEL], 1, 0)
     parts = (schema.RAIL_SIDEWAYS, of_rail), (schema.WHEEL_BOTH, of_wheel)
     return [_source(case, *part, np.minimum(length, longest)) for part in parts]

@@ -321,9 +321,9 @@ _side_fact = partial(Attribute, "sideways", condition=_SIDE)
 SIDEWAYS_LAW = _side("law", "1", "contact law")
 SIDEWAYS_FREQUENCY = _side("frequency", "Hz", "frequency")
 SIDEWAYS_BAND = _side("band", "Hz", _BAND)
-SIDEWAYS_RADIATORS = "rail sideways", "wheel, vertical force", "wheel, both forces", "total with sideways"
+SIDEWAYS_RADIATORS = "rail sideways", "wheel, both forces", "total with sideways"
 """The last: of rail and sleepers up and down, of the rail sideways, and of the wheel under both forces."""
-RAIL_SIDEWAYS, WHEEL_VERTICAL, WHEEL_BOTH, WITH_SIDEWAYS = SIDEWAYS_RADIATORS
+RAIL_SIDEWAYS, WHEEL_BOTH, WITH_SIDEWAYS = SIDEWAYS_RADIATORS
 SIDEWAYS_RADIATOR = _side("radiator", "1", "what radiates by which motion")
 _RAIL = "receptance of the rail head at mid-span, sideways per force"
 RAIL_LATERAL_RECEPTANCE = _side("rail_lateral_receptance(frequency)", "m/N", f"{_RAIL} sideways")

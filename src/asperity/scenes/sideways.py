@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 import xarray
 
-from asperity.arguments import Array, Complex
+from asperity.arguments import Array, Complex, NDArray
 from asperity.contact.hertz import stick_stiffness
 from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
@@ -15,7 +16,7 @@ from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, schema
 from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
 from asperity.schema import Values
-from asperity.spectra import HALF_BAND, a_weighted_total, band_energies, energy_sum, level_of
+from asperity.spectra import a_weighted_total, energy_sum
 from asperity.structures import lateral_rail, modal
 from asperity.structures.wheel_modes import WheelModes
 
@@ -87,19 +88,20 @@ class Sideways:
         return fine_lines(self.lines, *own)
 
     @cached_property
-    def fine_answers(self) -> Complex:
-        """A at each place (n, 2, 2, k) on them, the rail's between its lines."""
-        fine, wheel = self.fine[0], self.wheel(self.fine[0])
-        rails = np.stack([self.rail(self.lines, x) for x in self.places])
-        between = np.empty((*rails.shape[:3], len(fine)), complex)
-        for index in np.ndindex(rails.shape[:3]):
-            between[index] = np.interp(fine, self.lines, rails[index])
-        return np.stack([lateral_rail.at_springs(wheel + each, *self.stiffness) for each in between])
+    def answers(self) -> Complex:
+        """A at each place on them (2, 2, n, k), the rail's between its lines."""
+        rails = np.stack([self.rail(self.lines, x) for x in self.places], axis=2)
+        both = self.wheel(self.fine[0])[:, :, None] + self.between(rails)
+        return lateral_rail.at_springs(both, *self.stiffness)
+
+    def between(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Values on the lines (..., f) at the frequencies between them (..., k)."""
+        return np.apply_along_axis(partial(np.interp, self.fine[0], self.lines), -1, values)
 
     @cached_property
     def shares(self) -> Complex:
         """Lateral over vertical force at each place (n, k)."""
-        return np.stack([lateral_rail.lateral_force(each) for each in self.fine_answers])
+        return lateral_rail.lateral_force(self.answers)
 
     @cached_property
     def spread(self) -> Array:
@@ -117,9 +119,9 @@ class Sideways:
         computed, middle = self.computed, 0.5 * self.track.track.sleeper_spacing
         normal, _ = self.stiffness
         own = np.abs(1.0 / normal + self.track.track.receptance(self.lines, middle, middle))
-        motion, fine = computed.psd(computed.stacked("rolling_displacement")), self.fine[0]
+        motion = computed.psd(computed.stacked("rolling_displacement"))
         force, moved = (each[..., computed.shown] for each in (computed.force_psd, motion))
-        other = np.interp(fine, self.lines, own) ** 2 + np.abs(self.wheel(fine)[0, 0]) ** 2
+        other = self.between(own) ** 2 + np.abs(self.wheel(self.fine[0])[0, 0]) ** 2
         return other, own**2 * force + moved
 
     @cached_property
@@ -153,8 +155,8 @@ class Sideways:
         side = SideOfRail(self.track.height, case.track.rail_foot_width, case.track.rail_head_width)
         return side.power(self.lines, square)
 
-    def wheel_power(self, sideways: bool) -> Array:
-        """Sound power of the wheels under both forces, or the vertical one alone (laws, f), W/Hz.
+    def wheel_power(self) -> Array:
+        """Sound power of the wheels under both forces (laws, f), W/Hz.
 
         Zero of a wheel whose modes are unknown. Rigid motion up and down is one nodal diameter around the
         tread, along the axle that of a rigid disc.
@@ -162,9 +164,9 @@ class Sideways:
         modes, case, fine = self.computed.scene.modes, self.computed.case, self.fine[0]
         if modes is None:
             return np.zeros_like(self.seen_of_all)
-        spread = np.stack([np.interp(fine, self.lines, each) for each in self.spread]) / PLACES
-        share = np.sum(spread * self.shares, axis=0).real if sideways else np.zeros_like(fine)
-        square = np.sum(spread * np.abs(self.shares) ** 2, axis=0) if sideways else share
+        spread = self.between(self.spread) / PLACES
+        share = np.sum(spread * self.shares, axis=0).real
+        square = np.sum(spread * np.abs(self.shares) ** 2, axis=0)
         omega, place = 2.0 * np.pi * fine, self.computed.scene.place
         radial, axial = (each[:, None] for each in modes.at(place))
         answers = modal.modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
@@ -192,25 +194,20 @@ def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -
         """Levels in bands (..., b), dB, of densities on the lines (..., f)."""
         whole = np.zeros((*density.shape[:-1], len(computed.frequency)))
         whole[..., computed.shown] = density
-        energies = band_energies(computed.frequency, whole, band / HALF_BAND, band * HALF_BAND)
-        return level_of(np.maximum(energies, 0.0))
+        return computed.levels(whole)
 
-    powers = [found.rail_power(), found.wheel_power(False), found.wheel_power(True)]
-    power = levels(2.0 / PICOWATT * np.stack(powers, axis=1))
+    power = levels(2.0 / PICOWATT * np.stack([found.rail_power(), found.wheel_power()], axis=1))
     up = over_frequency[schema.RADIATED_POWER_LEVEL.name].sel(radiator=["rail", "sleepers"]).values
-    together = np.concatenate([np.nan_to_num(up, nan=-np.inf), power[:, [0, 2]]], axis=1)
+    together = np.concatenate([np.nan_to_num(up, nan=-np.inf), power], axis=1)
     power = np.append(power, energy_sum(together, axis=1)[:, None], axis=1)
     lateral, of_each = (found.force_psd.sum(axis=1) / contacts, np.sqrt(found.force_psd.sum(axis=-1) * step))
     with np.errstate(divide="ignore"):
         slips = np.vectorize(math.erfc)(limit / (math.sqrt(2.0) * of_each)).mean(axis=1)
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
-    rail = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing)
-    wheel, answers = found.wheel(frequency), np.moveaxis(found.fine_answers, 0, -2)
-    free = 1.0 / answers[0, 0]  # vertical force per height of a contact that is free sideways
-    linear = [
-        np.mean(np.abs(each) ** 2, axis=0) for each in (lateral_rail.vertical_change(answers) * free, free)
-    ]
-    coupling = np.subtract(*levels(line_means(np.stack(linear), *found.fine)))
+    rail, wheel = found.rail(frequency, 0.5 * found.track.track.sleeper_spacing), found.wheel(frequency)
+    free = 1.0 / found.answers[0, 0]  # vertical force per height of a contact that is free sideways
+    linear = np.mean(np.abs([lateral_rail.vertical_change(found.answers) * free, free]) ** 2, axis=1)
+    coupling = np.subtract(*levels(line_means(linear, *found.fine)))
     return {
         schema.SIDEWAYS_LAW: list(computed.runs),
         schema.SIDEWAYS_FREQUENCY: frequency,

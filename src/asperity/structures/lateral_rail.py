@@ -341,9 +341,9 @@ def wheel_receptances(
 
 
 def at_springs(receptances: Complex, normal: float, tangential: float) -> Complex:
-    """Both bodies' receptances (2, 2, f), and those of the springs of the contact, N/m: A, m/N."""
+    """Both bodies' receptances (2, 2, ...), and those of the springs of the contact, N/m: A, m/N."""
     springs = np.diag([1.0 / normal, 1.0 / tangential])
-    return np.asarray(receptances + springs[..., None])
+    return np.asarray(receptances + np.expand_dims(springs, tuple(range(2, receptances.ndim))))
 
 
 def lateral_force(answer: Complex) -> Complex:

@@ -113,7 +113,6 @@ def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
     own = [
         Line(lines.at, series.values + weighting, series.label, *LOOKS.get(series.label, ()))
         for series in lines.of(OWN, SIDE, law=main)
-        if series.label != schema.WHEEL_VERTICAL
     ]
     for series in lines.of(UNMEASURED, law=main, radiator="rail"):
         look = chart.VERMILLION, (9.0, 1.5), 1.3
