@@ -1,6 +1,7 @@
 """Wear: closed forms of what friction takes, the balance of work and volume, places, passes, and messages."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from asperity import ArchardWear, EnergyWear, FrictionalHalfSpace, HalfSpace, HeightMap, Hertz, Material
 from asperity.contact.wear import Rubbing, rubbing, wear_depth, worn
 from asperity.errors import InputError, OutOfRangeWarning
+from asperity.store import Store
 from asperity.surfaces.synthesis import self_affine
 from refusals import refusals
 
@@ -164,6 +166,38 @@ def test_what_stands_out_is_worn_where_it_stands():
     assert np.unravel_index((bumped - bare).argmax(), rail.shape) == (30, 12)
 
 
+def test_a_part_that_was_kept_is_not_rolled_again(tmp_path):
+    gap, rolling = wheel(16, 0.3, nu=0.3)
+    job = (rolling, rough(24, 16), gap, LOAD, EnergyWear(), (3e-3, 0.0))
+    whole, how = worn(*job, passes=3, step=12e-9), {"passes": 3, "step": 12e-9, "cache": Store(tmp_path)}
+
+    def stop(done, total, message):
+        if message == "wear, pass 3 of 3":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        worn(*job, **how, progress=stop)
+    again = []
+    resumed = worn(*job, **how, progress=lambda *said: again.append(said))
+    assert whole.passes.tolist() == resumed.passes.tolist() == [2, 1]
+    assert {message for *_, message in again} == {"wear, pass 3 of 3"}
+    assert again[-1][:2] == (9, 9)
+    assert np.array_equal(resumed.depth, whole.depth)
+    other = worn(*job[:4], EnergyWear(density=8000.0), (3e-3, 0.0), **how)
+    assert other.removed == pytest.approx(whole.removed * 7850.0 / 8000.0, rel=1e-3, abs=0.0)
+
+
+def test_the_cache_tells_laws_apart_by_every_place_of_their_maps(tmp_path):
+    """Of more places, and more digits, than numpy writes down unasked."""
+    gap, rolling = wheel(34, 0.3)
+    for middle in (0.0, 1e-12):
+        depth = np.full((34, 34), 1e-3)
+        depth[17, 17] += middle
+        law = Given((depth, np.zeros((34, 34), dtype=int)))
+        after = worn(rolling, np.zeros((34, 34)), gap, LOAD, law, (1e-3, 0.0), cache=Store(tmp_path))
+        assert after.depth[17, 17] == pytest.approx(depth[17, 17] * SIDE / 34, rel=1e-14, abs=0.0)
+
+
 @pytest.mark.parametrize(
     ("work", "mass", "regime"),
     [(5e6, 26.5e-3, 0), (40e6, 55e-3, 1), (100e6, 55e-3 + 61.9e-3 * 22.8, 2), (0.0, 0.0, 0)],
@@ -198,9 +232,18 @@ ROLLED = {
 }
 
 
-def given(answer):
+class Nameless:
+    removal = EnergyWear.removal
+
+
+@dataclass(frozen=True)
+class Given:
     """A law that removes what it is told, whatever that is."""
-    return type("Given", (), {"removal": lambda self, rubbing: answer})()
+
+    answer: object
+
+    def removal(self, rubbing):
+        return self.answer
 
 
 def wear(surface=RAIL, load=LOAD, law=LINEAR, body=GAP, rolling=ROLLING, **keywords):
@@ -216,11 +259,12 @@ test_what_has_no_meaning_is_refused = refusals(
     (ArchardWear, {"hardness": 3e9, "velocities": (0.7, 0.2)}, "velocities: received numbers that"),
     (wear, {"rolling": ROLLING.half_space}, "bodies that roll: received HalfSpace; allowed: a half"),
     (wear, {"law": 1e-4}, r"law of wear: received float; allowed: an object with removal"),
-    (wear, {"law": given(None)}, "removal of Given: received None; allowed: depth over rolled distance"),
-    (wear, {"law": given((NOTHING + math.nan, NOTHING))}, "removal of Given: received nan"),
-    (wear, {"law": given((NOTHING[1:], NOTHING))}, r"removal of Given: received shape \(7, 8\)"),
-    (wear, {"law": given((NOTHING, NOTHING))}, "removal of Given: received regimes of float64"),
-    (wear, {"law": given((NOTHING, NO_REGIME))}, "removal of Given: received regimes of int64"),
+    (wear, {"law": Nameless(), "cache": Store(".")}, "received one without fields to keep it by"),
+    (wear, {"law": Given(None)}, "removal of Given: received None; allowed: depth over rolled distance"),
+    (wear, {"law": Given((NOTHING + math.nan, NOTHING))}, "removal of Given: received nan"),
+    (wear, {"law": Given((NOTHING[1:], NOTHING))}, r"removal of Given: received shape \(7, 8\)"),
+    (wear, {"law": Given((NOTHING, NOTHING))}, "removal of Given: received regimes of float64"),
+    (wear, {"law": Given((NOTHING, NO_REGIME))}, "removal of Given: received regimes of int64"),
     (wear_depth, ROLLED | {"contact": None}, "contact: received none of these bodies; allowed: one that"),
     (wear_depth, ROLLED | {"rolling": wheel(8, 0.2)[1]}, "contact: received none of these bodies"),
     (wear, {"surface": RAIL[:, :6]}, "window of wear: received 8 × 8 cells on a surface of 9 × 6"),

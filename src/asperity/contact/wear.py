@@ -1,8 +1,9 @@
 """Wear: what the friction of a rolling contact takes from a surface, pass by pass."""
 
 import math
+import sys
 import warnings
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from functools import partial
 from typing import Any, NamedTuple, Protocol
 
@@ -15,6 +16,7 @@ from asperity.contact.tangential import SPIN_AHEAD, FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning, UnconvergedWarning
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress
+from asperity.store import Store, content_key
 from asperity.surfaces.heightmap import HeightMap
 from asperity.threads import refuse_to_go_on
 
@@ -58,7 +60,7 @@ def rubbing(rolling: FrictionalHalfSpace, contact: SlidingContact, before: Slidi
 
 
 class WearLaw(Protocol):
-    """What rubbing takes from one of the bodies."""
+    """What rubbing takes from one of the bodies: a frozen dataclass, whose fields name what is kept."""
 
     def removal(self, rubbing: Rubbing) -> tuple[Array, NDArray[np.intp]]:
         """Depth over rolled distance (nx, ny), and the place in `REGIMES` of each cell (nx, ny)."""
@@ -283,6 +285,29 @@ class WornSurface:
         return dict(zip(REGIMES, found.tolist(), strict=True))
 
 
+class _Wearing(NamedTuple):
+    """All that the wear depends on, beside the heights."""
+
+    bodies: FrictionalHalfSpace
+    law: WearLaw
+    body: Array
+    load: Array  # (positions,), N
+    motion: tuple[float, ...]  # creepage along, across, and spin
+    speed: float
+    passes: int
+    step: float
+    rtol: float
+
+    def key(self, heights: Array) -> str:
+        """Name in the store of what these heights become."""
+        space, friction = self.bodies.half_space, self.bodies.friction
+        bodies = [self.bodies.shear_modulus, self.bodies.poisson_ratio, self.bodies.unlikeness]
+        parameters = [list(space.spacing), space.modulus, space.hardness, bodies, self.bodies.coupled]
+        with np.printoptions(threshold=sys.maxsize, floatmode="unique"):  # maps in full
+            parameters += [repr(friction), repr(self.law), list(self.motion), *self[5:]]
+        return content_key("wear", heights, self.body, self.load, np.asarray(friction.static), parameters)
+
+
 def worn(
     rolling: FrictionalHalfSpace,
     surface: ArrayLike | HeightMap,
@@ -297,6 +322,7 @@ def worn(
     speed: float = 1.0,
     step: float | None = None,
     rtol: float = 1e-6,
+    cache: Store | None = None,
     progress: Progress | None = None,
 ) -> WornSurface:
     """Roll a body over a surface that its friction wears, row by row, and as often as asked.
@@ -327,13 +353,13 @@ def worn(
         a tenth of the rms height, but no more than the pressure can follow.
     rtol : float
         Tolerance of each solution.
-    progress : callable, optional
-        ``progress(done, total, message)``.
+    cache, progress : optional
+        As in `HalfSpace.scan`: passes that were interrupted go on after the last one kept.
 
     Returns
     -------
     WornSurface
-        What is left, and what is not. Further passes go on from its surface.
+        What is left, and what is not.
 
     Raises
     ------
@@ -365,7 +391,9 @@ def worn(
     heights, shape = heights_on(space, surface, "surface to be worn"), space.shape
     shape_of = finite_array("body that wears", body, f"lengths in m, an array {shape}", shape=shape)
     check_window("wear", shape, heights.shape)
-    check_settings(None, None, progress)
+    check_settings(None, cache, progress)
+    kept = cache is None or is_dataclass(law)
+    require(kept, "law of wear", "one without fields to keep it by", "a frozen dataclass, or no cache")
     positions = len(heights) if closed else len(heights) - shape[0] + 1
     allowed = f"a force above 0, N, or one for each of {positions} positions"
     loads = finite_array("load", load, allowed, above=0.0)
@@ -380,18 +408,12 @@ def worn(
         step = PRESSURE_SHARE * smooth.force / smooth.area * min(space.spacing) / space.modulus
         step = min(step, ROUGHNESS_SHARE * float(heights.std()) or step)
     step = positive("step", step)
-    depth, done, solved, counts = np.zeros(heights.shape), 0, list[tuple[Any, ...]](), list[Counts]()
-    once = partial(_pass, rolling, law, shape_of, loads, motion, speed, rtol, progress)
-    while done < passes:
-        lost, volume, work, how = once(heights - depth, f"wear, pass {done + 1} of {passes}")
-        largest = max(float(lost.max()), np.finfo(float).tiny)
-        alike = max(int(min(step / largest, passes - done)), 1)
-        depth, done = depth + alike * lost, done + alike
-        solved.append((alike, largest, alike * volume, alike * work))
-        counts.append(how)
-    times, largest_of, volumes, works = (np.array(each) for each in zip(*solved, strict=True))
-    warn_of_flaws(total(counts), "wear", "rtol", "Enlarge the window.", "its wear too small")
-    if (deepest := float(largest_of.max())) > step:
+    job = _Wearing(rolling, law, shape_of, loads, motion, speed, passes, step, rtol)
+    state = _passed(heights, job, cache, progress)
+    counts, depth = Counts(*state["counts"].tolist()), state["depth"]
+    warn_of_flaws(counts, "wear", "rtol", "Enlarge the window.", "its wear too small")
+    deepest = float(state["deepest"].max())
+    if deepest > step:
         OutOfRangeWarning.warn(
             f"a single pass removes {1e9 * deepest:.3g} nm, more than the {1e9 * step:.3g} nm after which "
             "the contact is solved again: its pressure does not follow what it removes. Lower "
@@ -399,43 +421,67 @@ def worn(
         )
     origin = f"{surface.source}; " if isinstance(surface, HeightMap) and surface.source else ""
     left = HeightMap(heights - depth, space.spacing, f"{origin}worn by {passes} passes")
-    return WornSurface(left, depth, times, volumes, works, total(counts))
+    return WornSurface(left, depth, state["passes"], state["volume"], state["work"], counts)
+
+
+def _passed(
+    heights: Array, job: _Wearing, cache: Store | None, progress: Progress | None
+) -> dict[str, NDArray[Any]]:
+    """Depth and sums after all passes; those that the cache knows are not rolled."""
+    key = "" if cache is None else job.key(heights)
+    state: dict[str, NDArray[Any]] = (cache.get(key) if cache is not None else None) or {
+        "depth": np.zeros(heights.shape),
+        "passes": np.empty(0, dtype=np.int64),
+        "deepest": np.empty(0),
+        "volume": np.empty((0, len(REGIMES))),
+        "work": np.empty(0),
+        "counts": np.zeros(4, dtype=np.int64),
+    }
+    while (done := int(state["passes"].sum())) < job.passes:
+        message = f"wear, pass {done + 1} of {job.passes}"
+        depth, volume, work, counts = _pass(heights - state["depth"], job, progress, message)
+        deepest, left = max(float(depth.max()), np.finfo(float).tiny), job.passes - done
+        alike = max(int(min(job.step / deepest, left)), 1)
+        state["depth"] = state["depth"] + alike * depth
+        state["counts"] = state["counts"] + counts
+        for name, value in (
+            ("passes", alike),
+            ("deepest", deepest),
+            ("volume", alike * volume),
+            ("work", alike * work),
+        ):
+            state[name] = np.concatenate([state[name], np.asarray([value], dtype=state[name].dtype)])
+        if cache is not None:
+            cache.put(key, state)
+    return state
 
 
 def _pass(
-    rolling: FrictionalHalfSpace,
-    law: WearLaw,
-    body: Array,
-    load: Array,
-    motion: tuple[float, ...],
-    speed: float,
-    rtol: float,
-    progress: Progress | None,
-    heights: Array,
-    message: str,
+    heights: Array, job: _Wearing, progress: Progress | None, message: str
 ) -> tuple[Array, Array, float, Counts]:
     """Depth of one pass, its volume by regime, its friction work, and how its contacts went."""
-    space, rows, positions, counts = rolling.half_space, len(body), len(load), []
-    tell, distance, (along, across, spin) = progress or (lambda *_: None), space.spacing[0], motion
+    space, rows, counts = job.bodies.half_space, job.body.shape[0], []
+    tell, distance, (along, across, spin) = progress or (lambda *_: None), space.spacing[0], job.motion
     depth, volume, work, start = np.zeros(heights.shape), np.zeros(len(REGIMES)), 0.0, None
     before: SlidingContact | None = None
+    positions = len(job.load)
     lead_in = rows if positions == len(heights) else 0  # a closed surface has been rolled over before
     for first in range(-lead_in, positions):
         refuse_to_go_on()
         tell(max(first, 0), positions, message)
         under = np.arange(first, first + rows) % len(heights)
-        contact = space.at_load(body - heights[under], float(load[first]), start, rtol)
+        contact = space.at_load(job.body - heights[under], float(job.load[first]), start, job.rtol)
         with warnings.catch_warnings():  # those that did not converge are counted
             warnings.simplefilter("ignore", UnconvergedWarning)
-            roll = partial(rolling.roll, contact, (along, across), spin, speed=speed, rtol=rtol)
+            roll = partial(job.bodies.roll, contact, (along, across), spin, speed=job.speed, rtol=job.rtol)
             before = before or roll()
             after = roll(before=before)
         start = np.zeros_like(contact.pressure)
         start[:-1] = contact.pressure[1:]
-        rubs, before = rubbing(rolling, after, before), after
+        rubs, before = rubbing(job.bodies, after, before), after
         if first < 0:
             continue
-        rate, regime = _removal(law, rubs)
+        rate, regime = _removal(job.law, rubs)
         depth[under] += distance * rate
         volume += distance * space.cell_area * np.bincount(regime.ravel(), rate.ravel(), len(REGIMES))
         work += distance * space.cell_area * float(rubs.work.sum())
