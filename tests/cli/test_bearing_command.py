@@ -1,4 +1,4 @@
-"""``asperity bearing``: what it prints of a bearing and of its signal, and what it refuses."""
+"""``asperity bearing``: what it prints of a bearing and its signal, and refuses; and a bearing that runs."""
 
 import importlib
 import json
@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from asperity.case.cases import as_case
 from command_line import call, words_of
+from small_cases import BEARING
 
 RATE = 12_000
 TIME = np.arange(2 * RATE) / RATE
@@ -160,3 +162,25 @@ def test_what_cannot_be_is_told(words, message):
     Path("bad.wav").write_bytes(b"RIFF\x10\x00\x00\x00WAVEfmt ")
     told = call("bearing", *(word.replace("_", " ") for word in words.split()), code=2).stderr
     assert message in told
+
+
+def test_a_bearing_is_checked_run_reported_drawn_and_heard():
+    case = BEARING | {"duration": "50 ms", "fault": BEARING["fault"] | {"on": "inner"}}
+    Path("bearing.toml").write_text(as_case(case).to_toml())
+    plan = json.loads(call("check", "bearing.toml", "--json").stdout)
+    told = {row["name"]: row["value"] for row in plan["plan"]}
+    assert told["tones"].startswith("outer raceway 107.5 Hz, inner raceway 162.5 Hz")
+    assert plan["work"]["steps"] == pytest.approx(60e-3 * 8 * 51_200, rel=1e-3)
+    (law,) = json.loads(call("run", "bearing.toml", "-o", "out", "--json", "--quiet").stdout)["laws"]
+    assert (law["law"], len(law["band_velocity"])) == ("hertz", 3)
+    page = Path("out/report.html").read_text().replace("\u00a0", " ")
+    assert f"Radial velocity by hertz: {1e6 * law['band_velocity'][0]:.3g} µm/s in 50 to 300 Hz" in page
+    assert "Diamond: the fault of the inner raceway, where the record begins." in page
+    call("report", "out", "--summary")
+    call("figures", "out", "--format", "png", "load_zone", "envelope_spectrum")
+    call("listen", "out")
+    assert [path.name for path in Path("out/sounds").glob("*.wav")] == ["ring_acceleration-hertz-0_rad.wav"]
+    refused = call("compare", "out", "out/run.nc", code=2).stderr
+    assert "runs to compare: received runs of bearings; allowed: runs of bodies that roll" in refused
+    refused = call("run", "bearing.toml", "-o", "new", "--converge", code=2).stderr
+    assert "convergence: received a ball-bearing case" in refused

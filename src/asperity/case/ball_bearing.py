@@ -177,21 +177,16 @@ def read_roundness(table: TableSource) -> Array:
     return rows
 
 
-def _same(example: Any, default: Any) -> bool:
-    return math.isclose(example, default) if isinstance(default, float) else bool(example == default)
-
-
 def _keys_of(model: Any) -> dict[str, Key]:
-    """Keys of what a dataclass declares, with a default where that of the class is its example."""
-    found = dict(keys_of(model, otherwise="none"))
-    for field in fields(model):
-        key = found[field.name]
-        if field.default not in (None, MISSING) and _same(key.kind(key.example), field.default):
-            found[field.name] = replace(key, default=key.example, otherwise="")
-    return found
+    """Keys of what a dataclass declares: where the class has a default, it is their example."""
+    fixed = {field.name for field in fields(model) if field.default not in (None, MISSING, ())}
+    return {
+        name: replace(key, default=key.example, otherwise="") if name in fixed else key
+        for name, key in keys_of(model, otherwise="none").items()
+    }
 
 
-_AROUND, _FAULT = _keys_of(AroundTexture), _keys_of(Fault)
+_AROUND = _keys_of(AroundTexture)
 _TRACE = TableFile(columns=(2,), content="a table of angle and deviation", read=read_roundness)
 
 
@@ -220,7 +215,7 @@ class AroundKeys(Section, parameters=_AROUND | {"trace": replace(_AROUND["trace"
             yield error
 
 
-class FaultKeys(Section, parameters=_FAULT | {"shape": replace(_FAULT["shape"], default="pit")}):
+class FaultKeys(Section, parameters=_keys_of(Fault)):
     """One fault of a raceway or of a ball, or several alike around it."""
 
     on: str | None = optional(Choice(PARTS), "outer", "part that has it", "no fault")

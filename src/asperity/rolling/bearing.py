@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, positive, require
-from asperity.errors import Outcome
 from asperity.laws.spec import Law
 from asperity.progress import Progress
 from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
@@ -71,16 +70,12 @@ class RolledBearing:
     outer_angle: Array  # (n,)
     inner_force: Array  # (Z, n), compression positive
     outer_force: Array  # (Z, n)
-    inner_approach: Array  # (Z, n), as the laws see it, but for the heights of the balls
-    outer_approach: Array  # (Z, n)
     ball_motion: Array  # (Z, n), outwards along the contacts' normal
     inner_motion: Array  # (3, n), along the radial load, across it, along the axis
     outer_motion: Array  # (3, n)
     acceleration: Array  # (sensors, n), m/s²
     energy: Ledger
-    evaluations: int
     unconverged_steps: int
-    outcome: Outcome
 
 
 def roll_bearing(
@@ -176,16 +171,12 @@ def roll_bearing(
         turning.turned(OUTER)(*kept),
         run.contact_force[0::2],
         run.contact_force[1::2],
-        run.approach[0::2],
-        run.approach[1::2],
         np.concatenate(run.bodies),
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],
         run.energy,
-        run.evaluations,
         run.unconverged_steps,
-        run.outcome,
     )
 
 

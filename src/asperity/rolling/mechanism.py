@@ -11,7 +11,6 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from asperity.arguments import Array, NDArray, positive, require
-from asperity.errors import Outcome
 from asperity.kernels.pointforce import TABLE, Prepared, evaluate_all
 from asperity.kernels.stepping import Motion, System
 from asperity.laws.spec import Law, SteppedLaw, settles
@@ -194,14 +193,11 @@ class RolledMechanism:
     """What was recorded of n contacts at t steps, after the run-in."""
 
     contact_force: Array  # (n, t), N, compression positive
-    approach: Array  # (n, t), m, as the laws see it but for the heights of the edges
     bodies: tuple[Array, ...]  # coordinates of each (d, t), m or rad, positive as its contacts open
     displacement: Array  # (sensors, t), m
     acceleration: Array  # (sensors, t), m/s²
     energy: roll.Ledger  # where the work of the loads went, in run-in and run
-    evaluations: int  # of the laws
     unconverged_steps: int
-    outcome: Outcome
 
 
 def roll_mechanism(
@@ -254,19 +250,16 @@ def roll_mechanism(
     energies = stepper.energies()
     stepper.run(progress, checkpoint)
     _warn(stepper, course)
-    kept, counts, record = slice(settled, None), stepper.motion.counts, stepper.record
+    kept, record = slice(settled, None), stepper.record
     return RolledMechanism(
         record.contact_force[:, kept],
-        record.relative_displacement[:, kept],
         tuple(
             core[: len(body.mass), kept] for body, core in zip(mechanism.bodies, record.core, strict=False)
         ),
         record.displacement[:, kept],
         record.acceleration[:, kept],
         roll.ledger_of(stepper, energies),
-        int(counts[2]),
-        int(counts[1]),
-        Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
+        int(stepper.motion.counts[1]),
     )
 
 

@@ -167,8 +167,7 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
 
 ANGLES = ("time", "cage", "inner_angle", "outer_angle")
 RECORDED = (
-    "inner_force", "outer_force", "inner_approach", "outer_approach", "ball_motion", "inner_motion",
-    "outer_motion", "acceleration"
+    "inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion", "acceleration"
 )  # fmt: skip
 """What a run holds over time: what grows evenly, and signals."""
 

@@ -28,8 +28,8 @@ from asperity.progress import Progress
 from asperity.rolling.bearing import RolledBearing
 from asperity.scenarios.bearing import LEFT_OUT, NAMES, ON, RINGS, PreparedBearing, prepare_bearing, rolled
 from asperity.scenes import schema
-from asperity.scenes.result import root_attributes
-from asperity.schema import Values, bearing, contact, provenance, rolling, spectra, tree
+from asperity.scenes.result import root_attributes, scenario_group
+from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import LoadedBearing
 
@@ -68,15 +68,8 @@ def bearing_result(
     heard, apart = heard_group(case, runs), Values() if brief else alone(prepared, progress)
     found = list(_findings(case, runs))
     warn_of_findings(found)
-    numerics = [{"name": name, "value": value} for name, value in _numerics(case)]
-    numerics.append({"name": "wall time", "value": f"{time.monotonic() - began:.2f} s"})
-    scenario: Values = {
-        provenance.KIND: case.kind,
-        provenance.PARAMETERS: case.parameters(),
-        provenance.LAWS: [laws.spec_of(name).entry() for name in case.laws],
-        provenance.NUMERICS: numerics,
-        contact.VALIDITY: [finding.row() for finding in found],
-    }
+    scenario = scenario_group(case, _numerics(case, time.monotonic() - began))
+    scenario[contact.VALIDITY] = [finding.row() for finding in found]
     at_rest = static_group(case.static, case.kinematics)
     result = tree(scenario | at_rest | motion_group(case, runs) | heard | apart)
     result.attrs = root_attributes(
@@ -311,9 +304,10 @@ def _missed(runs: dict[str, RolledBearing]) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _numerics(case: BallBearingCase) -> Iterator[tuple[str, str]]:
+def _numerics(case: BallBearingCase, wall: float) -> Iterator[tuple[str, str]]:
     """Numbers of the computation: names and values."""
     yield "time step", f"{case.step * 1e6:.4g} µs"
     yield "time steps per sample that is written", f"{case.steps_per_sample}"
     yield "resonance of the most loaded ball between the rings", f"{case.ball_resonance:.4g} Hz"
     yield "imbalance of the static solution", f"{case.static.imbalance:.0e} of the load"
+    yield "wall time", f"{wall:.2f} s"

@@ -79,19 +79,22 @@ def computed_result(
         noise.warn_of_silence(case)
     warn_of_findings(found)
     textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)
-    numerics = [{"name": name, "value": value} for name, value in _numerics(computed, choice, losses)]
     expected = {provenance.EXPECTED_ERRORS: choice.entries()} if choice else {}
-    scenario = {
-        provenance.KIND: case.kind,
-        provenance.PARAMETERS: case.parameters(),
-        provenance.LAWS: [laws.spec_of(name).entry() for name in case.laws],
-        provenance.NUMERICS: numerics,
-        **expected,
-    }
+    scenario = scenario_group(case, _numerics(computed, choice, losses)) | expected
     result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
     verdict = validity.verdict(computed, in_bands, found, choice)
     result.attrs = root_attributes(case, case.title, sources, verdict, caught)
     return result
+
+
+def scenario_group(case: AnyCase, numerics: Iterable[tuple[str, str]]) -> Values:
+    """Lay out what was asked for, and numbers of the computation by their names."""
+    return {
+        provenance.KIND: case.kind,
+        provenance.PARAMETERS: case.parameters(),
+        provenance.LAWS: [laws.spec_of(name).entry() for name in case.laws],
+        provenance.NUMERICS: [{"name": name, "value": value} for name, value in numerics],
+    }
 
 
 def root_attributes(

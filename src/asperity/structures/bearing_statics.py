@@ -124,11 +124,6 @@ class LoadedBearing:
             low, high = (middle, high) if all_touch(middle := 0.5 * (low + high)) else (low, middle)
         return high
 
-    @property
-    def compliance(self) -> tuple[Array, Array]:
-        """Varying compliance: rms about the mean and peak to peak of the displacement (3,), m."""
-        return self.displacement.std(axis=0), np.ptp(self.displacement, axis=0)
-
 
 def load_distribution(
     bearing: BallBearing, radial: float, axial: float, speed: float, cage_angles: ArrayLike | None

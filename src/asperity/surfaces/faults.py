@@ -64,7 +64,7 @@ class Fault:
     [-0.00028, -0.00028, 0.0]
     """
 
-    shape: str = parameter(Choice(SHAPES), "pit", "kind of fault")
+    shape: str = parameter(Choice(SHAPES), "pit", "kind of fault", default="pit")
     angle: float = parameter(Quantity("rad"), "0 deg", "angle of its middle around", _TURN, default=0.0)
     offset: float = parameter(
         Quantity("m"), "0 mm", "distance of its middle from the path", _OFFSET, default=0.0
@@ -73,7 +73,7 @@ class Fault:
     width: float = parameter(LENGTH, "0.18 mm", "width across, as its length", _SIZE, default=None)
     depth: float = parameter(LENGTH, "0.28 mm", "depth, or height of a particle", _DEPTH, default=None)
     edge: float = parameter(
-        Quantity("m", at_least=0), "10 um", "length over which a pit or spall falls", _SIZE, default=0.0
+        Quantity("m", at_least=0), "0 um", "length over which a pit or spall falls", _SIZE, default=0.0
     )
     rim: float = parameter(_RIM, 1.0, "volume of a dent's rim over the dent's", default=1.0)
     rim_width: float = parameter(
