@@ -99,7 +99,9 @@ def _spectrum_caption(tree: DataTree) -> str:
             "constant loss factors."
         )
     if tone := data.number(tree, schema.SLEEPER_PASSING_FREQUENCY):
-        text.append(f"Ticks along the bottom: sleeper passing, n v/L, every {tone:.1f} Hz.")
+        text.append(
+            f"Ticks along the bottom: sleeper passing, n v/L, n up to {track.TONES}, every {tone:.1f} Hz."
+        )
     if split := track.pinned_pinned_split(tree):
         text.append(
             f"Dotted: the pinned–pinned frequency as the moving wheel meets it, {split[0]:.0f} and "

@@ -49,10 +49,15 @@ def split_rules(tree: DataTree, low: float, high: float) -> list[Mark]:
     return [Rules(np.array(split)), Note("f_pp ∓ v/2L", split[1], 0.97, y_share=True)]
 
 
+TONES = 20
+"""Multiples of sleeper passing that are marked: further ones lie too close on an axis by octaves."""
+
+
 def sleeper_tones(tree: DataTree, low: float, high: float) -> list[Mark]:
-    """Short rules at n v/L between two frequencies."""
+    """Short rules at n v/L between two frequencies, the first `TONES`."""
     tone = data.number(tree, schema.SLEEPER_PASSING_FREQUENCY)
-    return [_short(tone * np.arange(np.ceil(low / tone), np.floor(high / tone) + 1))] if tone else []
+    last = min(np.floor(high / tone), TONES) if tone else 0.0
+    return [_short(tone * np.arange(np.ceil(low / tone), last + 1.0))] if tone else []
 
 
 def sleeper_times(tree: DataTree, start: float, end: float, unit: float) -> list[Mark]:
