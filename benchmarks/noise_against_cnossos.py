@@ -25,7 +25,7 @@ from asperity.radiation.track import (
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
 from asperity.reference.materials import MATERIALS
-from asperity.reference.wheels import SECTIONS
+from asperity.reference.railways import SECTIONS
 from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, Line, Panel
 from asperity.reporting.figure import write_chart
 from asperity.reporting.panels import frequency_axis
@@ -116,7 +116,7 @@ def wheel_transfer(pads: float, section: str) -> np.ndarray:
     square = 0.5 * weight @ np.abs(force_transfer(f, wheel, body, STIFFNESS, places)) ** 2
     omega, natural = 2.0 * np.pi * f, 2.0 * np.pi * table[:, :1]
     answer = 1.0 / (table[:, 2:3] * (natural**2 - omega**2 + 2j * table[:, 1:2] * natural * omega))
-    power = radiator.power(f, np.abs(omega * answer) ** 2 * 2.0 * square)
+    power = radiator.power(f, np.abs(omega * answer) ** 2 * 2.0 * square).sum(axis=0)
     return 10.0 * np.log10(np.mean(power.reshape(len(BANDS), -1), axis=1))
 
 

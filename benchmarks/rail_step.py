@@ -140,7 +140,7 @@ def main() -> None:
     taps = kernel.weights.shape[1]
     for name, rail in rails.items():
         print(f"{name}: {len(rail.poles)} kept of conjugate pairs, kernel error {rail.fit_error:.1e}")
-    print(f"scatter: {taps} taps ({kernel.lag[-1]:.2f} s)\n")
+    print(f"scatter: {taps} taps ({taps * kernel.time_step:.2f} s)\n")
     positions = SPEED * STEP * np.arange(int(options.duration / STEP * (1 + 1e-12)) + 1)
     print("| law | rail | µs per step | simulated/wall time | scatter/poles | laying-out, µs per step |")
     print("|---|---|---:|---:|---:|---:|")

@@ -23,7 +23,7 @@ _HOME = {
     "Support": "structures.beam",
     "SupportedBeam": "structures.beam",
     "Track": "structures.track",
-    "Wheel": "structures.wheel",
+    "Wheel": "structures.body",
     "WheelSection": "structures.outline",
     "compare": "scenes.report",
     "effects": "studies.effects",

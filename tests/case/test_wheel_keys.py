@@ -6,7 +6,7 @@ import pytest
 from asperity.case.bodies import WheelOnRail
 from asperity.case.cases import as_case, load_case
 from asperity.errors import CaseError
-from asperity.reference.wheels import SECTIONS
+from asperity.reference.railways import SECTIONS
 from asperity.structures.outline import WheelSection
 from refusals import refusals
 

@@ -8,7 +8,7 @@ from ledger import Check
 
 from asperity.radiation.pass_by import AxleSource, Passage, Receiver, pass_by_levels, pressure_level
 from asperity.radiation.sound_path import PorousGround, SoundPath
-from asperity.reference.grounds import GROUNDS
+from asperity.reference.railways import GROUNDS
 
 WATT = np.array([1e-3])
 FLAT = Receiver(7.5, 0.0)

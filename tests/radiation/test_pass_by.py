@@ -14,7 +14,7 @@ from asperity.radiation.pass_by import FAST, AxleSource, Passage, Receiver
 from asperity.radiation.sound_path import PorousGround, SoundPath
 from asperity.radiation.track import IMPEDANCE, wavenumber
 from asperity.reference import cnossos
-from asperity.reference.grounds import GROUNDS
+from asperity.reference.railways import GROUNDS
 from refusals import refusals
 
 BAND = 10.0 ** (np.arange(17, 38) / 10.0)

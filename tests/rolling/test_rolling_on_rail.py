@@ -11,11 +11,10 @@ from asperity.errors import ComputationError
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.body import Body, carriage
+from asperity.structures.body import Body, Wheel, carriage
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
 from one_contact import Shelf, roll_wheel
 
 TRACK = Track.named("nordborg", rail_loss_factor=0.03)

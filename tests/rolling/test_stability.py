@@ -16,11 +16,10 @@ from asperity.reference.materials import material
 from asperity.rolling import steps
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
-from asperity.structures.body import Body
+from asperity.structures.body import Body, Wheel
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
 from one_contact import roll_ball, roll_wheel
 
 STEEL = material("steel")

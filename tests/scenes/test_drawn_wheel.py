@@ -10,10 +10,10 @@ from asperity.scenes import schema
 from asperity.scenes.figures.noise import LOUDEST, wheel_table
 from asperity.scenes.noise import mode_by_mode, radiating_wheel
 from asperity.spectra import a_weighted_total
+from asperity.structures.body import Wheel
 from asperity.structures.modal import modal_answers
 from asperity.structures.outline import FINENESS, mean_thickness
 from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
 from asperity.structures.wheel_modes import wheel_modes
 from small_cases import HEARD
 
@@ -96,7 +96,8 @@ def sound(modes):
     force = mean_square_transfer(f, wheel, TRACK, 1.2e9, positions=3)
     omega = 2.0 * np.pi * f
     answer = modal_answers(f, *table[:, :2].T).T / table[:, 2:3]
-    power = radiator.power(f, np.abs(omega * answer) ** 2 * force).reshape(len(BANDS), -1).mean(axis=1)
+    power = radiator.power(f, np.abs(omega * answer) ** 2 * force).sum(axis=0)
+    power = power.reshape(len(BANDS), -1).mean(axis=1)
     return a_weighted_total(10.0 * np.log10(power), BANDS)
 
 

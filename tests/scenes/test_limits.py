@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from asperity import WheelOnRail
 from asperity.errors import CaseError
 from asperity.reference.cnossos import rail_roughness
-from asperity.reference.tsi_noise import pass_by_limit
+from asperity.reference.railways import pass_by_limit
 from asperity.scenes.figures.measured import limit_sentence, limits_table
 from asperity.scenes.figures.noise import pass_by_answers
 from asperity.scenes.noise import pass_by_group, sources_of

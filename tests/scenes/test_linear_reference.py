@@ -13,9 +13,9 @@ from asperity.errors import LossFactorWarning, warn_of_findings
 from asperity.scenarios.scene import force_transfer, mean_square_transfer
 from asperity.scenes.track import findings_of_losses, linear_reference, loss_factor_error
 from asperity.spectra import nominal_frequency, psd
+from asperity.structures.body import Wheel
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
 
 WHEEL, HEAVY = Wheel(600.0, 65e3), Wheel(1e12, 65e3)
 STIFFNESS = 1.25e9
@@ -86,18 +86,19 @@ def error():
 
 def test_loss_factors_err_as_the_kernel_does(error):
     """Force of a wheel on the transform of the kernel at rest, against the receptance of the track."""
-    assert len(error.bands) == len(error.force) == 31
-    assert [nominal_frequency(error.bands[i]) for i in (0, -1)] == ["5 Hz", "5 kHz"]
+    bands, force = error.values()
+    assert len(bands) == len(force) == 31
+    assert [nominal_frequency(bands[i]) for i in (0, -1)] == ["5 Hz", "5 kHz"]
     places, kernel = 0.6 / 12 * np.arange(12), moving_kernel(LOSSY, 0.0, STEP, positions=12)
     lag = STEP * np.arange(kernel.weights.shape[1])
     for band in (8, 11, 12, 16, 17):  # from 31.5 Hz to 250 Hz
-        frequency = error.bands[band] * 10.0 ** np.linspace(-0.049, 0.049, 40)
+        frequency = bands[band] * 10.0 ** np.linspace(-0.049, 0.049, 40)
         transform = kernel.weights @ np.exp(-2j * np.pi * lag[:, None] * frequency)
         rail = transform / np.sinc(frequency * STEP) ** 2
         nominal = np.array([LOSSY.receptance(frequency, x, x) for x in places])
         carried = WHEEL.receptance(frequency) + 1.0 / STIFFNESS
         levels = [10 * np.log10(np.mean(np.abs(1 / (carried + each)) ** 2)) for each in (rail, nominal)]
-        assert levels[0] - levels[1] == pytest.approx(error.force[band], abs=0.03)
+        assert levels[0] - levels[1] == pytest.approx(force[band], abs=0.03)
 
 
 def test_a_large_error_is_warned_of_with_a_remedy_and_a_small_one_is_not(error):

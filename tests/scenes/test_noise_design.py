@@ -11,8 +11,8 @@ from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.reference import cnossos
 from asperity.scenarios.scene import force_transfer, mean_square_transfer
 from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
+from asperity.structures.body import Wheel
 from asperity.structures.track import Track, decay_rate
-from asperity.structures.wheel import Wheel
 
 CENTRES, LOW, HIGH = third_octave_bands(100.0, 5000.0)
 LINES = 10

@@ -98,7 +98,7 @@ def test_modes_of_the_wheel_follow_both_forces(runs):
     moved = np.mean(spread * np.abs(shapes[0, :, None, None] + shapes[1, :, None, None] * share) ** 2, axis=1)
     parts = ([1, 0], modes.nodal_diameters), ([0.0, 1.0], modes.disc), ([math.sqrt(0.5), 0.0], modes.tread)
     wheel = RadiatingWheel(0.46, 0.135, *(np.append(*each) for each in parts))
-    power = 2.0 * wheel.power(frequency, np.abs(answers) ** 2 * moved) * force[0] / 1e-12
+    power = 2.0 * wheel.power(frequency, np.abs(answers) ** 2 * moved).sum(axis=0) * force[0] / 1e-12
     assert_levels(tree["sideways"]["lateral_power_level"].values[0, 1], frequency, power, band, 350.0)
 
 
@@ -187,7 +187,7 @@ def test_with_the_same_power_and_decay_the_rail_is_heard_as_up_and_down(passing,
     edge = math.sqrt(up["band"][0] * up["band"][1]) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
     beside |= {schema.SIDEWAYS_FREQUENCY: edge, schema.LATERAL_DECAY_RATE: np.minimum(rate, [least, rate])}
     level = pass_by_group(case, up, beside)[schema.PASS_BY_LEVEL][0]
-    np.testing.assert_allclose(level[[4, 5]], level[[0, 2]], rtol=1e-12)
+    np.testing.assert_allclose(level[[4, 5]], level[[0, 2]], rtol=1e-9)  # on grids of their own
 
 
 def test_power_and_pass_by_say_the_vertical_part_the_sideways_part_and_the_sum(passing):

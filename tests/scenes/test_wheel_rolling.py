@@ -12,10 +12,10 @@ from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
 from asperity.scenarios.scene import mean_square_transfer
 from asperity.spectra import band_levels, psd
+from asperity.structures.body import Wheel
 from asperity.structures.moving_kernel import ZONES, HatResponse, moving_kernel
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import Bays
-from asperity.structures.wheel import Wheel
 from asperity.surfaces.bands import from_bands
 from one_contact import roll_wheel
 

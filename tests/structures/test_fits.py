@@ -15,10 +15,9 @@ from asperity.reference.materials import material
 from asperity.rolling.roll import roll_bodies
 from asperity.spectra import psd
 from asperity.structures.beam import Beam
-from asperity.structures.body import Body
+from asperity.structures.body import Body, Wheel
 from asperity.structures.modal_fit import vector_fit, warn_of_wide_lines
 from asperity.structures.receptance_fit import fit_body, fit_structure, receptances_in
-from asperity.structures.wheel import Wheel
 from refusals import refusals
 
 pytestmark = pytest.mark.filterwarnings("ignore:.* modes are narrower")  # of tables without noise

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.errors import CoarseSamplingWarning, UnconvergedWarning
-from asperity.reference.tracks import TRACKS
+from asperity.reference.railways import TRACKS
 from asperity.store import Store
 from asperity.structures import rail_poles as fitting
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity import Track
-from asperity.reference.tracks import TRACKS
+from asperity.reference.railways import TRACKS
 from asperity.structures.support import Relaxation, relaxing
 from asperity.structures.track import EN_15461_BAYS, decay_rate, decay_rate_en15461, decay_rate_of_responses
 from refusals import refusals

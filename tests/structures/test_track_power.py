@@ -5,7 +5,7 @@ import pytest
 
 from asperity import Track
 from asperity.structures.causal_track import causal_track
-from asperity.structures.track_power import dissipated_power
+from asperity.structures.mobility import dissipated_power
 from refusals import refusals
 
 FREQUENCY = np.array([25.0, 90.0, 210.0, 480.0, 1063.0, 2100.0, 4800.0])

@@ -81,9 +81,11 @@ def test_a_force_over_a_sleeper_is_followed_where_bays_are_not_its_mirror_image(
 def test_a_kernel_at_rest_is_the_receptance_of_its_bay(distance: float) -> None:
     kernel = moving_kernel(in_bays(EULER), 0.0, STEP, positions=4, distance=distance)
     frequency = np.array([60.0, 400.0, 1300.0])
-    transform = kernel.weights @ np.exp(-2j * np.pi * frequency * kernel.lag[:, None])
+    transform = kernel.weights @ np.exp(
+        -2j * np.pi * frequency * STEP * np.arange(kernel.weights.shape[1])[:, None]
+    )
     for row in (0, 5, 15, 23):
-        x = row * kernel.period / 24
+        x = row * kernel.track.period / 24
         near, expected = (kernel.track.receptance(frequency, x + d, x) for d in (0.0, distance))
         off = transform[row] / np.sinc(frequency * STEP) ** 2 - expected
         assert np.all(np.abs(off) < 0.01 * np.abs(near))

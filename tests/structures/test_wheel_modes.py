@@ -5,10 +5,10 @@ import pytest
 
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS
-from asperity.reference.wheels import SECTIONS
+from asperity.reference.railways import SECTIONS
 from asperity.store import Store
+from asperity.structures.body import Wheel
 from asperity.structures.outline import WheelSection, checked_outline, mesh_of, volume_of
-from asperity.structures.wheel import Wheel
 from asperity.structures.wheel_modes import DAMPING, SILENT, WheelModes, wheel_modes
 from refusals import refusals
 

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,12 +14,9 @@ from asperity.errors import InputError
 from asperity.parameters import Choice, Either, File, ListOf, MaterialOrName, Number, Quantity, key, optional
 from asperity.reference.cnossos import WHEEL_ROUGHNESS
 from asperity.reference.materials import Material
-from asperity.structures.body import GRAVITY, Body, carriage, chain
+from asperity.structures.body import GRAVITY, Body, Wheel, carriage, chain
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
-
-if TYPE_CHECKING:
-    from asperity.structures.wheel import Wheel
 
 MOST_CONTACTS = 200
 DEEPEST_FLAT = 0.01  # of the radius
@@ -357,10 +353,8 @@ class Rolling(Ringing, FlatOnTread):
         upper = springs[0] if springs else upper_stiffness
         return carriage(above[0], inertia, places, mass, upper, dampers[0], load=extra)
 
-    def tread(self, highest_frequency: float, speed: float, place: float = 0.0) -> "Wheel":
+    def tread(self, highest_frequency: float, speed: float, place: float = 0.0) -> Wheel:
         """What touches at each contact, at a place, m, by itself: mass and modes, as `model` has them."""
-        from asperity.structures.wheel import Wheel
-
         return Wheel(self.contact_mass, self.contact_load, *self.resonances(highest_frequency, speed, place))
 
     def problems(self) -> Iterator[InputError]:

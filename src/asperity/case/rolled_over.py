@@ -30,7 +30,7 @@ from asperity.parameters import (
     optional,
 )
 from asperity.reference.materials import Material
-from asperity.reference.tracks import TRACKS
+from asperity.reference.railways import TRACKS
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.support import MeasuredSleeper, measured_sleeper
 from asperity.structures.track import Track

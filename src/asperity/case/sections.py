@@ -9,7 +9,7 @@ from asperity.case import body, form, measured, surface, tables
 from asperity.case.rolled_over import FREQUENCY
 from asperity.errors import InputError
 from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
-from asperity.reference import cnossos, grounds, tsi_noise
+from asperity.reference import cnossos, railways
 from asperity.units import written
 
 if TYPE_CHECKING:
@@ -228,7 +228,7 @@ class NoiseKeys(form.Section):
         goes_with="vehicle_length",
     )
     vehicle: str | None = optional(
-        Choice(tuple(tsi_noise.LIMITS)),
+        Choice(tuple(railways.LIMITS)),
         "emu",
         "type of vehicle, whose limit of TSI Noise the level is held to",
         "no limit",
@@ -247,7 +247,7 @@ class NoiseKeys(form.Section):
         "1 mm to 100 m: sound comes over ground",
     )
     ground: str | None = optional(
-        Choice((grounds.HARD, *grounds.GROUNDS)),
+        Choice((railways.HARD, *railways.GROUNDS)),
         "grass",
         "ground beside the track, by its flow resistivity: direct and reflected sound interfere",
         "hard: the energy of both adds up, as it does in the mean",
@@ -323,13 +323,13 @@ class NoiseKeys(form.Section):
         """The ground, in words."""
         if self.flow_resistivity is not None:
             return f"ground of {written(self.flow_resistivity, 'Pa s/m^2', 'kPa s/m^2')}"
-        return self.ground or grounds.HARD
+        return self.ground or railways.HARD
 
     def sound_path(self, band: Array, receiver: "Receiver | None" = None) -> "SoundPath":
         """What stands between rails and a receiver, in one-third octaves, Hz."""
         from asperity.radiation.sound_path import PorousGround, SoundPath
 
-        resistivity = self.flow_resistivity or grounds.GROUNDS.get(self.ground or grounds.HARD)
+        resistivity = self.flow_resistivity or railways.GROUNDS.get(self.ground or railways.HARD)
         ground = None if resistivity is None else PorousGround(resistivity)
         apart = self.rail_distance or 0.0
         return SoundPath(band, receiver or self.receiver, ground, self.ground_depth, self.directivity, apart)

@@ -14,7 +14,7 @@ from asperity.case import form, tables
 from asperity.errors import InputError
 from asperity.parameters import Either, ListOf, Number, key, keys_of, optional
 from asperity.reference.materials import Material
-from asperity.reference.wheels import SECTIONS
+from asperity.reference.railways import SECTIONS
 from asperity.store import Store
 from asperity.structures.outline import WheelSection, checked_outline, volume_of
 from asperity.structures.wheel_modes import (

@@ -9,7 +9,7 @@ from asperity.arguments import Array
 from asperity.case import cases, tables
 from asperity.case.bodies import WheelOnRail
 from asperity.errors import InputError
-from asperity.reference.wheels import SECTIONS
+from asperity.reference.railways import SECTIONS
 from asperity.reporting.chart import BLUE, Axis, Chart, Panel, Shape
 from asperity.reporting.figure import write_chart
 from asperity.structures.wheel_modes import with_running_circle

@@ -40,8 +40,9 @@ def passed_points(
     track, which change from a bay to the next by a factor each, so that its forces are transformed once
     for all points.
     """
-    places = np.atleast_1d(finite_array("points on the rail (m)", points)) / kernel.spacing
-    first, stride = origin / kernel.spacing, kernel.speed * kernel.time_step / kernel.spacing  # in bays
+    bay_length = kernel.track.sleeper_spacing
+    places = np.atleast_1d(finite_array("points on the rail (m)", points)) / bay_length
+    first, stride = origin / bay_length, kernel.speed * kernel.time_step / bay_length  # in bays
     count, taps = forces.shape[1], kernel.weights.shape[1]
     waves = _Waves(kernel, next_fast_len(taps + min(count, math.ceil(1.0 / stride)), real=True))
     passed = [_Point(waves, place, taps) for place in places]
@@ -77,7 +78,7 @@ class _Waves:
         self._near: dict[int, dict[int, Complex]] = {}
         self.far = []  # in single precision, which takes half the time: they move a point by a few per cent
         for bay in range(self.track.cell_bays):
-            far = self.grid.waves.bay(bay).symmetric_shapes(0.5 * kernel.spacing * (nodes + 1.0))
+            far = self.grid.waves.bay(bay).symmetric_shapes(0.5 * self.track.sleeper_spacing * (nodes + 1.0))
             first_zone = (shapes[..., : taps + 1].astype(np.complex64) for shapes in far)
             self.far.append(dict(zip((1, -1), first_zone, strict=True)))
         self.polynomials = chebvander(nodes, TERMS - 1) / TERMS

@@ -177,7 +177,7 @@ class SoundPath:
             np.sum([np.interp(each, grid, one) for each in places], axis=0)
             for one in self.spread(source.height, lengths, grid)
         ]
-        return _FACTOR * np.asarray(source.power, dtype=float)[..., None] * np.stack(spread)
+        return np.asarray(_FACTOR * np.asarray(source.power, dtype=float)[..., None] * np.stack(spread))
 
     def exposure(self, source: AxleSource, passage: Passage) -> Array:
         """Integral of the squared sound pressure over the whole passage (..., b), Pa² s.
@@ -213,18 +213,20 @@ class SoundPath:
         ℓ is (b,), m; places (n,), m, rise evenly from zero, opposite the receiver.
         """
         step = float(along[1] - along[0])
-        count = len(along) + math.ceil(4.0 * float(length.max()) / step)  # beyond it exp(−8) is felt
-        places = step * np.arange(count)
+        reach = len(along) + np.ceil(4.0 * length / step).astype(int)  # beyond it exp(−8) is felt
+        places = step * np.arange(reach.max())
         lateral = self.receiver.distance
         coarse = lateral * np.sinh(np.linspace(0.0, np.arcsinh(places[-1] / lateral), _PLACES))
         smooth = self.inverse_square(height, coarse) * (lateral**2 + coarse**2)
-        found = np.stack([np.interp(places, coarse, one) for one in smooth]) / (lateral**2 + places**2)
-        both = np.concatenate([found[:, :0:-1], found], axis=1)  # from one side to the other
-        for one, ell in zip(both, length, strict=True):
+        spread = []
+        for one, ell, end in zip(smooth, length.tolist(), reach, strict=True):
+            found = (np.interp(places, coarse, one) / (lateral**2 + places**2))[:end]
             if ell > 0.0:
-                ahead, behind = (time_weighted(each, step, 0.5 * float(ell)) for each in (one, one[::-1]))
-                one[:] = 0.5 * (ahead + behind[::-1])
-        return both[:, count - 1 : count - 1 + len(along)]
+                both = np.concatenate([found[:0:-1], found])  # from one side to the other
+                ahead, behind = (time_weighted(each, step, 0.5 * ell) for each in (both, both[::-1]))
+                found = 0.5 * (ahead + behind[::-1])[end - 1 :]
+            spread.append(found[: len(along)])
+        return np.stack(spread)
 
     def integral(self, height: float) -> Array:
         """Integral of `inverse_square` along the whole rail (b,), 1/m; over hard ground π/d."""

@@ -8,8 +8,8 @@ from scipy.special import beta, gamma
 
 from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, above_zero
+from asperity.structures.body import Wheel
 from asperity.structures.modal import modal_answers
-from asperity.structures.wheel import Wheel
 
 POINTS = 41
 """Places at which a resonance is looked at, where lines are too far apart for it."""
@@ -144,22 +144,14 @@ class RadiatingWheel:
         return self._ratio(frequency, transition, 2 * self.nodal_diameters + 2)
 
     def power(self, frequency: ArrayLike, square: Array) -> Array:
-        """Sound power (f,), W, from mean square radial velocities of the modes at the contact (p, f), m²/s².
+        """Sound power of each mode (p, f), W, from its mean square radial velocity at the contact, m²/s².
 
-        Per Hz where these are densities. Frequencies (f,), Hz.
+        Per Hz where this is a density. Frequencies (f,), Hz.
         """
-        return IMPEDANCE * np.sum(self._radiating(frequency) * square, axis=0)
-
-    def power_of_modes(self, frequency: ArrayLike, square: Array) -> Array:
-        """The same of each mode (p, f), W."""
-        return IMPEDANCE * self._radiating(frequency) * square
-
-    def _radiating(self, frequency: ArrayLike) -> Array:
-        """Sound power per impedance of air and square velocity at the contact (p, f), m²."""
         disc = 2.0 * np.pi * self.radius**2 * self.axial[:, None] ** 2 * self.axial_ratio(frequency)
         around = 2.0 * np.pi * self.radius * self.width
         tread = around * self.radial[:, None] ** 2 * self.radial_ratio(frequency)
-        return np.asarray(disc + tread)
+        return np.asarray(IMPEDANCE * (disc + tread) * square)
 
     def _ratio(self, frequency: ArrayLike, transition: Array, exponent: NDArray[np.int64]) -> Array:
         over = 2.0 * np.pi * above_zero(frequency) * self.radius / SPEED_OF_SOUND / transition[:, None]

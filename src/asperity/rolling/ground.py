@@ -152,9 +152,9 @@ def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     none, modes, taps = np.zeros(0), np.zeros((n, 0)), kernel.weights.shape[1]
     softest = float(kernel.weights.sum(axis=1).max())
     least = float((kernel.weights @ (-1.0) ** np.arange(taps)).min())  # of all places in a bay
-    limit = "the passing of sleepers v/L", kernel.speed / kernel.spacing, 20.0
+    limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, 20.0
     yields = np.asarray((vectors * squares.clip(0.0)) @ vectors.T)
-    bay = kernel.track.mass_per_length * kernel.spacing
+    bay = kernel.track.mass_per_length * kernel.track.sleeper_spacing
     of_modes = none, none, modes, modes, np.zeros((0, 0))
     return Ground(*of_modes, channels, softest, least, 0.0, limit, yields, bay, taps)
 
@@ -172,7 +172,7 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
                 pairs.append((source, receiver, known[0] if known else len(tables) - 1))
     source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
     none, weights = np.zeros(0), [each.kernel.weights for each in tables]
-    bays, period = rail.kernel.track.cell_bays, rail.kernel.period
+    bays, period = rail.kernel.track.cell_bays, rail.kernel.track.period
     laid = [
         (each.poles, over_the_period(each.residues, bays), np.zeros((1, 1)))
         if isinstance(each, RailPoles)

@@ -8,10 +8,9 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex
 from asperity.case.scene import Case
-from asperity.structures.body import Body
+from asperity.structures.body import Body, Wheel
 from asperity.structures.modal import Modal, receptances_between
 from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
 from asperity.structures.wheel_modes import WheelModes
 
 PLACES = (0.3, 0.37, 0.45, 0.5, 0.6)

@@ -13,7 +13,7 @@ from asperity.case.rolled_over import TrackKeys
 from asperity.case.sections import NoiseKeys
 from asperity.errors import Finding, Grade, MeasuredTrackWarning
 from asperity.radiation.pass_by import Receiver
-from asperity.reference import cnossos, tracks, tsi_noise
+from asperity.reference import cnossos, railways
 from asperity.scenes import compute, schema
 from asperity.schema import Attribute, Values, spectra
 from asperity.spectra import HALF_BAND, nominal_frequency
@@ -241,11 +241,11 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Rece
     vehicle, passage, receiver = case.noise.vehicle, case.passage, case.noise.receiver
     if vehicle is None:
         return {}
-    limit = tsi_noise.pass_by_limit(vehicle, passage.speed, len(passage.axles) / passage.length)
-    here, asked = (receiver.distance, receiver.height), tsi_noise.RECEIVER
+    limit = railways.pass_by_limit(vehicle, passage.speed, len(passage.axles) / passage.length)
+    here, asked = (receiver.distance, receiver.height), railways.RECEIVER
     there = bool(np.allclose(here, asked, rtol=0.0, atol=1e-9))
     told, wanted = ("{:g} m from the track, {:g} m high".format(*each) for each in (here, asked))
-    greatest = tsi_noise.GREATEST_SPEED
+    greatest = railways.GREATEST_SPEED
     of_speed = f"80 km/h and the greatest, up to {3.6 * greatest:g} km/h (TSI Noise)"
     slow_enough = passage.speed <= greatest * (1 + 1e-9)
     laid_out: Values = {
@@ -262,7 +262,7 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Rece
     if limit.level is not None and there:
         laid_out[schema.TSI_LIMIT] = limit.level
         if limit.above:
-            laid_out[schema.NORMALISED_LEVEL_ABOVE] = at(Receiver(*tsi_noise.ABOVE)) + limit.normalisation
+            laid_out[schema.NORMALISED_LEVEL_ABOVE] = at(Receiver(*railways.ABOVE)) + limit.normalisation
     return laid_out
 
 
@@ -291,7 +291,7 @@ def _of_decay(over_frequency: xarray.Dataset) -> Condition:
     if schema.MEASURED_DECAY_RATE.name in over_frequency:
         measured = over_frequency[schema.MEASURED_DECAY_RATE.name].values
         rate = np.where(np.isfinite(measured), measured, rate)
-    limit = tracks.iso_3095_decay_rate(band)
+    limit = railways.iso_3095_decay_rate(band)
     known = np.isfinite(limit) & np.isfinite(rate)
     names = [nominal_frequency(float(f)) for f in band[known]]
     asked = f"at least the limit in {known.sum()} bands"

@@ -15,7 +15,7 @@ from asperity.laws import Role, in_role
 from asperity.radiation import pass_by
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
-from asperity.reference import cnossos, grounds, tsi_noise
+from asperity.reference import cnossos, railways
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, measured, schema
 from asperity.scenes.measured import measured_passage
@@ -322,8 +322,8 @@ def _radiated(computed: compute.Computed) -> tuple[Array, Array]:
         compliance = np.abs(1.0 / stiffness + track.receptance(lines, middle, middle))
         for law, (of_force, of_motion) in enumerate(zip(force, motion, strict=True)):
             square = modal_velocity_psd(own, lines, of_force, of_motion, compliance)  # (modes, c, f)
-            density[law, 2, used] = wheel.power(lines, square.sum(axis=1))
-            of_modes[law][:, used] = wheel.power_of_modes(lines, square.sum(axis=1))
+            of_modes[law][:, used] = wheel.power(lines, square.sum(axis=1))
+            density[law, 2] = of_modes[law].sum(axis=0)
     return density, of_modes
 
 
@@ -339,8 +339,8 @@ LONGEST = 1000.0
 
 def sources_of(case: Any) -> tuple[str, ...]:
     """What the level beside the track is computed by, beyond the sound power."""
-    ground = (grounds.CITATION,) if case.noise.sound_path(np.array([1000.0])).ground else ()
-    return ground if case.noise.vehicle is None else (*ground, tsi_noise.CITATION)
+    ground = (railways.GROUND_CITATION,) if case.noise.sound_path(np.array([1000.0])).ground else ()
+    return ground if case.noise.vehicle is None else (*ground, railways.TSI_CITATION)
 
 
 def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | None = None) -> Values:

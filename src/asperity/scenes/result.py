@@ -60,7 +60,7 @@ def computed_result(
     choice, population = validity.choice_of(computed, brief=brief), answers(computed)
     found, own = validity.findings(computed, population, choice), Values()
     in_bands = group(over_frequency)
-    losses = None
+    losses: Values = {}
     sources = METHOD + (ROUGH_CONTACT if computed.reduction else ()) + BANDS + (EXPECTED if choice else ())
     if isinstance(scene.over, Track):
         highest = case.numerics.highest_frequency
@@ -126,9 +126,7 @@ def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
     ]
 
 
-def _numerics(
-    computed: Computed, choice: LawChoice | None, losses: track.LossFactorError | None
-) -> Iterator[tuple[str, str]]:
+def _numerics(computed: Computed, choice: LawChoice | None, losses: Values) -> Iterator[tuple[str, str]]:
     """Numbers of the computation: names and values."""
     case, (nx, ny), runs = computed.case, computed.shape.body.shape, computed.runs
     yield "time step", f"{case.time_step * 1e6:.4g} µs"
@@ -148,7 +146,7 @@ def _numerics(
     if len(computed.scene.offsets) > 1:
         yield "contacts", f"{len(computed.scene.offsets)}"
     yield from _of_structure(computed)
-    yield from track.described_losses(losses) if losses else ()
+    yield from track.described_losses(losses)
     yield from choice.rows() if choice else ()
     for part, seconds in computed.seconds.items():
         yield f"wall time, {part}", f"{seconds:.2f} s"
@@ -157,9 +155,12 @@ def _numerics(
 def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
     over = computed.over
     if isinstance(over, RailBetween):
-        weights, lag = computed.rail.kernel.weights, computed.rail.kernel.lag
+        weights, step = computed.rail.kernel.weights, computed.rail.kernel.time_step
         yield "start positions of the moving kernel", f"{weights.shape[0]} in a bay"
-        yield "length of the moving kernel", f"{lag[-1]:.3g} s, {weights.shape[1]} steps"
+        yield (
+            "length of the moving kernel",
+            f"{(weights.shape[1] - 1) * step:.3g} s, {weights.shape[1]} steps",
+        )
         if isinstance(over.direct, RailPoles):
             yield "track in time", f"{over.direct.count} poles"
             yield "error of the fitted poles, relative", f"{over.direct.fit_error:.1e}"

@@ -176,7 +176,7 @@ class Sideways:
         numbers = np.concatenate([[1, 0], modes.nodal_diameters])
         disc, tread = np.append([0.0, 1.0], modes.disc), np.append([math.sqrt(0.5), 0.0], modes.tread)
         radiator = RadiatingWheel(case.rolling.radius, case.noise.wheel_width, numbers, disc, tread)
-        return radiator.power(self.lines, self.means(velocity)) * self.seen_of_all
+        return radiator.power(self.lines, self.means(velocity)).sum(axis=0) * self.seen_of_all
 
 
 def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -> Values:

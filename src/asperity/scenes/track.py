@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,15 +10,15 @@ from asperity.arguments import Array, ArrayLike
 from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
 from asperity.laws import Role, in_role
 from asperity.reduction.texture import along_path
-from asperity.reference.tracks import iso_3095_decay_rate
+from asperity.reference.railways import iso_3095_decay_rate
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.scene import BodyAtContact, Scene, mean_square_transfer
 from asperity.scenes import compute, measured, noise, schema, validity
 from asperity.schema import Values
+from asperity.structures.body import Wheel
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
-from asperity.structures.wheel import Wheel
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
@@ -152,7 +151,7 @@ OF_TRACK = (
 """What a track says of itself under these names."""
 
 
-def track_group(computed: compute.Computed, losses: "LossFactorError") -> Values:
+def track_group(computed: compute.Computed, losses: Values) -> Values:
     """Lay out what the wheel rolls on: receptances, decay rates, loss factors and numbers.
 
     None of it depends on what has rolled.
@@ -175,7 +174,7 @@ def track_group(computed: compute.Computed, losses: "LossFactorError") -> Values
         **facts(track),
         schema.STATIC_DEFLECTION: track.static_deflection(load, half),
         schema.STATIC_DEFLECTION_IN_TIME: in_time.static_deflection(load, half),
-        **relaxed(losses),
+        **losses,
         **_bays(track, frequency),
     }
 
@@ -214,24 +213,15 @@ LEAST_SHOWN = 0.05
 """Errors below this, dB, are not listed."""
 
 
-@dataclass(frozen=True, eq=False)
-class LossFactorError:
-    """What the causal track changes of a track with constant loss factors, for a linear contact at rest."""
+def loss_factor_error(track: Track, wheel: BodyAtContact | Wheel, stiffness: float, highest: float) -> Values:
+    """Level of the linear contact force on the causal track that stands in time for one, over that on itself.
 
-    track: Track  # with constant loss factors
-    bands: Array  # (b,), centres of one-third octaves, Hz
-    force: Array  # (b,), level of the contact force over that with constant loss factors, dB
-
-
-def loss_factor_error(
-    track: Track, wheel: BodyAtContact | Wheel, stiffness: float, highest: float
-) -> LossFactorError:
-    """Compare a track with the causal one that stands for it in time; the error of a causal one is zero.
-
-    Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to that of `highest`, Hz. In
-    each band of mean squares over a bay, the nominal one, and over the band, for a texture that is white in
-    it.
+    Nothing for a causal one. Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to
+    that of `highest`, Hz. In each band of mean squares over a bay, the nominal one, and over the band, for a
+    texture that is white in it.
     """
+    if track.is_causal:
+        return {}
     bands, low, high = spectra.third_octave_bands(LOWEST, highest)
     steps = (np.arange(LINES) + 0.5) / LINES
     frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
@@ -240,21 +230,19 @@ def loss_factor_error(
         square = mean_square_transfer(frequency, wheel, rail, stiffness, POSITIONS)
         return 10.0 * np.log10(square.reshape(-1, LINES).mean(axis=-1))
 
-    return LossFactorError(track, bands, level(causal_track(track.regular)) - level(track.regular))
+    error = level(causal_track(track.regular)) - level(track.regular)
+    return {schema.TRACK_BAND: bands, schema.LOSS_FACTOR_FORCE_ERROR: error}
 
 
-def findings_of_losses(error: LossFactorError) -> list[Finding]:
+def findings_of_losses(losses: Values) -> list[Finding]:
     """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
-    if error.track.is_causal:
+    if not losses:
         return []
-    worst = int(np.argmax(np.abs(error.force)))
-    level, frequency = error.force[worst], error.bands[worst]
-    meaning = "Nothing that answers after a force only has one loss factor at all frequencies"
-    if error.track.pad_table is not None:
-        meaning = "The springs and dampers that stand in time for the table of the pad miss it"
-    if off := [
-        spectra.nominal_frequency(error.bands[i]) for i in np.flatnonzero(np.abs(error.force) > DOUBTFUL)
-    ]:
+    bands, force = losses.values()
+    worst = int(np.argmax(np.abs(force)))
+    level, frequency = force[worst], bands[worst]
+    meaning = "Nothing that answers after a force only has one loss factor at all frequencies, or any table"
+    if off := [spectra.nominal_frequency(bands[i]) for i in np.flatnonzero(np.abs(force) > DOUBTFUL)]:
         meaning += f": read the one-third octaves of {', '.join(off)} with their error"
     return [
         Finding(
@@ -269,20 +257,13 @@ def findings_of_losses(error: LossFactorError) -> list[Finding]:
     ]
 
 
-def relaxed(error: LossFactorError) -> Values:
-    """Lay out the errors in bands; nothing without loss factors."""
-    if error.track.is_causal:
-        return {}
-    return {schema.TRACK_BAND: error.bands, schema.LOSS_FACTOR_FORCE_ERROR: error.force}
-
-
-def described_losses(error: LossFactorError) -> Iterator[tuple[str, str]]:
+def described_losses(losses: Values) -> Iterator[tuple[str, str]]:
     """Say how far the force is off in each band: name and value; nothing where there are no loss factors."""
-    if error.track.is_causal:
+    if not losses:
         return
     off = [
         f"{spectra.nominal_frequency(band)} {validity.signed_level(level)}"
-        for band, level in zip(error.bands, error.force, strict=True)
+        for band, level in zip(*losses.values(), strict=True)
         if abs(level) >= LEAST_SHOWN
     ]
     shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]

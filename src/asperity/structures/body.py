@@ -1,4 +1,4 @@
-"""Rigid and suspended bodies on their contacts: a mass, a chain, a carriage or bogie."""
+"""Bodies on their contacts: a rigid mass, a wheel with resonances, a chain, a carriage or bogie."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive
 from asperity.errors import InputError
 
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall, CGPM 1901
@@ -103,9 +103,7 @@ class Body:
         Frequencies in Hz, above zero.
         """
         f = np.atleast_1d(np.asarray(frequency, dtype=float))
-        if not (f > 0.0).all():
-            allowed = "above 0: a free body has no static receptance"
-            raise InputError("frequency (Hz)", float(f.min()), allowed)
+        _refuse_rest(f)
         omega = 2.0 * np.pi * f[:, None, None]
         dynamic = self.stiffness + 1j * omega * self.damping - omega**2 * self.mass
         moved = np.linalg.solve(dynamic, np.broadcast_to(self.contacts.T, (f.size, *self.contacts.T.shape)))
@@ -131,6 +129,12 @@ class Body:
         return solution[:d] / scale, solution[d:]
 
 
+def _refuse_rest(frequency: Array) -> None:
+    if not (frequency > 0.0).all():
+        allowed = "above 0: a free body has no static receptance"
+        raise InputError("frequency (Hz)", float(frequency.min()), allowed)
+
+
 def resonances(
     frequencies: ArrayLike, damping_ratios: ArrayLike, modal_masses: ArrayLike
 ) -> tuple[Array, Array, Array]:
@@ -146,6 +150,89 @@ def resonances(
 
 def _above_zero(what: str, given: ArrayLike, count: int) -> Array:
     return finite_array(what, given, "finite numbers, above 0", count=count, above=0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Wheel:
+    """Wheel at its contact point, in the vertical direction: a free mass and flexible modes.
+
+    Parameters
+    ----------
+    mass : float
+        M, unsprung mass per wheel, kg: that of its rigid motion. Its suspension is soft: the wheel counts as
+        free.
+    load : float
+        Static contact force, weight included, N.
+    natural_frequencies : array_like (p,), optional
+        Of the flexible modes, undamped, Hz.
+    damping_ratios : array_like (p,), optional
+        ζ, share of critical damping, above 0 and below 1.
+    modal_masses : array_like (p,), optional
+        m, with the vertical mode shape at the contact point scaled to one, kg.
+
+    Raises
+    ------
+    InputError
+        If mass or load is not positive, or the lists differ in length or hold values out of range.
+
+    Notes
+    -----
+    The modes are those that the contact feels. A wheel that turns splits each mode with nodal diameters in
+    two: `asperity.structures.wheel_modes.WheelModes.turning`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import Wheel
+    >>> wheel = Wheel(mass=600.0, load=65e3)
+    >>> omega = 2 * np.pi * 100.0
+    >>> bool(np.isclose(abs(wheel.receptance(np.array([100.0])))[0], 1 / (600.0 * omega**2)))
+    True
+    """
+
+    mass: float
+    load: float
+    natural_frequencies: Array = field(default_factory=no_modes)
+    damping_ratios: Array = field(default_factory=no_modes)
+    modal_masses: Array = field(default_factory=no_modes)
+
+    def __post_init__(self) -> None:
+        positive("wheel mass (kg)", self.mass)
+        positive("wheel load (N)", self.load)
+        names = ("natural_frequencies", "damping_ratios", "modal_masses")
+        for name, values in zip(names, resonances(*(getattr(self, name) for name in names)), strict=True):
+            object.__setattr__(self, name, values)
+
+    @property
+    def body(self) -> Body:
+        """The same as a body on one contact."""
+        modes = self.natural_frequencies, self.damping_ratios, self.modal_masses
+        return Body.rigid(self.mass, self.load).with_modes(*modes)
+
+    def receptance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Displacement per harmonic force at the contact point.
+
+        Parameters
+        ----------
+        frequency : array_like
+            Hz, above zero.
+
+        Returns
+        -------
+        ndarray of complex
+            −1/(Mω²) + Σ 1/(m (ω₀² − ω² + 2iζω₀ω)), m/N, of the shape of `frequency`; e^{+iωt}.
+
+        Raises
+        ------
+        InputError
+            If a frequency is not above zero.
+        """
+        from asperity.structures.modal import modal_answers  # a case knows wheels without compiled code
+
+        f = np.asarray(frequency, dtype=float)
+        _refuse_rest(f)
+        modes = modal_answers(f, self.natural_frequencies, self.damping_ratios)
+        return np.asarray(modes @ (1.0 / self.modal_masses) - 1.0 / (self.mass * (2.0 * np.pi * f) ** 2))
 
 
 def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, load: float = 0.0) -> Body:

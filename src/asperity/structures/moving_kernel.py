@@ -95,21 +95,6 @@ class MovingKernel:
         return self
 
     @property
-    def spacing(self) -> float:
-        """Mean distance of the sleepers, m."""
-        return self.track.sleeper_spacing
-
-    @property
-    def period(self) -> float:
-        """Length after which the track repeats, m."""
-        return self.track.period
-
-    @property
-    def lag(self) -> Array:
-        """Times of the columns, s."""
-        return np.asarray(np.arange(self.weights.shape[1]) * self.time_step)
-
-    @property
     def left_over(self) -> float:
         """Largest value in its last tenth, relative to the largest of all."""
         last = self.weights[:, -max(1, self.weights.shape[1] // 10) :]

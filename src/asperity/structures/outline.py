@@ -8,7 +8,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, one_of, positive, require
 from asperity.errors import ComputationError, InputError
 from asperity.parameters import Number, Quantity, parameter
-from asperity.reference.wheels import SECTIONS
+from asperity.reference.railways import SECTIONS
 
 MOST_POINTS = 2000
 FINENESS = 0.25

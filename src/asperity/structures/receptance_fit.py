@@ -9,9 +9,8 @@ import scipy
 from asperity.arguments import Array, Complex, NDArray
 from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, percent
 from asperity.structures import modal, modal_fit
-from asperity.structures.body import Body
+from asperity.structures.body import Body, Wheel
 from asperity.structures.modal_fit import RESIDUAL_DAMPING, Modes
-from asperity.structures.wheel import Wheel
 
 INSIDE = 1.02
 """Of the highest frequency, up to which a mode is one of the band."""

@@ -72,10 +72,6 @@ class Element:
         """Mean square displacement over its length per square of that at its top."""
         return 1.0
 
-    def resting(self, below: float | None) -> float | None:
-        """Stiffness at its top at rest, N/m."""
-        return below
-
 
 @dataclass(frozen=True)
 class Spring(Element):
@@ -91,9 +87,9 @@ class Spring(Element):
         return self.nominal * self.losses.at(omega) + rate * self.damping
 
     @property
-    def static(self) -> float:
-        """Stiffness at rest, N/m."""
-        return self.nominal * self.losses.static
+    def at_rest(self) -> "Spring":
+        """Without losses, as stiff as it is at rest."""
+        return Spring(self.nominal * self.losses.static, ConstantLoss(None), 0.0)
 
     def on(self, omega: ArrayLike, below: Complex | None) -> Complex:
         """In line with what is below."""
@@ -104,11 +100,6 @@ class Spring(Element):
         """As two springs in line share it."""
         own = self.stiffness(omega)
         return np.zeros_like(own) if below is None else own / (own + below)
-
-    def resting(self, below: float | None) -> float:
-        """In line with what is below."""
-        own = self.static
-        return own if below is None else own * below / (own + below)
 
 
 @dataclass(frozen=True)
@@ -152,13 +143,6 @@ class BendingSleeper(Element):
             for at, share in zip(0.5 * (node + 1.0), 0.5 * weight, strict=True):
                 total += length * share * np.abs(waves.at(begin + length * at)) ** 2
         return np.asarray(total / half / np.abs(waves.at(seat)) ** 2)
-
-    def resting(self, below: float | None) -> float | None:
-        """Inverse of the deflection of the seat under a force that stays."""
-        if below is None:
-            return None
-        at_rest = self._waves(np.zeros(()), np.asarray(complex(below)))
-        return float(1.0 / at_rest.at(0.5 * self.seat_distance).real)
 
     def _waves(self, omega: ArrayLike, below: Complex) -> "_SleeperWaves":
         half = 0.5 * self.length
@@ -239,11 +223,9 @@ class Chain:
 
         Of a pad on a rigid sleeper on ballast K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2).
         """
-        below = None
-        for element in reversed(self.elements):
-            below = element.on(omega, below)
-        assert below is not None
-        return below
+        stiffness = self.elements[0].on(omega, self.below(omega)[0])
+        assert stiffness is not None
+        return stiffness
 
     def below(self, omega: ArrayLike) -> list[Complex | None]:
         """Dynamic stiffness under each element, N/m; None on rigid ground."""
@@ -277,11 +259,8 @@ class Chain:
     @property
     def static(self) -> float:
         """Stiffness at rest, N/m."""
-        below = None
-        for element in reversed(self.elements):
-            below = element.resting(below)
-        assert below is not None
-        return below
+        still = [each.at_rest if isinstance(each, Spring) else each for each in self.elements]
+        return float(Chain(tuple(still)).stiffness(0.0).real)
 
 
 CREATED = 0.05
@@ -322,12 +301,6 @@ class MeasuredSleeper(Element):
         squares, masses = np.abs(self._modes(omega, below)) ** 2, np.array(self.modal_masses)
         damping = 4.0 * np.pi * np.array(self.damping_ratios) * self.natural_frequencies * masses
         return np.asarray(self.mass * np.real(omega) * (squares @ damping) / (squares @ masses))
-
-    def resting(self, below: float | None) -> float | None:
-        """Inverse of the deflection of the seat under a force that stays."""
-        if below is None:
-            return None
-        return float(1.0 / self._modes(0.0, np.asarray(complex(below))).sum().real)
 
     def _modes(self, omega: ArrayLike, below: Complex) -> Complex:
         """Displacement of the seat in each mode per force (..., k), m/N."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, shown
 from asperity.errors import InputError
-from asperity.reference.tracks import named_track
+from asperity.reference.railways import named_track
 from asperity.structures import periodic_rail, stiffness_table, track_parameters
 from asperity.structures import support as chains
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
@@ -104,7 +104,7 @@ class Track(track_parameters.TrackParameters):
         Parameters
         ----------
         name : str
-            One of `asperity.reference.tracks.TRACKS`.
+            One of `asperity.reference.railways.TRACKS`.
         **overrides
             Physical parameters of `Track` that replace those of the set. A viscous damping replaces the loss
             factor of the same element, and the other way round.
@@ -140,34 +140,26 @@ class Track(track_parameters.TrackParameters):
         """All that its motion depends on, by name."""
         return {key: value for key, value in asdict(self).items() if key not in ("name", "sources")}
 
-    def _losses(self, part: str, factor: float | None) -> chains.Losses:
+    def _losses(self, part: str) -> chains.Losses:
         measured = self.pad_table if part == "pad" else None
         relaxed: chains.Losses | None = getattr(self.relaxations, part, None)
-        return relaxed or measured or chains.ConstantLoss(factor)
+        return relaxed or measured or chains.ConstantLoss(getattr(self, f"{part}_loss_factor"))
 
     @property
     def rail(self) -> periodic_rail.Rail:
         """The rail without supports."""
-        section, losses = (
-            (self.shear_stiffness, self.rotary_inertia),
-            self._losses("rail", self.rail_loss_factor),
+        section = self.shear_stiffness, self.rotary_inertia
+        return periodic_rail.Rail(
+            self.bending_stiffness, self.mass_per_length, self._losses("rail"), *section
         )
-        return periodic_rail.Rail(self.bending_stiffness, self.mass_per_length, losses, *section)
 
     @property
     def springs(self) -> dict[str, chains.Spring]:
         """Springs between rail and ground by their names of `LAYERS`, those that give way at all."""
-        own = self.under_sleeper_pad_stiffness, self.under_sleeper_pad_damping
-        layers = (
-            (self.pad_stiffness, self.pad_damping, self.pad_loss_factor),
-            (*own, self.under_sleeper_pad_loss_factor),
-            (self.ballast_stiffness, self.ballast_damping, self.ballast_loss_factor),
-            (self.subgrade_stiffness, self.subgrade_damping, self.subgrade_loss_factor),
-        )
         return {
-            layer: chains.Spring(stiffness, self._losses(layer, factor), damping or 0.0)
-            for layer, (stiffness, damping, factor) in zip(track_parameters.LAYERS, layers, strict=True)
-            if stiffness is not None and stiffness < np.inf
+            layer: chains.Spring(stiffness, self._losses(layer), getattr(self, f"{layer}_damping") or 0.0)
+            for layer in track_parameters.LAYERS
+            if (stiffness := getattr(self, f"{layer}_stiffness") or np.inf) < np.inf
         }
 
     @property

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reference.tsi_noise import PassByLimit
+from asperity.reference.railways import PassByLimit
 from asperity.reporting import chart, data, figure, panels, tables
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema

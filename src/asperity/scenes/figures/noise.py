@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.reference.grounds import HARD
+from asperity.reference.railways import HARD
 from asperity.reporting import chart, data, headline, panels
 from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Panel, Rules
 from asperity.reporting.figure import Figure, Lines, Of, Series

@@ -1,4 +1,7 @@
-"""Named sets of track parameters, each value with its source; least decay rate for tests of vehicles."""
+"""Numbers of railways: named tracks and wheels, ground beside them, limits of decay rates and of noise."""
+
+import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -109,3 +112,109 @@ def iso_3095_decay_rate(frequency: ArrayLike) -> Array:
         limit[at >= first / _HALF_BAND] = value
     limit[at > _LAST_BAND * _HALF_BAND] = np.nan
     return limit
+
+
+# --- sections of wheels: none is a product, they are drawn here with main dimensions as usual
+
+Dimensions = dict[str, float]
+
+_HUB: Dimensions = {"bore_radius": 0.0925, "hub_radius": 0.135, "hub_width": 0.175}
+_RIM: Dimensions = {"rim_thickness": 0.065, "rim_width": 0.135, "fillet_radius": 0.025}
+_TREAD: Dimensions = {"flange_height": 0.028, "flange_thickness": 0.032, "tread_slope": 0.05}
+
+SECTIONS: dict[str, Dimensions] = {
+    # a freight wheel: hub aside of the rim, the web bent on its way
+    "curved-web": {
+        **_HUB, **_RIM, **_TREAD,
+        "hub_offset": 0.045, "web_bend": 0.0, "web_thickness": 0.026, "web_thickness_rim": 0.022,
+    },
+    # a wheel for disc brakes on the axle: a plane web under the middle of the rim
+    "straight-web": {
+        **_HUB, **_RIM, **_TREAD,
+        "hub_offset": 0.0, "web_bend": 0.0, "web_thickness": 0.030, "web_thickness_rim": 0.025,
+    },
+    # a wheel for tread brakes, whose web gives way to heat: twice bent
+    "bent-web": {
+        **_HUB, **_RIM, **_TREAD,
+        "hub_offset": 0.010, "web_bend": 0.045, "web_thickness": 0.024, "web_thickness_rim": 0.020,
+    },
+}  # fmt: skip
+"""Dimensions in m, by the keywords of `asperity.structures.outline.WheelSection`."""
+
+# --- ground beside a track, by its flow resistivity
+
+GROUND_CITATION = (
+    "M. E. Delany and E. N. Bazley, Applied Acoustics 3 (1970) 105 (impedance of porous material), with the "
+    "classes of ground of B. Plovsing (2006), as in D. A. Bies, C. H. Hansen and C. Q. Howard, Engineering "
+    "Noise Control, 5th edition, table 5.2."
+)
+HARD = "hard"
+"""Ground that reflects all, and of whose interference only the mean is taken."""
+GROUNDS: dict[str, float] = {
+    "grass": 80e3,
+    "pasture": 200e3,
+    "lawn": 500e3,
+    "gravel-road": 2e6,
+    "asphalt": 20e6,
+    "ballast-shoulder": 200e3,
+}
+"""Flow resistivity, Pa s/m²: the classes C (turf, loose soil) to G (asphalt, concrete) of `GROUND_CITATION`.
+
+Of ballast none is printed. That of its shoulder is chosen here: the hardest class, D, of those that
+CNOSSOS-EU (Directive (EU) 2015/996, 2.5) counts as wholly absorbing, as it counts rail tracks on ballast.
+"""
+
+# --- limits of the noise of passing vehicles in the European Union: TSI Noise, by type of vehicle
+
+TSI_CITATION = (
+    "Commission Regulation (EU) No 1304/2014 (TSI Noise), as amended up to (EU) 2023/1694, points 4.2.3 and "
+    "6.2.2.3 (limits of pass-by noise)."
+)
+LIMITS: dict[str, tuple[float, float | None]] = {
+    "electric-locomotive": (84.0, 99.0),
+    "diesel-locomotive": (85.0, None),
+    "emu": (80.0, 95.0),
+    "dmu": (81.0, 96.0),
+    "coach": (79.0, None),
+    "wagon": (83.0, None),
+}
+"""Table 4: L_pAeq,Tp at 80 and at 250 km/h, dB(A), by type of vehicle."""
+WAGON = "wagon"
+RECEIVER = 7.5, 1.2
+"""Distance from the middle of the track and height above the rail head for which they hold, m."""
+ABOVE = 7.5, 3.5
+"""The same of the additional place from 250 km/h on; point 4.2.3 says its height and the limits' distance."""
+GREATEST_SPEED = 320.0 / 3.6
+"""Of a test, m/s."""
+_SLOW, _FAST = 80.0 / 3.6, 250.0 / 3.6
+_AXLES_PER_LENGTH = 0.225  # of a wagon, 1/m
+
+
+@dataclass(frozen=True)
+class PassByLimit:
+    """Limit of L_pAeq,Tp, None where there is none, for the speed, m/s, to which a level is normalised."""
+
+    level: float | None
+    speed: float
+    normalisation: float  # dB to add to a level that was found
+    above: bool = False  # whether it holds at the additional place, too
+
+    def met(self, normalised: float) -> bool:
+        """Whether a normalised level is within the limit, both as whole decibels."""
+        return self.level is None or math.floor(normalised + 0.5) <= self.level
+
+
+def pass_by_limit(vehicle: str, speed: float, axles_per_length: float) -> PassByLimit:
+    """Limit for a type of vehicle that passed at a speed, m/s, and what normalises its level.
+
+    Axles per length over the buffers, 1/m, matter for wagons alone. From 250 km/h on levels are normalised to
+    that by 50 lg v, below to 80 km/h by 30 lg v; those at 80 km/h or less count as of a vehicle that runs no
+    faster, as they are.
+    """
+    (slow, fast), ratio = LIMITS[vehicle], speed / _FAST
+    axles = 0.0
+    if vehicle == WAGON:
+        axles = -10.0 * math.log10(axles_per_length / _AXLES_PER_LENGTH)
+    if ratio >= 1.0 - 1e-9:
+        return PassByLimit(fast, _FAST, axles - 50.0 * math.log10(ratio), above=True)
+    return PassByLimit(slow, _SLOW, axles - 30.0 * math.log10(max(speed / _SLOW, 1.0)))
