@@ -28,7 +28,8 @@ from asperity.reporting.chart import (
     Second,
     Shape,
 )  # fmt: skip
-from asperity.reporting.page import PageFigure, figures_page
+from asperity.reporting.figure import PageFigure
+from asperity.reporting.page import figures_page
 
 AREAL = {"label": "areal", "law": "areal", "colour": BLUE, "width": 2.2}
 LINEAR = {"label": "linear", "law": "linear", "colour": VERMILLION, "dashes": (3.0, 1.5)}

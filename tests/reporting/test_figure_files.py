@@ -4,11 +4,10 @@ from io import BytesIO
 
 import numpy as np
 import pytest
-from xarray import DataTree
 
 from asperity.reporting import chart
 from asperity.reporting.chart import BLUE, Area, Axis, Boxes, Chart, Field, Line, Note, Panel, Rules, Second
-from asperity.reporting.figure import Figure, chosen_figures, write_chart, write_figures
+from asperity.reporting.figure import PageFigure, chosen_figures, write_chart, write_figures
 from asperity.reporting.panels import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.paper import draw, save_figure
 from asperity.reporting.texture_figures import height_scale, lines_chart, surface_chart
@@ -130,7 +129,7 @@ def test_lines_stand_below_each_other(tmp_path):
 
 def part(name, title):
     panel = Panel(Axis("x"), Axis("y"), (Line(X, Y),))
-    return Figure(name, title, None, (), lambda _, __: [panel], "")
+    return PageFigure(name, title, "", Chart((panel,)))
 
 
 PARTS = [
@@ -161,7 +160,7 @@ test_a_wrong_name_is_told_with_the_nearest = refusals(
 
 
 def test_figures_are_files_under_their_names(tmp_path):
-    files = write_figures(DataTree(), PARTS[:2], tmp_path, "pdf")
+    files = write_figures(PARTS[:2], tmp_path, "pdf")
     assert files == [tmp_path / "force_bands.pdf", tmp_path / "force_psd.pdf"]
     assert all(file.read_bytes().startswith(b"%PDF") for file in files)
 

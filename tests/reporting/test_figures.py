@@ -29,7 +29,7 @@ def small():
 
 
 def panels(name, tree):
-    return PARTS[name].laid_out(tree).panels
+    return PARTS[name].drawn(tree).chart.panels
 
 
 def marks(name, tree, kind=Line):
@@ -43,7 +43,7 @@ def marks(name, tree, kind=Line):
 def test_any_set_of_laws_in_its_colours(laws):
     tree = report_tree(laws)
     for name in OF_LAWS:
-        assert laws_in(PARTS[name].laid_out(tree)) == set(laws)
+        assert laws_in(PARTS[name].drawn(tree).chart) == set(laws)
         drawn = {line.law: line.colour for line in marks(name, tree) if line.law}
         assert drawn == {law: spec_of(law).look.colour for law in laws}, name
         assert set(laws) <= {line.label for line in marks(name, tree)}
@@ -76,7 +76,7 @@ def test_loss_of_contact_is_drawn_where_there_is_any():
     force = np.full(1000, 5.0)
     force[[0, 1, 700, 999]] = 0.0
     tree = with_force(force, force, 5 * WAVE)
-    chart, time = PARTS["force_envelope"].laid_out(tree), 1e3 * tree["rolling/time"].values
+    chart, time = PARTS["force_envelope"].drawn(tree).chart, 1e3 * tree["rolling/time"].values
     whole, below = chart.panels
     areal, shifted = (mark for mark in below.marks if isinstance(mark, Boxes))  # linear pulls
     assert (areal.law, shifted.law) == ("areal", "shifted")
@@ -109,7 +109,7 @@ def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
         assert any(np.allclose(line.y[shown], level[shown]) for line in lines), name
     assert not any(np.isfinite(line.y[~excited]).any() for line in lines if not line.dashes)
     assert len(marks("contact_filter", tree, Boxes)) == 1
-    assert "Grey: waves that the texture lacks" in PARTS["contact_filter"].said(tree)
+    assert "Grey: waves that the texture lacks" in PARTS["contact_filter"].drawn(tree).caption
 
 
 def test_hertz_is_drawn_in_closed_form_and_not_below_its_touch(small):
@@ -157,15 +157,15 @@ def test_bands_that_say_little_or_hold_the_start_are_shaded(name):
         (shaded,) = (mark for mark in panel.marks if isinstance(mark, Boxes))
         assert shaded.right == pytest.approx([edge], rel=1e-6)
     assert any(note.text == "says little" for note in marks(name, tree, Note))
-    assert "B T is below 10" in PARTS[name].said(tree)
+    assert "B T is below 10" in PARTS[name].drawn(tree).caption
     held = np.where(np.arange(little.size) == np.flatnonzero(little)[-1] + 3, 0.3, 0.1)
     tree["spectra"]["start_share"] = xr.Variable("band", held)
     shaded = marks(name, tree, Boxes)[0]
     assert shaded.right[0] < shaded.left[1] < bands[held > 0.2] < shaded.right[1]
-    assert "low by more than 1 dB" in PARTS[name].said(tree)
+    assert "low by more than 1 dB" in PARTS[name].drawn(tree).caption
     enough, _ = uncertain(0.0)
     assert not marks(name, enough, Boxes)
-    assert "B T" not in PARTS[name].said(enough)
+    assert "B T" not in PARTS[name].drawn(enough).caption
 
 
 def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
@@ -173,10 +173,10 @@ def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
     labels = [panel.y.label for panel in panels("force_bands", tree)]
     assert labels[1:] == ["level − linear-filtered / dB", "level − linear / dB"]
     assert len(marks("force_bands", tree, Rules)) == 2  # zero
-    columns = part.collect(tree).columns
+    columns = part.drawn(tree).columns
     own = [name for name in columns if name.startswith("areal minus l")]
     assert own == ["areal minus linear-filtered [dB]", "areal minus linear [dB]"]
     for law in ("linear-filtered", "linear"):
         expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
         np.testing.assert_allclose(columns[f"areal minus {law} [dB]"], expected)
-    assert "minus that of linear-filtered and that of linear" in part.said(tree)
+    assert "minus that of linear-filtered and that of linear" in part.drawn(tree).caption

@@ -13,8 +13,8 @@ FILE = '''
 
 import numpy as np
 
-from asperity.reporting import chart, data, panels
-from asperity.reporting.figure import Chapter, Figure, Of, Series
+from asperity.reporting import chart
+from asperity.reporting.figure import Chapter, Of, Series, figure
 from asperity.schema.rolling import CONTACT_FORCE
 
 FORCES = Of(CONTACT_FORCE, "{law}")
@@ -25,14 +25,15 @@ def share(tree):
     yield Series("share of the time", "1", np.arange(count) / count)
 
 
-def draw(tree, lines):
+@figure("Forces in order", share, FORCES)
+def sorted_force(tree, lines):
     axes = chart.Axis("share of the time", 0.0, 1.0), chart.Axis("contact force / N")
     sorted_lines = [chart.Line(lines.at, np.sort(s.values), s.label, law=s.law) for s in lines.lines]
     yield chart.Panel(*axes, tuple(sorted_lines))
+    yield "Of every law."
 
 
-SORTED = Figure("sorted_force", "Forces in order", share, (FORCES,), draw, "Of every law.", (CONTACT_FORCE,))
-CHAPTER = Chapter("own", "A chapter of one's own", (SORTED,))
+CHAPTER = Chapter("own", "A chapter of one's own", (sorted_force,))
 '''
 
 

@@ -11,7 +11,8 @@ from report_reading import HOSTILE
 from asperity.reporting import payload
 from asperity.reporting.chart import BLUE, COLOURS, Axis, Boxes, Chart, Field, Line, Note, Panel
 from asperity.reporting.figure import Lines, Series
-from asperity.reporting.payload import LEVELS, LONG, charts_json, numbers_table
+from asperity.reporting.payload import LEVELS, LONG, charts_json
+from asperity.reporting.tables import numbers_table
 
 X, LOG = Axis("x / m"), Axis("y / Pa", log=True)
 
@@ -122,8 +123,8 @@ def test_nothing_in_the_data_ends_their_element():
 def test_the_table_of_a_figure_is_thinned_and_says_so():
     x = np.arange(100.0)
     lines = [Series(f"z(y={n} m)", "m", np.where(x > 90, np.nan, -1e-6 * n)) for n in range(40)]
-    table = numbers_table(Lines(Series("x", "m", x), lines).columns, most=24)
+    table = numbers_table(Lines(Series("x", "m", x), lines).columns())
     assert (len(table.rows), len(table.head)) == (24, 12)
     assert table.note == "24 of 100 rows and 12 of 41 columns; the CSV file has all."
     assert [cell.text for cell in (table.rows[0][-1], table.rows[-1][-1])] == ["−3.9e−05", "–"]
-    assert numbers_table(Lines(None, [Series("a", "m", np.ones(1))]).columns).note == ""
+    assert numbers_table(Lines(None, [Series("a", "m", np.ones(1))]).columns()).note == ""

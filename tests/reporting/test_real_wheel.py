@@ -35,7 +35,7 @@ def marks_of(tree, name, kind, panel=0):
 
 
 def panels_of(tree, name):
-    return PARTS[name].laid_out(tree).panels
+    return PARTS[name].drawn(tree).chart.panels
 
 
 def rules_of(tree, name, *, short=False, panel=0):
@@ -75,7 +75,7 @@ def test_force_spectrum_carries_the_marks_of_the_track(tree):
     axis = panels_of(tree, "force_psd")[0].x
     first, last = np.ceil(axis.low / bay), np.floor(axis.high / bay)
     assert list(tones) == pytest.approx(bay * np.arange(first, last + 1))
-    caption = PARTS["force_psd"].said(tree)
+    caption = PARTS["force_psd"].drawn(tree).caption
     assert f"every {bay:.1f} Hz" in caption
     assert f"{split[0]:.0f} and {split[1]:.0f} Hz" in caption
     assert rules_of(tree, "pass_by_level", short=True) == [0.0]
@@ -125,7 +125,7 @@ def test_contact_of_wheel_and_rail_is_outlined_by_its_ellipse(tree):
     assert len(outlines) == 2  # dark on light: seen on every colour
     for outline in outlines:
         assert [np.ptp(outline.x), np.ptp(outline.y)] == pytest.approx(sides, rel=1e-3)
-    assert "Hertz's contact (dashed)" in PARTS["contact_pressure"].said(tree)
+    assert "Hertz's contact (dashed)" in PARTS["contact_pressure"].drawn(tree).caption
     for name in ("force_envelope", "force_peak", "contact_force"):
         assert any(panel.y.label.endswith("/ kN") for panel in panels_of(tree, name))
 
@@ -157,7 +157,7 @@ def test_piece_around_the_peak_holds_it_and_stays_inside(other, end):
     assert (part.stop == rolling.sizes["time"]) == (end == -1)
     step = float(rolling["time"][1])
     assert (part.stop - part.start) * step == pytest.approx(AROUND_PEAK, abs=step)
-    assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].said(other)
+    assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].drawn(other).caption
 
 
 @pytest.mark.parametrize("flat", [True, False])
@@ -190,8 +190,8 @@ def test_bands_that_say_little_are_shaded_and_in_the_csv_file(other, name, varia
     product[:4] = 9.9
     for n in range(len(panels_of(other, name))):
         (box,) = marks_of(other, name, Boxes, n)
-    assert "Shaded" in part.said(other)
-    columns = part.collect(other).columns
+    assert "Shaded" in part.drawn(other).caption
+    columns = part.drawn(other).columns
     if "psd" not in name:
         centres = part.collect(other).at[:4]
         assert box.left < centres.min() < centres.max() < box.right

@@ -110,7 +110,7 @@ def test_a_bearing_writes_and_draws_what_its_schema_says(runs):
     assert {fact.name for fact in facts} == set(tree["bearing"].attrs)
     shown = [part.name for chapter in CHAPTERS if chapter.name in OF_BEARINGS for part in chapter.figures]
     assert [part.name for part in figures_of(tree)] == shown
-    assert "Diamond: the fault of the outer raceway." in figures_of(tree)[0].said(tree)
+    assert "Diamond: the fault of the outer raceway." in figures_of(tree)[0].caption
 
 
 def test_names_stand_once():
@@ -147,7 +147,7 @@ def test_needs_of_figures_are_in_the_schema():
     entries, _ = contents_of(*SHARED, schema, bearing)
     for chapter in CHAPTERS:
         for part in chapter.figures:
-            assert set(part.needs) | set(part.any_of) <= set(entries), part.name
+            assert set(part.needs) <= set(entries), part.name
 
 
 def test_the_page_lists_the_schema():

@@ -52,7 +52,7 @@ def warned_of_filters(tree):
 
 
 def caption(tree):
-    return next(part for part in figures_of(tree) if part.name == "contact_force").caption(tree)
+    return next(part for part in figures_of(tree) if part.name == "contact_force").caption
 
 
 @pytest.fixture

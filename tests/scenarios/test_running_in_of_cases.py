@@ -6,8 +6,9 @@ import pytest
 from asperity.case.cases import as_case
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
+from asperity.reporting.data import unless_missing
 from asperity.reporting.tables import condition_table
-from asperity.reporting.texture_figures import RUNNING_IN
+from asperity.reporting.texture_figures import running_in
 from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
 from asperity.schema import contact
@@ -88,13 +89,13 @@ def test_the_report_says_before_and_after_and_nothing_of_untouched_surfaces(unto
     assert condition.rows[0][3].text.startswith("−")
     assert "of the area that carried pressure has yielded" in condition.note
     assert "last pass changed nothing" in condition.note
-    marks = RUNNING_IN.laid_out(run_in).panels[0].marks
+    marks = running_in.drawn(run_in).chart.panels[0].marks
     assert [line.label for line in marks] == ["before running-in", "after"]
     columns = ["distance [m]", "before running-in [m]", "after running-in [m]"]
-    assert list(RUNNING_IN.collect(run_in).columns) == columns
-    assert "Lowered by" in RUNNING_IN.said(run_in)
-    assert not RUNNING_IN.drawable(untouched)
-    assert condition_table(untouched) is None
+    assert list(running_in.drawn(run_in).columns) == columns
+    assert "Lowered by" in running_in.drawn(run_in).caption
+    assert unless_missing(running_in.drawn, untouched) is None
+    assert unless_missing(condition_table, untouched) is None
     assert "line_untouched" not in untouched["surface"]
     assert "yielded_share" not in untouched["contact"].attrs
 

@@ -14,7 +14,7 @@ from asperity.reference.materials import MATERIALS
 from asperity.scenarios import raceway_laws
 from asperity.scenarios.bearing import bearing_rings, cage_slip, prepare_bearing, thinned
 from asperity.scenes.bearing import heard_group
-from asperity.scenes.figures.bearing import DRAWING
+from asperity.scenes.figures.bearing import load_zone
 from asperity.schema import bearing as schema
 from small_cases import BEARING
 
@@ -191,7 +191,7 @@ def test_several_faults_lie_where_they_are_and_each_is_heard():
     assert [n for n, surface in enumerate(prepared.balls, 1) if surface.faults.any()] == [4]
     tree = asperity.run(case, brief=True)
     assert group(tree)["lines_found"].values[0, :2].tolist() == [1.0, 1.0]
-    drawn = DRAWING.laid_out(tree).panels[0].marks
+    drawn = load_zone.drawn(tree).chart.panels[0].marks
     marks = {mark.label: mark for mark in drawn if getattr(mark, "marker", "") == "D"}
     raceway = 0.5 * (PITCH + D) * 1e3
     assert marks["faults of the outer raceway"].x == pytest.approx([0.0, raceway], abs=0.01)

@@ -104,7 +104,7 @@ def test_the_page_says_whether_it_squeals_and_shows_where_it_slips(computed, fal
     result = computed_result(prepare(computed.case), lambda *_: None, [], brief=True)
     told, fastest = creep_answers(result).more, np.argmax(falling[schema.GROWTH_RATE])
     assert f" axial n = {falling[schema.SQUEAL_DIAMETERS][fastest]} at " in told.partition("Squeal: yes, ")[2]
-    assert all(figure.laid_out(result).panels and figure.said(result) for figure in CREEP)
+    assert all(figure.drawn(result).caption for figure in CREEP)
     rows = [[cell.text for cell in row] for row in friction_table(result).rows]
     assert [row[0] for row in rows] == ["smooth", "sample 1", "sample 2", "in time, linear"]
     assert rows[3][1:3] == ["–", "100.0"]

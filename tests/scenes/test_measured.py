@@ -9,8 +9,8 @@ from asperity.case.bodies import WheelOnRail
 from asperity.errors import MeasuredTrackWarning
 from asperity.running import prepare_case
 from asperity.scenes.figures.measured import MEASURED, measured_table
-from asperity.scenes.figures.noise import RADIATED, noise_answers, sound_power_table
-from asperity.scenes.figures.track import TRACK
+from asperity.scenes.figures.noise import noise_answers, radiated_power_bands, sound_power_table
+from asperity.scenes.figures.track import decay_rate, receptance
 from asperity.scenes.measured import HammerTest
 from asperity.scenes.track import planned_track
 from small_cases import HEARD
@@ -98,9 +98,8 @@ def test_the_report_shows_both(damped):
     card = noise_answers(damped).numbers[0]
     assert card.value == f"{measured:.1f} dB(A)"
     assert f"track as measured, {computed:.1f} dB(A) if all is computed" in card.note
-    assert "rail, nothing measured" in {
-        mark.label for mark in RADIATED.laid_out(damped).panels[0].marks if hasattr(mark, "label")
-    }
+    marks = radiated_power_bands.drawn(damped).chart.panels[0].marks
+    assert "rail, nothing measured" in {getattr(mark, "label", "") for mark in marks}
     beside = measured_table(damped)
     assert beside.head == [
         "band",
@@ -112,7 +111,7 @@ def test_the_report_shows_both(damped):
     assert [(row[0].text, row[-1].text) for row in beside.rows] == [
         (f, "−6.0") for f in ("500", "630", "800", "1k")
     ]
-    decay = next(figure for figure in TRACK if figure.name == "decay_rate").collect(damped)
+    decay = decay_rate.collect(damped)
     shown = {line.label: line.values for line in decay.lines}
     inside = np.isfinite(shown[MEASURED])
     np.testing.assert_allclose(decay.at[inside][[0, -1]], [447.0, 1122.0], rtol=0.01)
@@ -133,6 +132,6 @@ def test_a_mobility_changes_force_and_rail_and_is_drawn_as_a_receptance(runs):
     assert (np.abs(power[soft]) < 2.0).all()
     assert (force[soft] < -4.0).all()
     assert not warned(tree)
-    lines = {line.label: line.values for line in TRACK[0].collect(tree).lines if line.units == "m/N"}
+    lines = {line.label: line.values for line in receptance.collect(tree).lines if line.units == "m/N"}
     assert 1.7 < np.nanmedian(lines[MEASURED] / lines["rail, mid-span"]) < 2.3
     assert "linear force / dB" in measured_table(tree).head

@@ -8,7 +8,7 @@ import pytest
 from asperity.case.bodies import WheelOnRail
 from asperity.radiation.track import SleeperTop
 from asperity.reporting.chart import Line
-from asperity.scenes.figures.noise import RADIATED, noise_answers, sound_power_table
+from asperity.scenes.figures.noise import noise_answers, radiated_power_bands, sound_power_table
 from asperity.scenes.noise import RADIATORS, rail_section, silent_wheel
 from asperity.spectra import HALF_BAND, band_energies
 from small_cases import HEARD
@@ -112,14 +112,14 @@ def test_a_flat_on_a_smooth_rail_without_a_linear_law_has_a_sound_power(runs):
 
 def test_the_report_shows_it_beside_cnossos(run, ringing):
     _, tree = run
-    lines, spectra = RADIATED.collect(tree), tree["spectra"]
-    found = lines.columns["track by CNOSSOS-EU, linear [dB re 1 pW]"]
+    lines, spectra = radiated_power_bands.collect(tree), tree["spectra"]
+    found = lines.columns()["track by CNOSSOS-EU, linear [dB re 1 pW]"]
     known = np.isfinite(found)
     np.testing.assert_allclose(found[known], spectra["sound_power_level"].values[0, 0])
     assert lines.at[known] == pytest.approx(spectra["noise_band"].values)
     labels, own = (
-        [mark.label for mark in RADIATED.laid_out(found).panels[0].marks if isinstance(mark, Line)]
-        for found in (tree, ringing)
+        [mark.label for mark in chart.panels[0].marks if isinstance(mark, Line)]
+        for chart in (radiated_power_bands.drawn(found).chart for found in (tree, ringing))
     )
     assert labels[:3] == ["rail", "sleepers", "total"]
     assert "wheel" in own

@@ -52,7 +52,7 @@ def test_what_there_is_not_is_left_out(run):
 def test_losses_and_pads_are_drawn(run):
     name, tree = run
     drawn = {figure.name: figure for figure in figures_of(tree)}
-    assert drawn["loss_factors"].laid_out(tree).panels
-    scene = drawn["scene"].laid_out(tree).panels[0]
+    assert drawn["loss_factors"].chart.panels
+    scene = drawn["scene"].chart.panels[0]
     pads = [mark for mark in scene.marks if getattr(mark, "fill", "") == "#5b6670"]
     assert len(pads) == (1 if name == "embedded" else 5)

@@ -11,7 +11,7 @@ from asperity.arguments import Array, require
 from asperity.case.ball_bearing import BearingKeys, read_bearing
 from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, static_group, tones_group
-from asperity.scenes.figures.bearing import DRAWING, ENVELOPE, ball_contacts_table
+from asperity.scenes.figures.bearing import ball_contacts_table, envelope_spectrum, load_zone
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, PRINTED_BY, BallBearing, Kinematics
 from asperity.studies.signals import read_signal
@@ -65,7 +65,6 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
     at_rest = tree(static_group(found, turning))
     contacts = ball_contacts_table(at_rest)
-    assert contacts is not None  # there are loads
     cells = [[cell.text for cell in row] for row in contacts.rows]
     say_table(f"{contacts.title} under {load}", contacts.head, cells, width=WIDTH)
     say(contacts.note)
@@ -74,7 +73,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     _say_tones(turning, f"Hz at {60.0 * speed:.5g} 1/min" if speed else "per turn")
     say(f"Balance to {found.imbalance:.0e} of the load in {found.steps} steps.")
     if picture is not None:
-        write_chart(DRAWING.laid_out(at_rest), f"{keys.name or 'bearing'}, {load}", picture)
+        write_chart(load_zone.drawn(at_rest).chart, f"{keys.name or 'bearing'}, {load}", picture)
     names = ("azimuth", "inner_load", "outer_load", "inner_angle", "inner_pressure", "outer_pressure")
     balls = {name: getattr(found, name)[0] for name in names}
     tones = {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS}
@@ -136,7 +135,9 @@ def _heard(
     if picture is not None:
         highest = REACH * HARMONICS * max(tone for tone, _ in turning.families.values())
         drawn = envelope_group({"signal": spectrum}, [found], [faults], highest, "unit of the file")
-        write_chart(ENVELOPE.laid_out(tree(tones_group(turning) | drawn)), f"{name}: {verdict}", picture)
+        write_chart(
+            envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart, f"{name}: {verdict}", picture
+        )
     names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
     told = {part: {name: getattr(found[part], name) for name in names} for part in PARTS}
     return {"speed": speed, "band": within, "lines": told, "faults": faults, "verdict": verdict}

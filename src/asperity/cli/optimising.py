@@ -17,6 +17,7 @@ from asperity.optimising.definition import load_aim
 from asperity.optimising.running import Optimised, optimised
 from asperity.progress import progress_bar
 from asperity.reporting import data, page, study_figures
+from asperity.reporting.figure import PageFigure
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
@@ -139,7 +140,7 @@ def _page(found: Optimised, bands: study_figures.TextureBands, *, report: bool) 
     titles, rows = _table(bands, found.measure.units)
     columns = dict(zip(titles, np.transpose(rows), strict=True))
     name = "Texture and response in bands"
-    figure = page.PageFigure("bands", name, caption, chart, FILES["table"], columns)
+    figure = PageFigure("bands", name, caption, chart, FILES["table"], columns)
     offered = {"texture (CSV)": "texture", "case": "case"}
     links = {words: FILES[what] for words, what in offered.items()}
     if report:

@@ -40,7 +40,7 @@ def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[st
     tree = read_result(run)
     drawn = chosen_figures(figures_of(tree), names)
     with together(target, last="") as new:
-        files = write_figures(tree, drawn, new, format)
+        files = write_figures(drawn, new, format)
     say(f"Figures: {target.absolute()}, {', '.join(path.name for path in files) or 'none'}")
 
 

@@ -17,6 +17,7 @@ from asperity.errors import CaseError, InputError
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
 from asperity.reporting import data, page, study_figures
+from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import ReportTable
 from asperity.results import attributes_of, save
 from asperity.scenes.figures.effects import Effects, effects_table
@@ -186,7 +187,7 @@ def _write(
             names["effects"] = EFFECTS
             write_csv(new / EFFECTS, *tables.long_columns(effect, list(map(str, effect["effect"].dims))))
         told = _by_place(table, effect)
-        blocks: list[page.PageFigure | ReportTable] = [*_blocks(told)]
+        blocks: list[page.Block] = [*_blocks(told)]
         blocks += _figures(table, means, band, asked or tables.USUAL_IN_FIGURES)
         if blocks:
             names["page"] = PAGE
@@ -209,7 +210,7 @@ def _summary(table: xarray.Dataset) -> str:
 
 def _figures(
     table: xarray.Dataset, means: xarray.Dataset | None, band: xarray.Dataset | None, names: Sequence[str]
-) -> list[page.PageFigure]:
+) -> list[PageFigure]:
     """A figure for each swept key that is more than chance, of quantities by name, and one of the band."""
     laws = data.read_entries(spec_of(str(law)).entry() for law in table["law"].values)
     looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
@@ -223,11 +224,11 @@ def _figures(
         if drawn.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(drawn)):
             chart = study_figures.key_chart(drawn, scatter, key, looks, names)
             caption = study_figures.key_caption(drawn, scatter, key)
-            figures.append(page.PageFigure(f"key-{key}", f"Over {key}", caption, chart))
+            figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart))
     if band is not None and VARIANT not in band.dims:
         chart = study_figures.ensemble_chart(band, looks)
         words = "Contact force over the seeds", str(band.attrs["meaning"])
-        figures.append(page.PageFigure("ensemble", *words, chart, BAND))
+        figures.append(PageFigure("ensemble", *words, chart, BAND))
     return figures
 
 

@@ -62,7 +62,7 @@ def spread(count: int, most: int) -> list[int]:
 
 def sequence(count: int) -> list[str]:
     """`count` colours from low to high; repeats nothing up to six."""
-    picks = np.linspace(0, len(SEQUENCE) - 1, max(count, 1)).round().astype(int)
+    picks = np.linspace(0, len(SEQUENCE) - 1, count).round().astype(int)
     return [SEQUENCE[pick] for pick in picks]
 
 

@@ -9,6 +9,7 @@ import xarray
 from asperity.reporting import chart, data, headline, page, panels, tables
 from asperity.reporting.chart import INK, MUTED, Axis, Chart, Flags, Line, Numbers, Panel
 from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, ComparedRuns
+from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
 from asperity.spectra import nominal_frequency
@@ -191,12 +192,12 @@ def comparison_page(of: ComparedRuns, file: str) -> str:
     )
 
 
-def compared_blocks(of: ComparedRuns) -> list[page.PageFigure | ReportTable]:
+def compared_blocks(of: ComparedRuns) -> list[page.Block]:
     """What the page shows: cases, what each run says, force, each level, contact."""
-    found: list[page.PageFigure | ReportTable] = [_runs_table(of), _case_table(of), _numbers_table(of.table)]
+    found: list[page.Block] = [_runs_table(of), _case_table(of), _numbers_table(of.table)]
     for name, title in of.levels.items():
         told = _levels_caption(of, name), _levels_chart(of, name)
-        found += [page.PageFigure(name, title.capitalize(), *told), _difference_table(of, name)]
+        found += [PageFigure(name, title.capitalize(), *told), _difference_table(of, name)]
     held = (("stiffness", _stiffness), ("filter", _filters))
     if shown := [draw(of) for name, draw in held if name in of.table]:
         caption = (
@@ -205,7 +206,7 @@ def compared_blocks(of: ComparedRuns) -> list[page.PageFigure | ReportTable]:
             "fitted."
         )
         drawn = Chart((*shown[:1], *(replace(panel, beside=True, share=1.15) for panel in shown[1:])))
-        found.append(page.PageFigure("stiffness_and_filter", "Stiffness and filter", caption, drawn))
+        found.append(PageFigure("stiffness_and_filter", "Stiffness and filter", caption, drawn))
     return [*found, _contact_table(of.table)]
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import BLUE, GREEN, INK, Axis, Boxes, Flags, Line, Mark, Numbers, Panel
-from asperity.reporting.figure import Figure, Lines, Of, Series, field
+from asperity.reporting.chart import BLUE, GREEN, INK, Axis, Boxes, Line, Mark, Numbers, Panel
+from asperity.reporting.figure import Lines, Of, Series, field, figure
 from asperity.reporting.texture_figures import map_panel
 from asperity.schema import Entry, contact, rolling
 
@@ -43,7 +43,8 @@ def _outline(tree: DataTree, x: Numbers, y: Numbers) -> list[Line]:
     return [white, replace(white, colour="#000000", dashes=HERTZ, width=1.1)]
 
 
-def _pressure(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure("Pressure at the working load", Of(contact.PX, "x"), field(contact.PRESSURE, contact.PY, "p"))
+def contact_pressure(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Pressure and gap at the working load, with Hertz's contact outlined."""
     x, y, pressure = lines.at, data.values(tree, contact.PY), data.values(tree, contact.PRESSURE)
     gap = np.maximum(data.values(tree, contact.GAP), 0.0)  # but for rounding it is
@@ -56,10 +57,6 @@ def _pressure(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     yield replace(above, marks=(Boxes(*whole, *whole, colour=PAPER), *above.marks))
     scale = (f"gap / {symbol}", 0.0, float(np.nanmax(gap)) / height)
     yield map_panel(x, y, gap / height, scale, *outline, title="gap", height=4.1, beside=True)
-
-
-def _pressure_caption(tree: DataTree) -> str:
-    semi_axes = _semi_axes(tree)
     told = {
         contact.WORKING_LOAD: "working load",
         contact.WORKING_APPROACH: "approach",
@@ -73,21 +70,10 @@ def _pressure_caption(tree: DataTree) -> str:
         if (found := data.number(tree, attribute)) is not None
     ]
     area = data.number(tree, contact.CONTACT_AREA)
-    if area and semi_axes:
+    if area and (semi_axes := _semi_axes(tree)):
         parts[-1] += f" ({100 * area / (np.pi * semi_axes[0] * semi_axes[1]):.0f} % of Hertz's)"
-    peak = data.engineering(float(np.nanmax(data.values(tree, contact.PRESSURE))), "Pa")
-    return f"First sample at the working load: {'; '.join([*parts, f'highest pressure {peak}'])}."
-
-
-PRESSURE = Figure(
-    "contact_pressure",
-    "Pressure at the working load",
-    Of(contact.PX, "x"),
-    (field(contact.PRESSURE, contact.PY, "p"),),
-    _pressure,
-    _pressure_caption,
-    (contact.PRESSURE, contact.GAP, contact.PY),
-)
+    parts.append(f"highest pressure {data.engineering(float(np.nanmax(pressure)), 'Pa')}")
+    yield f"First sample at the working load: {'; '.join(parts)}."
 
 
 # --- force and stiffness over the approach
@@ -99,7 +85,20 @@ def _state(tree: DataTree) -> Iterator[Series]:
         yield Series("state r", "m", data.values(tree, contact.APPROACH) + datum)
 
 
-def _loading(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+_CURVES = (
+    contact.FORCE_STD, contact.HERTZ_FORCE, contact.STIFFNESS, contact.STIFFNESS_STD,
+    contact.TANGENT_STIFFNESS, contact.HERTZ_STIFFNESS, contact.CONTACT_RADIUS,
+)  # fmt: skip
+
+
+@figure(
+    "Contact force and stiffness",
+    Of(contact.APPROACH),
+    _state,
+    Of(contact.FORCE),
+    *(Of(entry, optional=True) for entry in _CURVES),
+)
+def contact_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
     rough = any(np.nanmax(series.values) > 0 for series in lines.of(contact.FORCE_STD))
     size, symbol = data.force_unit(float(np.nanmax(data.values(tree, contact.FORCE))))
@@ -123,6 +122,17 @@ def _loading(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     ]
     marks = (*load, *secants, *tangents, *_hertz(tree, lines.at, 0.5, MEGA))
     yield Panel(axis, Axis("stiffness / (MN/m)", 0.0), marks, height=4.2, beside=True)
+    common = "no common datum stated"
+    if datum is not None:
+        common = f"one common datum d₀ = {data.engineering(datum, 'm')}"
+    sampled = data.number(tree, contact.SAMPLES) is not None
+    plane = "Approach from the plane that the nominal patch feels" if sampled else "Approach"
+    yield (
+        f"{plane}, positive closing; rough contact starts below zero. The state r counts from {common}. "
+        "k_c is the secant F/r (Eq. 2.3), the tangent is what small vibration feels. Hertz: smooth bodies in "
+        "closed form, F = K δ^1.5 and their secant F/δ, at δ = r − d₀."
+    )
+    yield _datum_sensitivity(tree)
 
 
 def _curve(lines: Lines, mean: Entry, spread: Entry, size: float, label: str) -> list[Mark]:
@@ -145,20 +155,6 @@ def _hertz(tree: DataTree, approach: Numbers, power: float, size: float) -> list
     return [Line(closed / MICRO, constant * closed**power / size, "Hertz", INK, HERTZ)]
 
 
-def _loading_caption(tree: DataTree) -> str:
-    datum = data.number(tree, contact.DATUM)
-    common = "no common datum stated"
-    if datum is not None:
-        common = f"one common datum d₀ = {data.engineering(datum, 'm')}"
-    rough = data.number(tree, contact.SAMPLES) is not None
-    plane = "Approach from the plane that the nominal patch feels" if rough else "Approach"
-    return (
-        f"{plane}, positive closing; rough contact starts below zero. The state r counts from {common}. "
-        "k_c is the secant F/r (Eq. 2.3), the tangent is what small vibration feels. Hertz: smooth bodies in "
-        f"closed form, F = K δ^1.5 and their secant F/δ, at δ = r − d₀.{_datum_sensitivity(tree)}"
-    )
-
-
 def _datum_sensitivity(tree: DataTree) -> str:
     """What a force that is k_c = F/r times the texture owes to where r counts from."""
     load, approach, datum, samples, path = (data.number(tree, attribute) for attribute in _OF_DATUM)
@@ -171,7 +167,7 @@ def _datum_sensitivity(tree: DataTree) -> str:
     below = 20 * np.log10(np.interp(approach, states, tangents) * (approach + datum) / load)
     change = data.signed(20 * np.log10((approach + datum) / (approach + other)))
     return (
-        f" In {' and '.join(used)} k_c multiplies the texture: under the working load {below:.1f} dB below "
+        f"In {' and '.join(used)} k_c multiplies the texture: under the working load {below:.1f} dB below "
         f"the tangent. d₀ from {where}, {data.engineering(other, 'm')}, would change that by {change} dB."
     )
 
@@ -182,16 +178,6 @@ _OF_DATUM = (
     contact.DATUM,
     contact.DATUM_SAMPLES,
     contact.DATUM_PATH,
-)
-_SPREAD = (contact.FORCE_STD, contact.HERTZ_FORCE, contact.STIFFNESS, contact.STIFFNESS_STD)
-_CURVES = (*_SPREAD, contact.TANGENT_STIFFNESS, contact.HERTZ_STIFFNESS, contact.CONTACT_RADIUS)
-LOADING = Figure(
-    "contact_force",
-    "Contact force and stiffness",
-    Of(contact.APPROACH),
-    (_state, Of(contact.FORCE), *(Of(entry, optional=True) for entry in _CURVES)),
-    _loading,
-    _loading_caption,
 )
 
 
@@ -225,31 +211,24 @@ def _drawn_states(tree: DataTree, lines: Lines) -> list[float]:
     return filled[picks].tolist()
 
 
-def _excited(tree: DataTree) -> Flags:
-    """Where the texture excites the contact, by wavenumber; everywhere if the result does not say."""
-    if not data.present(tree, contact.FILTER_EXCITED):
-        return np.ones(len(data.values(tree, contact.WAVENUMBER)), dtype=bool)
-    return data.values(tree, contact.FILTER_EXCITED) > 0
-
-
-def _theory(tree: DataTree) -> dict[float, Numbers]:
-    """Filter of a smooth body by approach, as theory has it."""
-    if not data.present(tree, contact.FILTER_THEORY):
-        return {}
-    rows = data.values(tree, contact.FILTER_THEORY)
-    return dict(zip(data.values(tree, contact.APPROACH).tolist(), rows, strict=True))
-
-
 def _level(ratio: Numbers) -> Numbers:
     return np.asarray(20 * np.log10(np.maximum(ratio, 10 ** (FLOOR / 20 - 1))))
 
 
-def _filters(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "Contact filter",
+    Of(contact.WAVENUMBER),
+    *_of_states(*contact.FILTERS, contact.FILTER_SIGNED, contact.FILTER_COHERENCE, contact.FILTER_THEORY),
+)
+def contact_filter(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """A filter as estimated (dots), as fitted (wide) and as applied (thin), and what theory says (dashed).
 
     Over wavenumbers above zero, shaded where the texture excites nothing.
     """
-    excited, theory, states = _excited(tree), _theory(tree), _drawn_states(tree, lines)
+    excited, states = np.ones(len(lines.at), dtype=bool), _drawn_states(tree, lines)
+    if data.present(tree, contact.FILTER_EXCITED):
+        excited = data.values(tree, contact.FILTER_EXCITED) > 0
+    theory = _by_state(lines, contact.FILTER_THEORY)
     fitted, raw, applied, spread = (_by_state(lines, entry) for entry in contact.FILTERS)
     positive = lines.at[lines.at > 0]
     ends = np.maximum(lines.at, positive[0])[panels.stretches(~excited)]
@@ -267,46 +246,30 @@ def _filters(tree: DataTree, lines: Lines) -> list[Panel]:
             found.append((applied[state], excited, {"width": 1.1}))
         if state in raw:
             found.append((raw[state], np.isfinite(raw[state]), {"marker": ".", "width": 0.0}))
-        if theory:  # beyond the main lobe those of all states would cross
+        if state in theory:  # beyond the main lobe those of all states would cross
             found.append((theory[state], np.logical_and.accumulate(theory[state] > 0), _THEORY))
         for ratio, where, look in found:
             marks.append(Line(lines.at, np.where(where, _level(ratio), np.nan), colour=colour, **look))
     along = panels.wavenumber_axis(positive[0], positive[-1])
-    return [Panel(along, Axis("|H| / dB", FLOOR, 5.0), tuple(marks), height=4.4)]
-
-
-def _filter_caption(tree: DataTree) -> str:
-    parts = [
+    yield Panel(along, Axis("|H| / dB", FLOOR, 5.0), tuple(marks), height=4.4)
+    yield (
         "Contact filter per approach against the wavenumber in rolling direction, in cycles per metre; cut "
-        f"off at {data.plain(FLOOR)} dB"
-    ]
-    if data.present(tree, contact.FILTER_RAW):
-        parts.append(
+        f"off at {data.plain(FLOOR)} dB."
+    )
+    if raw:
+        yield (
             "Dots: ratio of the scanned force to a point force on the lines (Eq. 2.6, power of all strips); "
-            "wide: the fit to it; thin: what the filtered laws apply; shaded: standard deviation of strips"
+            "wide: the fit to it; thin: what the filtered laws apply; shaded: standard deviation of strips."
         )
-    if _theory(tree):
-        parts.append(
+    if theory:
+        yield (
             "Dashed: sin q / q, q = ka, the closed form of small roughness, uniform across, on Hertz's "
-            "contact of radius a; it is negative beyond q = π, which a magnitude cannot show"
+            "contact of radius a; it is negative beyond q = π, which a magnitude cannot show."
         )
-    if not _excited(tree).all():
-        parts.append("Grey: waves that the texture lacks, where the filter is held")
+    if not excited.all():
+        yield "Grey: waves that the texture lacks, where the filter is held."
     told = {
         "tangent": "Referred to the tangent stiffness: 0 dB is a texture that the contact feels fully.",
         "low-wavenumber": "Normalised as printed: 0 dB are its own longest waves.",
     }
-    normalised = told.get(data.variable_of(tree, contact.FILTER).attrs.get("normalise", ""), "")
-    return f"{'. '.join(parts)}. {normalised}".strip()
-
-
-_MORE = (contact.FILTER_SIGNED, contact.FILTER_COHERENCE, contact.FILTER_THEORY)
-FILTER = Figure(
-    "contact_filter",
-    "Contact filter",
-    Of(contact.WAVENUMBER),
-    _of_states(*contact.FILTERS, *_MORE),
-    _filters,
-    _filter_caption,
-    (contact.APPROACH,),
-)
+    yield told.get(data.variable_of(tree, contact.FILTER).attrs.get("normalise", ""), "")

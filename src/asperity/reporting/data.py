@@ -4,10 +4,10 @@ import colorsys
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from xarray import DataArray, DataTree
@@ -24,6 +24,20 @@ PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G",
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+Made = TypeVar("Made")
+
+
+class Missing(KeyError):
+    """A result lacks what is asked for, or has nothing of it to show."""
+
+
+def unless_missing(make: Callable[[DataTree], Made | None], tree: DataTree) -> Made | None:
+    """What is made of a result; None where this lacks what it takes."""
+    with suppress(Missing):
+        return make(tree)
+    return None
+
+
 def stored_variable(tree: DataTree, entry: Entry) -> DataArray | None:
     """Variable of an entry, or None if it is missing or holds no finite number."""
     if entry.group not in tree.children or entry.name not in tree[entry.group].variables:
@@ -36,10 +50,10 @@ def stored_variable(tree: DataTree, entry: Entry) -> DataArray | None:
 
 
 def variable_of(tree: DataTree, entry: Entry) -> DataArray:
-    """Variable of an entry, which must exist, its dimensions in the order of the schema."""
+    """Variable of an entry, or `Missing`, its dimensions in the order of the schema."""
     found = stored_variable(tree, entry)
     if found is None:
-        raise KeyError(entry.path)
+        raise Missing(entry.path)
     return found.transpose(*entry.dims, missing_dims="ignore")
 
 
@@ -123,6 +137,18 @@ def laws(tree: DataTree, entry: Entry) -> list[str]:
     """Laws that a variable has finite numbers for, in the order of the case, the main law first."""
     found = stored_variable(tree, entry)
     return [] if found is None else [str(found["law"].values[n]) for n in with_numbers(found, "law")]
+
+
+def held_laws(tree: DataTree, entry: Entry) -> list[str]:
+    """The same of a variable that must have numbers for one."""
+    if found := laws(tree, entry):
+        return found
+    raise Missing(entry.path)
+
+
+def main_law(tree: DataTree, entry: Entry) -> str:
+    """The first law that a variable, which must exist, has finite numbers for."""
+    return held_laws(tree, entry)[0]
 
 
 def of_law(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:

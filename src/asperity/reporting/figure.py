@@ -18,7 +18,7 @@ from asperity.files import atomic_write, write_bytes
 from asperity.reporting import data
 from asperity.reporting.chart import Chart, Numbers, Panel, envelope
 from asperity.reporting.headline import Answers
-from asperity.reporting.tables import ReportTable
+from asperity.reporting.tables import ReportTable, chart_tables, numbers_table
 from asperity.schema import Entry
 from asperity.text_files import csv_text
 
@@ -67,8 +67,8 @@ class Of:
     called: Mapping[str, Callable[[DataTree], Sequence[str]]] = dataclasses.field(default_factory=dict)
 
     def __call__(self, tree: DataTree) -> Iterator[Series]:
-        """Take them from a result; none where it lacks the variable."""
-        if not data.present(tree, self.entry):
+        """Take them from a result; none of an optional variable that it lacks."""
+        if self.optional and not data.present(tree, self.entry):
             return
         found, name = data.variable_of(tree, self.entry), self.name or self.entry.name
         dims = [str(dim) for dim in found.dims[:-1]]
@@ -104,11 +104,22 @@ class Lines:
         assert self.x is not None
         return self.x.values
 
-    @property
-    def columns(self) -> dict[str, Numbers]:
-        """Of the CSV file: ``"quantity [unit]"`` → numbers, all of one length, in SI units."""
-        first = [] if self.x is None else [self.x]
-        return {series.heading: series.values for series in (*first, *self.lines)}
+    def columns(self, stretches: int = 0) -> dict[str, Numbers]:
+        """Of the CSV file: ``"quantity [unit]"`` → numbers, all of one length, in SI units.
+
+        Of long lines, if asked, where each of so many stretches begins, and its lowest and highest number.
+        """
+        first, lines = [] if self.x is None else [self.x], list(self.lines)
+        if stretches:
+            first = [replace(x, values=x.values[envelope(x.values, stretches)[0]]) for x in first]
+            lines = [
+                replace(line, name=f"{line.name} {end}", values=numbers)
+                for line in self.lines
+                for end, numbers in zip(
+                    ("lowest", "highest"), envelope(line.values, stretches)[1:], strict=True
+                )
+            ]
+        return {series.heading: series.values for series in (*first, *lines)}
 
 
 Columns = Callable[[DataTree], Iterable[Series]]
@@ -126,54 +137,44 @@ def field(entry: Entry, across: Entry, symbol: str) -> Columns:
     return columns
 
 
-def starts(of: Of, count: int) -> Columns:
-    """Column of where stretches begin in which a long line is told by its `extremes`."""
+@dataclass(frozen=True, eq=False)
+class PageFigure:
+    """A figure as it is shown: what is drawn and said, and the columns of its CSV file."""
 
-    def columns(tree: DataTree) -> Iterator[Series]:
-        for series in of(tree):
-            yield replace(series, values=series.values[envelope(series.values, count)[0]])
+    name: str
+    title: str
+    caption: str
+    chart: Chart
+    file: str = ""  # with its numbers, beside the page
+    columns: Mapping[str, Numbers] = dataclasses.field(default_factory=dict)  # of that file
 
-    return columns
+    @property
+    def numbers(self) -> list[ReportTable]:
+        """Tables that are shown where no script runs."""
+        return [numbers_table(self.columns)] if self.columns else chart_tables(self.chart)
 
 
-def extremes(of: Of, count: int) -> Columns:
-    """Columns of the lowest and the highest number of lines in each of so many stretches."""
-
-    def columns(tree: DataTree) -> Iterator[Series]:
-        for series in of(tree):
-            for end, numbers in zip(("lowest", "highest"), envelope(series.values, count)[1:], strict=True):
-                yield Series(f"{series.name} {end}", series.units, numbers)
-
-    return columns
+Draw = Callable[[DataTree, Lines], Iterable[Panel | str]]
+"""Lays out the lines of a figure in panels, and says in sentences what is drawn, by which conventions."""
 
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """A figure of the report: a page draws it, its CSV file holds its columns."""
+    """A figure of the report: its columns, which a CSV file holds, and how they are drawn."""
 
     name: str  # of its CSV file and of its place in the page
     title: str  # its heading
     over: Columns | None  # one series, which the others stand over
     columns: Sequence[Columns]
-    draw: Callable[[DataTree, Lines], Chart | Iterable[Panel]]  # lays its columns out
-    caption: str | Callable[[DataTree], str]  # says what is drawn and with which conventions
-    further: tuple[Entry, ...] = ()  # variables without which it is left out, beside those of its columns
-    any_of: tuple[Entry, ...] = ()  # variables of which it needs at least one, and of its columns no other
-    # whether these variables have anything to show: a smooth surface has no spectrum
-    worth: Callable[[DataTree], bool] = lambda _: True
+    draw: Draw
     rows: Callable[[DataTree], slice] = lambda _: slice(None)  # of all columns
+    stretches: int = 0  # of long lines, of which the CSV file holds the extremes
 
     @property
-    def needs(self) -> tuple[Entry, ...]:
-        """Variables without which it is left out."""
-        columns = (self.over,) if self.any_of else (*self.columns, self.over)
-        held = (each.entry for each in columns if isinstance(each, Of) and not each.optional)
-        return (*held, *self.further)
-
-    def drawable(self, tree: DataTree) -> bool:
-        """Whether `tree` holds what the figure needs."""
-        some = not self.any_of or any(data.present(tree, entry) for entry in self.any_of)
-        return some and data.present(tree, *self.needs) and self.worth(tree)
+    def needs(self) -> list[Entry]:
+        """Variables without which it is left out, as far as its columns tell."""
+        columns = (each for each in (self.over, *self.columns) if isinstance(each, Of))
+        return [each.entry for each in columns if not each.optional]
 
     def collect(self, tree: DataTree) -> Lines:
         """Take its numbers from a result."""
@@ -181,19 +182,34 @@ class Figure:
         found = [replace(one, values=one.values[rows]) for each in taken for one in each(tree)]
         return Lines(found[0], found[1:]) if self.over else Lines(None, found)
 
-    def chart(self, tree: DataTree, lines: Lines) -> Chart:
-        """Lay them out."""
-        drawn = self.draw(tree, lines)
-        return drawn if isinstance(drawn, Chart) else Chart(tuple(drawn))
+    def drawn(self, tree: DataTree) -> PageFigure:
+        """The figure of a result; `data.Missing` where this lacks what it takes, or has nothing to show."""
+        lines = self.collect(tree)
+        found = list(self.draw(tree, lines))
+        panels = tuple(each for each in found if isinstance(each, Panel))
+        if not panels:
+            raise data.Missing(self.name)
+        said = [each.strip() for each in found if isinstance(each, str)]
+        caption = " ".join(filter(None, [*said, data.missing(tree, *self.needs)]))
+        file, columns = f"{self.name}.csv", lines.columns(self.stretches)
+        return PageFigure(self.name, self.title, caption, Chart(panels), file, columns)
 
-    def laid_out(self, tree: DataTree) -> Chart:
-        """The figure of a result."""
-        return self.chart(tree, self.collect(tree))
 
-    def said(self, tree: DataTree) -> str:
-        """Caption, and what is missing and why."""
-        caption = self.caption if isinstance(self.caption, str) else self.caption(tree)
-        return f"{caption} {data.missing(tree, *self.needs, *self.any_of)}".strip()
+def figure(title: str, over: Columns | None, *columns: Columns, **how: Any) -> Callable[[Draw], Figure]:
+    """Declare a figure by the function that lays it out, whose name it has.
+
+    Parameters
+    ----------
+    title : str
+        Its heading.
+    over : Columns or None
+        One series, which the others stand over.
+    *columns : Columns
+        The others.
+    **how
+        `rows` or `stretches` of a `Figure`.
+    """
+    return lambda draw: Figure(draw.__name__, title, over, columns, draw, **how)
 
 
 @dataclass(frozen=True)
@@ -234,12 +250,12 @@ def figure_format(what: str, format: object) -> str:
     return str(format)
 
 
-def chosen_figures(figures: Sequence[Figure], names: Sequence[object]) -> list[Figure]:
+def chosen_figures(figures: Sequence[PageFigure], names: Sequence[object]) -> list[PageFigure]:
     """Figures by name or title, or by what only one title begins with; all where no name is given."""
     return list(dict.fromkeys(_chosen(figures, name) for name in names)) if names else list(figures)
 
 
-def _chosen(figures: Sequence[Figure], name: object) -> Figure:
+def _chosen(figures: Sequence[PageFigure], name: object) -> PageFigure:
     asked = " ".join(str(name).lower().split())
     known = {word: figure for figure in figures for word in (figure.title.lower(), figure.name)}
     begun = [figure for figure in figures if asked and figure.title.lower().startswith(asked)]
@@ -253,9 +269,9 @@ def _chosen(figures: Sequence[Figure], name: object) -> Figure:
     raise InputError("name of a figure", shown(name), allowed, f"Nearest: {near}." if near else "")
 
 
-def write_figures(tree: DataTree, figures: Sequence[Figure], folder: Path, format: str) -> list[Path]:
-    """Draw figures of a result to files of a folder, each under its name."""
-    return [write_chart(figure.laid_out(tree), "", folder / f"{figure.name}.{format}") for figure in figures]
+def write_figures(figures: Sequence[PageFigure], folder: Path, format: str) -> list[Path]:
+    """Draw figures to files of a folder, each under its name."""
+    return [write_chart(figure.chart, "", folder / f"{figure.name}.{format}") for figure in figures]
 
 
 def write_chart(chart: Chart, title: str, path: Path) -> Path:

@@ -140,11 +140,9 @@ class Answers:
     tables: tuple[ReportTable, ...] = ()
 
 
-def force_answers(tree: DataTree) -> Answers | None:
+def force_answers(tree: DataTree) -> Answers:
     """Force of the main law, and its losses of contact."""
-    if not data.present(tree, rolling.CONTACT_FORCE):
-        return None
-    main = data.laws(tree, rolling.CONTACT_FORCE)[0]
+    main = data.main_law(tree, rolling.CONTACT_FORCE)
     force = data.of_law(tree, rolling.CONTACT_FORCE, main)
     mean, rms = float(np.nanmean(force)), float(np.nanstd(force))
     top = data.engineering(float(np.nanmax(force)), "N")

@@ -1,8 +1,8 @@
 """Pages: templates, figures as they take them, and the page of a result."""
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -14,29 +14,15 @@ from xarray import DataTree
 from asperity import __version__
 from asperity.errors import printable
 from asperity.reporting import data, headline, payload
-from asperity.reporting.chart import Chart, Line, Numbers, colour_variables
-from asperity.reporting.figure import Chapter, Figure, Lines
+from asperity.reporting.chart import Line, colour_variables
+from asperity.reporting.figure import Chapter, Figure, PageFigure
 from asperity.reporting.tables import ReportTable, setting_names
 from asperity.schema import provenance, rolling
 
 _UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
 
 
-@dataclass(frozen=True, eq=False)
-class PageFigure:
-    """A figure of a page, which the script of the page draws."""
-
-    name: str
-    title: str
-    caption: str
-    chart: Chart
-    file: str = ""  # with its numbers, beside the page
-    columns: Mapping[str, Numbers] = field(default_factory=dict)  # of that file
-
-    @property
-    def numbers(self) -> list[ReportTable]:
-        """Tables that are shown where no script runs."""
-        return [payload.numbers_table(self.columns)] if self.columns else payload.chart_tables(self.chart)
+Block = PageFigure | ReportTable
 
 
 @dataclass(frozen=True)
@@ -45,7 +31,12 @@ class PageSection:
 
     name: str
     title: str
-    blocks: Sequence[PageFigure | ReportTable]
+    blocks: Sequence[Block]
+
+    @property
+    def figures(self) -> list[PageFigure]:
+        """Its figures."""
+        return [block for block in self.blocks if isinstance(block, PageFigure)]
 
 
 def whole_page(name: str, blocks: Sequence[object], colours: Mapping[str, str], /, **words: object) -> str:
@@ -81,9 +72,7 @@ def page_template(name: str, package: str = "asperity.reporting") -> Template:
     return environment.get_template(name)
 
 
-def figures_page(
-    title: str, summary: str, blocks: Sequence[PageFigure | ReportTable], files: Mapping[str, str]
-) -> str:
+def figures_page(title: str, summary: str, blocks: Sequence[Block], files: Mapping[str, str]) -> str:
     """A page of figures and tables as one self-contained HTML text, with links to files by what they are."""
     figures = (block for block in blocks if isinstance(block, PageFigure))
     marks = (mark for figure in figures for panel in figure.chart.panels for mark in panel.marks)
@@ -126,35 +115,26 @@ def _origins(tree: DataTree) -> dict[str, list[str]]:
     return found
 
 
-def drawable_figures(tree: DataTree, chapters: Sequence[Chapter]) -> list[Figure]:
-    """Figures that `tree` holds the data of, in the order of the page."""
-    return [figure for chapter in chapters for figure in chapter.figures if figure.drawable(tree)]
+def drawn_figures(tree: DataTree, figures: Iterable[Figure]) -> list[PageFigure]:
+    """Figures that `tree` holds the data of."""
+    return [drawn for figure in figures if (drawn := data.unless_missing(figure.drawn, tree))]
 
 
-def page_figure(tree: DataTree, figure: Figure, lines: Lines) -> PageFigure:
-    """A figure of the page, from numbers that were collected."""
-    told = figure.name, figure.title, figure.said(tree), figure.chart(tree, lines)
-    return PageFigure(*told, f"{figure.name}.csv", lines.columns)
-
-
-def _sections(
-    tree: DataTree, chapters: Sequence[Chapter], collected: Mapping[str, Lines]
-) -> list[PageSection]:
-    """Chapters of the page, with numbers that were collected; one without any data is left out."""
+def sections_of(tree: DataTree, chapters: Sequence[Chapter]) -> list[PageSection]:
+    """Chapters of the page; what has no data is left out."""
     found = []
     for chapter in chapters:
-        figures = drawable_figures(tree, [chapter])
-        drawn = [page_figure(tree, figure, collected[figure.name]) for figure in figures]
-        blocks: list[PageFigure | ReportTable] = [*drawn]
-        blocks += [table for make in chapter.tables if (table := make(tree))]
+        blocks: list[Block] = [*drawn_figures(tree, chapter.figures)]
+        blocks += [table for make in chapter.tables if (table := data.unless_missing(make, tree))]
         if blocks:
             found.append(PageSection(chapter.name, chapter.title, blocks))
     return found
 
 
-def answers_of(tree: DataTree, chapters: Sequence[Chapter], verdict: str = "") -> headline.Answers:
+def answers_of(tree: DataTree, chapters: Sequence[Chapter]) -> headline.Answers:
     """What the chapters say first, together; what no chapter says is the verdict of the run."""
-    found = [told for chapter in chapters if chapter.answers and (told := chapter.answers(tree))]
+    verdict = str(data.stated(tree, provenance.VERDICT) or "")
+    found = [told for each in chapters if each.answers and (told := data.unless_missing(each.answers, tree))]
     return headline.Answers(
         next((each.lead for each in found if each.lead), "") or verdict.partition(". ")[0],
         " ".join(each.more for each in found if each.more),
@@ -173,23 +153,13 @@ def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[
 
 
 def page(
-    tree: DataTree,
-    chapters: Sequence[Chapter],
-    collected: Mapping[str, Lines] | None = None,
-    *,
-    summary: bool = False,
+    tree: DataTree, sections: Sequence[PageSection], answers: headline.Answers, *, summary: bool = False
 ) -> str:
-    """The whole page of a result, as one self-contained HTML text, or a summary of it on one sheet of paper.
-
-    Numbers of the figures, by name, are `collected` unless they were before.
-    """
-    held = ([f for f in drawable_figures(tree, [each]) if f.name in ON_SHEET] for each in chapters)
+    """The page of a result, as one self-contained HTML text, or a summary of it on one sheet of paper."""
+    held = ([each for each in section.figures if each.name in ON_SHEET] for section in sections)
     on_sheet = [min(some, key=lambda f: ON_SHEET.index(f.name)) for some in held if some][:SUMMARY_FIGURES]
-    shown = [Chapter("summary", "", tuple(on_sheet))] if summary else chapters
-    if collected is None:
-        collected = {figure.name: figure.collect(tree) for figure in drawable_figures(tree, shown)}
+    shown = [PageSection("summary", "", on_sheet)] if summary else sections
     checks, colours = headline.lights(tree), data.law_colours(tree)
-    drawn = _sections(tree, shown, collected)
     kind, parameters = data.stated(tree, provenance.KIND), data.json_list(tree, provenance.PARAMETERS)
     changed = [parameter for parameter in parameters if not parameter.get("is_default", True)]
     differing = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]
@@ -197,7 +167,7 @@ def page(
     verdict, force = str(data.stated(tree, provenance.VERDICT) or ""), rolling.CONTACT_FORCE
     seed = data.stated(tree, provenance.SEED)
     button = (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
-    blocks = [block for section in drawn for block in section.blocks]
+    blocks = [block for section in shown for block in section.blocks]
     return whole_page(
         "report.html.jinja",
         blocks,
@@ -205,7 +175,7 @@ def page(
         title=data.stated(tree, provenance.TITLE) or kind or "Rolling contact",
         summary=summary,
         on_sheet={figure.name for figure in on_sheet},
-        answers=answers_of(tree, chapters, verdict),
+        answers=answers,
         verdict=verdict if data.present(tree, force) else "",  # of a bearing it stands at the top
         validity=headline.validity(checks),
         lights=checks,
@@ -224,7 +194,7 @@ def page(
         numerics=data.json_list(tree, provenance.NUMERICS),
         laws=data.law_entries(tree).values(),
         variable={colour: f"--c{number}" for number, colour in enumerate(colours)},
-        sections=drawn,
+        sections=shown,
         button=Markup(button),
         button_digest=payload.digest_of(button),
     )

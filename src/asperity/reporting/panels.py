@@ -111,7 +111,7 @@ def shaded_bands(tree: DataTree, labelled: bool = True) -> list[Mark]:
 
 
 def shaded_words(tree: DataTree, product: Entry = spectra.BAND_TIME_PRODUCT) -> str:
-    """Say what shaded bands are, where there are any; a blank comes first."""
+    """Say what shaded bands are, where there are any."""
     of_force = product is spectra.BAND_TIME_PRODUCT
     if (of_force and not data.present(tree, spectra.BAND)) or not data.doubtful(tree, product).any():
         return ""
@@ -119,7 +119,7 @@ def shaded_words(tree: DataTree, product: Entry = spectra.BAND_TIME_PRODUCT) -> 
     if of_force and data.present(tree, spectra.START_SHARE):
         start = f", or resonances have not built up yet, and it is low by more than {low:.0f} dB"
     return (
-        f" Shaded: levels that say little. Bandwidth times averaging time B T is below {LEAST_PRODUCT:g}, "
+        f"Shaded: levels that say little. Bandwidth times averaging time B T is below {LEAST_PRODUCT:g}, "
         f"and the standard deviation of a level above {4.34 / np.sqrt(LEAST_PRODUCT):.1f} dB{start}."
     )
 
@@ -202,19 +202,17 @@ def spectrum_panel(tree: DataTree, label: str, levels: Sequence[Line], behind: S
     return Panel(frequency_axis(*frequency_range(tree)), axis, marks, height=4.4)
 
 
-def draw_spectrum(
+def level_spectrum(
+    tree: DataTree,
+    lines: figure.Lines,
     label: str,
     reference: float = 1.0,
-    behind: Callable[[DataTree], Sequence[Mark]] = lambda _: (),
+    behind: Sequence[Mark] = (),
     shown: slice = slice(None),
-) -> Callable[[DataTree, figure.Lines], list[Panel]]:
-    """Draw a figure: levels of its lines, all or those `shown`, over frequency, other marks behind."""
-
-    def draw(tree: DataTree, lines: figure.Lines) -> list[Panel]:
-        levels = styled(tree, *narrow_levels(tree, lines, lines.lines[shown], reference))
-        return [spectrum_panel(tree, label, levels, behind(tree))]
-
-    return draw
+) -> Panel:
+    """Levels of the PSDs of a figure, all or those `shown`, over frequency, other marks behind."""
+    levels = styled(tree, *narrow_levels(tree, lines, lines.lines[shown], reference))
+    return spectrum_panel(tree, label, levels, behind)
 
 
 def band_panel(

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from asperity.reporting import chart, data, tables
-from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Numbers, Panel, envelope, spread
+from asperity.reporting import chart
+from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Numbers, Panel, envelope
 
 LONG = 1000
 """Numbers from which an array is kept in levels."""
@@ -81,42 +81,10 @@ def _planes(numbers: np.ndarray) -> bytes:
     return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
 
 
-def chart_tables(drawn: Chart) -> list[tables.ReportTable]:
-    """A table for each axis along which lines of a chart have the same places: a row for each place."""
-    along: dict[bytes, tuple[Axis, list[tuple[Panel, Line]]]] = {}
-    for panel in drawn.panels:
-        for mark in panel.marks:
-            if isinstance(mark, Line) and mark.label:
-                along.setdefault(mark.x.tobytes(), (panel.x, []))[1].append((panel, mark))
-    return [_table(axis, lines) for axis, lines in along.values()]
-
-
-def _table(axis: Axis, lines: list[tuple[Panel, Line]]) -> tables.ReportTable:
-    names = dict(axis.ticks)
-    places = lines[0][1].x.tolist()
-    rows = [
-        [
-            tables.Cell(names.get(place) or data.plain(place), "number"),
-            *(number_cell(line.y[row : row + 1]) for _, line in lines),
-        ]
-        for row, place in enumerate(places)
-    ]
-    titles = (", ".join(filter(None, (panel.title, line.label, panel.y.label))) for panel, line in lines)
-    return tables.ReportTable("", "Numbers", [axis.label, *titles], rows)
-
-
-def number_cell(numbers: Numbers) -> tables.Cell:
-    """The number that is in an array; a dash where there is none."""
-    known = numbers.size and np.isfinite(numbers[0])
-    return tables.Cell(data.plain(float(numbers[0]), 4) if known else "–", "number")
-
-
 MOST = 300_000
 """Numbers of the lines of a chart; longer ones are shown by the extremes of stretches of them."""
 PIXELS, SHADES = (800, 320), 1022
 """Of a field: along x and along y, and from the lowest number to the highest."""
-COLUMNS = 12
-"""Of a table of numbers; fields have more."""
 COLOURED = ("colour", "fill", "edge")
 SCRIPTS = ("numbers", "ticks", "marks", "panel", "cursor", "legend", "figures")
 
@@ -219,14 +187,3 @@ def chart_style() -> str:
 def digest_of(script: str) -> str:
     """SHA-256 of a script, as policies of pages name it."""
     return base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
-
-
-def numbers_table(columns: Mapping[str, Numbers], most: int = 24) -> tables.ReportTable:
-    """Numbers of a figure, at most so many rows of them, for where they are not drawn."""
-    rows = max(map(len, columns.values()), default=0)
-    shown, named = spread(rows, most), [list(columns)[n] for n in spread(len(columns), COLUMNS)]
-    cells = [[number_cell(columns[name][row : row + 1]) for name in named] for row in shown]
-    counts = {"rows": (len(shown), rows), "columns": (len(named), len(columns))}
-    parts = [f"{some} of {count} {what}" for what, (some, count) in counts.items() if some < count]
-    note = f"{' and '.join(parts)}; the CSV file has all." if parts else ""
-    return tables.ReportTable("", "Numbers", named, cells, note)

@@ -100,6 +100,39 @@ def listed_table(
     return table(*titles, cells, note) if found else None
 
 
+# --- numbers of figures, for where they are not drawn
+
+COLUMNS, ROWS = 12, 24
+"""Of a table of numbers; the CSV file has all."""
+_four_digits = partial(data.plain, digits=4)
+
+
+def numbers_table(columns: Mapping[str, chart.Numbers]) -> ReportTable:
+    """Numbers of a figure by the heads of its CSV file, or some of them."""
+    count = len(next(iter(columns.values())))
+    rows, named = chart.spread(count, ROWS), chart.spread(len(columns), COLUMNS)
+    shown = {list(columns)[n]: columns[list(columns)[n]][rows] for n in named}
+    counts = {"rows": (len(rows), count), "columns": (len(named), len(columns))}
+    parts = [f"{some} of {every} {what}" for what, (some, every) in counts.items() if some < every]
+    note = f"{' and '.join(parts)}; the CSV file has all." if parts else ""
+    cells = {name: number_cells(numbers, _four_digits) for name, numbers in shown.items()}
+    return table("", "Numbers", cells, note)
+
+
+def chart_tables(drawn: chart.Chart) -> list[ReportTable]:
+    """A table for each axis along which lines of a chart have the same places: a row for each place."""
+    along: dict[bytes, dict[str, list[Cell]]] = {}
+    for panel in drawn.panels:
+        names = dict(panel.x.ticks)
+        for mark in panel.marks:
+            if isinstance(mark, chart.Line) and mark.label:
+                places = [names.get(place) or data.plain(place) for place in mark.x.tolist()]
+                columns = along.setdefault(mark.x.tobytes(), {panel.x.label: text_cells(places, "number")})
+                head = ", ".join(filter(None, (panel.title, mark.label, panel.y.label)))
+                columns[head] = number_cells(mark.y, _four_digits)
+    return [table("", "Numbers", columns) for columns in along.values()]
+
+
 # --- the texture
 
 
@@ -117,11 +150,9 @@ def statistics_table(tree: DataTree) -> ReportTable | None:
     return listed_table(tree, surface.STATISTICS, ("statistics", "Statistics of the texture"), columns, note)
 
 
-def homogeneity_table(tree: DataTree) -> ReportTable | None:
+def homogeneity_table(tree: DataTree) -> ReportTable:
     """Whether the measured maps are the same everywhere."""
     shown = (surface.TILE_VARIATION, surface.TILE_VARIATION_EXPECTED, surface.HOMOGENEITY_P)
-    if not data.present(tree, *shown):
-        return None
     significance = float(data.variable_of(tree, surface.HOMOGENEITY_P).attrs["significance"])
     variation, expected, p = (data.values(tree, entry) for entry in shown)
     looks = ["number" if same else "number off" for same in p > significance]
@@ -162,10 +193,8 @@ def population_table(tree: DataTree) -> ReportTable | None:
 _CONDITIONS = contact.TRACK_RMS, contact.TRACK_STIFFNESS
 
 
-def condition_table(tree: DataTree) -> ReportTable | None:
+def condition_table(tree: DataTree) -> ReportTable:
     """The track before and after running-in."""
-    if not data.present(tree, *_CONDITIONS):
-        return None
     found = [data.variable_of(tree, entry) for entry in _CONDITIONS]
     before, after = ([float(each.sel(condition=name)) for each in found] for name in ("before", "after"))
     units = [entry.units for entry in _CONDITIONS]
@@ -192,10 +221,9 @@ def condition_table(tree: DataTree) -> ReportTable | None:
 def reference_table(tree: DataTree) -> ReportTable | None:
     """Level differences to the reference law per one-third octave."""
     entry = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
-    compared = data.stored_variable(tree, entry)
-    to = "" if compared is None else str(compared.attrs["reference"])
+    to = str(data.variable_of(tree, entry).attrs["reference"])
     laws = [law for law in data.laws(tree, entry) if law != to]
-    if not laws or not data.present(tree, spectra.BAND):
+    if not laws:
         return None
     faint = data.doubtful(tree, spectra.BAND_TIME_PRODUCT)
     ends = text_cells(("mean", "largest size"), "total")
@@ -223,11 +251,9 @@ LOSSES: dict[Entry, tuple[str, str | Writer]] = {
 }
 
 
-def loss_table(tree: DataTree) -> ReportTable | None:
+def loss_table(tree: DataTree) -> ReportTable:
     """Share of time without contact, number of events and the longest, per law."""
-    laws = data.laws(tree, rolling.CONTACT_LOSS_SHARE)
-    if not laws:
-        return None
+    laws = data.held_laws(tree, rolling.CONTACT_LOSS_SHARE)
     columns = {
         head: number_cells([float(data.of_law(tree, entry, law)) for law in laws], write)
         for entry, (head, write) in LOSSES.items()
@@ -312,11 +338,9 @@ def _largest_motion(tree: DataTree) -> chart.Numbers:
     return np.where(found < 0.0, np.nan, found)
 
 
-def changes_table(tree: DataTree) -> ReportTable | None:
+def changes_table(tree: DataTree) -> ReportTable:
     """Change of the main law's force level in each one-third octave, by setting."""
     entry = convergence.FORCE_LEVEL_CHANGE
-    if not data.present(tree, entry, convergence.BAND):
-        return None
     changes = data.values(tree, entry)[:, 0]
     faint = data.doubtful(tree, spectra.BAND_TIME_PRODUCT)
     columns = {"band / Hz": band_cells(data.values(tree, convergence.BAND), faint)}
@@ -334,11 +358,9 @@ Known = tuple[str, str, str]
 """Source of an uncertainty, its size, and how it is known."""
 
 
-def uncertainty_table(tree: DataTree) -> ReportTable | None:
+def uncertainty_table(tree: DataTree) -> ReportTable:
     """What is known of the uncertainty of force levels."""
-    if not data.present(tree, rolling.CONTACT_FORCE):
-        return None
-    main = data.laws(tree, rolling.CONTACT_FORCE)[0]
+    main = data.main_law(tree, rolling.CONTACT_FORCE)
     sources, sizes, ways = zip(*_law(tree, main), *_chance(tree), strict=True)
     note = (
         f"Of the force levels of {main}, apart from what is not known of the case itself: materials, "

@@ -10,7 +10,7 @@ from xarray import DataTree
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Chart, Line, Mark, Numbers, Panel
 from asperity.reporting.data import length_unit
-from asperity.reporting.figure import Figure, Lines, Of, extremes, field, starts
+from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.schema import contact, surface
 from asperity.spectra import nominal
 from asperity.surfaces.measured_lines import ThirdOctaves
@@ -124,9 +124,12 @@ def _between(tree: DataTree) -> str:
     return ", as laid out between lines" if data.stated(tree, surface.ACROSS) == "lines" else ""
 
 
-def _sample(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure("Texture of the samples", Of(surface.X, "x"), field(surface.SAMPLE_HEIGHTS, surface.Y, "z"))
+def texture_sample(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Map of the first sample, and how its heights are distributed."""
     x, y, heights = lines.at, data.values(tree, surface.Y), data.values(tree, surface.SAMPLE_HEIGHTS)
+    if not np.nanmax(np.abs(heights)) > 0:
+        return
     slender = bool(np.ptp(x) > SLENDER * np.ptp(y))  # then the heights stand below the map
     named = {"sample": distribution(heights)}
     height, below = (1.9, 2.7) if slender else (4.2, 4.2)
@@ -134,105 +137,85 @@ def _sample(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     yield height_histogram(
         named, height_scale(heights)[:2], title="heights", height=below, beside=not slender
     )
-
-
-def _sample_caption(tree: DataTree) -> str:
     missing = data.number(tree, surface.MISSING_SHARE)
     gaps = f"; {100 * missing:.3g} % of its points had no height" if missing else ""
-    return (
+    yield (
         f"Source: {data.stated(tree, surface.SOURCE) or 'not stated'}{gaps}. Heights are positive out of the "
         "material; the colours leave out 0.1 % of the points at either end."
     )
 
 
-def _path(tree: DataTree, _: Lines) -> Iterator[Panel]:
+@figure("Texture of the path", Of(surface.DISTANCE, "x"), Of(surface.LINE, "z"), stretches=STRETCHES)
+def texture_path(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Strip of the path, and its middle line, every point; a path given as a line has the line alone."""
+    above = ""
     if data.present(tree, surface.PATH_HEIGHTS):
         strip = (data.values(tree, entry) for entry in (surface.PATH_X, surface.PATH_Y, surface.PATH_HEIGHTS))
         title = f"a piece of the path, seen from above (y stretched){_between(tree)}"
         yield height_map(*strip, title=title, equal=False, height=1.9)
-    distance, line = data.values(tree, surface.DISTANCE), data.values(tree, surface.LINE)
+        above = ", and the piece seen from above"
+    distance, line = lines.at, lines.lines[0].values
     along, along_symbol = length_unit(np.ptp(distance))
     size, symbol = length_unit(float(np.nanmax(np.abs(line))) or 1e-9)
     x = Axis(f"distance / {along_symbol}", float(distance[0]) / along, float(distance[-1]) / along)
     drawn = Line(distance / along, line / size, "height", BLUE, width=0.8)
     yield Panel(x, Axis(f"height / {symbol}"), (drawn,), "middle line of the whole path", height=2.1)
-
-
-def _path_caption(tree: DataTree) -> str:
-    above = ", and the piece seen from above" if data.present(tree, surface.PATH_HEIGHTS) else ""
-    stretches = min(STRETCHES, len(data.values(tree, surface.LINE)))
-    return (
+    yield (
         "Heights of the path, positive out of the material, at every point of its middle line. The CSV file "
-        f"holds the lowest and the highest in each of {stretches} stretches; run.nc has every point{above}."
+        f"holds the lowest and the highest in each of {min(STRETCHES, len(line))} stretches; run.nc has "
+        f"every point{above}."
     )
 
 
-_SPECTRA = {surface.PSD_SAMPLE: "samples, mean", surface.PSD_PATH: "path"}
-
-
-def _spectra(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "Texture against wavenumber",
+    Of(surface.SURFACE_WAVENUMBER, "wavenumber"),
+    Of(surface.PSD_SAMPLE, "PSD of samples, mean", "samples, mean", LOOKS[0], optional=True),
+    Of(surface.PSD_PATH, "PSD of path", "path", LOOKS[1], optional=True),
+)
+def texture_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Spectra of samples and path in the rolling direction, and the length of the contact."""
     drawn = [
         psd_line(lines.at, s.values, s.label, *s.look, 1.5)
         for s in lines.lines
         if ((lines.at > 0) & (s.values > 0)).any()
     ]
+    if not drawn:
+        return
     marks: list[Mark] = []
     if (radius := data.number(tree, contact.HERTZ_RADIUS) or 0.0) > 0.0:
         at, length = 1 / (2 * radius), data.engineering(2 * radius, "m")
         note = chart.Note(f" length of the contact, 2a = {length}", at, 0.95, y_share=True)
         marks = [chart.Rules(np.array([at]), colour=INK), note]
-    return [psd_panel(drawn, *marks, height=3.9)]
-
-
-TEXTURE = (
-    Figure(
-        "texture_sample",
-        "Texture of the samples",
-        Of(surface.X, "x"),
-        (field(surface.SAMPLE_HEIGHTS, surface.Y, "z"),),
-        _sample,
-        _sample_caption,
-        (surface.SAMPLE_HEIGHTS,),
-        worth=lambda tree: bool(np.nanmax(np.abs(data.values(tree, surface.SAMPLE_HEIGHTS))) > 0),
-    ),
-    Figure(
-        "texture_path",
-        "Texture of the path",
-        starts(Of(surface.DISTANCE, "x"), STRETCHES),
-        (extremes(Of(surface.LINE, "z"), STRETCHES),),
-        _path,
-        _path_caption,
-        (surface.LINE, surface.DISTANCE),
-    ),
-    Figure(
-        "texture_psd",
-        "Texture against wavenumber",
-        Of(surface.SURFACE_WAVENUMBER, "wavenumber"),
-        tuple(
-            Of(entry, f"PSD of {name}", name, look)
-            for (entry, name), look in zip(_SPECTRA.items(), LOOKS, strict=True)
-        ),
-        _spectra,
+    yield psd_panel(drawn, *marks, height=3.9)
+    yield (
         "Power spectral density of the lines in rolling direction, mean over the lines, one-sided "
-        "per cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that.",
-        any_of=tuple(_SPECTRA),
-        worth=lambda tree: any((s.values > 0).any() for entry in _SPECTRA for s in Of(entry)(tree)),
-    ),
-)
+        "per cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that."
+    )
+
+
+TEXTURE = texture_sample, texture_path, texture_psd
 
 STRETCH = 10.0
 """Length of the line that is drawn before and after running-in, in widths of the nominal patch."""
 
 
-def _lowered(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "Surface before and after running-in",
+    Of(surface.DISTANCE),
+    Of(surface.LINE_UNTOUCHED, "before running-in"),
+    Of(surface.LINE, "after running-in"),
+)
+def running_in(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """The line before and after running-in, around its deepest mark."""
     before, after = (series.values for series in lines.lines)
+    lowering = before - after
+    if not (lowering > 0).any():
+        return
     radius, count = data.number(tree, contact.HERTZ_RADIUS), len(lines.at)
     if radius:
         count = round(2 * STRETCH * radius / (lines.at[1] - lines.at[0]))
-    first = int(np.clip(np.argmax(before - after) - count // 2, 0, max(len(lines.at) - count, 0)))
+    first = int(np.clip(np.argmax(lowering) - count // 2, 0, max(len(lines.at) - count, 0)))
     x, before, after = (numbers[first : first + max(count, 2)] for numbers in (lines.at, before, after))
     (along, unit), (height, symbol) = length_unit(float(np.ptp(x))), length_unit(float(np.ptp(before)))
     drawn = (
@@ -240,31 +223,12 @@ def _lowered(tree: DataTree, lines: Lines) -> list[Panel]:
         Line(x / along, after / height, "after", BLUE),
     )
     distance = Axis(f"distance along the path / {unit}", x[0] / along, x[-1] / along)
-    return [Panel(distance, Axis(f"height / {symbol} (out of the material ↑)"), drawn, height=2.9)]
-
-
-def _lowering(tree: DataTree) -> Numbers:
-    return data.values(tree, surface.LINE_UNTOUCHED) - data.values(tree, surface.LINE)
-
-
-def _lowered_caption(tree: DataTree) -> str:
-    lowering = _lowering(tree)
+    yield Panel(distance, Axis(f"height / {symbol} (out of the material ↑)"), drawn, height=2.9)
     deepest, mean = (data.engineering(float(each), "m") for each in (lowering.max(), lowering.mean()))
-    return (
+    yield (
         "Heights along the middle of the path, around the place that was lowered most, before and after "
         f"running-in under the working load. Lowered by {deepest} at most, by {mean} in the mean."
     )
-
-
-RUNNING_IN = Figure(
-    "running_in",
-    "Surface before and after running-in",
-    Of(surface.DISTANCE),
-    (Of(surface.LINE_UNTOUCHED, "before running-in"), Of(surface.LINE, "after running-in")),
-    _lowered,
-    _lowered_caption,
-    worth=lambda tree: bool((_lowering(tree) > 0).any()),
-)
 
 
 # --- of surface files

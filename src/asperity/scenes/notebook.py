@@ -64,7 +64,7 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         figures = figures_of(self)
         main = next((figure.name for figure in figures if figure.name in MAIN), None)
         (figure,) = chosen_figures(figures, [main if name is None else name])
-        return draw(figure.laid_out(self))
+        return draw(figure.chart)
 
     def _repr_html_(self) -> str:
         tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]

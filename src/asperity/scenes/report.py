@@ -14,8 +14,8 @@ from asperity.files import together, write_bytes
 from asperity.reporting import contact_figures, headline, tables, texture_figures
 from asperity.reporting.comparison import ComparedRuns, NamedRun, compared
 from asperity.reporting.comparison_page import MOST_RUNS, comparison_page, table_rows
-from asperity.reporting.figure import Chapter, Figure, figure_format, write_columns, write_figures
-from asperity.reporting.page import drawable_figures, page
+from asperity.reporting.figure import Chapter, PageFigure, figure_format, write_columns, write_figures
+from asperity.reporting.page import answers_of, drawn_figures, page, sections_of
 from asperity.results import read_result
 from asperity.scenes.figures import (
     bearing,
@@ -44,18 +44,18 @@ CHAPTERS = (
         (bearing.bands_table, bearing.lines_table),
         bearing.bearing_answers,
     ),
-    Chapter("load", "How it carries its load", bearing.LOADED, (bearing.ball_contacts_table,)),
+    Chapter("load", "How it carries its load", (bearing.ball_turn,), (bearing.ball_contacts_table,)),
     Chapter(
         "noise",
         "Rolling noise",
-        (noise.RADIATED,),
+        (noise.radiated_power_bands,),
         (noise.sound_power_table, noise.wheel_table),
         noise.noise_answers,
     ),
     Chapter(
         "pass_by",
         "Pass-by",
-        (noise.PASS_BY, measured.PASS_BY_BANDS),
+        (noise.pass_by_level, measured.pass_by_bands),
         (measured.limits_table, noise.pass_by_table, measured.passage_table),
         noise.pass_by_answers,
     ),
@@ -67,17 +67,22 @@ CHAPTERS = (
         effects.what_helps_answers,
     ),
     Chapter("acceleration", "Acceleration", motion.ACCELERATION, answers=motion.acceleration_answers),
-    Chapter("motion", "Motion of the bodies", (motion.BODIES,)),
+    Chapter("motion", "Motion of the bodies", (motion.body_acceleration,)),
     Chapter("force", "Contact force", force.FORCE, (tables.loss_table,), headline.force_answers),
-    Chapter("contacts", "All contacts", force.CONTACTS, (force.contacts_table,)),
-    Chapter("setup", "Scene", (scene.SCENE,)),
+    Chapter("contacts", "All contacts", (force.contact_levels,), (force.contacts_table,)),
+    Chapter("setup", "Scene", (scene.scene,)),
     Chapter(
         "texture",
         "Texture",
-        (roughness.ROUGHNESS, *texture_figures.TEXTURE),
+        (roughness.roughness, *texture_figures.TEXTURE),
         (tables.statistics_table, tables.homogeneity_table),
     ),
-    Chapter("track", "Track and wheel", (*track.TRACK, track.LOSS_FACTORS), (measured.measured_table,)),
+    Chapter(
+        "track",
+        "Track and wheel",
+        (track.receptance, track.decay_rate, track.loss_factors),
+        (measured.measured_table,),
+    ),
     Chapter("sideways", "Sideways", sideways.SIDEWAYS, (sideways.sideways_table,)),
     Chapter(
         "creep", "Creep and friction", sideways.CREEP, (sideways.friction_table,), sideways.creep_answers
@@ -87,13 +92,13 @@ CHAPTERS = (
     Chapter(
         "contact",
         "Contact",
-        (contact_figures.PRESSURE, texture_figures.RUNNING_IN),
+        (contact_figures.contact_pressure, texture_figures.running_in),
         (tables.population_table, tables.condition_table),
     ),
     Chapter(
         "laws",
         "How the contact laws work",
-        (contact_figures.LOADING, contact_figures.FILTER),
+        (contact_figures.contact_force, contact_figures.contact_filter),
         (tables.reference_table,),
     ),
     Chapter(
@@ -112,14 +117,14 @@ def chapters() -> tuple[Chapter, ...]:
     return (*CHAPTERS, *(each.load() for each in entry_points(group=OF_OTHERS)))
 
 
-def figures_of(tree: xarray.DataTree) -> list[Figure]:
+def figures_of(tree: xarray.DataTree) -> list[PageFigure]:
     """Figures that `tree` holds the data of, in the order of the page."""
-    return drawable_figures(tree, chapters())
+    return drawn_figures(tree, (figure for chapter in chapters() for figure in chapter.figures))
 
 
 def page_of(tree: xarray.DataTree, *, summary: bool = False) -> str:
     """The whole page of a run, see `asperity.reporting.page.page`."""
-    return page(tree, chapters(), summary=summary)
+    return page(tree, sections_of(tree, chapters()), answers_of(tree, chapters()), summary=summary)
 
 
 def report(result: xarray.DataTree, path: str | os.PathLike[str], figures: str | None = None) -> Path:
@@ -160,7 +165,7 @@ def report(result: xarray.DataTree, path: str | os.PathLike[str], figures: str |
     format = None if figures is None else figure_format("figures", figures)
     with together(target.parent, last=target.name) as new:
         if format is not None:
-            write_figures(result, figures_of(result), new, format)
+            write_figures(figures_of(result), new, format)
         write_page(result, new / target.name)
     return target
 
@@ -173,10 +178,10 @@ def _page_in(name: str, path: object) -> Path:
 
 def write_page(result: xarray.DataTree, target: Path) -> Path:
     """Write the page of a result and, beside it, the numbers of its figures."""
-    collected = {figure.name: figure.collect(result) for figure in figures_of(result)}
-    for name, lines in collected.items():
-        write_columns(lines.columns, target.parent / f"{name}.csv")
-    return write_bytes(target, page(result, chapters(), collected).encode())
+    sections = sections_of(result, chapters())
+    for figure in (figure for section in sections for figure in section.figures):
+        write_columns(figure.columns, target.parent / figure.file)
+    return write_bytes(target, page(result, sections, answers_of(result, chapters())).encode())
 
 
 def write_summary(result: xarray.DataTree, target: Path) -> Path:

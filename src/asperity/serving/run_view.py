@@ -10,10 +10,11 @@ from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
 from asperity.arguments import Array
-from asperity.reporting import chart, data, page, payload, tables
+from asperity.reporting import chart, data, page, payload
 from asperity.reporting.comparison_page import compared_blocks, summary
+from asperity.reporting.figure import PageFigure
 from asperity.results import read_result
-from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
+from asperity.scenes.figures.force import force_bands, force_envelope
 from asperity.scenes.report import comparison_of, report
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
@@ -21,7 +22,7 @@ from asperity.serving.stored_runs import SOUNDS
 
 PIECE = 20_000
 """Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""
-FIGURES = (FORCE_BANDS, FORCE_ENVELOPE)
+FIGURES = (force_bands, force_envelope)
 LINE_POINTS = 20_000
 STRETCH = 4
 """Length over which a texture that is looked at has no mean, in its widths."""
@@ -50,9 +51,7 @@ def viewed_run(path: str) -> dict[str, Any]:
             "load": data.number(tree, contact.WORKING_LOAD),
         },
         "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
-        **told_blocks(
-            [page.page_figure(tree, each, each.collect(tree)) for each in FIGURES if each.drawable(tree)]
-        ),
+        **told_blocks(page.drawn_figures(tree, FIGURES)),
     }
 
 
@@ -105,13 +104,13 @@ def _spacing(coordinate: Array) -> float:
 # --- figures and tables
 
 
-def told_blocks(blocks: Sequence[page.PageFigure | tables.ReportTable]) -> dict[str, str]:
+def told_blocks(blocks: Sequence[page.Block]) -> dict[str, str]:
     """Elements of figures and tables, one after the other, and the charts that go into them."""
     macros: Any = page.page_template("blocks.html.jinja").module
-    charts = {block.name: block.chart for block in blocks if isinstance(block, page.PageFigure)}
+    charts = {block.name: block.chart for block in blocks if isinstance(block, PageFigure)}
     # no file lies beside this page
     elements = (
-        macros.figure(replace(block, file="")) if isinstance(block, page.PageFigure) else macros.table(block)
+        macros.figure(replace(block, file="")) if isinstance(block, PageFigure) else macros.table(block)
         for block in blocks
     )
     return {"blocks": "".join(elements), "charts": payload.charts_json(charts, chart.COLOURS)}

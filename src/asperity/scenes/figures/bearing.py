@@ -1,5 +1,6 @@
 """A ball bearing on its page: how it carries its load, what moves, how quiet it is, which part is heard."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -19,7 +20,7 @@ from asperity.reporting.chart import (
     Panel,
     Shape,
 )
-from asperity.reporting.figure import Figure, Lines, Of
+from asperity.reporting.figure import Lines, Of, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.schema import bearing, provenance, rolling, spectra
@@ -43,7 +44,7 @@ AROUND = Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_AN
 
 
 def _main(tree: DataTree) -> str:
-    return next(iter(data.laws(tree, bearing.LINES_FOUND)), "")
+    return data.main_law(tree, bearing.LINES_FOUND)
 
 
 def _degrees(azimuth: Numbers) -> Numbers:
@@ -63,7 +64,13 @@ def _round(radius: float, x: Any = 0.0, y: Any = 0.0, **look: Any) -> Shape:
     return Shape(x + around[0], y + around[1], **look)
 
 
-def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "The bearing and its load zone",
+    Of(bearing.BALL),
+    Of(bearing.AZIMUTH),
+    Of(bearing.BALL_LOAD, "load on the {ring} ring"),
+)
+def load_zone(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """The bearing from the side, each ball as dark as it is loaded, and its load outside."""
     azimuth, _, outer = (series.values for series in lines.lines)
     lengths = (bearing.BALL_DIAMETER, bearing.PITCH_DIAMETER, bearing.CONTACT_ANGLE)
@@ -81,7 +88,8 @@ def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
         if share:
             bar = _at(rim + np.array([0.1, 0.1 + 1.3 * share]) * ball, place)
             marks.append(Line(*bar, colour=VERMILLION, width=2.2))
-    for part, faults in _faults(tree).items():
+    every_fault = _faults(tree)
+    for part, faults in every_fault.items():
         where, balls = (np.array(each) for each in zip(*faults, strict=True))
         x, y = _at(raceways.get(part, 0.5 * ball), where)
         middle = _at(0.0, 0.0)
@@ -96,7 +104,17 @@ def _drawing(tree: DataTree, lines: Lines) -> list[Panel]:
         marks.append(Line(*sensors, "accelerometer", INK, width=0.0, marker="^"))
     side = Axis("mm", -rim - 1.5 * ball, rim + 1.5 * ball)
     seen = "from the side, the radial load downwards"
-    return [Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)]
+    yield Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)
+    yield (
+        "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
+        "below the load; balls are as dark, and bars as long, as their static load. The bearing turns "
+        "anticlockwise. Triangles: accelerometers."
+    )
+    for part, faults in every_fault.items():
+        parts, moved = data.words(tree, bearing.PART), data.values(tree, bearing.MODULATION)
+        turns = ", where the record begins" if part in parts and moved[parts.index(part)] > 0.0 else ""
+        one, which = ("Diamond", "fault") if len(faults) == 1 else ("Diamonds", "faults")
+        yield f"{one}: the {which} of the {NAMES[part]}{turns}."
 
 
 def _faults(tree: DataTree) -> dict[str, list[tuple[float, int]]]:
@@ -110,30 +128,6 @@ def _faults(tree: DataTree) -> dict[str, list[tuple[float, int]]]:
     return found
 
 
-def _drawing_words(tree: DataTree) -> str:
-    parts, moved, fault = data.words(tree, bearing.PART), data.values(tree, bearing.MODULATION), ""
-    for part, faults in _faults(tree).items():
-        turns = ", where the record begins" if part in parts and moved[parts.index(part)] > 0.0 else ""
-        one, which = ("Diamond", "fault") if len(faults) == 1 else ("Diamonds", "faults")
-        fault += f" {one}: the {which} of the {NAMES[part]}{turns}."
-    return (
-        "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
-        "below the load; balls are as dark, and bars as long, as their static load. The bearing turns "
-        f"anticlockwise. Triangles: accelerometers.{fault}"
-    )
-
-
-DRAWING = Figure(
-    "load_zone",
-    "The bearing and its load zone",
-    Of(bearing.BALL),
-    (Of(bearing.AZIMUTH), Of(bearing.BALL_LOAD, "load on the {ring} ring")),
-    _drawing,
-    _drawing_words,
-    (bearing.SENSOR,),
-)
-
-
 # --- what moves
 
 
@@ -143,7 +137,15 @@ def _one_turn(tree: DataTree) -> slice:
     return slice(int(np.searchsorted(azimuth, azimuth[-1] - 2.0 * np.pi)), len(azimuth))
 
 
-def _turn(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "Load of a ball over a turn of the cage",
+    Of(bearing.BALL_AZIMUTH, "azimuth"),
+    Of(bearing.INNER_FORCE, "inner force", "on the inner ring"),
+    Of(bearing.OUTER_FORCE, "outer force", "on the outer ring"),
+    rows=_one_turn,
+)
+def ball_turn(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Forces over the azimuth, and behind them those at rest."""
     degrees, places = _degrees(lines.at), _degrees(data.values(tree, bearing.AZIMUTH).ravel())
     back = np.abs(np.diff(degrees, prepend=degrees[0])) > 180.0  # where the turn begins again on the left
     order, loads = np.argsort(places), data.values(tree, bearing.BALL_LOAD).reshape(2, -1)
@@ -155,22 +157,11 @@ def _turn(tree: DataTree, lines: Lines) -> list[Panel]:
         Line(degrees, np.where(back, np.nan, each.values), each.label, *RINGS[ring], 0.9)
         for each, ring in zip(lines.lines, RINGS, strict=True)
     ]
-    return [Panel(AROUND, Axis("force / N", low=0.0), tuple(drawn), height=4.0)]
-
-
-TURN = Figure(
-    "ball_turn",
-    "Load of a ball over a turn of the cage",
-    Of(bearing.BALL_AZIMUTH, "azimuth"),
-    (
-        Of(bearing.INNER_FORCE, "inner force", "on the inner ring"),
-        Of(bearing.OUTER_FORCE, "outer force", "on the outer ring"),
-    ),
-    _turn,
-    "Contact forces of the first ball by the main law in its last turn, over the load that it has at rest.",
-    (bearing.BALL_LOAD, bearing.AZIMUTH),
-    rows=_one_turn,
-)
+    yield Panel(AROUND, Axis("force / N", low=0.0), tuple(drawn), height=4.0)
+    yield (
+        "Contact forces of the first ball by the main law in its last turn, over the load that it has at "
+        "rest."
+    )
 
 
 def _some_turns(tree: DataTree) -> slice:
@@ -179,21 +170,18 @@ def _some_turns(tree: DataTree) -> slice:
     return slice(0, int(np.searchsorted(time, length)) + 1)
 
 
-def _acceleration(tree: DataTree, lines: Lines) -> list[Panel]:
-    axis, unit = panels.time_axis(tree, lines.at)
-    drawn = [replace(each, width=0.8) for each in panels.styled(tree, lines.at / unit, lines.lines)]
-    return [Panel(axis, Axis("acceleration / (m/s²)"), tuple(drawn), height=3.4)]
-
-
-ACCELERATION = Figure(
-    "ring_acceleration",
+@figure(
     "Acceleration of the outer ring",
     Of(rolling.TIME),
-    (Of(bearing.RING_ACCELERATION, "{law}"),),
-    _acceleration,
-    "At the first accelerometer, radially outwards, in the first three turns of the record.",
+    Of(bearing.RING_ACCELERATION, "{law}"),
     rows=_some_turns,
 )
+def ring_acceleration(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Acceleration of all laws over a few turns."""
+    axis, unit = panels.time_axis(tree, lines.at)
+    drawn = [replace(each, width=0.8) for each in panels.styled(tree, lines.at / unit, lines.lines)]
+    yield Panel(axis, Axis("acceleration / (m/s²)"), tuple(drawn), height=3.4)
+    yield "At the first accelerometer, radially outwards, in the first three turns of the record."
 
 
 # --- how quiet it is, and what is heard
@@ -216,7 +204,8 @@ def _orders(tree: DataTree) -> chart.Second:
     return chart.Second("orders of the speed", 1.0 / (data.number(tree, bearing.TURNING) or 1.0))
 
 
-def _velocity(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure("Spectrum of the radial velocity", Of(spectra.FREQUENCY), Of(bearing.VELOCITY_AMPLITUDE, "{law}"))
+def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Highest lines in stretches of an octave, in dB, and the tones of the parts."""
     kept = lines.at >= LOWEST
     frequency = lines.at[kept]
@@ -228,22 +217,16 @@ def _velocity(tree: DataTree, lines: Lines) -> list[Panel]:
     drawn = panels.styled(tree, frequency[starts], levels)
     along = replace(panels.frequency_axis(LOWEST, frequency[-1]), second=_orders(tree))
     across = panels.levels_axis("amplitude of the velocity / dB re 1 µm/s", [each.y for each in drawn], 100.0)
-    return [Panel(along, across, (*_tones(tree, frequency[-1]), *drawn), height=4.4)]
+    yield Panel(along, across, (*_tones(tree, frequency[-1]), *drawn), height=4.4)
+    yield (
+        "Lines of the radial velocity of the outer ring at the first accelerometer; the highest of each 1/96 "
+        "octave. Dashed: at which frequencies the places of a part are met, in pure rolling."
+    )
 
 
-SPECTRUM = Figure(
-    "velocity_spectrum",
-    "Spectrum of the radial velocity",
-    Of(spectra.FREQUENCY),
-    (Of(bearing.VELOCITY_AMPLITUDE, "{law}"),),
-    _velocity,
-    "Lines of the radial velocity of the outer ring at the first accelerometer; the highest of each 1/96 "
-    "octave. Dashed: at which frequencies the places of a part are met, in pure rolling.",
-    (bearing.TONE, bearing.HARMONIC),
-)
-
-
-def _envelope(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure("Envelope spectrum", Of(bearing.ENVELOPE_FREQUENCY), Of(bearing.ENVELOPE, "{law}"))
+def envelope_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Envelope of all laws, and what of it the main law's lines are."""
     highest = float(lines.at[-1])
     main = _main(tree)
     found = data.of_law(tree, bearing.LINES_FOUND, main)
@@ -257,36 +240,20 @@ def _envelope(tree: DataTree, lines: Lines) -> list[Panel]:
     along = Axis("frequency / Hz", 0.0, highest, second=_orders(tree))
     units = str(data.variable_of(tree, bearing.ENVELOPE).attrs["units"]).replace("m/s2", "(m/s²)")
     across = Axis(f"amplitude of the envelope / {units}", low=0.0)
-    return [Panel(along, across, (*_tones(tree, highest), *drawn, *marks), height=4.4)]
-
-
-def _envelope_words(tree: DataTree) -> str:
+    yield Panel(along, across, (*_tones(tree, highest), *drawn, *marks), height=4.4)
     low, high = (data.number(tree, each) or 0.0 for each in (bearing.ENVELOPE_LOW, bearing.ENVELOPE_HIGH))
-    return (
+    yield (
         "How evenly the outer ring is struck: lines in the envelope of its acceleration between "
         f"{low:.0f} and {high:.0f} Hz, at the first accelerometer. Dashed: expected in pure rolling; dots: "
         "lines of the main law that stand out, with their multiples."
     )
 
 
-ENVELOPE = Figure(
-    "envelope_spectrum",
-    "Envelope spectrum",
-    Of(bearing.ENVELOPE_FREQUENCY),
-    (Of(bearing.ENVELOPE, "{law}"),),
-    _envelope,
-    _envelope_words,
-    (bearing.TONE, bearing.LINE_FREQUENCY, bearing.LINE_AMPLITUDE),
-)
+QUIET = load_zone, velocity_spectrum, envelope_spectrum, ring_acceleration
 
 
-QUIET, LOADED = (DRAWING, SPECTRUM, ENVELOPE, ACCELERATION), (TURN,)
-
-
-def bands_table(tree: DataTree) -> ReportTable | None:
+def bands_table(tree: DataTree) -> ReportTable:
     """Velocities in the bands in which bearings are judged, by law and sensor; of parts alone below."""
-    if not data.present(tree, bearing.BAND_VELOCITY):
-        return None
     found, sensors = data.values(tree, bearing.BAND_VELOCITY), np.degrees(data.values(tree, bearing.SENSOR))
     rows = [(law, f"at {at:.0f}°") for law in data.laws(tree, bearing.BAND_VELOCITY) for at in sensors]
     velocities = found.reshape(len(rows), -1)
@@ -305,10 +272,8 @@ def bands_table(tree: DataTree) -> ReportTable | None:
     return table("judged_bands", "Velocities in the bands of ISO 15242-2", columns, note)
 
 
-def lines_table(tree: DataTree) -> ReportTable | None:
+def lines_table(tree: DataTree) -> ReportTable:
     """Tones of the parts, and what the envelope has of them, by law."""
-    if not data.present(tree, bearing.TONE, bearing.LINES_FOUND):
-        return None
     tones, turning = data.values(tree, bearing.TONE), data.number(tree, bearing.TURNING) or 1.0
     columns = {
         "part": text_cells(NAMES[part] for part in data.words(tree, bearing.PART)),
@@ -316,7 +281,7 @@ def lines_table(tree: DataTree) -> ReportTable | None:
         "orders": number_cells(tones / turning, "{:.3f}"),
         "side bands ± / Hz": number_cells(data.values(tree, bearing.MODULATION), "{:.2f}"),
     }
-    for law in data.laws(tree, bearing.LINES_FOUND):
+    for law in data.held_laws(tree, bearing.LINES_FOUND):
         entries = (bearing.LINE_AMPLITUDE, bearing.LINE_SIDE_BANDS, bearing.LINES_FOUND)
         lines, sides, found = (data.of_law(tree, each, law) for each in entries)
         told = zip(lines[:, 0], sides[:, 0], found, strict=True)
@@ -328,10 +293,8 @@ def lines_table(tree: DataTree) -> ReportTable | None:
     return table("tones", "Tones of the parts", columns, note)
 
 
-def ball_contacts_table(tree: DataTree) -> ReportTable | None:
+def ball_contacts_table(tree: DataTree) -> ReportTable:
     """Contacts of each ball at rest."""
-    if not data.present(tree, bearing.BALL_LOAD):
-        return None
     degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
     columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
     shown = (
@@ -360,12 +323,10 @@ def ball_contacts_table(tree: DataTree) -> ReportTable | None:
     return table("ball_contacts", "Contacts of the balls", columns, note)
 
 
-def bearing_answers(tree: DataTree) -> Answers | None:
+def bearing_answers(tree: DataTree) -> Answers:
     """How quiet the bearing is, in three bands, and which part makes it so."""
-    if not data.present(tree, bearing.BAND_VELOCITY):
-        return None
-    lead, _, more = str(data.stated(tree, provenance.VERDICT) or "").partition(". ")
     velocities = data.of_law(tree, bearing.BAND_VELOCITY, _main(tree))[0]
+    lead, _, more = str(data.stated(tree, provenance.VERDICT) or "").partition(". ")
     numbers = [
         HeadlineNumber(band, f"{1e6 * rms:.3g} µm/s", "rms radial velocity, outer ring")
         for band, rms in zip(data.words(tree, bearing.JUDGED_BAND), velocities, strict=True)

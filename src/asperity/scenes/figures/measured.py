@@ -55,10 +55,8 @@ _COLUMNS = {
 }
 
 
-def measured_table(tree: DataTree) -> tables.ReportTable | None:
+def measured_table(tree: DataTree) -> tables.ReportTable:
     """Decay rate and mobility in one-third octaves, measured and computed, and what that does to the rail."""
-    if not data.present(tree, schema.MEASURED_POWER_CHANGE):
-        return None
     shown = np.isfinite(data.values(tree, schema.MEASURED_POWER_CHANGE))
     doubtful = np.zeros(shown.sum(), dtype=bool)
     columns = {"band": tables.band_cells(data.values(tree, spectra.BAND)[shown], doubtful)}
@@ -85,14 +83,14 @@ def measured_table(tree: DataTree) -> tables.ReportTable | None:
 
 def _over_pass_by(tree: DataTree) -> Iterator[figure.Series]:
     """Levels of the main law over the pass-by time, A-weighted, by what radiates; then those measured."""
-    band, level = data.values(tree, schema.PASS_BY_BAND), schema.SOUND_EXPOSURE_LEVEL
+    own, level = schema.MEASURED_BAND_LEVEL, schema.SOUND_EXPOSURE_LEVEL
+    band, measured = data.values(tree, schema.PASS_BY_BAND), data.values(tree, own)
     front, rear = (float(data.stated(tree, end)) for end in (schema.FRONT_TIME, schema.REAR_TIME))
     weighting, found = a_weighting(band), data.variable_of(tree, level)
     for number in data.with_numbers(found, "radiator"):
         name, values = str(found["radiator"].values[number]), found[0, number].values
         yield figure.Series(name, _SOUND, values - 10.0 * np.log10(rear - front) + weighting, level, name)
-    own = schema.MEASURED_BAND_LEVEL
-    yield figure.Series("measured", _SOUND, data.values(tree, own) + weighting, own, "measured")
+    yield figure.Series("measured", _SOUND, measured + weighting, own, "measured")
 
 
 _SOUND = "dB(A) re 20 uPa"
@@ -108,23 +106,23 @@ LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of eac
 }
 
 
-def _bands(tree: DataTree, lines: figure.Lines) -> list[chart.Panel]:
+@figure.figure(
+    "Pass-by in one-third octaves, computed and measured",
+    figure.Of(schema.PASS_BY_BAND, "band centre"),
+    _over_pass_by,
+)
+def pass_by_bands(tree: DataTree, lines: figure.Lines) -> Iterator[chart.Panel | str]:
+    """Levels by what radiates, of all of it, and those measured."""
     drawn = [chart.Line(lines.at, s.values, s.label, *LOOKS.get(s.label, ())) for s in lines.lines]
     told = [line.y for line in drawn if line.label in ("total", schema.WITH_SIDEWAYS, "measured")]
     axis = panels.levels_axis("sound pressure level / dB(A) re 20 µPa", told, span=50.0)
-    return [chart.Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)]
+    yield chart.Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)
+    yield (
+        "A-weighted equivalent levels over the pass-by time. Computed: the energy of the whole passage, by "
+        "the main law, all of it and by what radiates."
+    )
+    yield data.missing(tree, schema.MEASURED_BAND_LEVEL)
 
-
-PASS_BY_BANDS = figure.Figure(
-    "pass_by_bands",
-    "Pass-by in one-third octaves, computed and measured",
-    figure.Of(schema.PASS_BY_BAND, "band centre"),
-    (_over_pass_by,),
-    _bands,
-    "A-weighted equivalent levels over the pass-by time. Computed: the energy of the whole passage, by the "
-    "main law, all of it and by what radiates.",
-    (schema.MEASURED_BAND_LEVEL, schema.SOUND_EXPOSURE_LEVEL),
-)
 
 _NUMBERS = {
     "L_pAFmax": (schema.MEASURED_MAXIMUM_LEVEL, schema.PASS_BY_MAXIMUM_LEVEL),

@@ -7,7 +7,8 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.chart import Mark, Panel
+from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
@@ -21,67 +22,62 @@ _AT = "x = {sensor:g} m"
 _SENSORS = Of(schema.ACCELERATION_PSD, "{law}, " + _AT, _AT, one={"law": min})
 
 
-def _sensors_caption(tree: DataTree) -> str:
-    main = data.laws(tree, schema.ACCELERATION_PSD)[0]
-    text = f"Acceleration at all sensors by the main law, {main}, positive downwards; {panels.DRAWN}."
-    return f"{text}{panels.shaded_words(tree)} {data.missing(tree, schema.ACCELERATION_LEVEL)}".strip()
+@figure("Acceleration at the sensors", Of(FREQUENCY), _SENSORS)
+def acceleration_sensors(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Spectra at all sensors by the main law."""
+    yield panels.level_spectrum(tree, lines, *_SPECTRUM)
+    main = data.main_law(tree, schema.ACCELERATION_PSD)
+    yield f"Acceleration at all sensors by the main law, {main}, positive downwards; {panels.DRAWN}."
+    yield panels.shaded_words(tree)
+    yield data.missing(tree, schema.ACCELERATION_LEVEL)
 
 
-def _laws_caption(tree: DataTree) -> str:
-    sensors = [series.label for series in _SENSORS(tree)]
-    place = sensors[len(sensors) // 2]
-    return f"Acceleration at {place} by all laws; {panels.DRAWN}.{panels.shaded_words(tree)}"
-
-
-ACCELERATION = (
-    Figure(
-        "acceleration_sensors",
-        "Acceleration at the sensors",
-        Of(FREQUENCY),
-        (_SENSORS,),
-        panels.draw_spectrum(*_SPECTRUM),
-        _sensors_caption,
-    ),
-    Figure(
-        "acceleration_laws",
-        "Acceleration by law",
-        Of(FREQUENCY),
-        (replace(_SENSORS, label="{law}", one={"sensor": lambda sensors: sensors[len(sensors) // 2]}),),
-        panels.draw_spectrum(*_SPECTRUM),
-        _laws_caption,
-    ),
+@figure(
+    "Acceleration by law",
+    Of(FREQUENCY),
+    replace(_SENSORS, label="{law}", one={"sensor": lambda sensors: sensors[len(sensors) // 2]}),
 )
+def acceleration_laws(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Spectra at the middle sensor by all laws."""
+    yield panels.level_spectrum(tree, lines, *_SPECTRUM)
+    sensors = [series.label for series in _SENSORS(tree)]
+    yield f"Acceleration at {sensors[len(sensors) // 2]} by all laws; {panels.DRAWN}."
+    yield panels.shaded_words(tree)
+
+
+ACCELERATION = acceleration_sensors, acceleration_laws
 
 MOST_LINES = 6
 """Degrees of freedom that are drawn: the last, which are those of what rests on the others."""
 
 
-def _bodies_caption(tree: DataTree) -> str:
-    count, some = len(data.words(tree, schema.SPECTRA_DEGREE)), ""
-    if count > MOST_LINES:
-        some = f" The last {MOST_LINES} of {count} are drawn; the file has all."
-    main = data.laws(tree, schema.BODY_ACCELERATION_PSD)[0]
-    return (
-        f"Acceleration of the bodies by the main law, {main}; {panels.DRAWN}.{some}"
-        f"{force.tones_words(tree)}{panels.shaded_words(tree)}"
-    )
+@figure("Acceleration of the bodies", Of(FREQUENCY), Of(schema.BODY_ACCELERATION_PSD, "{degree}"))
+def body_acceleration(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Spectra of the last degrees of freedom, and the tones of contacts that pass a place."""
+    tones, told = _passing_tones(tree)
+    yield panels.level_spectrum(tree, lines, *_SPECTRUM, tones, slice(-MOST_LINES, None))
+    main = data.main_law(tree, schema.BODY_ACCELERATION_PSD)
+    yield f"Acceleration of the bodies by the main law, {main}; {panels.DRAWN}."
+    if (count := len(data.words(tree, schema.SPECTRA_DEGREE))) > MOST_LINES:
+        yield f"The last {MOST_LINES} of {count} are drawn; the file has all."
+    yield told
+    yield panels.shaded_words(tree)
 
 
-BODIES = Figure(
-    "body_acceleration",
-    "Acceleration of the bodies",
-    Of(FREQUENCY),
-    (Of(schema.BODY_ACCELERATION_PSD, "{degree}"),),
-    panels.draw_spectrum(*_SPECTRUM, force.tone_rules, slice(-MOST_LINES, None)),
-    _bodies_caption,
-)
+def _passing_tones(tree: DataTree) -> tuple[list[Mark], str]:
+    """Multiples of the frequency at which contacts that stand apart pass a place, and what they are."""
+    if not data.present(tree, schema.PASSING_FREQUENCY):
+        return [], ""
+    low, high = panels.frequency_range(tree)
+    tones = data.values(tree, schema.PASSING_FREQUENCY)
+    rules = chart.Rules(tones[(tones > low) & (tones < high)][:10], dashes=(1, 2), width=0.6)
+    first = f"{float(tones[0]):.4g} Hz at which contacts pass a place"
+    return [rules], f"Dotted: k v/L, multiples of the {first}; ten are drawn."
 
 
-def energy_table(tree: DataTree) -> ReportTable | None:
+def energy_table(tree: DataTree) -> ReportTable:
     """Energy balance per law, and what is left of it."""
-    laws = data.laws(tree, schema.ENERGY)
-    if not laws:
-        return None
+    laws = data.held_laws(tree, schema.ENERGY)
     energies = np.transpose([data.of_law(tree, schema.ENERGY, law) for law in laws])
     terms = zip(data.words(tree, schema.ENERGY_TERM), energies, strict=True)
     columns = {"law": text_cells(laws), **{term: number_cells(energy, "J") for term, energy in terms}}
@@ -105,7 +101,21 @@ PIECE = 0.1
 """Length of the piece around the largest force, s."""
 
 
-def _displacement(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
+def _piece(tree: DataTree) -> slice:
+    return force.around_peak(tree, PIECE) if data.present(tree, rolling.CONTACT_FORCE) else slice(None)
+
+
+@figure(
+    "Wheel and rail at the contact",
+    Of(rolling.TIME),
+    Of(rolling.POSITION, "position on the rail", optional=True),
+    *(
+        Of(entry, f"{name}, {{law}}", "{law}", optional=entry is not schema.RAIL_DISPLACEMENT)
+        for entry, (name, _, _) in _MOTIONS.items()
+    ),
+    rows=_piece,
+)
+def displacement(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Displacement of rail and wheel at the contact and their approach, all laws, over a piece of the run."""
     time, unit = panels.time_axis(tree, lines.at)
     sleepers = track.sleeper_times(tree, lines.at[0], lines.at[-1], unit)
@@ -114,37 +124,14 @@ def _displacement(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
             drawn = panels.styled(tree, lines.at / unit, motions, size=size)
             low, high = panels.main_limits(motions, data.pulling(tree))
             downwards = chart.Axis(f"{name} / {length}", high / size, low / size)
-            yield chart.Panel(time, downwards, (*sleepers, *drawn), height=1.75)
-
-
-def _displacement_caption(tree: DataTree) -> str:
-    sleepers = " Ticks: the wheel passes a sleeper." if data.number(tree, schema.SLEEPER_SPACING) else ""
-    return (
+            yield Panel(time, downwards, (*sleepers, *drawn), height=1.75)
+    yield (
         "Motion at the contact around the largest force, positive downwards and drawn downwards; from the "
         "unloaded track, so that the static deflection is in. The approach of wheel and rail is positive "
-        f"closing. The axes suit the main law.{sleepers}"
+        "closing. The axes suit the main law."
     )
-
-
-def _piece(tree: DataTree) -> slice:
-    return force.around_peak(tree, PIECE) if data.present(tree, rolling.CONTACT_FORCE) else slice(None)
-
-
-DISPLACEMENT = Figure(
-    "displacement",
-    "Wheel and rail at the contact",
-    Of(rolling.TIME),
-    (
-        Of(rolling.POSITION, "position on the rail", optional=True),
-        *(
-            Of(entry, f"{name}, {{law}}", "{law}", optional=entry is not schema.RAIL_DISPLACEMENT)
-            for entry, (name, _, _) in _MOTIONS.items()
-        ),
-    ),
-    _displacement,
-    _displacement_caption,
-    rows=_piece,
-)
+    if data.number(tree, schema.SLEEPER_SPACING):
+        yield "Ticks: the wheel passes a sleeper."
 
 
 # --- the rail at points that the wheel passes
@@ -195,17 +182,20 @@ def _passings(tree: DataTree) -> slice:
     return slice(int(low), int(high)) if high - low > 1 else slice(None)
 
 
-def _velocity(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
+@figure("Rail velocity where the wheel passes", Of(rolling.TIME), _VELOCITY, rows=_passings)
+def rail_velocity(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Velocity of the rail at the passed points, around the passings."""
     time, unit = panels.time_axis(tree, lines.at)
     for title, found in _by_point(lines).items():
         passed = chart.Rules(np.array([_passing(tree, found[0].places["point"]) / unit]), colour=chart.INK)
         # they swing fast: dashes would not be seen
         drawn = panels.styled(tree, lines.at / unit, found, size=1e-3, width=1.0, dashes=())
-        yield chart.Panel(time, chart.Axis("velocity / (mm/s)"), (passed, *drawn), title, height=1.9)
+        yield Panel(time, chart.Axis("velocity / (mm/s)"), (passed, *drawn), title, height=1.9)
+    yield "Velocity of the rail at fixed points, positive downwards, while the wheel passes them (dotted)."
 
 
-def _velocity_spectra(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
+@figure("Rail velocity against frequency", Of(FREQUENCY), _VELOCITY_PSD)
+def rail_velocity_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Power spectral densities of the rail's velocity at the passed points, all laws, a panel per point."""
     points = {
         title: panels.narrow_levels(tree, lines, found, schema.VELOCITY_REFERENCE**2)
@@ -217,45 +207,19 @@ def _velocity_spectra(tree: DataTree, lines: Lines) -> Iterator[chart.Panel]:
     for title, (frequency, levels) in points.items():
         panel = panels.spectrum_panel(tree, label, panels.styled(tree, frequency, levels), behind)
         yield replace(panel, y=axis, title=title, height=2.8)
+    yield f"Velocity of the rail at fixed points over the whole run, {panels.DRAWN}."
+    if named := ", ".join(f"{label} {f:.0f} Hz" for label, f in track.natural_frequencies(tree).items()):
+        yield f"Dotted: {named}."
+    yield panels.shaded_words(tree)
 
 
-def _velocity_spectra_caption(tree: DataTree) -> str:
-    named = ", ".join(f"{label} {f:.0f} Hz" for label, f in track.natural_frequencies(tree).items())
-    dotted = f" Dotted: {named}." if named else ""
-    return (
-        f"Velocity of the rail at fixed points over the whole run, {panels.DRAWN}.{dotted}"
-        f"{panels.shaded_words(tree)}"
-    )
-
-
-RAIL = (
-    DISPLACEMENT,
-    Figure(
-        "rail_velocity",
-        "Rail velocity where the wheel passes",
-        Of(rolling.TIME),
-        (_VELOCITY,),
-        _velocity,
-        "Velocity of the rail at fixed points, positive downwards, while the wheel passes them (dotted).",
-        (schema.ROLLING_POINT, rolling.POSITION),
-        rows=_passings,
-    ),
-    Figure(
-        "rail_velocity_psd",
-        "Rail velocity against frequency",
-        Of(FREQUENCY),
-        (_VELOCITY_PSD,),
-        _velocity_spectra,
-        _velocity_spectra_caption,
-        (schema.ROLLING_POINT,),
-    ),
-)
+RAIL = displacement, rail_velocity, rail_velocity_psd
 
 
 def acceleration_answers(tree: DataTree) -> Answers | None:
     """Acceleration at the sensors by the main law: rms, A-weighted level, and the bands that hold it."""
-    main = next(iter(data.laws(tree, schema.ACCELERATION)), None)
-    if main is None or main not in data.laws(tree, schema.ACCELERATION_LEVEL) or not data.present(tree, BAND):
+    main = data.main_law(tree, schema.ACCELERATION)
+    if main not in data.laws(tree, schema.ACCELERATION_LEVEL):
         return None
     rms = np.sqrt(np.nanmean(data.of_law(tree, schema.ACCELERATION, main) ** 2, axis=1))
     levels, bands = data.of_law(tree, schema.ACCELERATION_LEVEL, main), data.values(tree, BAND)

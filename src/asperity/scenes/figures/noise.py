@@ -9,8 +9,8 @@ from xarray import DataTree
 
 from asperity.reference.railways import HARD
 from asperity.reporting import chart, data, headline, panels
-from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Panel, Rules
-from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import LOOKS, compared_numbers, limit_sentence
@@ -100,16 +100,27 @@ def with_measured(tree: DataTree) -> str:
 
 def _standard_there(tree: DataTree) -> Iterator[Series]:
     """What CNOSSOS-EU has in the bands of the vibration."""
-    for series in Of(STANDARD, "{source} by CNOSSOS-EU, {law}", "{source}, CNOSSOS-EU")(tree):
+    by_tables = Of(STANDARD, "{source} by CNOSSOS-EU, {law}", "{source}, CNOSSOS-EU", optional=True)
+    for series in by_tables(tree):
         at = np.abs(data.values(tree, BAND)[:, None] / data.values(tree, schema.NOISE_BAND) - 1.0) < 0.01
         found = np.where(at.any(axis=1), series.values[at.argmax(axis=1)], np.nan)
         if np.isfinite(found).any():
             yield Series(series.name, series.units, found, STANDARD, series.label, series.places)
 
 
-def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "Sound power from vibration in one-third octaves",
+    Of(BAND, "band centre"),
+    _weighting,
+    panels.products(BAND_TIME_PRODUCT),
+    Of(OWN, "{radiator}, {law}", "{radiator}"),
+    Of(UNMEASURED, "{radiator} without what was measured, {law}", "{radiator}", optional=True),
+    Of(SIDE, "{radiator}, {law}", "{radiator}", optional=True),
+    _standard_there,
+)
+def radiated_power_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """A-weighted sound power of the main law per one-third octave, by what radiates, beside CNOSSOS-EU."""
-    main, (weighting,) = data.laws(tree, OWN)[0], (series.values for series in lines.of(BAND))
+    main, (weighting,) = data.main_law(tree, OWN), (series.values for series in lines.of(BAND))
     own = [
         Line(lines.at, series.values + weighting, series.label, *LOOKS.get(series.label, ()))
         for series in lines.of(OWN, SIDE, law=main)
@@ -119,41 +130,18 @@ def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
         own.append(Line(lines.at, series.values + weighting, "rail, nothing measured", *look))
     standard = _of_parts(lines, STANDARD, main, _OF_STANDARD | {WHOLE: (5, 2)}, weighting)
     own += [replace(line, width=1.6 if line.label.startswith(WHOLE) else 1.3) for line in standard]
-    return [panels.band_panel(tree, lines, _POWER, own)]
-
-
-def _own_caption(tree: DataTree) -> str:
-    told = [
-        f"A-weighted one-third octaves of {data.laws(tree, OWN)[0]}, vertical motion: the contact force on "
-        "two rails moves them and their sleepers along the whole track, and each part radiates by its "
-        "radiation ratio.",
-        silence(tree),
-        with_measured(tree),
-        with_sideways(tree),
-    ]
+    yield panels.band_panel(tree, lines, _POWER, own)
+    yield (
+        f"A-weighted one-third octaves of {main}, vertical motion: the contact force on two rails moves them "
+        "and their sleepers along the whole track, and each part radiates by its radiation ratio."
+    )
+    yield from (silence(tree), with_measured(tree), with_sideways(tree))
     if data.laws(tree, STANDARD):
-        told.append(
+        yield (
             "Grey: the same force by CNOSSOS-EU, of a track and a wheel that it knows by a label; its "
             "transfer functions hold lateral motion of the rail, and wheels that resonate."
         )
-    return " ".join(filter(None, told)) + panels.shaded_words(tree)
-
-
-RADIATED = Figure(
-    "radiated_power_bands",
-    "Sound power from vibration in one-third octaves",
-    Of(BAND, "band centre"),
-    (
-        _weighting,
-        panels.products(BAND_TIME_PRODUCT),
-        Of(OWN, "{radiator}, {law}", "{radiator}"),
-        Of(UNMEASURED, "{radiator} without what was measured, {law}", "{radiator}", optional=True),
-        Of(SIDE, "{radiator}, {law}", "{radiator}", optional=True),
-        _standard_there,
-    ),
-    _own_bands,
-    _own_caption,
-)
+    yield panels.shaded_words(tree)
 
 
 _PARTS = (*BOTH, TRACK, "wheel", WHOLE, schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH, schema.WITH_SIDEWAYS)
@@ -177,11 +165,11 @@ def _powers(tree: DataTree) -> dict[tuple[str, str], dict[str, float]]:
     return found
 
 
-def sound_power_table(tree: DataTree, main: bool = False) -> ReportTable | None:
+def sound_power_table(tree: DataTree, main: bool = False) -> ReportTable:
     """A-weighted sound power by what radiates, per law and model, or of the main law alone."""
     powers = _powers(tree)
     if not powers:
-        return None
+        raise data.Missing(OWN_A.path)
     laws = list(dict.fromkeys(law for law, _ in powers))
     rows = {of: levels for of, levels in powers.items() if not main or of[0] == laws[0]}
     columns = dict(zip(("law", "model"), map(text_cells, zip(*rows, strict=True)), strict=True))
@@ -219,21 +207,33 @@ def _passing_parts(tree: DataTree) -> list[str]:
     return [str(found["radiator"].values[n]) for n in data.with_numbers(found, "radiator")]
 
 
-def _pass_by(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure("Level beside the track", Of(schema.PASS_BY_TIME, "time"), Of(PASSING, "{radiator}, {law}"))
+def pass_by_level(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Level over time: the total by each law, the parts of the main law, and when axles pass."""
     *parts, whole = _passing_parts(tree)
     totals = panels.styled(tree, lines.at, lines.of(PASSING, radiator=whole))
     dashes = {part: LOOKS[part][1] for part in parts}
-    of_parts = _of_parts(lines, PASSING, data.laws(tree, PASSING)[0], dashes)
+    of_parts = _of_parts(lines, PASSING, data.main_law(tree, PASSING), dashes)
     label = "sound pressure level, F / dB(A) re 20 µPa"
     axis = panels.levels_axis(label, [line.y for line in totals], span=SPAN, step=5.0)
     time = Axis("time since the first axle was opposite / s", lines.at[0], lines.at[-1])
-    return [Panel(time, axis, (*_train(tree), *totals, *of_parts), height=4.2)]
-
-
-def _train(tree: DataTree) -> list[Mark]:
-    """Short rules where axles are opposite, and the pass-by time behind the lines."""
     axles = data.values(tree, schema.AXLE_TIME)
+    yield Panel(time, axis, (*_train(tree, axles), *totals, *of_parts), height=4.2)
+    passing = "One axle passes" if len(axles) == 1 else f"{len(axles)} axles pass"
+    away, above = (data.number(tree, fact) for fact in (schema.RECEIVER_DISTANCE, schema.RECEIVER_HEIGHT))
+    where = ""
+    if away is not None and above is not None:
+        where = f", {away:g} m from the middle of the track and {above:g} m above the rail head"
+    ground, directions = (data.stated(tree, fact) for fact in (schema.GROUND, schema.DIRECTIVITY))
+    yield (
+        f"{passing} (ticks), two wheels on each{where}; ground: {ground or HARD}, directivity: "
+        f"{directions or 'none'}. Rail and sleepers radiate along the track as its vibration decays, a wheel "
+        "from its axle; nothing screens them."
+    )
+
+
+def _train(tree: DataTree, axles: Numbers) -> list[Mark]:
+    """Short rules where axles are opposite, and the pass-by time behind the lines."""
     passing = Rules(axles, colour=INK, dashes=(), width=1.4, short=True)
     front, rear = (data.number(tree, end) for end in (schema.FRONT_TIME, schema.REAR_TIME))
     if front is None or rear is None:
@@ -242,26 +242,9 @@ def _train(tree: DataTree) -> list[Mark]:
     return [panels.shade(np.array([front]), np.array([rear]), opacity=0.6), named, passing]
 
 
-def _pass_by_caption(tree: DataTree) -> str:
-    count = len(data.values(tree, schema.AXLE_TIME))
-    passing = "One axle passes" if count == 1 else f"{count} axles pass"
-    away, above = (data.number(tree, fact) for fact in (schema.RECEIVER_DISTANCE, schema.RECEIVER_HEIGHT))
-    where = ""
-    if away is not None and above is not None:
-        where = f", {away:g} m from the middle of the track and {above:g} m above the rail head"
-    ground, directions = (data.stated(tree, fact) for fact in (schema.GROUND, schema.DIRECTIVITY))
-    return (
-        f"{passing} (ticks), two wheels on each{where}; ground: {ground or HARD}, directivity: "
-        f"{directions or 'none'}. Rail and sleepers radiate along the track as its vibration decays, a wheel "
-        "from its axle; nothing screens them."
-    )
-
-
-def pass_by_table(tree: DataTree) -> ReportTable | None:
+def pass_by_table(tree: DataTree) -> ReportTable:
     """Single numbers of the pass-by, per law, and of each part by the main law."""
-    laws = data.laws(tree, PASSING)
-    if not laws:
-        return None
+    laws = data.held_laws(tree, PASSING)
     *parts, whole = _passing_parts(tree)
     shown = [(law, whole) for law in laws] + [(laws[0], part) for part in parts]
     names, radiating = zip(*shown, strict=True)
@@ -277,17 +260,6 @@ def pass_by_table(tree: DataTree) -> ReportTable | None:
         "points 10 dB down, over the same time (ISO 3095)."
     )
     return table("pass_by_table", "Single numbers", columns, note)
-
-
-PASS_BY = Figure(
-    "pass_by_level",
-    "Level beside the track",
-    Of(schema.PASS_BY_TIME, "time"),
-    (Of(PASSING, "{radiator}, {law}"),),
-    _pass_by,
-    _pass_by_caption,
-    (schema.AXLE_TIME,),
-)
 
 
 # --- what the report says first
@@ -339,7 +311,7 @@ def _by_vibration(tree: DataTree, own: Mapping[str, float], side: Mapping[str, f
 def _bands(tree: DataTree, part: str) -> str:
     """Bands that hold half the A-weighted sound power of what radiates, by the main law."""
     band = data.values(tree, BAND)
-    level = data.of_law(tree, OWN, data.laws(tree, OWN)[0])[parts_of(tree, OWN).index(part)]
+    level = data.of_law(tree, OWN, data.main_law(tree, OWN))[parts_of(tree, OWN).index(part)]
     return headline.deciding_bands(band, level + a_weighting(band))
 
 
@@ -379,11 +351,9 @@ LOUDEST = 10
 """Modes that have a line of their own."""
 
 
-def wheel_table(tree: DataTree) -> ReportTable | None:
+def wheel_table(tree: DataTree) -> ReportTable:
     """The loudest modes of the wheels by the main law, and all others together."""
-    laws = data.laws(tree, schema.WHEEL_MODE_POWER_LEVEL_A)
-    if not laws:
-        return None
+    laws = data.held_laws(tree, schema.WHEEL_MODE_POWER_LEVEL_A)
     level = np.nan_to_num(data.of_law(tree, schema.WHEEL_MODE_POWER_LEVEL_A, laws[0]), nan=-np.inf)
     frequency, damping, diameters = (
         data.values(tree, each)

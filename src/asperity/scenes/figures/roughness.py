@@ -1,11 +1,13 @@
 """Roughness of rail and wheel in bands of wavelength, on the axes that rail acoustics uses."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, Line, Mark, Note, Numbers, Panel, Rules
-from asperity.reporting.figure import Figure, Lines, Of
+from asperity.reporting.figure import Lines, Of, figure
 from asperity.scenes import schema
 from asperity.schema import contact, rolling
 
@@ -24,7 +26,13 @@ def _millimetres(wavelength: float) -> str:
     return f"{float(data.nominal_band(wavelength)) * 1e3:g}" if wavelength < 900 else f"{1e3 * wavelength:g}"
 
 
-def _levels(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "Roughness of rail and wheel",
+    Of(schema.SURFACE_BAND, "wavelength"),
+    panels.products(PRODUCT),
+    Of(schema.ROUGHNESS_LEVEL, "{part}"),
+)
+def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Roughness levels per one-third octave of wavelength, long waves on the left."""
     parts = lines.of(schema.ROUGHNESS_LEVEL)
     lowest = max(np.nanmax(series.values) for series in parts) - SPAN
@@ -41,7 +49,18 @@ def _levels(tree: DataTree, lines: Lines) -> list[Panel]:
     along = panels.band_axis(np.sort(wavelength), "wavelength / mm", _millimetres)
     along = panels.long_waves_left(along, f"frequency v/λ, at v = {speed or 0.0:.3g} m/s", speed)
     doubtful = panels.doubtful_boxes(wavelength, data.doubtful(tree, PRODUCT)[kept])
-    return [Panel(along, axis, (*doubtful, *_contact(tree, wavelength), *drawn), height=4.2)]
+    yield Panel(along, axis, (*doubtful, *_contact(tree, wavelength), *drawn), height=4.2)
+    yield (
+        "Roughness levels per one-third octave of wavelength, re 1 µm, of the textures that were rolled, "
+        "before any contact filter."
+    )
+    if any(series.name == "combined" for series in parts):
+        yield "Combined: rail and wheel as they meet in the contact."
+    yield (
+        "Left out: bands that the texture does not hold, and levels more than "
+        f"{SPAN:.0f} dB below the highest."
+    )
+    yield panels.shaded_words(tree, PRODUCT).replace("time B T", "length B T")
 
 
 def _contact(tree: DataTree, wavelength: Numbers) -> list[Mark]:
@@ -51,24 +70,3 @@ def _contact(tree: DataTree, wavelength: Numbers) -> list[Mark]:
         return []
     words = f"length of the contact, 2a = {data.engineering(length, 'm')}"
     return [Rules(np.array([length]), colour=INK), Note(words, length, 0.97, y_share=True, align="right")]
-
-
-def _caption(tree: DataTree) -> str:
-    parts = [series.name for series in Of(schema.ROUGHNESS_LEVEL, "{part}")(tree)]
-    combined = " Combined: rail and wheel as they meet in the contact." if "combined" in parts else ""
-    return (
-        "Roughness levels per one-third octave of wavelength, re 1 µm, of the textures that were rolled, "
-        f"before any contact filter.{combined} Left out: bands that the texture "
-        f"does not hold, and levels more than {SPAN:.0f} dB below the highest."
-        + panels.shaded_words(tree, PRODUCT).replace("time B T", "length B T")
-    )
-
-
-ROUGHNESS = Figure(
-    "roughness",
-    "Roughness of rail and wheel",
-    Of(schema.SURFACE_BAND, "wavelength"),
-    (panels.products(PRODUCT), Of(schema.ROUGHNESS_LEVEL, "{part}")),
-    _levels,
-    _caption,
-)

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from asperity.reporting import data
 from asperity.reporting.chart import BLUE, GRID, INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Panel, Shape
-from asperity.reporting.figure import Figure, Lines, Series
+from asperity.reporting.figure import Lines, Series, figure
 from asperity.scenes.figures.track import sleepers_between
 from asperity.scenes.schema import ROLLING_POINT, ROLLING_SENSOR
 from asperity.schema import contact, rolling
@@ -67,10 +67,6 @@ def _columns(tree: DataTree) -> Iterator[Series]:
 
 def _lengths(lines: Lines) -> Lengths:
     return {series.name: float(series.values[0]) for series in lines.lines}
-
-
-def _draw(tree: DataTree, lines: Lines) -> list[Panel]:
-    return [_side(tree, _lengths(lines)), *_patch(_lengths(lines))]
 
 
 def _beginning(of: Lengths, word: str) -> list[float]:
@@ -156,8 +152,12 @@ def _patch(of: Lengths) -> list[Panel]:
     return [_view(x, y, marks, "the contact from above", beside=True)]
 
 
-def _words(tree: DataTree) -> str:
-    of, speed = _lengths(SCENE.collect(tree)), data.number(tree, rolling.SPEED)
+@figure("The scene", None, _columns)
+def scene(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """What rolls over what, from the side, and the contact from above."""
+    of, speed = _lengths(lines), data.number(tree, rolling.SPEED)
+    yield _side(tree, of)
+    yield from _patch(of)
     count, radius = len(_beginning(of, "contact")) or 1, _radius(of)
     contacts = "One contact" if count == 1 else f"{count} contacts"
     told = f"{contacts}, rolled from {of['record begins at x']:.4g} m to {of['record ends at x']:.4g} m (red)"
@@ -171,13 +171,14 @@ def _words(tree: DataTree) -> str:
         told += f"; the beam is {data.case_words(tree, 'beam.support')}"
     if "track sleeper spacing" in of:
         told += "; dashed: what has no shape in the case"
+    yield f"{told}."
     if (semi_axes := _semi_axes(of)) is None:
-        return f"{told}."
+        return
     along, across = (data.engineering(2 * side, "m") for side in semi_axes)
     window = of.get("window along")
     inside = f", inside the window of {data.engineering(window, 'm')} that is solved" if window else ""
     patch = f"the patch of smooth bodies under the load, {along} along and {across} across{inside}"
-    return f"{told}. From above: {patch}."
+    yield f"From above: {patch}."
 
 
 # --- what scenes are drawn of
@@ -205,6 +206,3 @@ def _arrow(left: float, right: float, y: float) -> list[Mark]:
     head = HEAD * (right - left) * np.array([1, 0, 1])
     shaft = Line(np.array([left, right]), np.array([y, y]), colour=INK, width=1.0)
     return [shaft, Line(right - head, y + head * np.array([0.5, 0, -0.5]), colour=INK, width=1.0)]
-
-
-SCENE = Figure("scene", "The scene", None, (_columns,), _draw, _words, (rolling.POSITION,))

@@ -7,7 +7,7 @@ from xarray import DataTree
 
 from asperity.reporting import data, headline, panels
 from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Panel, Rules
-from asperity.reporting.figure import Figure, Lines, Of, field
+from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.reporting.texture_figures import map_panel
 from asperity.scenes import schema
@@ -18,10 +18,17 @@ from asperity.schema import rolling, spectra
 FORCE = schema.LATERAL_FORCE_LEVEL
 
 
-def _force(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure(
+    "Lateral contact force",
+    Of(schema.SIDEWAYS_BAND, "band centre"),
+    Of(FORCE, "{law}"),
+    Of(spectra.FORCE_LEVEL, "vertical, {law}"),
+    Of(schema.VERTICAL_FORCE_CHANGE),
+)
+def lateral_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Lateral force of each law per one-third octave, the vertical one of the main law, and friction."""
     lateral = panels.styled(tree, lines.at, lines.of(FORCE), markers=True)
-    main = data.laws(tree, FORCE)[0]
+    main = data.main_law(tree, FORCE)
     vertical = [
         Line(lines.at, series.values, f"vertical, {main}", MUTED, (6, 1.5), 1.2)
         for series in lines.of(spectra.FORCE_LEVEL, law=main)
@@ -35,29 +42,52 @@ def _force(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     shades = panels.doubtful_boxes(lines.at, data.doubtful(tree, spectra.BAND_TIME_PRODUCT))
     axis = panels.levels_axis("contact force level / dB re 1 N", every)
     yield Panel(panels.band_axis(lines.at), axis, (*shades, *marks), height=4.4)
-
-
-def _force_caption(tree: DataTree) -> str:
-    facts = schema.CONTACT_PLACE, schema.RAIL_CONTACT_PLACE, schema.STICK_STIFFNESS
-    place, head, stiffness = (data.number(tree, fact) for fact in facts)
-    told = ""
-    if place is not None and stiffness is not None:
-        own = "" if head in (None, place) else f" of the tread, and {1e3 * head:.3g} mm off that of the head"
-        told = (
-            f" The contact is {1e3 * place:.3g} mm off the middle{own}, positive towards the field side, and "
-            f"as stiff as {data.engineering(stiffness, 'N/m')} sideways (Mindlin)."
-        )
-    change = data.values(tree, schema.VERTICAL_FORCE_CHANGE)
+    (change,) = (series.values for series in lines.of(schema.VERTICAL_FORCE_CHANGE))
     most = change[np.argmax(np.abs(change))]
-    return (
+    yield (
         "The vertical force moves wheel and rail sideways, by as much as both differ at the contact; the "
         "lateral force that keeps them together in stick follows by frequency, linear. What it does to the "
         f"vertical force is left out: by linear theory {data.signed(most)} dB at most in these bands."
-        f"{told}{panels.shaded_words(tree)}"
     )
+    facts = schema.CONTACT_PLACE, schema.RAIL_CONTACT_PLACE, schema.STICK_STIFFNESS
+    place, head, stiffness = (data.number(tree, fact) for fact in facts)
+    if place is not None and stiffness is not None:
+        own = "" if head in (None, place) else f" of the tread, and {1e3 * head:.3g} mm off that of the head"
+        yield (
+            f"The contact is {1e3 * place:.3g} mm off the middle{own}, positive towards the field side, and "
+            f"as stiff as {data.engineering(stiffness, 'N/m')} sideways (Mindlin)."
+        )
+    yield panels.shaded_words(tree)
 
 
-def _answers(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure("Spectrum of the lateral contact force", Of(spectra.FREQUENCY), Of(schema.LATERAL_FORCE_PSD, "{law}"))
+def lateral_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Spectrum of the force of each law."""
+    yield panels.level_spectrum(tree, lines, "PSD of the lateral force / dB re 1 N²/Hz")
+    yield f"One-sided power spectral density, {panels.DRAWN}."
+
+
+@figure(
+    "Receptances and decay sideways",
+    Of(schema.SIDEWAYS_FREQUENCY),
+    Of(schema.RAIL_LATERAL_RECEPTANCE, "", "rail, sideways", (VERMILLION, (), 1.6)),
+    *(
+        Of(entry, "", label, look, optional=True)
+        for entry, label, look in (
+            (schema.RAIL_CROSS_RECEPTANCE, "rail, by a vertical force", (VERMILLION, (1.5, 1.5))),
+            (schema.WHEEL_LATERAL_RECEPTANCE, "wheel, axial", (BLUE, (), 1.6)),
+            (schema.WHEEL_CROSS_RECEPTANCE, "wheel, by a vertical force", (BLUE, (1.5, 1.5))),
+            (schema.LATERAL_DECAY_RATE, "rail, sideways", (VERMILLION, (), 1.6)),
+        )
+    ),
+    over_bands(
+        schema.MEASURED_LATERAL_DECAY_RATE,
+        schema.LATERAL_DECAY_RATE,
+        (INK, (), 2.0),
+        frequency=schema.SIDEWAYS_FREQUENCY,
+    ),
+)
+def lateral_receptance(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Receptances of rail and wheel sideways, and below them the decay along the rail."""
     along = panels.frequency_axis(float(lines.at[0]), float(lines.at[-1]))
     sizes = [series for series in lines.lines if series.units == "m/N" and np.any(series.values > 0)]
@@ -68,56 +98,19 @@ def _answers(tree: DataTree, lines: Lines) -> Iterator[Panel]:
         rates = panels.styled(tree, lines.at, found)
         axis = panels.log_axis("decay rate / (dB/m)", [line.y for line in rates], lowest=0.01)
         yield Panel(along, axis, tuple(rates), height=2.6)
-
-
-SIDEWAYS = (
-    Figure(
-        "lateral_force",
-        "Lateral contact force",
-        Of(schema.SIDEWAYS_BAND, "band centre"),
-        (Of(FORCE, "{law}"), Of(spectra.FORCE_LEVEL, "vertical, {law}"), Of(schema.VERTICAL_FORCE_CHANGE)),
-        _force,
-        _force_caption,
-    ),
-    Figure(
-        "lateral_spectrum",
-        "Spectrum of the lateral contact force",
-        Of(spectra.FREQUENCY),
-        (Of(schema.LATERAL_FORCE_PSD, "{law}"),),
-        panels.draw_spectrum("PSD of the lateral force / dB re 1 N²/Hz"),
-        f"One-sided power spectral density, {panels.DRAWN}.",
-    ),
-    Figure(
-        "lateral_receptance",
-        "Receptances and decay sideways",
-        Of(schema.SIDEWAYS_FREQUENCY),
-        (
-            Of(schema.RAIL_LATERAL_RECEPTANCE, "", "rail, sideways", (VERMILLION, (), 1.6)),
-            Of(schema.RAIL_CROSS_RECEPTANCE, "", "rail, by a vertical force", (VERMILLION, (1.5, 1.5))),
-            Of(schema.WHEEL_LATERAL_RECEPTANCE, "", "wheel, axial", (BLUE, (), 1.6)),
-            Of(schema.WHEEL_CROSS_RECEPTANCE, "", "wheel, by a vertical force", (BLUE, (1.5, 1.5))),
-            Of(schema.LATERAL_DECAY_RATE, "", "rail, sideways", (VERMILLION, (), 1.6)),
-            over_bands(
-                schema.MEASURED_LATERAL_DECAY_RATE,
-                schema.LATERAL_DECAY_RATE,
-                (INK, (), 2.0),
-                frequency=schema.SIDEWAYS_FREQUENCY,
-            ),
-        ),
-        _answers,
+    yield (
         "Displacement per force, both at the contact, of the rail at mid-span and of the wheel as it turns; "
         "dotted: sideways per vertical force. Below: the least decaying of the three waves in which the rail "
-        "bends sideways and twists.",
-        any_of=(schema.RAIL_LATERAL_RECEPTANCE,),
-    ),
-)
+        "bends sideways and twists."
+    )
 
 
-def sideways_table(tree: DataTree) -> ReportTable | None:
+SIDEWAYS = lateral_force, lateral_spectrum, lateral_receptance
+
+
+def sideways_table(tree: DataTree) -> ReportTable:
     """Lateral force and slip, per law."""
-    laws = data.laws(tree, FORCE)
-    if not laws:
-        return None
+    laws = data.held_laws(tree, FORCE)
     columns = {
         "law": text_cells(laws),
         "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), "{:.3g}"),
@@ -136,7 +129,13 @@ def sideways_table(tree: DataTree) -> ReportTable | None:
 FRICTION, HEAT, GROWTH = schema.FRICTION_FORCE, schema.FRICTION_POWER, schema.GROWTH_RATE
 
 
-def _stick(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure(
+    "Where it sticks and where it slips",
+    Of(schema.CREEP_X, "x"),
+    field(schema.TRACTION, schema.CREEP_Y, "q"),
+    field(schema.SLIP_VELOCITY, schema.CREEP_Y, "v"),
+)
+def stick_and_slip(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Traction and slip velocity of a contact, from above."""
     y = data.values(tree, schema.CREEP_Y)
     traction, slip = (data.values(tree, entry) for entry in (schema.TRACTION, schema.SLIP_VELOCITY))
@@ -144,17 +143,25 @@ def _stick(tree: DataTree, lines: Lines) -> Iterator[Panel]:
         scale = (f"{name} / {unit}", 0.0, float(values.max()) or 1.0)
         shown = np.where((traction > 0.0) & (values > 0.0), values, np.nan)
         yield map_panel(lines.at, y, shown, scale, title=name, height=4.1, beside=name != "traction")
-
-
-def _full_slip(tree: DataTree) -> str:
-    """Say where full slip begins, by creepage and by load."""
-    scale, load = (data.number(tree, each) for each in (schema.FULL_SLIP_SCALE, schema.FULL_SLIP_LOAD))
-    begins = "is not reached" if scale is None else f"begins at {scale:.3g} times these creepages"
+    yield (
+        "The first sample, or smooth bodies, under the working load. What has traction and no slip "
+        "velocity sticks."
+    )
+    # where full slip begins, by creepage and by load
+    share, load = (data.number(tree, each) for each in (schema.FULL_SLIP_SCALE, schema.FULL_SLIP_LOAD))
+    begins = "is not reached" if share is None else f"begins at {share:.3g} times these creepages"
     under = "under any load of the run" if load is None else f"up to {data.engineering(load, 'N')}"
-    return f"Full slip {begins}, by smooth bodies under the working load; with them all slips {under}."
+    yield f"Full slip {begins}, by smooth bodies under the working load; with them all slips {under}."
 
 
-def _friction(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure(
+    "Friction force on the wheel",
+    Of(rolling.TIME),
+    Of(FRICTION, "{way}, {law}", "{law}"),
+    Of(HEAT, "heat, {law}", "{law}"),
+    rows=force.around_peak,
+)
+def friction_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Friction force along and to the field side, and heat, around the largest force of the main law."""
     time, unit = panels.time_axis(tree, lines.at)
     largest = max(float(np.abs(series.values).max()) for series in lines.of(FRICTION))
@@ -166,6 +173,10 @@ def _friction(tree: DataTree, lines: Lines) -> Iterator[Panel]:
             yield Panel(time, Axis(f"{way} / {symbol}"), tuple(drawn), height=2.4)
     drawn = panels.styled(tree, lines.at / unit, lines.of(HEAT), size=1e3)
     yield Panel(time, Axis("heat / kW", 0.0), tuple(drawn), height=2.0)
+    yield (
+        "Around the largest contact force of the main law, at the first contact. Quasi-steady: that of "
+        "smooth bodies in steady rolling under the contact force of the moment; zero without contact."
+    )
 
 
 def _growing(tree: DataTree) -> list[int]:
@@ -189,7 +200,14 @@ def squeal_sentence(tree: DataTree) -> str:
     return f"Squeal: yes, {len(growing)} of {modes} grow (linear stability); fastest {first}."
 
 
-def _squeal(tree: DataTree, lines: Lines) -> list[Panel]:
+@figure(
+    "Which modes squeal",
+    Of(schema.SQUEAL_FREQUENCY),
+    Of(GROWTH),
+    Of(schema.SQUEAL_DIAMETERS),
+    Of(schema.AXIAL_SHARE),
+)
+def squeal(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Growth rate of each motion over its frequency, named by its nodal diameters where it grows."""
     growth, growing = data.values(tree, GROWTH), _growing(tree)
     reach = 1.2 * max(float(growth[growing].max(initial=0.0)), 5.0)
@@ -201,56 +219,21 @@ def _squeal(tree: DataTree, lines: Lines) -> list[Panel]:
     named = {float(data.values(tree, schema.SQUEAL_DIAMETERS)[n]): n for n in reversed(growing)}
     notes = [Note(f" {count:.0f}", lines.at[n], growth[n]) for count, n in named.items()]
     along = panels.frequency_axis(float(np.nanmin(lines.at)) / 1.1, float(np.nanmax(lines.at)) * 1.1)
-    return [Panel(along, Axis("growth rate / (1/s)", -reach, reach), (panels.zero(), *points, *notes))]
-
-
-def _squeal_caption(tree: DataTree) -> str:
+    yield Panel(along, Axis("growth rate / (1/s)", -reach, reach), (panels.zero(), *points, *notes))
     damping, slope = (data.number(tree, fact) or 0.0 for fact in (schema.CREEP_DAMPING, schema.LOAD_SLOPE))
-    return (
+    yield (
         "Small motions of the wheel on the rail at mid-span, with nodal diameters where they grow; some "
         "decay faster than the axis shows. Linear, by quasi-steady friction in line with the springs of the "
         f"contact: it damps by {data.engineering(damping, 'N s/m')}, and follows the load by {slope:.3g}."
     )
 
 
-CREEP = (
-    Figure(
-        "stick_and_slip",
-        "Where it sticks and where it slips",
-        Of(schema.CREEP_X, "x"),
-        (field(schema.TRACTION, schema.CREEP_Y, "q"), field(schema.SLIP_VELOCITY, schema.CREEP_Y, "v")),
-        _stick,
-        lambda tree: (
-            "The first sample, or smooth bodies, under the working load. What has traction and no slip "
-            f"velocity sticks. {_full_slip(tree)}"
-        ),
-        (schema.TRACTION, schema.SLIP_VELOCITY, schema.CREEP_Y),
-    ),
-    Figure(
-        "friction_force",
-        "Friction force on the wheel",
-        Of(rolling.TIME),
-        (Of(FRICTION, "{way}, {law}", "{law}"), Of(HEAT, "heat, {law}", "{law}")),
-        _friction,
-        "Around the largest contact force of the main law, at the first contact. Quasi-steady: that of "
-        "smooth bodies in steady rolling under the contact force of the moment; zero without contact.",
-        rows=force.around_peak,
-    ),
-    Figure(
-        "squeal",
-        "Which modes squeal",
-        Of(schema.SQUEAL_FREQUENCY),
-        (Of(GROWTH), Of(schema.SQUEAL_DIAMETERS), Of(schema.AXIAL_SHARE)),
-        _squeal,
-        _squeal_caption,
-    ),
-)
+CREEP = stick_and_slip, friction_force, squeal
 
 
-def friction_table(tree: DataTree) -> ReportTable | None:
+def friction_table(tree: DataTree) -> ReportTable:
     """Stick, forces and heat of each contact under the working load, then by each law as means over time."""
-    if not (laws := data.laws(tree, schema.MEAN_FRICTION_POWER)):
-        return None
+    laws = data.held_laws(tree, schema.MEAN_FRICTION_POWER)
     area, full = (schema.STICK_AREA, schema.SLIP_AREA), data.values(tree, schema.FULL_SLIP_SHARE)
     power = schema.SPIN_MOMENT, schema.SAMPLE_HEAT, schema.MEAN_FRICTION_POWER
     stick, slip, moment, heat, mean_heat = (data.values(tree, entry) for entry in (*area, *power))

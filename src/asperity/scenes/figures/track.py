@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, MUTED, VERMILLION, Axis, Mark, Note, Numbers, Panel, Rules
-from asperity.reporting.figure import Figure, Lines, Of
+from asperity.reporting.figure import Lines, Of, figure
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
 from asperity.schema import rolling
@@ -91,21 +91,16 @@ def _short(at: Numbers) -> Rules:
 _MIDSPAN = "rail, mid-span", (chart.BLUE,)
 _SUPPORT = "rail, over a sleeper", (VERMILLION, (6, 1.5))
 RECEPTANCES = (
-    Of(schema.RECEPTANCE_MIDSPAN, "", *_MIDSPAN),
-    Of(schema.RECEPTANCE_MIDSPAN_PHASE, "receptance_midspan phase", *_MIDSPAN),
-    Of(schema.RECEPTANCE_SUPPORT, "", *_SUPPORT),
-    Of(schema.RECEPTANCE_SUPPORT_PHASE, "receptance_support phase", *_SUPPORT),
+    Of(schema.RECEPTANCE_MIDSPAN, "", *_MIDSPAN, optional=True),
+    Of(schema.RECEPTANCE_MIDSPAN_PHASE, "receptance_midspan phase", *_MIDSPAN, optional=True),
+    Of(schema.RECEPTANCE_SUPPORT, "", *_SUPPORT, optional=True),
+    Of(schema.RECEPTANCE_SUPPORT_PHASE, "receptance_support phase", *_SUPPORT, optional=True),
     Of(schema.RECEPTANCE_ALL_BAYS, "", "rail, mid-spans of all bays, rms", (INK, (), 1.6), optional=True),
     Of(schema.RECEPTANCE_EQUAL_BAYS, "", "rail, mid-span of equal bays", (MUTED, (3, 1.5)), optional=True),
-    Of(schema.WHEEL_RECEPTANCE, "", "wheel", (chart.GREEN, (6, 1.5, 1.5, 1.5))),
-    Of(schema.CONTACT_RECEPTANCE, "", "contact spring", (MUTED, (1.5, 1.5))),
+    Of(schema.WHEEL_RECEPTANCE, "", "wheel", (chart.GREEN, (6, 1.5, 1.5, 1.5)), optional=True),
+    Of(schema.CONTACT_RECEPTANCE, "", "contact spring", (MUTED, (1.5, 1.5)), optional=True),
 )
 _MOBILITY = over_bands(schema.MEASURED_MOBILITY, schema.RECEPTANCE_MIDSPAN)
-
-
-_LATERAL = over_bands(
-    schema.MEASURED_LATERAL_DECAY_RATE, schema.DECAY_RATE, (MUTED, (), 1.4), f"{MEASURED}, lateral"
-)
 
 
 def _along(lines: Lines) -> tuple[Axis, tuple[float, float]]:
@@ -114,10 +109,13 @@ def _along(lines: Lines) -> tuple[Axis, tuple[float, float]]:
     return panels.frequency_axis(*ends), ends
 
 
-def _receptance(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure("Receptance of rail, wheel and contact", Of(schema.TRACK_FREQUENCY), *RECEPTANCES, _MOBILITY)
+def receptance(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Magnitude of the receptances, and below it their phase."""
     along, ends = _along(lines)
     magnitudes = panels.styled(tree, lines.at, [s for s in lines.lines if s.units != "rad"])
+    if not magnitudes:
+        return
     size = Axis("|receptance| / (m/N)", log=True)
     yield Panel(along, size, (*natural_rules(tree, *ends), *magnitudes), height=4.0)
     if phases := [s for s in lines.lines if s.units == "rad"]:
@@ -125,77 +123,53 @@ def _receptance(tree: DataTree, lines: Lines) -> Iterator[Panel]:
         turns = tuple((degrees, f"{degrees:g}") for degrees in (-180.0, -90.0, 0.0, 90.0, 180.0))
         phase, rules = Axis("phase / °", -190.0, 190.0, ticks=turns), natural_rules(tree, *ends, named=False)
         yield Panel(along, phase, (*rules, *panels.styled(tree, lines.at, turned)), height=2.2)
-
-
-def _receptance_caption(tree: DataTree) -> str:
+    yield (
+        "Displacement per force at the point of the force, both positive downwards, time factor e^{+iωt}: "
+        "a spring has the phase 0°, a mass ±180°, a damper −90°. Dotted lines: frequencies of the resting "
+        "track."
+    )
     facts = []
     if speed := data.number(tree, schema.CRITICAL_SPEED):
         facts.append(f"critical speed {data.plain(speed)} m/s")
     if deflection := data.number(tree, schema.STATIC_DEFLECTION):
         facts.append(f"static deflection of the rail under the wheel {data.engineering(deflection, 'm')}")
-    stated = f" Of this track: {'; '.join(facts)}." if facts else ""
-    return (
-        "Displacement per force at the point of the force, both positive downwards, time factor e^{+iωt}: "
-        "a spring has the phase 0°, a mass ±180°, a damper −90°. Dotted lines: frequencies of the resting "
-        f"track.{stated}{_first_bay(tree)}"
-    )
+    if facts:
+        yield f"Of this track: {'; '.join(facts)}."
+    if data.present(tree, schema.BAY):
+        count = len(data.values(tree, schema.BAY))
+        yield f"Of the first of {count} bays that differ, and of the sleeper with which it begins."
 
 
-def _first_bay(tree: DataTree) -> str:
-    """Say which bay is shown, where they differ."""
-    if not data.present(tree, schema.BAY):
-        return ""
-    count = len(data.values(tree, schema.BAY))
-    return f" Of the first of {count} bays that differ, and of the sleeper with which it begins."
+_RATES = (
+    Of(schema.DECAY_RATE, "", "eigenvalue", (chart.BLUE, (), 1.6), optional=True),
+    Of(
+        schema.DECAY_RATE_EN15461, "", "EN 15461, sum over distances", (VERMILLION, (6, 1.5), 1.2),
+        optional=True,
+    ),
+    Of(schema.DECAY_RATE_LIMIT, "", "lower limit, ISO 3095", (INK, (4, 2), 1.4), optional=True),
+    over_bands(schema.MEASURED_DECAY_RATE, schema.DECAY_RATE),
+    over_bands(
+        schema.MEASURED_LATERAL_DECAY_RATE, schema.DECAY_RATE, (MUTED, (), 1.4), f"{MEASURED}, lateral"
+    ),
+)  # fmt: skip
 
 
-def _decay(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure("Decay rate of the track", Of(schema.TRACK_FREQUENCY), *_RATES)
+def decay_rate(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Decay rate along the rail against frequency, with the limit that tests of vehicles ask for."""
+    if not lines.of(schema.DECAY_RATE, schema.DECAY_RATE_EN15461):
+        return
     positive = [replace(s, values=np.where(s.values > 0, s.values, np.nan)) for s in lines.lines]
     rates = panels.styled(tree, lines.at, positive)
     along, ends = _along(lines)
     axis = panels.log_axis("decay rate / (dB/m)", [line.y for line in rates], lowest=0.01)
     yield Panel(along, axis, (*natural_rules(tree, *ends), *rates), height=3.9)
-
-
-def _decay_caption(tree: DataTree) -> str:
-    limit = (
-        " Dashed: the lowest decay that ISO 3095 allows the track of a vehicle's noise test, vertical."
-        if data.present(tree, schema.DECAY_RATE_LIMIT)
-        else ""
-    )
-    return (
+    yield (
         "Decay of the vertical bending wave along the rail. Eigenvalue: the least decaying wave of the "
-        f"periodic track, −20 lg|λ|/L; EN 15461: from the responses at the distances of the standard.{limit}"
+        "periodic track, −20 lg|λ|/L; EN 15461: from the responses at the distances of the standard."
     )
-
-
-TRACK = (
-    Figure(
-        "receptance",
-        "Receptance of rail, wheel and contact",
-        Of(schema.TRACK_FREQUENCY),
-        (*RECEPTANCES, _MOBILITY),
-        _receptance,
-        _receptance_caption,
-        any_of=tuple(each.entry for each in RECEPTANCES if each.entry.units != "rad"),
-    ),
-    Figure(
-        "decay_rate",
-        "Decay rate of the track",
-        Of(schema.TRACK_FREQUENCY),
-        (
-            Of(schema.DECAY_RATE, "", "eigenvalue", (chart.BLUE, (), 1.6)),
-            Of(schema.DECAY_RATE_EN15461, "", "EN 15461, sum over distances", (VERMILLION, (6, 1.5), 1.2)),
-            Of(schema.DECAY_RATE_LIMIT, "", "lower limit, ISO 3095", (INK, (4, 2), 1.4)),
-            over_bands(schema.MEASURED_DECAY_RATE, schema.DECAY_RATE),
-            _LATERAL,
-        ),
-        _decay,
-        _decay_caption,
-        any_of=(schema.DECAY_RATE, schema.DECAY_RATE_EN15461),
-    ),
-)
+    if lines.of(schema.DECAY_RATE_LIMIT):
+        yield "Dashed: the lowest decay that ISO 3095 allows the track of a vehicle's noise test, vertical."
 
 
 # --- loss factors: what stands for them in time, and what that does to the contact force
@@ -203,39 +177,26 @@ TRACK = (
 _FORCE = schema.LOSS_FACTOR_FORCE_ERROR
 
 
-def _loss(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+@figure("Loss factors in time", Of(schema.TRACK_BAND, "band centre"), Of(_FORCE, "contact force, error"))
+def loss_factors(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Errors of the force per one-third octave."""
     (error,) = (s.values for s in lines.of(_FORCE))
     edges = lines.at / panels.EDGE, lines.at * panels.EDGE, np.fmin(error, 0.0), np.fmax(error, 0.0)
     boxes = chart.Boxes(*edges, "contact force", chart.BLUE, hatch="/")
     zero = panels.zero(colour=INK, width=0.8)
     yield Panel(panels.band_axis(lines.at), Axis("error / dB"), (boxes, zero), height=2.4)
-
-
-def _loss_caption(tree: DataTree) -> str:
-    rest, nominal = (
-        data.number(tree, a) for a in (schema.STATIC_DEFLECTION_IN_TIME, schema.STATIC_DEFLECTION)
-    )
-    softer = ""
-    if rest and nominal:
-        softer = (
-            " At rest the track is softer: the wheel's load lowers the rail by "
-            f"{data.engineering(rest, 'm')}, by {data.engineering(nominal, 'm')} on the nominal stiffnesses."
-        )
-    return (
+    yield (
         "Nothing that answers after a force only has one stiffness and one loss factor at all frequencies, "
         "or any measured table: the stiffness grows where it dissipates. In time, springs and Maxwell "
         "elements stand for them, chosen for the contact force. Drawn: level of the linear contact force "
         "over that with constant loss factors, for a wheel at rest, mean over a bay. Receptances, decay "
-        f"rates and the linear contact in the frequency domain have constant loss factors.{softer}"
+        "rates and the linear contact in the frequency domain have constant loss factors."
     )
-
-
-LOSS_FACTORS = Figure(
-    "loss_factors",
-    "Loss factors in time",
-    Of(schema.TRACK_BAND, "band centre"),
-    (Of(_FORCE, "contact force, error"),),
-    _loss,
-    _loss_caption,
-)
+    rest, nominal = (
+        data.number(tree, a) for a in (schema.STATIC_DEFLECTION_IN_TIME, schema.STATIC_DEFLECTION)
+    )
+    if rest and nominal:
+        yield (
+            "At rest the track is softer: the wheel's load lowers the rail by "
+            f"{data.engineering(rest, 'm')}, by {data.engineering(nominal, 'm')} on the nominal stiffnesses."
+        )
