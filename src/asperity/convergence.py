@@ -10,7 +10,7 @@ import xarray
 from xarray import DataTree
 
 from asperity.arguments import Array, NDArray
-from asperity.case.content import case_key, content, file_digest
+from asperity.case.form import case_key, content, file_digest
 from asperity.case.scene import Case
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress, counted

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from asperity.case.cases import as_case
-from asperity.case.content import content
+from asperity.case.form import content
 from asperity.running import prepare_case, run
 from asperity.scenarios import reducing
 from asperity.scenarios.laws import LawMaterials

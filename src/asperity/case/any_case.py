@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
 
 from asperity.arguments import nearest
-from asperity.case.content import content, described_value, holds_memory
-from asperity.case.form import Section
+from asperity.case.form import Section, content, described_value, holds_memory
 from asperity.case.toml import toml_text
 from asperity.errors import InputError
 from asperity.parameters import GIVEN, Key, Number, Origin, Problems, Quantity, Text, key, name_of_numbers
@@ -79,20 +78,18 @@ def in_words(value: object, key: Key) -> str:
     """Write a value of a key for people, in the unit of its default or its example: ``"300 MN/m"``."""
     if holds_memory(value):
         return described_value(value)
-    if isinstance(value, tuple):
-        return ", ".join(in_words(item, key) for item in value)
-    if isinstance(value, bool):
-        return "yes" if value else "no"
     if isinstance(value, Path):
         return value.name
-    if isinstance(value, Material):
-        told = _material(value, exactly=False)
-        return (
-            told
-            if isinstance(told, str)
-            else ", ".join(f"{n} {v}" for n, v in told.items() if n != "citation")
-        )
-    return _quantity(value, key, exactly=False) if isinstance(value, float) else str(value)
+    return _spoken(value_in_toml(value, key, exactly=False))
+
+
+def _spoken(value: object) -> str:
+    """A value of a case file as people read it."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {each}" for name, each in value.items() if name != "citation")
+    return ", ".join(map(_spoken, value)) if isinstance(value, list) else str(value)
 
 
 def in_toml(section: Section, in_memory: Callable[[str, Any], Any], title: str = "") -> dict[str, Any]:
@@ -111,29 +108,24 @@ def in_toml(section: Section, in_memory: Callable[[str, Any], Any], title: str =
     return keys
 
 
-def value_in_toml(value: Any, key: Key) -> Any:
-    """Write a value of a key as it would stand in a case file."""
+def value_in_toml(value: Any, key: Key, *, exactly: bool = True) -> Any:
+    """Write a value of a key as it would stand in a case file, to the last bit or shorter."""
     if isinstance(value, tuple):
-        return [value_in_toml(item, key) for item in value]
+        return [value_in_toml(item, key, exactly=exactly) for item in value]
     if isinstance(value, Material):
-        return _material(value, exactly=True)
+        return _material(value, exactly=exactly)
     if isinstance(value, Path):
         return str(value)
-    return _quantity(value, key, exactly=True) if isinstance(value, float) else value
+    if not isinstance(value, float) or not isinstance(key.one, Quantity):
+        return value
+    unit = _UNIT.search(str(key.written_example))
+    return written(value, key.one.dimension, unit[1] if unit else key.one.dimension, exactly=exactly)
 
 
 def refused(dotted: str, value: object) -> NoReturn:
     """Refuse to write a case of something that stands in memory."""
     remedy = 'Save it first, as np.save("map.npy", heights), and name the file in the case.'
     raise InputError(dotted, described_value(value), "a file, where a case shall be written", remedy)
-
-
-def _quantity(value: float, key: Key, *, exactly: bool) -> Any:
-    """Write a number with its unit, if it has one."""
-    if not isinstance(key.one, Quantity):
-        return value if exactly else str(value)
-    unit = _UNIT.search(str(key.written_example))
-    return written(value, key.one.dimension, unit[1] if unit else key.one.dimension, exactly=exactly)
 
 
 def _material(value: Material, *, exactly: bool) -> str | dict[str, Any]:
@@ -283,22 +275,19 @@ class AnyCase(Section):
             ``note`` (what the key is).
         """
         listed = []
-        repeated = (name for name in self.section_names if name not in self.sections())
-        further = [each for name in repeated for each in entries(type(getattr(self, name)), name)]
-        for entry in (*entries(type(self)), *further):
-            if entry.section not in ("", *self.section_names):
-                continue
-            section: Section = getattr(self, entry.section) if entry.section else self
-            if not section.is_active(entry.name):
-                continue
-            value, usual = getattr(section, entry.name), section.default_of(entry.name)
-            default = entry.key.otherwise if usual is None else in_words(usual, entry.key)
-            same = value is None or content(value) == content(usual)
-            if same and entry.name not in self.SHOWN.get(entry.section, (entry.name,)):
-                continue
-            if text := default if value is None else in_words(value, entry.key):
-                told = {"key": entry.dotted, "value": text, "default": default, "is_default": same}
-                listed.append(told | {"note": entry.key.meaning})
+        for title in ("", *self.section_names):
+            section: Section = getattr(self, title) if title else self
+            for name, own in section.keys.items():
+                if not section.is_active(name):
+                    continue
+                value, usual = getattr(section, name), section.default_of(name)
+                default = own.otherwise if usual is None else in_words(usual, own)
+                same = value is None or content(value) == content(usual)
+                if same and name not in self.SHOWN.get(title, (name,)):
+                    continue
+                if text := default if value is None else in_words(value, own):
+                    told = {"key": f"{title}.{name}".lstrip("."), "value": text, "default": default}
+                    listed.append(told | {"is_default": same, "note": own.meaning})
         return listed
 
 

@@ -16,8 +16,7 @@ from asperity.arguments import Array, require
 from asperity.case import toml
 from asperity.case.any_case import AnyCase
 from asperity.case.body import DAMPING
-from asperity.case.content import Numbers, name_of
-from asperity.case.form import Section, section
+from asperity.case.form import Numbers, Section, name_of, section
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.surface import INDEX
 from asperity.case.tables import Column, TableFile, TableSource, read_table

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from asperity.arguments import Array, NDArray
-from asperity.case.content import name_of
+from asperity.case.form import name_of
 from asperity.case.tables import Column, TableSource, read_table, refuse_disorder
 from asperity.errors import InputError
 from asperity.spectra import a_weighting

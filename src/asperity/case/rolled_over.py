@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 from asperity.arguments import Array
 from asperity.case import tables
 from asperity.case.body import INERTIA, MASS, PROFILE
-from asperity.case.content import Numbers, name_of
-from asperity.case.form import Section
+from asperity.case.form import Numbers, Section, name_of
 from asperity.case.measured import read_decay_rates, read_mobility
 from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
 from asperity.errors import InputError, PhysicsWarning

@@ -9,8 +9,8 @@ from typing import Any, ClassVar, TypeVar, cast
 import numpy as np
 
 from asperity.arguments import FORMS, Array, require, shown
-from asperity.case import content, tables, toml
-from asperity.case.form import Section
+from asperity.case import tables, toml
+from asperity.case.form import Section, holds_memory
 from asperity.errors import InputError
 from asperity.parameters import (
     Choice,
@@ -333,7 +333,7 @@ def surfaces_from(
 
 
 def _foreign(section: Section, name: str, keys: tuple[str, ...]) -> Iterator[InputError]:
-    if not content.holds_memory(getattr(section, name)):
+    if not holds_memory(getattr(section, name)):
         return
     for key_of_file in keys:
         if (value := getattr(section, key_of_file)) is not None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from asperity.arguments import Array, NDArray, shown
-from asperity.case.content import name_of
+from asperity.case.form import name_of
 from asperity.errors import InputError
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.spectra import energy_sum

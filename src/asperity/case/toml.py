@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from asperity import text_files
-from asperity.case.content import described_value
+from asperity.case.form import described_value
 from asperity.errors import InputError
 from asperity.parameters import BACKSLASH
 

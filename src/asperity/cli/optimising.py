@@ -9,7 +9,7 @@ import numpy as np
 
 from asperity import files
 from asperity.case import any_case, toml
-from asperity.case.content import content, file_digest
+from asperity.case.form import content, file_digest
 from asperity.cli.commands import taken_folder
 from asperity.errors import InputError
 from asperity.laws import spec_of

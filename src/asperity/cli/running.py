@@ -17,7 +17,7 @@ from asperity import files
 from asperity.arguments import no_file
 from asperity.case.any_case import AnyCase, ReadyCase
 from asperity.case.cases import of_bodies
-from asperity.case.content import content, file_digest
+from asperity.case.form import content, file_digest
 from asperity.cli.commands import taken_folder
 from asperity.errors import Grade, InputError
 from asperity.progress import COMPILATION, duration, progress_bar

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case import cases, content, scene
+from asperity.case import cases, form, scene
 from asperity.errors import InputError, PhysicsWarning
 from asperity.optimising.allocation import Limits, Trial, rms_of, search
 from asperity.optimising.definition import (
@@ -218,7 +218,7 @@ def _rolled(base: scene.Case, aim: Aim, measure: Measure, bands: Bands, progress
             tree = result.computed_result(prepare(case), progress, [])
         return {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
 
-    kept = made(Store(), content.case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)
+    kept = made(Store(), form.case_key("texture", FORMAT, case, aim.quantity, aim.law), rolled)
     frequency, density = kept["frequency"], kept["density"]
     energies = np.maximum(band_energies(frequency, density, *bands.edges(case.speed)), 0.0)
     whole = float(density.sum() * (frequency[1] - frequency[0]))

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 
 from asperity.arguments import Array, require
-from asperity.case import body, content
+from asperity.case import body, form
 from asperity.case.sideways import complete
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
@@ -112,7 +112,7 @@ def _held(wavelength: Array, levels: Array, grid: Grid, name: str, *, closed: bo
 def spectrum_levels(spectrum: str | TableSource) -> tuple[Array, Array, str]:
     """Band levels of a texture, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
     if not isinstance(spectrum, str):
-        return *read_levels(spectrum), content.name_of(spectrum)
+        return *read_levels(spectrum), form.name_of(spectrum)
     if spectrum in cnossos.WHEEL_ROUGHNESS:
         return *cnossos.wheel_roughness(spectrum), spectrum
     return *cnossos.rail_roughness(spectrum), spectrum
@@ -208,7 +208,7 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
     complete(measured, "surface.line")
     spacing, rows = grid.spacing, grid.rows
     line = level(resample(level(measured), spacing)).heights
-    origin = f"measured, {content.name_of(surface.line)}"  # type: ignore[arg-type]
+    origin = f"measured, {form.name_of(surface.line)}"  # type: ignore[arg-type]
     how = surface.continuation
     if how in ("mirror", "repeat") and line.size < rows:
         fade = min(least, line.size) // 2 if how == "repeat" else 0
@@ -300,7 +300,7 @@ def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Pr
     raw = (measured,) if isinstance(measured, Profile) else measured_lines.lines_of(measured)
     done, how = measured_lines.process(raw, section.processing)
     count = f"{len(raw)} line{'s' if len(raw) > 1 else ''} measured"
-    words = f"{content.name_of(section.line)}, {count}, {how}"  # type: ignore[arg-type]
+    words = f"{form.name_of(section.line)}, {count}, {how}"  # type: ignore[arg-type]
     return [level(line, degree) for line in done], words
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.content import name_of
+from asperity.case.form import name_of
 from asperity.case.scene import SETTLED, Case
 from asperity.case.sections import ContactKeys
 from asperity.case.surface import Surface

@@ -9,7 +9,7 @@ import numpy as np
 
 from asperity import __version__
 from asperity.arguments import Array, NDArray
-from asperity.case.content import content, file_digest
+from asperity.case.form import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
 from asperity.laws import Law, Need, needs_of, spec_of

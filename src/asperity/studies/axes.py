@@ -11,8 +11,7 @@ from xarray import Variable
 
 from asperity.arguments import require, shown
 from asperity.case.any_case import AnyCase, CaseKey, entry_of, value_in_toml
-from asperity.case.content import content, described_value, holds_memory
-from asperity.case.form import Section
+from asperity.case.form import Section, content, described_value, holds_memory
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin, Text, key, keys_of
 from asperity.reference.materials import Material

@@ -15,7 +15,7 @@ import numpy as np
 from asperity.arguments import require, shown
 from asperity.case import cases, chosen_lengths, form, scene, toml
 from asperity.case.any_case import AnyCase, entry_of
-from asperity.case.content import case_key, content, file_digest
+from asperity.case.form import case_key, content, file_digest
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin
 from asperity.studies.axes import VARIANT, SweptAxis, VariantAxis, as_in_toml, flat, variant_axis, written_out

@@ -11,7 +11,7 @@ import xarray
 
 from asperity import __version__
 from asperity.arguments import NDArray, nearest, shown
-from asperity.case.content import described_value
+from asperity.case.form import described_value
 from asperity.errors import InputError
 from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
