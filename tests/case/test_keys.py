@@ -14,6 +14,7 @@ from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class
 from asperity.errors import CaseError
 from asperity.parameters import ListOf, Number, Quantity
+from asperity.structures.track_parameters import LAYERS
 from asperity.units import quantity
 
 SOURCE = Path(asperity.__file__).parent
@@ -129,6 +130,7 @@ def asked_for(text):
 def test_every_key_is_asked_for():
     """One that nothing reads would be shown and ignored."""
     asked = {name for path in MODULES for name in asked_for(path.read_text(encoding="utf-8"))}
+    asked |= {f"{layer}_{what}" for layer in LAYERS for what in ("stiffness", "damping", "loss_factor")}
     known = {entry.dotted: entry.name for kind in PRESETS for entry in entries(case_class(kind))}
     assert len(known) > 150
     assert {key for key, name in known.items() if name not in asked} == set()
