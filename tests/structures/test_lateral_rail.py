@@ -1,4 +1,4 @@
-"""The rail sideways: against superposed supports, the vertical rail, beams on elastic layers, and energy."""
+"""The rail sideways: against superposed supports, the vertical rail, elastic layers; with a wheel on it."""
 
 import math
 from dataclasses import replace
@@ -8,7 +8,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity import Track
-from asperity.structures.lateral_rail import LateralTrack
+from asperity.structures.lateral_rail import (
+    LateralTrack,
+    at_springs,
+    lateral_force,
+    vertical_change,
+    wheel_receptances,
+)
+from asperity.structures.wheel_modes import WheelModes
 from refusals import refusals
 
 UIC60 = Track.named("uic60")
@@ -132,7 +139,63 @@ def test_a_vertical_force_in_the_middle_does_not_move_the_rail_sideways():
     assert_allclose(off[1, 0], 0.01 * (twist[0, 1] + RAIL.head_height * twist[1, 1]), rtol=1e-12)
 
 
+# --- wheel and rail at a contact off the middle
+
+RUNG = np.array([90.0, 431.0, 1500.0, 2703.0])
+ACROSS = np.linspace(-0.06, 0.06, 13)
+RINGING = np.array([500.0, 1600.0, 2500.0, 3100.0])
+
+
+def plane_wheel(**changes):
+    """Modes of a plane web: radial ones are even across the tread, axial ones tilt it."""
+    even, tilt = np.ones(13), ACROSS / 0.46
+    radial = 0.06 * np.stack([tilt, even, tilt, even])
+    axial = 0.06 * np.stack([even, 0.0 * even, even, 0.0 * even])
+    numbers, none = np.array([0, 2, 3, 4]), np.full(4, 0.01)
+    fields = {"radial": radial, "axial": axial} | changes
+    return WheelModes(RINGING, np.full(4, 2e-4), numbers, ACROSS, disc=none, tread=none, **fields)
+
+
+def test_in_the_middle_of_a_plane_wheel_nothing_moves_sideways():
+    for place, tilted in ((0.0, False), (0.01, False), (0.0, True)):
+        changes = {"axial": np.full((4, 13), 0.03)} if tilted else {}
+        wheel = wheel_receptances(plane_wheel(**changes), 600.0, RUNG, place)
+        assert_allclose(wheel[0, 1], wheel[1, 0], rtol=1e-12)
+        answer = at_springs(wheel + RAIL.answers(2.0 * np.pi * RUNG, 0.1, 0.1, place), 1.1e9, 9e8)
+        moved = np.abs(lateral_force(answer))
+        assert np.all(moved > 1e-4 if place or tilted else moved == 0.0)
+    assert np.all(vertical_change(wheel_receptances(None, 600.0, RUNG, 0.023)) == 1.0)
+
+
+def test_axial_modes_ring_under_a_vertical_force_off_the_middle_only():
+    """At resonance of a mode with three nodal diameters: (φ_r(y) φ_a)/(2iζω₀²), none of it in the middle."""
+    modes, at = plane_wheel(), RINGING[[2]]
+    for place in (0.0, 0.01, -0.02):
+        cross = wheel_receptances(modes, 1e9, at, place)[1, 0]
+        expected = 0.06**2 * place / 0.46 / (4e-4j * (2.0 * np.pi * 2500.0) ** 2)
+        assert_allclose(cross, expected, rtol=2e-2, atol=1e-22)
+
+
+def test_the_lateral_force_satisfies_compatibility():
+    """Both forces at once; displacements of each body by itself differ by what the springs take up."""
+    place, k_n, k_t = 0.012, 1.1e9, 9e8
+    wheel = wheel_receptances(plane_wheel(), 600.0, RUNG, place)
+    rail = RAIL.answers(2.0 * np.pi * RUNG, 0.1, 0.1, place)
+    whole = at_springs(wheel + rail, k_n, k_t)
+    forces = np.moveaxis(np.linalg.solve(np.moveaxis(whole, -1, 0), np.array([[1.0], [0.0]]))[..., 0], -1, 0)
+    assert_allclose(lateral_force(whole), forces[1] / forces[0], rtol=1e-12)
+    assert_allclose(vertical_change(whole), forces[0] * whole[0, 0], rtol=1e-12)
+    on_rail = np.einsum("abf,bf->af", rail, forces)
+    on_wheel = np.einsum("abf,bf->af", wheel, -forces)
+    assert_allclose(on_wheel[1] - on_rail[1], forces[1] / k_t, rtol=1e-9)  # the wheel drags the rail
+    assert_allclose(on_rail[0] - on_wheel[0], 1.0 - forces[0] / k_n, rtol=1e-9)
+
+
 test_bad_questions_are_refused = refusals(
+    (
+        lambda: wheel_receptances(plane_wheel(), 600.0, RUNG, 0.07),
+        r"place of the contact \(m\): received 0.07; allowed: -60 mm to 60",
+    ),
     (lambda: replace(RAIL, rotary_inertia=-1.0), "rotary_inertia of the lateral track: received -1"),
     (lambda: replace(RAIL, pad_stiffness=0.0), "pad_stiffness of the lateral track: received 0"),
     (lambda: LateralTrack(UIC60, foot_width=-0.1), "width of the rail's foot"),

@@ -28,37 +28,12 @@ def alone(modes, omega):
     return np.einsum("ap,bp,fp->abf", *[np.stack(modes.at())] * 2, answer)
 
 
-@pytest.mark.parametrize("damping", [-3000.0, -1904.0, -1866.0, 500.0])
-def test_an_oscillator_on_a_belt_grows_where_friction_falls_faster_than_it_damps(damping):
-    """m ÿ + (c + β) ẏ + k y = 0: growth where −β > c."""
-    mass, omega, ratio = 150.0, TURN * 1000.0, 1e-3
-    wheel = modes_of([1000.0], [ratio], [0.0], [mass**-0.5])
-    (root,) = roots_of(CreepingContact(1e9, RIGID, damping, 0.3), wheel)
-    decay = ratio * omega + 0.5 * damping / mass
-    assert root == pytest.approx(math.sqrt(omega**2 - decay**2) + 1j * decay, rel=1e-9)
-    assert (root.imag < 0.0) == (-damping > 2.0 * ratio * omega * mass)
-
-
 def test_creep_that_damps_without_bounds_sticks_and_one_that_stops_all_motion_is_not_told():
     """The lateral spring of the contact holds the mass: ω² = (k + k_T)/m."""
     wheel = modes_of([1000.0], [1e-9], [0.0], [0.1])
     (root,) = roots_of(CreepingContact(1e9, 2e9, 1e12, 0.0), wheel)
     assert root.real == pytest.approx(math.hypot(TURN * 1000.0, 0.1 * math.sqrt(2e9)), rel=1e-6)
     assert np.isnan(roots_of(CreepingContact(1e9, RIGID, 2.5e6, 0.0), wheel).imag).all()
-
-
-@pytest.mark.parametrize("share", [0.9, 0.99, 1.01, 1.5])
-def test_constant_friction_couples_two_modes_to_flutter(share):
-    """z̈ + K (z, y), K_yz less κ k_N: flutter where (K_zz − K_yy)² + 4 K_zy K_yz < 0."""
-    k_zz, k_yy, k_zy, normal = 2e7, 3.5e7, 4e6, 1e7  # N/m, of a mass of 1 kg
-    coupling = share * (k_zy**2 + 0.25 * (k_zz + normal - k_yy) ** 2) / (k_zy * normal)
-    square, shape = np.linalg.eigh([[k_zz, k_zy], [k_zy, k_yy]])
-    wheel = modes_of(np.sqrt(square) / TURN, [1e-9, 1e-9], *shape)
-    roots = roots_of(CreepingContact(normal, RIGID, 0.0, coupling), wheel)
-    pushed = [[k_zz + normal, k_zy], [k_zy - coupling * normal, k_yy]]
-    expected = np.sqrt(np.linalg.eigvals(pushed).astype(complex))
-    assert np.sort_complex(roots) == pytest.approx(np.sort_complex(expected), rel=1e-6)
-    assert (roots.imag.min() < -1.0) == (share > 1.0)
 
 
 @pytest.mark.parametrize("seed", range(12))
