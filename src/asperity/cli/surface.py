@@ -4,7 +4,6 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, replace
-from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
@@ -59,30 +58,29 @@ def show_surface(
     if picture.resolve() == file.resolve():
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
     with spelled(on_command_line):
-        surfaces: Surfaces = recipes.read_measured(file, **steps.hints)
-        lines = [steps.stepped(line) for line in _side_by_side(surfaces, steps.lines)]
-        surfaces = surfaces if lines else [steps.stepped(surface) for surface in surfaces]
+        read: Surfaces = recipes.read_measured(file, **steps.hints)
+        lines = _side_by_side(read, steps.lines)
+        surfaces = [steps.stepped(each) for each in lines or read]
     if store is not None:
         write_bytes(store, recipes.recipe_text(typed).encode())
         say(f"Recipe: {store.resolve()}")
     title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
-    show = partial(_show_lines, lines) if lines else partial(_show_first, surfaces)
-    contents, spectra = show(title, picture, steps)
+    contents, spectra = _show(surfaces, title, picture, steps)
     say(f"Picture: {picture.resolve()}")
     files = {"picture": picture}
     if psd:
         files["psd"] = _write_spectra(spectra, picture)
         say(f"Spectra: {files['psd'].resolve()}")
-    first = surfaces[0]
+    told = read if lines else surfaces
     return {
         "file": file.resolve(),
         "array": array,
         "index": index,
-        "count": len(surfaces),
-        "shape": first.shape,
-        "size": np.atleast_1d(first.size),
-        "spacing": np.atleast_1d(first.spacing),
-        "missing_share": max(surface.missing_share for surface in surfaces),
+        "count": len(told),
+        "shape": told[0].shape,
+        "size": np.atleast_1d(told[0].size),
+        "spacing": np.atleast_1d(told[0].spacing),
+        "missing_share": max(surface.missing_share for surface in told),
         **contents,
         "files": files,
     }
@@ -111,57 +109,38 @@ def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...
 # --- maps and lines
 
 
-def _show_first(
+def _show(
     surfaces: Surfaces, title: str, picture: Path, steps: recipes.Recipe
 ) -> tuple[dict[str, Any], Spectra]:
-    """Print what is in the first of maps, or in a line, and draw it; return numbers and spectra."""
+    """Print what is in lines, or in the first of maps, and draw it; return numbers and spectra."""
     say(f"{title}: {described(surfaces)}")
-    first = surfaces[0].levelled()
-    if len(surfaces) > 1:
+    lines = [each.levelled() for each in surfaces if isinstance(each, Profile)]
+    first, several, beside = surfaces[0].levelled(), len(surfaces) > 1, len(lines) > 1
+    if beside and steps.lines is None:
+        say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
+    elif several and not beside:
         say(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
         title += f", the first of {len(surfaces)} maps"
-    band, section = _filtered(first, steps)
-    spectra = _spectra_of(first)
-    octaves = _third_octaves([first] if isinstance(first, Profile) else [])
+    (band, section), octaves = _filtered(first, steps), _third_octaves(lines)
     if isinstance(first, HeightMap):
-        items = statistics.areal_statistics(first, band)
-        chart = surface_chart(first.heights, first.spacing, spectra)
+        heights, spectra = first.heights, _spectra_of_map(first)
+        items = [(item, item.value, item.value) for item in statistics.areal_statistics(first, band)]
+        chart = surface_chart(heights, first.spacing, spectra)
     else:
-        items = statistics.profile_statistics(first, band, section)
-        chart = lines_chart([first.heights], first.spacing, spectra, octaves)
-    say(f"Levelled; wavelengths {_band(items[0])}:")
-    for item in items:
-        say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}")
+        heights, spectra = np.concatenate([line.heights for line in lines]), _spectra_of_lines(lines)
+        items = statistics.line_statistics(lines, band, section)
+        chart = lines_chart([line.heights for line in lines], first.spacing, spectra, octaves)
+    lead, waves = "Each line levelled" if beside else "Levelled", _band(items[0][0])
+    say(f"{lead}; wavelengths {waves}{'; mean (lowest to highest of a line)' * beside}:")
+    for item, *ends in items:
+        spread = " to ".join(_scaled(replace(item, value=value)) for value in ends)
+        say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}{f' ({spread})' * beside}")
     homogeneous = _homogeneity(first)
     write_chart(chart, title, picture)
     if isinstance(first, HeightMap) and spectra:
         spectra[AREAL] = psd_radial(cleaning.nearly_complete(first) or first)
-    told = {"statistics": [asdict(item) for item in items], "homogeneity": homogeneous}
-    return told | _numbers(first.heights, octaves), spectra
-
-
-def _show_lines(
-    lines: list[Profile], title: str, picture: Path, steps: recipes.Recipe
-) -> tuple[dict[str, Any], Spectra]:
-    """Print what is in lines side by side, and draw them; return numbers and spectra."""
-    say(f"{title}: {described(lines, side_by_side=True)}")
-    if steps.lines is None:
-        say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
-    levelled = [line.levelled() for line in lines]
-    items = statistics.line_statistics(levelled, *_filtered(levelled[0], steps))
-    say(f"Each line levelled; wavelengths {_band(items[0][0])}; mean (lowest to highest of a line):")
-    for item, *ends in items:
-        spread = " to ".join(_scaled(replace(item, value=value)) for value in ends)
-        say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning} ({spread})")
-    each = [psd_1d(line) for line in full_lines(levelled)]
-    mean = np.mean([density for _, density in each], axis=0) if each else None
-    spectra = {} if mean is None else {"along the lines, mean": (each[0][0][1:], mean[1:])}
-    octaves = _third_octaves(levelled)
-    heights = [line.heights for line in levelled]
-    write_chart(lines_chart(heights, lines[0].spacing, spectra, octaves), title, picture)
-    rows = [asdict(item) | {"lowest": low, "highest": high} for item, low, high in items]
-    told = {"statistics": rows, "homogeneity": None}
-    return told | _numbers(np.concatenate(heights), octaves), spectra
+    rows = [asdict(item) | ({"lowest": low, "highest": high} if beside else {}) for item, low, high in items]
+    return {"statistics": rows, "homogeneity": homogeneous} | _numbers(heights, octaves), spectra
 
 
 def _numbers(heights: Array, octaves: ThirdOctaves | None) -> dict[str, Any]:
@@ -172,17 +151,18 @@ def _numbers(heights: Array, octaves: ThirdOctaves | None) -> dict[str, Any]:
     return {"material_ratio": curve, "third_octaves": bands}
 
 
-def _spectra_of(surface: HeightMap | Profile) -> Spectra:
-    """Spectra of levelled heights along x, and of a map along y; none where more than 5 % are missing."""
-    whole: HeightMap | Profile | None
-    if isinstance(surface, Profile):
-        names, whole = ["along the line"], cleaning.nearly_complete(surface)
-    else:
-        names, whole = ["along x", "along y"], cleaning.nearly_complete(surface)
-    if whole is None:
-        return {}
-    spectra = {name: psd_1d(whole, axis) for axis, name in enumerate(names)}
-    return {name: (wavenumber[1:], density[1:]) for name, (wavenumber, density) in spectra.items()}
+def _spectra_of_map(surface: HeightMap) -> Spectra:
+    """Spectra of levelled heights along x and along y; none where more than 5 % are missing."""
+    whole = cleaning.nearly_complete(surface)
+    each = [psd_1d(whole, axis) for axis in (0, 1)] if whole else []
+    return {f"along {name}": (k[1:], psd[1:]) for name, (k, psd) in zip("xy", each, strict=False)}
+
+
+def _spectra_of_lines(lines: list[Profile]) -> Spectra:
+    """Mean spectrum of levelled lines of full length; none where each lacks more than 5 %."""
+    each = [psd_1d(line) for line in full_lines(lines)]
+    name = "along the lines, mean" if len(lines) > 1 else "along the line"
+    return {name: (each[0][0][1:], np.mean([psd[1:] for _, psd in each], axis=0))} if each else {}
 
 
 def _write_spectra(spectra: Spectra, picture: Path) -> Path:
@@ -203,14 +183,15 @@ def _write_spectra(spectra: Spectra, picture: Path) -> Path:
 # --- in words
 
 
-def described(surfaces: Surfaces, *, side_by_side: bool = False) -> str:
+def described(surfaces: Surfaces) -> str:
     """Say in one line what was read: a map or a line, several maps, or lines side by side."""
     first, shares = surfaces[0], [surface.missing_share for surface in surfaces]
-    sizes, spacings = np.atleast_1d(first.size), np.atleast_1d(first.spacing)
-    what, missing = "map" if len(sizes) == 2 else "line", max(shares)
-    many = f"{len(surfaces)} {what}s, each" if len(surfaces) > 1 else f"a {what} of"
-    if side_by_side:
-        many, missing = f"{len(surfaces)} parallel lines, each of", sum(shares) / len(shares)
+    sizes, spacings, count = np.atleast_1d(first.size), np.atleast_1d(first.spacing), len(surfaces)
+    is_map = isinstance(first, HeightMap)
+    many = f"a {'map' if is_map else 'line'} of"
+    if count > 1:
+        many = f"{count} maps, each" if is_map else f"{count} parallel lines, each of"
+    missing = max(shares) if is_map else sum(shares) / count
     points = " × ".join(map(str, first.shape))
     extent = f"{_lengths(sizes)}, {_lengths(spacings)} apart"
     return f"{many} {points} points, {extent}, {missing:.2%} without a height"
