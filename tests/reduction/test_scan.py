@@ -1,4 +1,8 @@
-"""The quasi-static scan: geometry, signs, caching and messages."""
+"""The quasi-static scan: geometry, signs, caching and messages; long paths, whose memory does not grow."""
+
+import gc
+import tempfile
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -7,15 +11,17 @@ from asperity import HalfSpace, HeightMap
 from asperity.contact import scan
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import TruncatedContactWarning, UnconvergedWarning
-from asperity.store import content_key
-from asperity.surfaces.strip import Rows
+from asperity.reduction.stiffness import ForceTable
+from asperity.reduction.texture import areal_texture
+from asperity.store import Store, content_key
+from asperity.surfaces.strip import LongStrip, Rows
 
 DX, MODULUS, RADIUS = 5e-6, 115e9, 10e-3
 
 
-def ball(n=41):
+def ball(n=41, radius=RADIUS):
     x = (np.arange(n) - n // 2) * DX
-    return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
+    return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
 
 
 def half_space(n=41, hardness=None, modulus=MODULUS):
@@ -131,3 +137,97 @@ def test_first_touch_is_that_of_every_cell(monkeypatch, stride, form):
     body = {"ball": (x**2 + y**2) / 0.02, "flat": 0.0 * x, "any": 1e-5 * rng.random(x.shape)}[form]
     expected = [np.min(body - surface[first : first + 15]) for first in range(0, 186, stride)]
     np.testing.assert_array_equal(first_touch(surface, body, stride), expected)
+
+
+# --- long paths
+
+N, APPROACHES = 15, [0.0, 0.02e-6, 0.05e-6]
+
+
+def strip(rows):
+    return LongStrip(
+        (rows, N), (DX, DX), lambda count, seed: rough(count, N, seed, 0.02e-6), 1, stride=400, blend=20
+    )
+
+
+def along(rows, **details):
+    return ScanJob(half_space(N), strip(rows), ball(N, 3e-3), np.array(APPROACHES), **details)
+
+
+@pytest.fixture
+def short_blocks(monkeypatch):
+    monkeypatch.setattr("asperity.contact.scan.BLOCK", 16)
+
+
+@pytest.mark.usefixtures("short_blocks")
+@pytest.mark.parametrize("anchor", [0, 1, 47, 48, 290])
+def test_positions_and_blocks_count_from_the_anchor(anchor, tmp_path):
+    """Against a tight scan of every row from the first on: each position is a row, in any blocks."""
+    every = scan_forces(along(300, rtol=1e-10, device=None)).forces
+    path = along(300, stride=3, anchor=anchor, rtol=1e-10, device=None)
+    held, mapped = scan_forces(path), scan_forces(path, mapped=True, cache=Store(tmp_path))
+    expected = every[:, anchor % 3 :: 3]
+    assert anchor // 3 in path.starts or anchor // 3 >= path.positions
+    assert held.forces.shape == expected.shape
+    np.testing.assert_allclose(held.forces, expected, rtol=1e-7, atol=1e-9 * every.max())
+    assert np.array_equal(mapped.forces, held.forces)
+    assert mapped.counts == held.counts
+    assert held.counts.solved == np.count_nonzero(held.forces)
+
+
+def test_a_table_is_read_in_pieces_and_in_memory_where_no_file_is_written(monkeypatch):
+    path, at = along(300), np.linspace(0.0, 285 * DX, 700)
+
+    def table(**how):
+        return ForceTable(scan_forces(path, **how).forces, APPROACHES, 0.0, DX, np.zeros(path.positions))
+
+    expected = table().at(at)
+    monkeypatch.setattr("asperity.reduction.stiffness.PIECE", 50)
+    mapped = table(mapped=True)
+    np.testing.assert_allclose(mapped.at(at), expected, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(mapped.at(at[::-1])[::-1], expected, rtol=1e-11, atol=1e-12)
+    assert isinstance(mapped.forces.base, np.memmap)
+    monkeypatch.setattr(tempfile, "tempdir", "/no such folder")
+    assert np.array_equal(table(mapped=True).forces, mapped.forces)
+
+
+MORE = 6000  # rows
+
+
+def peak(work, rows):
+    """Least memory of two times: others may take some."""
+    tries = []
+    for _ in range(2):
+        gc.collect()
+        tracemalloc.start()
+        work(rows)
+        tries.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    return min(tries)
+
+
+def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
+    monkeypatch.setattr("asperity.reduction.texture.PIECE", 500)
+    monkeypatch.setattr("asperity.contact.scan.TOUCHED", 500)
+    given_ = (DX, DX), [0.0, 1e-6], [(20e-6, 20e-6), (30e-6, 35e-6)]
+
+    def work(rows):
+        areal_texture(strip(rows), *given_)
+        first_touch(strip(rows), ball(N, 3e-3))
+
+    work(400)  # compiles
+    assert peak(work, 2000 + MORE) - peak(work, 2000) < 40 * MORE
+    whole, pieces = strip(2000).rows(0, 2000), areal_texture(strip(2000), *given_).heights
+    monkeypatch.setattr("asperity.reduction.texture.PIECE", 5000)
+    np.testing.assert_allclose(pieces, areal_texture(whole, *given_).heights, rtol=0, atol=1e-20)
+    assert np.array_equal(first_touch(strip(2000), ball(N, 3e-3)), first_touch(whole, ball(N, 3e-3)))
+
+
+@pytest.mark.usefixtures("short_blocks")
+def test_a_longer_scan_goes_on_with_nothing_recomputed_that_was_kept(tmp_path, monkeypatch):
+    store, solved, kept, positions, solve = Store(tmp_path), [], 64, 96, ScanJob.solve
+    scan_forces(along(kept + N - 1), cache=store, workers=1)
+    monkeypatch.setattr(ScanJob, "solve", lambda *block: solved.append(solve(*block)) or solved[-1])
+    resumed = scan_forces(along(positions + N - 1), cache=store, workers=1).forces
+    assert sum(block["counts"][0] for block in solved) == np.count_nonzero(resumed[:, kept:])
+    assert np.array_equal(resumed, scan_forces(along(positions + N - 1), workers=2).forces)
