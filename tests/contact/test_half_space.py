@@ -13,10 +13,10 @@ from asperity.errors import Outcome, UnconvergedWarning
 MODULUS = 1e11
 
 
-def rough(shape=(24, 18), seed=0, ratio=1.0):
+def rough(seed=0):
     """A rough gap over a ball, and its half-space."""
-    spacing = (8e-5, 8e-5 * ratio)
-    x, y = ((np.arange(n) - n / 2 + 0.5) * d for n, d in zip(shape, spacing, strict=True))
+    shape, spacing = (24, 18), 8e-5
+    x, y = ((np.arange(n) - n / 2 + 0.5) * spacing for n in shape)
     gap = np.add.outer(x**2, y**2) / 0.2 - 1e-7 * np.random.default_rng(seed).standard_normal(shape)
     return gap, HalfSpace(shape, spacing, MODULUS)
 
@@ -62,14 +62,6 @@ def test_lengths_and_modulus_scale_the_force(seed, length, modulus):
     other = HalfSpace(gap.shape, 8e-5 * length, MODULUS * modulus)
     scaled = other.solve(gap * length, approach=1e-6 * length, rtol=1e-9)
     assert scaled.force == pytest.approx(one.force * length**2 * modulus, rel=1e-7, abs=0.0)
-
-
-def test_turning_the_window_turns_the_pressure():
-    gap, half_space = rough(ratio=1.3)
-    one = half_space.solve(gap, approach=1e-6, rtol=1e-10)
-    other = HalfSpace(gap.T.shape, half_space.spacing[::-1], MODULUS)
-    turned = other.solve(gap.T, approach=1e-6, rtol=1e-10)
-    np.testing.assert_allclose(turned.pressure.T, one.pressure, atol=1e-7 * one.pressure.max())
 
 
 @pytest.mark.parametrize("load", [0.0, 1e-9, 1e-3, 1.0, 1e3, 1e6])

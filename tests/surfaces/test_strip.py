@@ -2,6 +2,7 @@
 
 import gc
 from concurrent.futures import ThreadPoolExecutor
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -184,26 +185,11 @@ def test_where_there_are_too_many_all_but_neighbours_are_made_again(monkeypatch,
     assert made.numbers == numbers
 
 
-class Full:
-    """A file on a disk that fills up while it is written, or when it is made."""
-
-    def __init__(self, at_once):
-        if at_once:
-            self.write()
-
-    def close(self):
-        pass
-
-    def seek(self, _):
-        pass
-
-    def write(self, *_):
-        raise OSError(28, "No space left on device")
-
-
 @pytest.mark.parametrize("at_once", [True, False])
 def test_without_a_file_few_fields_are_held_in_memory(monkeypatch, at_once):
-    monkeypatch.setattr("tempfile.TemporaryFile", lambda **_: Full(at_once))
+    """On a disk that is full when the file is made, or while it is written."""
+    full = Mock(side_effect=OSError(28, "No space left on device"))
+    monkeypatch.setattr("tempfile.TemporaryFile", full if at_once else lambda prefix: Mock(write=full))
     monkeypatch.setattr(module, "BYTES_IN_MEMORY", 4 * BYTES)
     made = Made()
     made.read(*2 * (0, 1, 2, 3))

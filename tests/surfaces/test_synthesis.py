@@ -1,7 +1,5 @@
 """Textures that are made: continued records, self-affine surfaces, likenesses of maps, homogeneity."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -11,14 +9,12 @@ from asperity import spectra
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.likeness import gaussian_correlation, height_table
-from asperity.surfaces.readers import read_surfaces
 from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, psd_2d
 from asperity.surfaces.statistics import homogeneity, more_than_chance
 from asperity.surfaces.synthesis import close, extend, from_map, long_self_affine, self_affine
 from refusals import refusals
 
 UM = 1e-6
-SHEET = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"
 RAMP = np.arange(5.0)
 AFFINE = {"rms": 0.5 * UM, "hurst": 0.7, "longest": 60 * UM, "shortest": 4 * UM}
 
@@ -214,20 +210,6 @@ def test_bow_of_a_sheet_does_not_become_roughness():
     assert abs(off[0]) < 3.5  # what is left of the bow; it was 14 dB
     assert np.abs(off[1:]).max() < 0.6
     assert path.std() == pytest.approx(np.std([level(m).heights for m in maps]), rel=0.25)
-
-
-@pytest.mark.skipif(not SHEET.is_file(), reason="no measured sheet in shared/data")
-@pytest.mark.parametrize("name", ["polished", "bb20"])
-def test_likeness_of_a_measured_sheet_keeps_its_spectrum(name):
-    """Wave by wave from half the map, 0.4 mm, to 0.1 mm, where it was up to 5.7 dB too high."""
-    maps = read_surfaces(SHEET, array=name, height_unit="um", pixel=1.5625 * UM)
-    maps = [level(resample(level(m), 8 * UM)) for m in maps]
-    measured = np.mean([psd_1d(m)[1] for m in maps], axis=0)
-    path = from_map(maps, (20000, 51), seed=1).heights
-    _, density = spectra.psd(np.ascontiguousarray(path.T), 8 * UM, segment=maps[0].shape[0])
-    off = 10 * np.log10(density.mean(axis=0)[2:9] / measured[2:9])
-    assert np.abs(off).max() < 1.5
-    assert abs(off.mean()) < 0.7
 
 
 def test_narrow_strip_is_not_forced_to_close_across():
