@@ -3,7 +3,7 @@
 Each took minutes or all memory, ended with a traceback, or was read wrongly. What can be seen without the
 command line is tested beside its function: `tests/test_hostile_text.py`,
 `tests/surfaces/test_malformed_files.py`, `tests/test_terminal.py`, `tests/rolling/test_stability.py`,
-`tests/scenarios/test_missing.py`.
+`tests/reporting/test_schema.py`.
 """
 
 import os

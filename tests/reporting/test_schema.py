@@ -3,22 +3,26 @@
 import ast
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 from schema_page import PAGE, SHARED, contents_of, page
 
 import asperity
+from asperity.errors import PhysicsWarning
 from asperity.scenes import schema
-from asperity.scenes.report import CHAPTERS, figures_of
-from asperity.schema import UNKNOWN, VERSION, bearing, convergence
-from small_cases import BEARING
+from asperity.scenes.report import CHAPTERS, figures_of, page_of
+from asperity.schema import UNKNOWN, VERSION, Entry, bearing, convergence
+from asperity.schema.spectra import NO_SIGNAL
+from small_cases import BEARING, unmarked
 
 SOURCE = Path(asperity.__file__).parent
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track", "pass_by", "convergence",
           "effects", "bearing")  # fmt: skip
 
 
-def schema_of(tree):
-    return contents_of(*SHARED, schema)
+ENTRIES, ATTRIBUTES = contents_of(*SHARED, schema)
+OWN, FACTS = contents_of(bearing)
 
 
 def written(tree):
@@ -30,27 +34,28 @@ def written(tree):
     }
 
 
-def test_what_is_written_is_what_the_schema_says(real_run):
-    entries = {entry.path: entry for entry in schema_of(real_run)[0]}
-    found = written(real_run)
-    assert set(found) <= set(entries)
-    assert {path for path, entry in entries.items() if not entry.condition} <= set(found)
+def assert_as_declared(tree, entries, needed):
+    """What is written is among some entries, all that is needed of them is, and each is as it says."""
+    known, found = {entry.path: entry for entry in entries}, written(tree)
+    assert {entry.path for entry in needed} <= set(found) <= set(known)
     for path, values in found.items():
-        entry = entries[path]
-        assert values.dims == entry.dims, path
-        assert values.attrs["units"] == entry.units, path
-        assert values.attrs["long_name"] == entry.long_name, path
-        assert set(values.attrs) - {"units", "long_name", "missing"} == set(entry.attributes), path
-        assert values.attrs.get("missing") != UNKNOWN, path
+        entry, told = known[path], values.attrs
+        expected = entry.dims, entry.units, entry.long_name, set(entry.attributes)
+        more = set(told) - {"units", "long_name", "missing"}
+        assert (values.dims, told["units"], told["long_name"], more) == expected, path
+        assert told.get("missing") != UNKNOWN, path
+
+
+def test_what_is_written_is_what_the_schema_says(real_run):
+    assert_as_declared(real_run, ENTRIES, [entry for entry in ENTRIES if not entry.condition])
 
 
 def test_attributes_are_those_of_the_schema(real_run):
-    known = {(item.group, item.name): item for item in schema_of(real_run)[1]}
+    known = {(item.group, item.name): item for item in ATTRIBUTES}
     found = {
         (node.name or "", name): value for node in real_run.subtree for name, value in node.attrs.items()
     }
-    assert set(found) <= set(known)
-    assert {place for place, item in known.items() if not item.condition} <= set(found)
+    assert {place for place, item in known.items() if not item.condition} <= set(found) <= set(known)
     for place, value in found.items():
         assert isinstance(value, str) == (known[place].units in ("text", "JSON")), place
 
@@ -71,7 +76,7 @@ OTHERS = {
 def test_conditions_of_small_runs_cover_the_schema(real_runs):
     """What is not in a small run is named here, so that nothing is optional without a reason."""
     absent = {
-        kind: {e.path for e in schema_of(tree)[0] if not any(word in e.condition for word in OTHERS[kind])}
+        kind: {e.path for e in ENTRIES if not any(word in e.condition for word in OTHERS[kind])}
         - set(written(tree))
         for kind, tree in real_runs.items()
     }
@@ -98,24 +103,15 @@ OF_BEARINGS = ("bearing", "load")
 
 def test_a_bearing_writes_and_draws_what_its_schema_says(runs):
     tree = runs(BEARING)
-    own, facts = contents_of(bearing)
-    entries = {entry.path: entry for entry in (*own, *schema_of(tree)[0])}
-    found = written(tree)
-    assert {entry.path for entry in own} <= set(found) <= set(entries)
-    for path, values in found.items():
-        entry = entries[path]
-        told = entry.dims, entry.units, entry.long_name
-        assert (values.dims, values.attrs["units"], values.attrs["long_name"]) == told, path
-        assert values.attrs.get("missing") != UNKNOWN, path
-    assert {fact.name for fact in facts} == set(tree["bearing"].attrs)
+    assert_as_declared(tree, [*OWN, *ENTRIES], OWN)
+    assert {fact.name for fact in FACTS} == set(tree["bearing"].attrs)
     shown = [part.name for chapter in CHAPTERS if chapter.name in OF_BEARINGS for part in chapter.figures]
     assert [part.name for part in figures_of(tree)] == shown
     assert "Diamond: the fault of the outer raceway." in figures_of(tree)[0].caption
 
 
 def test_names_stand_once():
-    entries, attributes = contents_of(*SHARED, schema, bearing)
-    for items in (entries, attributes):
+    for items in ([*ENTRIES, *OWN], [*ATTRIBUTES, *FACTS]):
         places = [(item.group, item.name) for item in items]
         assert len(places) == len(set(places))
 
@@ -144,13 +140,54 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
 
 
 def test_needs_of_figures_are_in_the_schema():
-    entries, _ = contents_of(*SHARED, schema, bearing)
-    for chapter in CHAPTERS:
-        for part in chapter.figures:
-            assert set(part.needs) <= set(entries), part.name
+    for part in (part for chapter in CHAPTERS for part in chapter.figures):
+        assert set(part.needs) <= {*ENTRIES, *OWN}, part.name
 
 
 def test_the_page_lists_the_schema():
     """Whoever changes the schema raises its version, and runs tests/reporting/schema_page.py."""
     assert PAGE.read_text(encoding="utf-8") == page()
     assert f"Version {VERSION}" in page()
+
+
+# --- values that are not there are marked, with the reason; all others are finite
+
+LEVEL = Entry("spectra", "level(band)", "dB re 1 N", "level", missing=NO_SIGNAL)
+FORCE = Entry("rolling", "force(time)", "N", "force")
+
+
+def test_what_is_not_finite_is_missing_with_a_reason_or_a_warning():
+    found = LEVEL.variable([1.0, -np.inf])  # of nothing
+    np.testing.assert_array_equal(found.values, [1.0, np.nan])
+    assert (found.attrs["missing"], found.attrs["long_name"]) == (NO_SIGNAL, "level")
+    expected = xr.Variable("time", [1.0, 2.0], {"units": "N", "long_name": "force"})
+    xr.testing.assert_identical(FORCE.variable([1.0, 2.0]), expected)
+    with pytest.warns(PhysicsWarning, match="1 of 2 values of force are not finite numbers"):
+        found = FORCE.variable([1.0, np.nan])
+    assert found.attrs["missing"] == UNKNOWN
+
+
+BEAM = {"kind": "ball-on-beam", "duration": "10 ms", "laws": ["hertz"], "contact": {"samples": 1},
+        "surface": {"rms": "0.3 um"}, "numerics": {"highest_frequency": "2 kHz"}}  # fmt: skip
+RAIL = {"kind": "wheel-on-rail", "duration": "50 ms", "settling": "50 ms", "laws": ["hertz", "linear"],
+        "contact": {"samples": 1}, "wheel": {"section": "rigid"}}  # fmt: skip
+RINGING = {"wheel": {"section": "straight-web"}, "numerics": {"highest_frequency": "1.6 kHz"}}
+CORRUGATED = {"corrugation": "0.2 mm", "corrugation_wavelength": "30 mm"}
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+@pytest.mark.parametrize(
+    ("case", "missing"),
+    [
+        (BEAM | {"beam": {"sensors": ["0 m", "0.5 m"]}}, ["acceleration_level"]),  # at an end
+        (BEAM | {"beam": {"length": "100 m"}}, None),
+        (RAIL | {"surface": {"smooth": True}} | RINGING, None),
+        (RAIL | {"surface": CORRUGATED}, None),  # that the wheel leaves
+    ],
+)
+def test_every_value_of_a_result_is_finite_or_marked(runs, case, missing):
+    tree = runs(case)
+    assert list(unmarked(tree)) == []
+    if missing is not None:
+        assert [v.name for v in tree["spectra"].data_vars.values() if "missing" in v.attrs] == missing
+        assert "there is no signal in these bands, and nothing has no level" in page_of(tree)

@@ -34,6 +34,7 @@ BALL = {
     "contact": {"spacing": "20 um", "window": "0.9 mm", "samples": 1, "sample_length": "4 mm"},
 }
 MAP = law_map()
+NO_WORK = Work({}, {}, 0, None, 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -119,39 +120,34 @@ def bands(points, least=0.0):
         for law, error in point.errors.items():
             band, error = expected_error(MAP, point.kind, point.place, law), max(error, least)
             found[law].append((band.low <= error <= band.high, math.log(band.error / error)))
-    return {law: np.mean(each, axis=0) for law, each in found.items()}, found
+    return {law: np.array(each) for law, each in found.items()}
 
 
-def test_the_band_holds_what_was_found_at_its_points_as_often_as_it_claims():
-    """At points of the map more often than aside of them: chance alone is smoothed out there, evenly."""
-    for held, off in bands(MAP.points, 0.1)[0].values():
+def test_the_band_holds_what_was_found_as_often_as_it_claims():
+    """At points of the map more often than aside of them: chance alone is smoothed out there, evenly.
+
+    Fresh cases have seeds, textures, loads, speeds and lays of their own, and are no points of the map.
+    """
+    for held, off in (found.mean(axis=0) for found in bands(MAP.points, 0.1).values()):
         assert held > 0.8
         assert 0.9 < np.exp(off) < 1.1
-
-
-def test_the_band_holds_on_fresh_cases_as_often_as_it_claims():
-    """Cases by seeds, textures, loads, speeds and lays of their own, which are no points of the map."""
     fresh = mapped_points(json.loads((ROOT / "benchmarks/law_accuracy_fresh.json").read_text()))
     assert len(fresh) >= 60
     for kind, slow, fast in (("ball-on-beam", 0.4, 2.5), ("wheel-on-rail", 25.0, 75.0)):
         speeds = [case.speed for case in fresh if case.kind == kind]
         assert min(speeds) < slow < fast < max(speeds)
-    mean, every = bands(fresh)
-    assert {law: held >= 0.7 for law, (held, _) in mean.items()} == dict.fromkeys(MAP.spread, True)
-    assert 0.73 <= np.mean([held for found in every.values() for held, _ in found]) <= 0.87
+    aside = bands(fresh)
+    assert min(found[:, 0].mean() for found in aside.values()) >= 0.7
+    assert 0.73 <= np.concatenate(list(aside.values()))[:, 0].mean() <= 0.87
 
 
 def test_off_the_map_it_says_so():
-    far = Place(
-        roughness=300.0, correlation=1.0, across=1.0, within=100.0, dynamic=500.0, highest_wavenumber=3.5
-    )
+    far = Place(300.0, 1.0, 1.0, 100.0, 500.0, 3.5)
     choice, on_map = (choose(MAP, "wheel-on-rail", at, ["areal"]) for at in (far, MAP.points[0].place))
     areal, near = (next(e for e in c.expected if e.law == "areal") for c in (choice, on_map))
     assert areal.high / areal.low > 1.5 * near.high / near.low
     assert choice.off_map
-    assert dict(choice.rows())["place on the map"].endswith(
-        "off the map, so that the expected errors are guesses"
-    )
+    assert dict(choice.rows())["place on the map"].endswith("so that the expected errors are guesses")
     assert choice.sentence("areal").startswith("A guess, off the map")
     assert choice.sentence("own-law") is None
 
@@ -166,9 +162,7 @@ def test_a_speed_that_was_not_mapped_is_off_the_map(kind, end, ratio):
     assert not choose(MAP, kind, place, ["areal"]).off_map
     other = choose(MAP, kind, replace(place, highest_wavenumber=ratio * wavenumber), ["areal"])
     assert (other.off_map, other.taken) == (True, "table")
-    rows = dict(other.rows())
-    assert "not known here" in rows["law to take"]
-    assert f"k a of 5 kHz {ratio * wavenumber:.2g}, mapped from" in rows["place on the map"]
+    assert "not known here" in dict(other.rows())["law to take"]
 
 
 def test_areal_is_taken_where_it_is_in_its_range_and_table_where_it_leaves_it():
@@ -182,10 +176,13 @@ def test_areal_is_taken_where_it_is_in_its_range_and_table_where_it_leaves_it():
     assert rough.sentence("areal").endswith("; take table")
 
 
+def chosen(prepared):
+    return law_choice.law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)
+
+
 def test_check_and_verdict_say_what_the_map_says(runs):
     ready = prepare_case(as_case(BALL))
-    choice = law_choice.law_choice(ready.case, ready.shape, ready.textures, ready.scene)
-    rows = dict(plan(ready, Work({}, {}, 0, None, 0.0), choice))
+    rows = dict(plan(ready, NO_WORK, chosen(ready)))
     assert rows["law to take"].startswith("table: areal leaves its range")
     assert re.search(r"areal \d+(\.\d)? \(\d+(\.\d)? to \d+(\.\d)?\)", rows["expected errors, dB"])
     result = runs(BALL)
@@ -223,7 +220,6 @@ RAIL = {"kind": "wheel-on-rail", "duration": "0.1 s", "wheel": {"section": "rigi
 def test_nothing_is_said_where_the_map_knows_nothing(case):
     """Of lines, of what is smooth, and of defects, where the law to take is the default."""
     prepared = prepare_case(as_case(case))
-    found = law_choice.law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)
-    assert found is None
-    assert "law to take" not in dict(plan(prepared, Work({}, {}, 0, None, 0.0)))
+    assert chosen(prepared) is None
+    assert "law to take" not in dict(plan(prepared, NO_WORK))
     assert law_choice.UNMAPPED == WheelOnRail(surface={"joint_depth": "1 mm"}).laws[0] == "direct"

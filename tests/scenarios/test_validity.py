@@ -2,24 +2,19 @@
 
 import json
 import re
-import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from asperity import HalfSpace
 from asperity.case.cases import parse_case
-from asperity.cli.running import plan, planned
+from asperity.cli.running import planned
 from asperity.contact.scan import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.running import prepare_case
-from asperity.scenarios.preparing import Work, try_contacts
-from asperity.scenes.validity import SLOPE
+from asperity.scenarios.preparing import try_contacts
 from asperity.surfaces.synthesis import self_affine
 
-NO_WORK = Work({}, {}, 0, None, 0.0)
-MAPS = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"
 CASE = """
 kind = "ball-on-beam"
 laws = {laws}
@@ -86,6 +81,9 @@ def test_a_check_foresees_what_the_run_will_find_fault_with(runs, kind):
     elif kind == "rough":
         assert ["Take table." in w["message"] for w in messages(tree)] == [True]
     else:
+        verdict = tree.attrs["verdict"]
+        assert verdict.startswith("Out of range for areal: real contact area ")
+        assert " of the load on single cells" in verdict
         share = tree["contact"].attrs["isolated_share"]
         assert share > 0.05
         assert found[CELLS]["grade"] == ("out of range" if share > 0.25 else "warning")
@@ -116,11 +114,6 @@ def test_table_alone_is_not_concerned(runs):
     tree = runs(parse_case(synthetic(**ROUGH, laws=["table"])))
     assert not messages(tree)
     assert "range" not in tree.attrs["verdict"]
-
-
-def test_a_line_without_samples_has_no_real_contact():
-    case = prepare_case(parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n'))
-    assert "real contact" not in dict(plan(case, NO_WORK))
 
 
 @pytest.mark.parametrize("keys", [{"spacing": 5}, {"shortest": 40}])
@@ -170,46 +163,16 @@ class TestWindow:
         assert caught[0].message.grade is Grade.OUT
 
 
-@pytest.mark.parametrize(
-    ("counts", "grade", "parts"),
-    [
-        (
-            (9206, 0, 29),
-            Grade.NOTE,
-            ("29 of 9206 contact solutions of the path (0.32 %)", "too seldom to matter"),
-        ),
-        ((36488, 0, 16064), Grade.OUT, ("(44 %)", "so often that levels are wrong")),
-        ((10_000, 5, 0), Grade.NOTE, ()),
-        ((10_000, 2000, 0), Grade.OUT, ()),
-    ],
-)
-def test_flaws_are_graded_by_their_share(counts, grade, parts):
-    """Contacts that are not converged, and those that are cut off."""
-    solved, unconverged, truncated = counts
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        warn_of_flaws(Counts(solved, 0, unconverged, truncated), "the path", "numerics.force_accuracy")
-    (message,) = (each.message for each in caught)
-    assert message.grade is grade
-    assert all(part in str(message) for part in parts)
-
-
-def test_limits_of_a_share():
+@pytest.mark.parametrize("kind", ["unconverged", "truncated"])
+def test_flaws_are_told_with_their_share_and_graded_by_it(kind):
+    """Contacts that missed their tolerance, and those that are cut off."""
+    for flawed, grade, words in ((32, Grade.NOTE, "too seldom"), (4400, Grade.OUT, "so often that levels")):
+        counts = Counts(10_000)._replace(**{kind: flawed})
+        with pytest.warns(PhysicsWarning) as caught:
+            warn_of_flaws(counts, "the path", "numerics.force_accuracy")
+        (message,) = (each.message for each in caught)
+        assert message.grade is grade
+        assert f"{flawed} of 10000 contact solutions of the path ({flawed / 100:.2g} %)" in str(message)
+        assert kind == "unconverged" or words in str(message)
     shares = {0.0099: Grade.NOTE, 0.01: Grade.WARNING, 0.099: Grade.WARNING, 0.1: Grade.OUT}
     assert {share: Grade.of_share(share) for share in shares} == shares
-    assert PhysicsWarning("text").grade is Grade.WARNING
-
-
-@pytest.mark.skipif(not MAPS.is_file(), reason=f"measured maps of {MAPS} are missing")
-def test_a_measured_map_that_areal_cannot_do_says_so(runs):
-    keys = f'file = "{MAPS}"\narray = "bb20"\nheight_unit = "um"\npixel = "1.5625 um"'
-    tree = runs(parse_case(text(keys, laws=["areal", "table", "linear-filtered"], spacing=8, window=0.7)))
-    verdict = tree.attrs["verdict"]
-    assert verdict.startswith("Out of range for areal: real contact area ")
-    for part in ("rms slope 0.2", "of the load on single cells", "; table varies by"):
-        assert part in verdict
-    assert {w["grade"] for w in messages(tree)} == {"out of range", "warning"}
-    contact = tree["contact"].attrs
-    assert contact["contact_area_ratio"] < 0.1
-    assert contact["rms_slope"] > SLOPE[0]
-    assert contact["isolated_share"] > 0.25

@@ -208,23 +208,35 @@ def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shor
     complete(measured, "surface.line")
     spacing, rows = grid.spacing, grid.rows
     line = level(resample(level(measured), spacing)).heights
-    origin = f"measured, {form.name_of(surface.line)}"  # type: ignore[arg-type]
-    how = surface.continuation
-    if how in ("mirror", "repeat") and line.size < rows:
-        fade = min(least, line.size) // 2 if how == "repeat" else 0
-        kind = cast(synthesis.Continuation, how)
-        line = synthesis.extend(line, rows + lead, kind, spacing=spacing, start=-lead, crossfade=fade)
-        return Record(Rows(line[:, None]), f"{origin}, {how}ed")
-    if may_shorten:
+    continued = surface.continuation in ("mirror", "repeat") and line.size < rows
+    if may_shorten and not continued:
         rows = min(rows, line.size)
-    if line.size < rows or rows < least:
+    if not continued and (line.size < rows or rows < least):
         needed = f"{max(rows, least) * spacing:.4g} m: the path and a window at both ends"
         remedy = "Give a shorter duration, a longer line, or surface.continuation."
         raise InputError("surface.line", f"{line.size * spacing:.4g} m", f"at least {needed}", remedy)
-    held = line[: rows + lead]
+    laid, how = behind_run_in(line, rows + lead, lead, surface.continuation, min(least, line.size) // 2)
     margin = 1e3 * spacing * ((least - 2) // 2)
-    origin += f", from {margin:.4g} mm before the record on{mirrored_words(held, rows + lead)}"
-    return Record(Rows(mirrored_before(held, rows + lead)[:, None]), origin)
+    where = "" if continued else f", from {margin:.4g} mm before the record on"
+    origin = f"measured, {form.name_of(surface.line)}{where}{how}"  # type: ignore[arg-type]
+    return Record(Rows(laid[:, None]), origin)
+
+
+def behind_run_in(
+    heights: Array, rows: int, run_in: int, continuation: str | None, fade: int
+) -> tuple[Array, str]:
+    """Lay a texture (n, ...) out over so many rows, the first of which are a run-in, and say how.
+
+    Where it is long enough for all but the run-in, its mirror image stands before it, as far as it lacks
+    that; else it is mirrored or repeated from behind the run-in on, closing over points to fade.
+    """
+    missing = rows - len(heights)
+    if missing <= run_in:
+        before = max(missing, 0)
+        laid = synthesis.extend(heights, rows, "mirror", spacing=1.0, start=-before)
+        return laid, ", its mirror image for the run-in" * bool(before)
+    how, fade = cast(synthesis.Continuation, continuation), fade if continuation == "repeat" else 0
+    return synthesis.extend(heights, rows, how, spacing=1.0, start=-run_in, crossfade=fade), f", {how}ed"
 
 
 def lines_across(surface: Surface, grid: Grid) -> Record:
@@ -311,17 +323,3 @@ def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
         raise InputError(key, f"no distance for {len(lines)} lines", allowed, remedy)
     distance = section.line_distance or grid.spacing
     return measured_lines.strip_from_lines(lines, distance, grid.lines, grid.spacing)
-
-
-def mirrored_before(heights: Array, rows: int) -> Array:
-    """Put the mirror image of a texture (n, ...) before it, for a run-in over what was not measured.
-
-    The texture is at the end of the (rows, ...), mirrored at its first point as often as it takes.
-    """
-    before = [(max(rows - len(heights), 0), 0), *((0, 0) for _ in heights.shape[1:])]
-    return np.pad(heights, before, mode="reflect")
-
-
-def mirrored_words(heights: Array, rows: int) -> str:
-    """Say that a run-in is mirrored, where it is."""
-    return ", its mirror image for the run-in" if len(heights) < rows else ""

@@ -410,21 +410,19 @@ def path_of(
     middle = max((first.shape[1] - ny) // 2, 0)
     heights = first.heights[:rows, middle : middle + ny]
     heights = heights - heights.mean()
-    if first.shape[0] >= rows - run_in and first.shape[1] >= ny:
-        origin = "path cut from the first" + records.mirrored_words(heights, rows)
-        return HeightMap(records.mirrored_before(heights, rows), first.spacing, first.source), origin
-    if continuation not in ("mirror", "repeat"):
-        like = synthesis.long_strip_like(maps, shape, seed, before=before)
-        return like, "path synthesised in their likeness"
-    if first.shape[1] < ny or rows * ny > MOST_POINTS:
-        narrow = f"{first.size[1] * 1e3:.4g} mm across" * (first.shape[1] < ny)
-        allowed = f"a map as wide as the window, and paths of at most {MOST_POINTS:.2g} points"
-        received = narrow or f"{rows * ny:.2g} points"
-        raise InputError("surface.continuation", received, allowed, "Leave it out, or roll shorter.")
-    how = cast(synthesis.Continuation, continuation)
-    fade = min(ny, len(heights) // 2) if how == "repeat" else 0  # a repeated one closes over a window
-    path = synthesis.extend(heights, rows, how, spacing=first.spacing[0], start=-run_in, crossfade=fade)
-    return HeightMap(path, first.spacing, first.source), f"path cut from the first, {how}ed"
+    long, wide = first.shape[0] >= rows - run_in, first.shape[1] >= ny
+    if not (long and wide):
+        if continuation not in ("mirror", "repeat"):
+            like = synthesis.long_strip_like(maps, shape, seed, before=before)
+            return like, "path synthesised in their likeness"
+        if not wide or rows * ny > MOST_POINTS:
+            narrow = f"{first.size[1] * 1e3:.4g} mm across" * (not wide)
+            allowed = f"a map as wide as the window, and paths of at most {MOST_POINTS:.2g} points"
+            received = narrow or f"{rows * ny:.2g} points"
+            raise InputError("surface.continuation", received, allowed, "Leave it out, or roll shorter.")
+    fade = min(ny, len(heights) // 2)  # a repeated one closes over a window
+    laid, how = records.behind_run_in(heights, rows, run_in, continuation, fade)
+    return HeightMap(laid, first.spacing, first.source), f"path cut from the first{how}"
 
 
 def middle_line(strip: Strip) -> Array:
