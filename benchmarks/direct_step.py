@@ -65,7 +65,7 @@ def rolled(name: str) -> tuple[Any, Callable[[Clock], Any]]:
 
     prepared = prepare_case(parse_case(CASES[name]))
     case, found = prepared.case, compute(prepared, lambda *_: None)
-    law, scene = found.materials.build("direct"), found.scene
+    law, scene = found.build("direct"), found.scene
     path = {"speed": case.speed, "start": case.record_start, "time_step": case.time_step}
     path |= {"duration": case.rolled_time, "settling": case.settled_time, "sensors": scene.sensors}
     return law, lambda clock: roll_bodies(

@@ -86,7 +86,7 @@ def prepared_case(load: float, rms: float, duration: float) -> Computed:
 
 def direct_law(computed: Computed) -> Law:
     """Make the law that solves the contact in every step of the same path."""
-    return computed.materials.build("direct")
+    return computed.build("direct")
 
 
 def rolled(computed: Computed, law: Law, duration: float) -> tuple[float, float, RolledBodies]:
@@ -144,7 +144,7 @@ def main() -> None:
     options = parser.parse_args()
     warnings.simplefilter("ignore", PhysicsWarning)  # what is timed is not what is concluded
     computed = prepared_case(options.load, options.rms, options.duration)
-    laws = {name: computed.materials.build(name) for name in computed.runs} | {"direct": direct_law(computed)}
+    laws = {name: computed.build(name) for name in computed.runs} | {"direct": direct_law(computed)}
     steps: dict[str, list[float]] = {name: [] for name in laws}
     layouts: dict[str, list[float]] = {name: [] for name in laws}
     runs: dict[str, RolledBodies] = {}

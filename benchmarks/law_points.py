@@ -175,7 +175,7 @@ def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[st
 def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -> dict[str, Any]:
     """Roll one path with all laws of a case, and keep what the map needs of it."""
     computed, step, kept = computed_of(case, progress), case.time_step, {}
-    reference, built = direct["force"], {name: computed.materials.build(name) for name in computed.runs}
+    reference, built = direct["force"], {name: computed.build(name) for name in computed.runs}
 
     def energies(contact_force: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         return list(band_levels(*psd(contact_force, step, segment=round(SEGMENT / step)), low=LOW, high=HIGH))

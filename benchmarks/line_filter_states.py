@@ -101,9 +101,7 @@ def compare(name, case) -> None:
         line = f"| {name} | {law} | {100 * (1.0 - run.in_contact.mean()):.1f} | "
         line += f"{away_of(levels(run.contact_force[0], step), wanted)} | "
         if law != "direct":
-            course = force(
-                computed.materials.build(law), direct.positions[0], direct.relative_displacement[0]
-            )
+            course = force(computed.build(law), direct.positions[0], direct.relative_displacement[0])
             off = np.sqrt(np.mean((course - followed) ** 2)) / followed.std()
             slope = np.cov(course, followed)[0, 1] / followed.var()
             line += f"{100 * off:.0f} | {slope:.2f} | {course.mean() / followed.mean():.2f} |"

@@ -15,8 +15,9 @@ from asperity.case.scene import Case
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress, counted
 from asperity.scenarios.geometry import window_cells
-from asperity.scenarios.preparing import PreparedCase, prepare
+from asperity.scenarios.preparing import prepare
 from asperity.scenarios.refining import Setting, Way, restricted, settings_for
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute
 from asperity.scenes import schema as scene
 from asperity.scenes.result import computed_result

@@ -87,7 +87,7 @@ def run(
             result: DataTree = _named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence import with_convergence
-                from asperity.scenarios.preparing import PreparedCase
+                from asperity.scenarios.scene import PreparedCase
 
                 assert isinstance(prepared, PreparedCase)  # of bodies
                 result = with_convergence(prepared, result, told)

@@ -11,7 +11,7 @@ from asperity.case.cases import as_case
 from asperity.case.form import content
 from asperity.running import prepare_case, run
 from asperity.scenarios import reducing
-from asperity.scenarios.laws import LawMaterials
+from asperity.scenarios.laws import ReducedCase
 from asperity.scenes import compute
 from small_cases import BALL, CASES, WHEEL
 
@@ -59,7 +59,7 @@ def recorded(monkeypatch, owner, name):
 @pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
 @pytest.mark.parametrize("case", [BALL, pytest.param(WHEEL, marks=pytest.mark.long)])
 def test_laws_textures_and_state_functions_do_not_outlive_what_they_were_for(monkeypatch, case):
-    laws, states = recorded(monkeypatch, LawMaterials, "build"), recorded(monkeypatch, reducing, "reduce")
+    laws, states = recorded(monkeypatch, ReducedCase, "build"), recorded(monkeypatch, reducing, "reduce")
     computed = compute.compute(prepare_case(as_case(case)), lambda *_: None)
     gc.collect()
     assert set(computed.runs) == set(case["laws"])

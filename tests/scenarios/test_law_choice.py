@@ -176,13 +176,9 @@ def test_areal_is_taken_where_it_is_in_its_range_and_table_where_it_leaves_it():
     assert rough.sentence("areal").endswith("; take table")
 
 
-def chosen(prepared):
-    return law_choice.law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)
-
-
 def test_check_and_verdict_say_what_the_map_says(runs):
     ready = prepare_case(as_case(BALL))
-    rows = dict(plan(ready, NO_WORK, chosen(ready)))
+    rows = dict(plan(ready, NO_WORK, law_choice.law_choice(ready)))
     assert rows["law to take"].startswith("table: areal leaves its range")
     assert re.search(r"areal \d+(\.\d)? \(\d+(\.\d)? to \d+(\.\d)?\)", rows["expected errors, dB"])
     result = runs(BALL)
@@ -220,6 +216,6 @@ RAIL = {"kind": "wheel-on-rail", "duration": "0.1 s", "wheel": {"section": "rigi
 def test_nothing_is_said_where_the_map_knows_nothing(case):
     """Of lines, of what is smooth, and of defects, where the law to take is the default."""
     prepared = prepare_case(as_case(case))
-    assert chosen(prepared) is None
+    assert law_choice.law_choice(prepared) is None
     assert "law to take" not in dict(plan(prepared, NO_WORK))
     assert law_choice.UNMAPPED == WheelOnRail(surface={"joint_depth": "1 mm"}).laws[0] == "direct"

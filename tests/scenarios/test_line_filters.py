@@ -135,18 +135,18 @@ def test_laws_are_normalised_as_they_are_meant(chain):
     assert set(filters) == {"tangent", "low-wavenumber"}
     laws = {"shifted": "tangent", "hertz-filtered": "tangent", "printed": "low-wavenumber"}
     for law, normalise in laws.items():
-        found, texture = filters[normalise], chain.materials.build(law).texture
+        found, texture = filters[normalise], chain.build(law).texture
         padded = np.pad(line, found.taps.shape[1] // 2, mode="reflect")
         expected = [np.convolve(padded, taps, mode="valid") for taps in found.taps]
         np.testing.assert_allclose(texture.heights, expected, atol=1e-15)
     for law in ("shifted-unfiltered", "printed-unfiltered"):
-        np.testing.assert_array_equal(chain.materials.build(law).texture.heights, line[None])
+        np.testing.assert_array_equal(chain.build(law).texture.heights, line[None])
 
 
 def test_a_normalisation_that_is_asked_for_serves_all_laws(runs):
     given = computed(case_of(laws=["shifted", "printed"], contact={"normalise": "low-wavenumber"}))
     assert set(given.reduction.filters) == {"low-wavenumber"}
-    assert np.array_equal(*(given.materials.build(law).texture.heights for law in ("shifted", "printed")))
+    assert np.array_equal(*(given.build(law).texture.heights for law in ("shifted", "printed")))
     unused = runs(case_of(laws=["areal", "linear"]))["contact"]
     assert "filter" in unused
     assert "printed_filter" not in unused
@@ -157,7 +157,7 @@ def test_on_a_wavy_path_filters_are_read_at_the_state_of_the_contact():
     wavy = {"rms": "2 um", "longest": "8 mm"}
     found = computed(case_of(laws=["shifted", "hertz-filtered", "printed"], surface=wavy))
     load, positions = found.shape.load, found.runs["shifted"].positions[0]
-    laws = {name: found.materials.build(name) for name in found.runs}
+    laws = {name: found.build(name) for name in found.runs}
     approach = found.reduction.pressed.approach
     held_at = float(found.reduction.ensemble.curve.inverse(load))
     followed = laws["shifted"].texture.held_at(held_at).at(positions)[:, 0]

@@ -51,7 +51,7 @@ def ball(**contact):
 
 def run_in_of(case, cache=None):
     prepared = prepare_case(as_case(case))
-    return prepared, run_in_case(prepared.case, prepared.textures, prepared.shape, cache, lambda *_: None)
+    return prepared, run_in_case(prepared, cache, lambda *_: None)
 
 
 @pytest.fixture

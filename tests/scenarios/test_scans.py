@@ -47,8 +47,8 @@ def prepared_of(case=CASE, spacing="10 um", **keys):
 def test_sizes_and_states_are_those_of_the_run(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
     prepared = prepared_of(spacing=spacing, duration="2 ms")
-    expected = scan_sizes(prepared.case, prepared.shape, prepared.textures)["path"]
-    tried = try_contacts(prepared.case, prepared.shape, prepared.textures, quiet)
+    expected = scan_sizes(prepared)["path"]
+    tried = try_contacts(prepared, quiet)
     computed = compute(prepared, quiet)
     scanned, reduction = computed.scan, computed.reduction
     assert scanned.forces.shape == (expected.states, expected.positions)
@@ -172,7 +172,7 @@ def test_tables_hold_where_the_rms_is_three_approaches(text):
     """
     chain = compute(prepare_case(parse_case(text)), quiet)
     direct = first_contact(chain.runs["direct"])
-    looked_up = force(chain.materials.build("table"), direct.position, direct.relative_displacement)
+    looked_up = force(chain.build("table"), direct.position, direct.relative_displacement)
     error = np.sqrt(np.mean((looked_up - direct.contact_force) ** 2))
     assert error < 0.04 * direct.contact_force.std()
     shape, states = chain.shape, chain.reduction.approaches

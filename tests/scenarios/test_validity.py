@@ -43,8 +43,7 @@ def synthetic(rms, shortest=60, hurst=0.8, **keys):
 
 def tried(written):
     """Contacts of a case that are tried before it is run."""
-    prepared = prepare_case(parse_case(written))
-    return try_contacts(prepared.case, prepared.shape, prepared.textures, lambda *_: None)
+    return try_contacts(prepare_case(parse_case(written)), lambda *_: None)
 
 
 def validity(tree):

@@ -220,7 +220,7 @@ def test_a_linear_contact_has_the_stiffness_that_it_is_said_to(linearise):
         surface, laws = {"spectrum": "iso3095", "level": "-40 dB"}, laws[1:]
     case = changed("ball-on-beam", laws=laws, contact={"linearise": word}, surface=surface)
     computed = compute(prepare_case(case), lambda *_: None)
-    found, load = computed.materials.build("linear").stiffness, computed.shape.load
+    found, load = computed.build("linear").stiffness, computed.shape.load
     secant = load ** (1 / 3) * computed.shape.hertz.stiffness_constant ** (2 / 3)
     if linearise in ("hertz", "smooth secant"):
         assert found == pytest.approx(secant * (1.5 if word == "hertz" else 1.0), rel=1e-3)
@@ -235,7 +235,7 @@ def test_a_linear_contact_has_the_stiffness_that_it_is_said_to(linearise):
 def test_the_filtered_linear_contact_is_linear():
     """The force grows with the approach by k alone, everywhere: the filter does not follow the state."""
     case = changed("ball-on-beam", laws=["linear-filtered"], contact={"linearise": "hertz"})
-    law = compute(prepare_case(case), lambda *_: None).materials.build("linear-filtered")
+    law = compute(prepare_case(case), lambda *_: None).build("linear-filtered")
     x = np.linspace(0.45, 0.46, 50)
     near, far = (force(law, x, approach) for approach in (law.approach, law.approach + 1e-6))
     np.testing.assert_allclose(far - near, law.stiffness * 1e-6, rtol=1e-9)

@@ -18,7 +18,7 @@ from asperity.reduction.traction import TractionStates
 from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Area, Axis, Chart, Line, Mark, Panel
 from asperity.reporting.data import engineering
 from asperity.reporting.figure import write_chart, write_columns
-from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import creep
 from asperity.terminal import say, say_table
 

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from xarray import DataTree
 
     from asperity.scenarios.law_choice import LawChoice
-    from asperity.scenarios.preparing import PreparedCase, ScanSize, Work
+    from asperity.scenarios.preparing import ScanSize, Work
+    from asperity.scenarios.scene import PreparedCase
 
 RESULT, PAGE = "run.nc", "report.html"
 CONVERGENCE, EFFECTS = "convergence", "effects"
@@ -138,7 +139,7 @@ def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, mor
     _write(tree, directory, report=report)
     if more:
         from asperity.convergence import with_convergence
-        from asperity.scenarios.preparing import PreparedCase
+        from asperity.scenarios.scene import PreparedCase
         from asperity.studies.effects import with_effects
 
         with progress_bar() as progress:
@@ -195,11 +196,12 @@ def described_scan(scan: ScanSize) -> str:
 
 def announce_scan(prepared: ReadyCase) -> None:
     """Before a long scan of a path starts, say how long it is."""
-    from asperity.scenarios.preparing import PreparedCase, scan_sizes
+    from asperity.scenarios.preparing import scan_sizes
+    from asperity.scenarios.scene import PreparedCase
 
     if not isinstance(prepared, PreparedCase):
         return
-    scan = scan_sizes(prepared.case, prepared.shape, prepared.textures).get("path")
+    scan = scan_sizes(prepared).get("path")
     if scan is not None and scan.solutions >= ANNOUNCED:
         say(f"Scan of the path: {described_scan(scan)}.", err=True)
 
@@ -334,17 +336,17 @@ def show_plan(case: AnyCase, source: str) -> dict[str, Any]:
 def planned(prepared: ReadyCase) -> dict[str, Any]:
     """What will be computed from a case: rows, seconds and warnings."""
     from asperity.scenarios.law_choice import law_choice
-    from asperity.scenarios.preparing import PreparedCase, expect
+    from asperity.scenarios.preparing import expect
+    from asperity.scenarios.scene import PreparedCase
     from asperity.scenes.validity import foreseen
 
     caught = [(getattr(each.message, "grade", Grade.WARNING), str(each.message)) for each in prepared.caught]
     if isinstance(prepared, PreparedCase):
         with progress_bar() as progress:
             work = expect(prepared, progress)
-            case = prepared.case, prepared.shape, prepared.textures
-            choice = law_choice(*case, prepared.scene)
+            choice = law_choice(prepared)
             rows = plan(prepared, work, choice)
-            faults = [] if work.tried is None else foreseen(*case, work.tried, choice)
+            faults = [] if work.tried is None else foreseen(prepared, work.tried, choice)
         caught += [(each.grade, each.message) for each in faults if each.grade]
     else:
         from asperity.scenarios.bearing import PreparedBearing, expected

@@ -10,13 +10,11 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array
-from asperity.case.scene import Case
 from asperity.errors import percent
 from asperity.reduction.texture import areal_texture
 from asperity.reference.law_accuracy import HIGH, LOW, LawMap, MappedPoint, Place, law_map
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.scene import Scene
-from asperity.scenarios.textures import Textures
+from asperity.scenarios.scene import PreparedCase
 from asperity.spectra import psd
 from asperity.structures.track import Track
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
@@ -236,16 +234,17 @@ class LawChoice:
         return text
 
 
-def law_choice(case: Case, shape: Geometry, textures: Textures, scene: Scene) -> LawChoice | None:
+def law_choice(prepared: PreparedCase) -> LawChoice | None:
     """Ask the map about a case; it knows nothing of lines alone, smooth paths and defects.
 
     It holds wheels on rails, which stand for all that rolls over a track, and balls on beams, for all else.
     """
+    case, scene, textures = prepared.case, prepared.scene, prepared.textures
     path = textures.path
     if path is None or textures.defects is not None or not textures.areal:
         return None
     kind = "wheel-on-rail" if isinstance(scene.over, Track) else "ball-on-beam"
-    place = place_of(path, shape, case.speed, scene.square_transfer)
+    place = place_of(path, prepared.shape, case.speed, scene.square_transfer)
     return None if place is None else choose(law_map(), kind, place, case.laws)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, shown
-from asperity.case import scene, sections
+from asperity.case import sections
 from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, scan_forces, warn_of_flaws
 from asperity.errors import InputError
 from asperity.laws import Law, LawSpec, Materials, Need, spec_of
@@ -19,24 +19,22 @@ from asperity.reduction.stiffness import ForceTable
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.textures import OtherContact, Textures
+from asperity.scenarios.scene import PreparedCase
+from asperity.scenarios.textures import OtherContact
 from asperity.store import Store
 
 
-@dataclass(frozen=True, eq=False)
-class LawMaterials:
-    """What the laws of one contact of a case are made of."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ReducedCase(PreparedCase):
+    """A case that is reduced: what the laws of one of its contacts are made of."""
 
-    case: scene.Case
-    textures: Textures
-    shape: Geometry
     reduction: reducing.Reduction | None  # state functions; None where the case has no samples
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: Array | None
     cache: Store  # for the scan of the path
     progress: Progress
 
-    def of_contact(self, own: OtherContact) -> "LawMaterials":
+    def of_contact(self, own: OtherContact) -> "ReducedCase":
         """Those of another contact of the same bodies."""
         textures, shape = own.textures(self.textures), replace(self.shape, load=own.load)
         planes = None if textures.path is None else reducing.patch_planes(textures.path, self.shape)
@@ -113,7 +111,7 @@ class LawMaterials:
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
     @cached_property
-    def scan(self) -> ScannedForces:
+    def path_scan(self) -> ScannedForces:
         """The scan of the path."""
         job = ScanJob(
             self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
@@ -149,7 +147,16 @@ class LawMaterials:
             assert self._reduced.touches is not None
             touches = self._reduced.touches[rows]
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
-        return ForceTable(self.scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
+        return ForceTable(self.path_scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
+
+
+def reduced_case(prepared: PreparedCase, cache: Store, progress: Progress) -> ReducedCase:
+    """Reduce a case to what its laws are made of; one without samples has no state functions."""
+    path, reduction = prepared.textures.path, None
+    planes = None if path is None else reducing.patch_planes(path, prepared.shape)
+    if prepared.textures.maps:
+        reduction = reducing.reduce(prepared, planes, cache, progress)
+    return ReducedCase(**vars(prepared), reduction=reduction, planes=planes, cache=cache, progress=progress)
 
 
 def table_stride(shape: Geometry) -> int:

@@ -2,9 +2,8 @@
 
 import math
 import time
-import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -21,8 +20,8 @@ from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios import compiling, laws, reducing, running_in
-from asperity.scenarios.geometry import Geometry, geometry_of, window_cells
-from asperity.scenarios.scene import Scene, scene_of
+from asperity.scenarios.geometry import geometry_of, window_cells
+from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
 from asperity.structures.track import Track
@@ -55,19 +54,6 @@ LONG = 2.0
 """Processor time, s, after which no further sample is pressed."""
 
 
-@dataclass(frozen=True, eq=False)
-class PreparedCase:
-    """A case that can be computed."""
-
-    case: Case
-    scene: Scene  # what rolls over what
-    shape: Geometry  # the gap of the bodies on the contact grid
-    textures: Textures  # what is rolled over
-    caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
-    seconds: float  # that it took
-    processor: float  # time, s
-
-
 def prepare(case: Case, source: str = "case") -> PreparedCase:
     """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
     begin, spent = time.perf_counter(), time.process_time()
@@ -80,13 +66,13 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
             except InputError as error:
                 errors.append(error)
         refuse(errors, source)
-        scene, shape, textures, *_ = made
-        if (smaller := _within_the_map(case, textures)) is not None:
+        prepared = PreparedCase(case, *made[:3])
+        if (smaller := _within_the_map(case, prepared.textures)) is not None:
             return prepare(smaller, source)
-        refuse(list(_problems(case, shape, textures)), source)
-        warn_of_textures(case, shape, textures)
-    seconds, processor = time.perf_counter() - begin, time.process_time() - spent
-    return PreparedCase(case, scene, shape, textures, tuple(caught), seconds, processor)
+        refuse(list(_problems(prepared)), source)
+        warn_of_textures(case, prepared.shape, prepared.textures)
+    seconds, processor = {"textures": time.perf_counter() - begin}, time.process_time() - spent
+    return replace(prepared, caught=tuple(caught), seconds=seconds, processor=processor)
 
 
 def refuse(errors: Sequence[InputError], source: str) -> None:
@@ -104,8 +90,9 @@ def _within_the_map(case: Case, textures: Textures) -> Case | None:
     return with_chosen(case, {"contact": {"window": cells * case.contact.spacing}})
 
 
-def _problem_of_heights(case: Case, shape: Geometry, textures: Textures) -> InputError | None:
+def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
     """Heights that no surface has on which bodies roll: most often in another unit."""
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
     (nx, ny), maps = shape.body.shape, textures.maps
     slope, rough = float(np.sqrt(np.mean(np.diff(textures.line) ** 2))) / case.contact.spacing, 0.0
     if maps:
@@ -125,10 +112,11 @@ def _problem_of_heights(case: Case, shape: Geometry, textures: Textures) -> Inpu
     return InputError(f"{name}.{key}".rstrip("."), received, allowed, _UNITS.get(key, ""))
 
 
-def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[InputError]:
+def _problems(prepared: PreparedCase) -> Iterator[InputError]:
     """What fits neither samples nor window."""
-    contact, (nx, ny) = case.contact, shape.body.shape
-    if (steep := _problem_of_heights(case, shape, textures)) is not None:
+    contact, shape, textures = prepared.case.contact, prepared.shape, prepared.textures
+    nx, ny = shape.body.shape
+    if (steep := _problem_of_heights(prepared)) is not None:
         yield steep
         return
     smallest = min((min(sample.shape) for sample in textures.maps), default=nx)
@@ -146,7 +134,7 @@ def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[Input
             yield InputError(
                 "contact.sample_length", received, allowed, "Lengthen it, or measure larger maps."
             )
-    path, root = scan_sizes(case, shape, textures).get("path"), Store().root
+    path, root = scan_sizes(prepared).get("path"), Store().root
     if path is not None and (free := free_space(root)) < path.bytes > MOST_HELD:
         remedy = "Set $ASPERITY_CACHE to a folder on another disk, or free some space."
         allowed = f"{amount(path.bytes)} for the scan of the path"
@@ -182,11 +170,12 @@ class ScanSize:
         return self.positions * self.states
 
 
-def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, ScanSize]:
+def scan_sizes(prepared: PreparedCase) -> dict[str, ScanSize]:
     """Find the sizes of the scans of a case, of as many states as it names or the run chooses.
 
     ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up.
     """
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
     half_space = shape.half_space(None)
     states = np.arange(float(len(case.contact.approaches or range(reducing.STATES))))
 
@@ -215,8 +204,9 @@ class ContactTrial:
     solution: float  # processor time of a contact of that curve, s
 
 
-def try_contacts(case: Case, shape: Geometry, textures: Textures, progress: Progress) -> ContactTrial:
+def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     """Press some samples of a case, and compute the loading curve of the first."""
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
     with PhysicsWarning.ignored():
         progress(0, 2, "trying contacts")
         samples = reducing.samples_of(case, shape, textures.maps, shape.class_axes)
@@ -272,16 +262,16 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     Work
         Its time within a factor of three or so: that of one contact, times their number.
     """
-    case, shape, textures, trial = prepared.case, prepared.shape, prepared.textures, None
+    case, trial = prepared.case, None
     with one_thread_in_linear_algebra():
-        if textures.maps:
+        if prepared.textures.maps:
             compiling.compile_kernels(progress)
-            trial = try_contacts(case, shape, textures, progress)
-    scans = scan_sizes(case, shape, textures)
+            trial = try_contacts(prepared, progress)
+    scans = scan_sizes(prepared)
     steps = round((case.settled_time + case.rolled_time) / case.time_step)
     solutions = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
     if case.contact.running_in is not None:
-        solutions["running in"] = running_in.running_in_solutions(case, shape, textures)
+        solutions["running in"] = running_in.running_in_solutions(prepared)
     contacts = len(prepared.scene.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
     seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.scene.points)

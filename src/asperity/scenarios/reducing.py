@@ -16,6 +16,7 @@ from asperity.laws import LawSpec, Need, spec_of
 from asperity.progress import Progress, counted
 from asperity.reduction import filter, stiffness, texture
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import Textures
 from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
@@ -104,18 +105,14 @@ def patch_planes(path: Strip, shape: Geometry) -> Array:
 
 
 def reduce(
-    case: scene.Case,
-    textures: Textures,
-    shape: Geometry,
-    planes: Array | None,
-    cache: Store | None,
-    progress: Progress,
+    prepared: PreparedCase, planes: Array | None, cache: Store | None, progress: Progress
 ) -> Reduction:
     """Press and move the body on the samples, and reduce the forces to stiffness and filters.
 
     `planes` (rows,), m, are from `patch_planes` for the path, where it is areal. The cache keeps finished
     scans.
     """
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
     contact, numerics = case.contact, case.numerics
     half_space = shape.half_space(contact.hardness)
     samples = samples_of(case, shape, textures.maps, shape.class_axes)
@@ -130,7 +127,7 @@ def reduce(
     lowest = {"samples": min(float(scan.first_touch(each, shape.body).min()) for each in samples)}
     strips = [float(scan.first_touch(each.heights, shape.body).min()) for each in textures.strips]
     lowest["path"] = min(lowest["samples"], *strips, *([] if along is None else [float(along.min())]))
-    approaches = _approaches(case, textures, shape, along, samples)
+    approaches = _approaches(prepared, along, samples)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
     wide = textures.widest_window
@@ -147,7 +144,7 @@ def reduce(
     curve = ensemble.curve.first_touch
     datums = {name: -min(touch, curve, -LEAST_DATUM) for name, touch in lowest.items()}
     ensemble = replace(ensemble, datum=datums[contact.datum])
-    filters, counts = line_filters(case, textures, shape, ensemble, cache, progress)
+    filters, counts = line_filters(prepared, ensemble, cache, progress)
     scan.warn_of_flaws(counts, "the filters", SCAN_TOLERANCE, remedy)
     axes = np.array([shape.axes(f) for f in mean])
     return Reduction(approaches, ensemble, datums, axes, filters, pressed, remedy, along, counts)
@@ -193,18 +190,17 @@ def _touches(strip: Strip | Array, planes: Array, shape: Geometry) -> Array:
     return scan.first_touch(strip, shape.body) + planes[half : len(planes) - half]
 
 
-def _approaches(
-    case: scene.Case, textures: Textures, shape: Geometry, along: Array | None, samples: Sequence[Array]
-) -> Array:
+def _approaches(prepared: PreparedCase, along: Array | None, samples: Sequence[Array]) -> Array:
     """States as given, or by the load that places carry.
 
     Those of the samples do not depend on the path; more lie below where it is touched earlier, by whole
     steps: paths of other lengths over the same surface have them in common.
     """
-    if case.contact.approaches is not None:
-        return np.array(case.contact.approaches)
-    places = touched_places(textures, shape)
-    states = chosen_states([*samples, *places], shape, shape.half_space(case.contact.hardness))
+    contact, shape = prepared.case.contact, prepared.shape
+    if contact.approaches is not None:
+        return np.array(contact.approaches)
+    places = touched_places(prepared.textures, shape)
+    states = chosen_states([*samples, *places], shape, shape.half_space(contact.hardness))
     if along is None or len(states) < 2:
         return states
     earlier = min(float((shape.body - place).min()) for place in places) - float(along.min())
@@ -276,18 +272,14 @@ def filter_stride(shape: Geometry) -> int:
 
 
 def line_filters(
-    case: scene.Case,
-    textures: Textures,
-    shape: Geometry,
-    ensemble: stiffness.StiffnessEnsemble,
-    cache: Store | None,
-    progress: Progress,
+    prepared: PreparedCase, ensemble: stiffness.StiffnessEnsemble, cache: Store | None, progress: Progress
 ) -> tuple[LineFilters, scan.Counts]:
     """Scan the strips, and design a filter for every normalisation that a law needs, or that is shown.
 
     That of the tangent stiffness is shown in any case, unless the case names another. States whose mean force
     is out of `filtered_loads` have no filter. Filters of bodies without texture are sin q/q in closed form.
     """
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
     contact, dx, force = case.contact, shape.spacing[0], ensemble.mean_force
     least, largest = filtered_loads(contact, shape)
     loaded = (force >= least) & (force <= largest)

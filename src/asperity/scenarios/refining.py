@@ -12,7 +12,7 @@ from asperity.case import beam, rolled_over
 from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.scenarios.geometry import window_cells
-from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import Textures
 from asperity.schema.convergence import PATH_LENGTH
 from asperity.spectra import psd

@@ -7,13 +7,13 @@ from functools import partial
 import numpy as np
 
 from asperity.arguments import Array, passes_of
-from asperity.case.scene import Case
 from asperity.contact.running_in import RunInHeights, RunningIn, run_in, tolerance_of, warn_of_running_in
 from asperity.contact.scan import total
 from asperity.progress import Progress
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.reducing import samples_of
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import Textures
 from asperity.schema import Values, contact
 from asperity.store import Store
@@ -33,14 +33,13 @@ class RunInCase:
     values: Values  # each pass, and the surface before and after them
 
 
-def run_in_case(
-    case: Case, textures: Textures, shape: Geometry, cache: Store | None, progress: Progress
-) -> RunInCase:
+def run_in_case(prepared: PreparedCase, cache: Store | None, progress: Progress) -> RunInCase:
     """Run samples and path of a case in, each rolled over lengthwise under the working load.
 
     Samples are then cut from the strips, whose middles the body has passed. A path that is a line alone stays
     as it is. The cache keeps what was rolled.
     """
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
     half_space = shape.half_space(case.contact.hardness)
     job = RunningIn(
         half_space, shape.body, shape.load, passes_of(case.contact.running_in),
@@ -69,7 +68,7 @@ def run_in_case(
         textures, maps=maps, strips=maps, path=path, line=line, parts=parts, untouched=textures, origin=origin
     )
     before = replace(textures, maps=textures.strips)
-    conditions = np.array([_condition(case, shape, each) for each in (before, after)])
+    conditions = np.array([_condition(prepared, each) for each in (before, after)])
     return RunInCase(after, _passes(surfaces, conditions))
 
 
@@ -92,11 +91,12 @@ def _passes(surfaces: Sequence[RunInHeights], conditions: Array) -> Values:
     }
 
 
-def running_in_solutions(case: Case, shape: Geometry, textures: Textures) -> int:
+def running_in_solutions(prepared: PreparedCase) -> int:
     """Contacts to solve in all passes over samples and path, as far as their number is known."""
+    shape, textures = prepared.shape, prepared.textures
     rolled = [*textures.strips, *([] if textures.path is None else [textures.path])]
     spare = [max(strip.shape[0] - shape.body.shape[0], 0) for strip in rolled]
-    passes = passes_of(case.contact.running_in) or EXPECTED_PASSES
+    passes = passes_of(prepared.case.contact.running_in) or EXPECTED_PASSES
     return passes * sum(rows // table_stride(shape) + 1 for rows in spare)
 
 
@@ -108,11 +108,12 @@ def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures)
     return words if textures.path is not None else f"{words}, line of the path as given"
 
 
-def _condition(case: Case, shape: Geometry, textures: Textures) -> tuple[float, float]:
+def _condition(prepared: PreparedCase, textures: Textures) -> tuple[float, float]:
     """Of samples and path rms height on the track, m; pressed, their stiffness, N/m.
 
     The track is as wide as the nominal patch; the stiffness is that which small vibration feels: elastic.
     """
+    case, shape = prepared.case, prepared.shape
     half_space, elastic = shape.half_space(case.contact.hardness), shape.half_space(None)
     samples, rtol = samples_of(case, shape, textures.maps, shape.semi_axes), case.numerics.rtol
     contacts = [half_space.solve(shape.body - each, load=shape.load, rtol=rtol) for each in samples]

@@ -1,13 +1,16 @@
 """The scene of a case: what rolls, what it is rolled over, where both are looked at; and its linear force."""
 
+import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex
 from asperity.case.scene import Case
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.textures import Textures
 from asperity.structures.body import Body, Wheel
 from asperity.structures.modal import Modal, receptances_between
 from asperity.structures.track import Track
@@ -131,6 +134,19 @@ def scene_of(case: Case) -> Scene:
         place,
         rail_place,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedCase:
+    """A case that can be computed."""
+
+    case: Case
+    scene: Scene  # what rolls over what
+    shape: Geometry  # the gap of the bodies on the contact grid
+    textures: Textures  # what is rolled over
+    caught: tuple[warnings.WarningMessage, ...] = ()  # warnings met on the way
+    seconds: dict[str, float] = field(default_factory=dict)  # wall time of each part, s
+    processor: float = 0.0  # time that preparing took, s
 
 
 # --- the linear reference in the frequency domain: roughness moved between a wheel and a rail at rest

@@ -16,12 +16,11 @@ from asperity.laws import Law, Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies
-from asperity.scenarios import compiling, preparing, reducing
-from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.laws import LawMaterials, working_point
+from asperity.scenarios import compiling
+from asperity.scenarios.laws import ReducedCase, reduced_case, working_point
 from asperity.scenarios.running_in import RunInCase, run_in_case
-from asperity.scenarios.scene import Scene
-from asperity.scenarios.textures import Textures, other_contacts, recorded_time
+from asperity.scenarios.scene import PreparedCase, Scene
+from asperity.scenarios.textures import other_contacts, recorded_time
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
@@ -35,35 +34,16 @@ TOLD_OF = ("laws", "noise")
 """Keys of a case by which only that is computed which is told of a motion, and the laws."""
 
 
-@dataclass(frozen=True, eq=False)
-class Computed:
-    """Everything that was computed for a case, before it is laid out as a result."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Computed(ReducedCase):
+    """Everything that was computed for a case, before it is laid out as a result: its textures as run in."""
 
-    case: Case
-    scene: Scene
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
-    materials: LawMaterials  # of the first contact: textures, geometry, state functions
     runs: dict[str, RolledBodies]  # time histories, by law
     scan: ScannedForces | None  # of the path
     running_in: RunInCase | None  # what passes before did to the textures; None where there were none
-    seconds: dict[str, float]  # wall time of each part, s
     # (laws, points, n), displacement, m, and velocity, m/s, of the rail at the points that are passed
     points: tuple[Array, ...] = ()
-
-    @property
-    def textures(self) -> Textures:
-        """What was rolled over, as it was run in."""
-        return self.materials.textures
-
-    @property
-    def shape(self) -> Geometry:
-        """The gap of the bodies on the contact grid."""
-        return self.materials.shape
-
-    @property
-    def reduction(self) -> reducing.Reduction | None:
-        """State functions; None without samples."""
-        return self.materials.reduction
 
     @property
     def stiffness(self) -> float:
@@ -149,10 +129,10 @@ def spectrum_segment(samples: int, step: float) -> int:
     return min(max(samples // 4, shortest), longest, samples)
 
 
-def compute(prepared: preparing.PreparedCase, progress: Progress) -> Computed:
+def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
-    case, scene, textures, shape = prepared.case, prepared.scene, prepared.textures, prepared.shape
-    store, seconds, last, ran = Store(), {"textures": prepared.seconds}, time.perf_counter(), None
+    case, scene, run_in, ran = prepared.case, prepared.scene, prepared, None
+    store, seconds, last = Store(), dict(prepared.seconds), time.perf_counter()
 
     def book(part: str) -> None:
         """Book the time since the last part on this one."""
@@ -165,16 +145,14 @@ def compute(prepared: preparing.PreparedCase, progress: Progress) -> Computed:
     over = _in_time(scene, case, store, progress)
     book("what is rolled over")
     which, others = other_contacts(case, scene.loads)
-    duration = recorded_time(case, textures)
+    duration = recorded_time(case, prepared.textures)
     if case.contact.running_in is not None:
-        ran = run_in_case(case, textures, shape, store, progress)
-        textures = ran.textures
+        ran = run_in_case(prepared, store, progress)
+        run_in = replace(prepared, textures=ran.textures)
         book("running in")
-    planes = None if textures.path is None else reducing.patch_planes(textures.path, shape)
-    reduction = reducing.reduce(case, textures, shape, planes, store, progress) if textures.maps else None
+    first = reduced_case(run_in, store, progress)
     book("reduction")
-    first = LawMaterials(case, textures, shape, reduction, planes, store, progress)
-    every, unused = [first, *(first.of_contact(own) for own in others)], replace(first)
+    every, unused = [first, *(first.of_contact(own) for own in others)], replace(first, seconds=seconds)
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:
         laws = [materials.build(name) for materials in every]
@@ -195,8 +173,8 @@ def compute(prepared: preparing.PreparedCase, progress: Progress) -> Computed:
         )
         del laws
         book(f"law {name}")
-    scan = first.scan if Need.SCAN in needs_of(case.laws) else None
-    computed = Computed(case, scene, over, unused, runs, scan, ran, seconds)
+    scan = first.path_scan if Need.SCAN in needs_of(case.laws) else None
+    computed = Computed(**vars(unused), over=over, runs=runs, scan=scan, running_in=ran)
     if not scene.points:
         return computed
     computed = replace(computed, points=_passed(computed, progress))
@@ -226,7 +204,7 @@ def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     return tuple(np.sum(each, axis=0) for each in zip(*parts, strict=True))
 
 
-def checkpoint_of(law: Law, prepared: preparing.PreparedCase, store: Store) -> Checkpoint | None:
+def checkpoint_of(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
     """Where a law that is solved in every step is kept, by the whole case and its path.
 
     Left out of the case are `TOLD_OF` and the names of its laws, each of which rolls alone.

@@ -12,8 +12,8 @@ from asperity.errors import InputError, OutOfRangeWarning
 from asperity.progress import Progress
 from asperity.reduction import stiffness, texture
 from asperity.reduction.traction import TractionStates, middle_of, traction_states
-from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import LIGHTEST_STATE
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute, schema
 from asperity.scenes.sideways import Sideways
 from asperity.schema import Values
@@ -36,11 +36,7 @@ def friction_of(case: Case) -> Friction:
     return Friction(case.sideways.friction, case.creep.kinetic, case.creep.falling_velocity)
 
 
-Whole = PreparedCase | compute.Computed
-"""A case with its geometry and textures."""
-
-
-def smooth_with_friction(of: Whole, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
+def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
     """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
     case, shape = of.case, of.shape
     space, bodies = (
@@ -51,7 +47,7 @@ def smooth_with_friction(of: Whole, friction: Friction) -> tuple[FrictionalHalfS
     return FrictionalHalfSpace(space, bodies, friction), smooth
 
 
-def rough_strips(of: Whole) -> list[Array]:
+def rough_strips(of: PreparedCase) -> list[Array]:
     """Rough strips (rows, ny) of a case about the plane that the patch feels in their middle, m."""
     weights, nx = texture.punch_weights(of.shape.spacing, of.shape.class_axes), len(of.shape.body)
     rough = [strip.heights for strip in of.textures.strips if strip.heights.any()]

@@ -19,7 +19,7 @@ from asperity.errors import Grade, PhysicsWarning, warn_of_findings
 from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
-from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import creep, measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group

@@ -12,8 +12,7 @@ from asperity.laws import Role, in_role
 from asperity.reduction.texture import along_path
 from asperity.reference.railways import iso_3095_decay_rate
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.scene import BodyAtContact, Scene, mean_square_transfer
+from asperity.scenarios.scene import BodyAtContact, PreparedCase, Scene, mean_square_transfer
 from asperity.scenes import compute, measured, noise, schema, validity
 from asperity.schema import Values
 from asperity.structures.body import Wheel

@@ -11,10 +11,9 @@ from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
 from asperity.rolling.roll import RolledBodies
-from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice, written_force
 from asperity.scenarios.preparing import ContactTrial
-from asperity.scenarios.textures import Textures
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, spectra
 from asperity.spectra import nominal_frequency, say_little
@@ -37,7 +36,7 @@ def findings(
     With answers about its population. Which law to take instead is what the map of law errors chooses, where
     it knows of the case.
     """
-    case, reduction, textures = computed.case, computed.reduction, computed.textures
+    case, reduction = computed.case, computed.reduction
     steps = (case.rolled_time + case.settled_time) / case.time_step
     worst = max(computed.runs, key=lambda law: computed.runs[law].unconverged_steps)
     missed = computed.runs[worst].unconverged_steps
@@ -52,7 +51,7 @@ def findings(
         return [time_steps]
     return [
         _area(case, reduction.pressed.area_ratio, choice),
-        _slope(case, computed.shape, textures),
+        _slope(computed),
         _isolated(case, reduction.pressed.isolated_share),
         *_cut_off(computed),
         *(answer for answer in population if answer.laws),
@@ -65,18 +64,17 @@ def choice_of(computed: Computed, *, brief: bool) -> LawChoice | None:
     reduction = computed.reduction
     if brief and (reduction is None or reduction.pressed.area_ratio >= AREA[0]):
         return None
-    return law_choice(computed.case, computed.shape, computed.textures, computed.scene)
+    return law_choice(computed)
 
 
-def foreseen(
-    case: Case, shape: Geometry, textures: Textures, tried: ContactTrial, choice: LawChoice | None
-) -> list[Finding]:
+def foreseen(prepared: PreparedCase, tried: ContactTrial, choice: LawChoice | None) -> list[Finding]:
     """What a run will find fault with, from contacts that were tried."""
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
     lowest, *_, highest = tried.approaches.tolist()
     remedy = shape.remedy_for_cut_off(highest, -lowest, textures.widest_window)
     found = (
         _area(case, tried.pressed.area_ratio, choice),
-        _slope(case, shape, textures),
+        _slope(prepared),
         _isolated(case, tried.pressed.isolated_share),
         _rare(f"{_CUT_OFF}, the loading curve of a sample", tried.cut_off, _TOO_SMALL, remedy),
     )
@@ -122,9 +120,9 @@ def _area(case: Case, ratio: float, choice: LawChoice | None) -> Finding:
     )
 
 
-def _slope(case: Case, shape: Geometry, textures: Textures) -> Finding:
-    slope = textures.rms_slope
-    pressure = 0.5 * shape.modulus * slope
+def _slope(prepared: PreparedCase) -> Finding:
+    slope = prepared.textures.rms_slope
+    pressure = 0.5 * prepared.shape.modulus * slope
     return Finding(
         "rms slope of the samples, Sdq",
         f"{slope:.2g}",
@@ -134,7 +132,7 @@ def _slope(case: Case, shape: Geometry, textures: Textures) -> Finding:
         f"{pressure / 1e9:.2g} GPa.",
         "Leave out the short waves that yield at first touch by surface.shortest, or give contact.hardness.",
         f"rms slope {slope:.2g}",
-        tuple(case.laws),
+        tuple(prepared.case.laws),
     )
 
 

@@ -12,7 +12,8 @@ from asperity.errors import CaseError, InputError
 from asperity.reduction.stiffness import patches
 from asperity.reduction.texture import punch_weights
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.preparing import PreparedCase, prepare
+from asperity.scenarios.preparing import prepare
+from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import strip_rows
 
 MOST_CELLS_SHOWN = 129
