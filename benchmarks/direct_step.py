@@ -67,7 +67,8 @@ def rolled(name: str) -> tuple[Any, Callable[[Clock], Any]]:
     case, found = prepared.case, compute(prepared, lambda *_: None)
     law, scene = found.build("direct"), found.scene
     path = {"speed": case.speed, "start": case.record_start, "time_step": case.time_step}
-    path |= {"duration": case.rolled_time, "settling": case.settled_time, "sensors": scene.sensors}
+    path |= {"duration": case.rolled_time, "settling": case.settled_time}
+    path["sensors"] = case.rolled_over.sensor_positions
     return law, lambda clock: roll_bodies(
         found.over, scene.rolling, [law], positions=scene.positions, progress=clock, **path
     )

@@ -101,7 +101,7 @@ def rolled(computed: Computed, law: Law, duration: float) -> tuple[float, float,
         start=case.record_start,
         duration=duration,
         time_step=case.time_step,
-        sensors=computed.scene.sensors,
+        sensors=case.rolled_over.sensor_positions,
         progress=clock,
     )
     return clock.seconds_per_step, timed.seconds, run
@@ -112,7 +112,7 @@ def report(
 ) -> None:
     """Print the table in Markdown."""
     case = computed.case
-    modes, sensors = len(computed.over.natural_frequencies), len(computed.scene.sensors)
+    modes, sensors = len(computed.over.natural_frequencies), len(computed.case.rolled_over.sensor_positions)
     print(
         f"\nBall on beam, {computed.shape.load:g} N, window {computed.shape.body.shape[0]} x "
         f"{computed.shape.body.shape[1]} cells, {modes} beam modes, {sensors} sensors, "

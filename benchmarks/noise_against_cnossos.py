@@ -74,7 +74,7 @@ def transfer(pads: float) -> dict[str, np.ndarray]:
     section = RailSection(0.150, 0.072, 7.745e-3)
 
     def spread(x):
-        return np.abs(force_transfer(f, wheel, body, STIFFNESS, x)) ** 2
+        return np.abs(force_transfer(f, wheel.receptance, body, STIFFNESS, x)) ** 2
 
     node, weight = np.polynomial.legendre.leggauss(30)
     square = 0.5 * weight @ spread(0.5 * body.sleeper_spacing * (node + 1.0))
@@ -113,7 +113,7 @@ def wheel_transfer(pads: float, section: str) -> np.ndarray:
     f = (BANDS[:, None] * 10.0 ** (0.1 * (np.arange(400) - 199.5) / 400.0)).ravel()
     node, weight = np.polynomial.legendre.leggauss(12)
     places = 0.5 * body.sleeper_spacing * (node + 1.0)
-    square = 0.5 * weight @ np.abs(force_transfer(f, wheel, body, STIFFNESS, places)) ** 2
+    square = 0.5 * weight @ np.abs(force_transfer(f, wheel.receptance, body, STIFFNESS, places)) ** 2
     omega, natural = 2.0 * np.pi * f, 2.0 * np.pi * table[:, :1]
     answer = 1.0 / (table[:, 2:3] * (natural**2 - omega**2 + 2j * table[:, 1:2] * natural * omega))
     power = radiator.power(f, np.abs(omega * answer) ** 2 * 2.0 * square).sum(axis=0)

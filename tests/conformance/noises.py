@@ -74,7 +74,7 @@ def linear_force():
     for frequency in (60.0, 630.0, 2500.0):
         rail = track.receptance(frequency, 0.3, 0.3)
         expected = 1 / (-1 / (600.0 * (2 * np.pi * frequency) ** 2) + 1 / stiffness + rail)
-        found = force_transfer(np.array([frequency]), wheel, track, stiffness, [0.3])
+        found = force_transfer(np.array([frequency]), wheel.receptance, track, stiffness, [0.3])
         what = f"linear contact at mid-span, {frequency:g} Hz: force over roughness"
         source = "Remington; receptances in series"
         yield Check(what, abs(expected), abs(found), "GN/m", source=source, tolerance=1e-9)

@@ -93,7 +93,7 @@ def sound(modes):
     table = modes.turning(30.0 / 0.46).table()
     wheel, radiator = Wheel(600.0, 65e3, *table[:, :3].T), RadiatingWheel(0.46, 0.135, *table[:, 3:].T)
     f = (BANDS[:, None] * 10.0 ** (0.1 * (np.arange(1000) - 499.5) / 1000.0)).ravel()
-    force = mean_square_transfer(f, wheel, TRACK, 1.2e9, positions=3)
+    force = mean_square_transfer(f, wheel.receptance, TRACK, 1.2e9, TRACK.places(3))
     omega = 2.0 * np.pi * f
     answer = modal_answers(f, *table[:, :2].T).T / table[:, 2:3]
     power = radiator.power(f, np.abs(omega * answer) ** 2 * force).sum(axis=0)

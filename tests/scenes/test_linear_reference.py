@@ -17,7 +17,7 @@ from asperity.structures.body import Wheel
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.track import Track
 
-WHEEL, HEAVY = Wheel(600.0, 65e3), Wheel(1e12, 65e3)
+WHEEL, HEAVY = Wheel(600.0, 65e3).receptance, Wheel(1e12, 65e3).receptance
 STIFFNESS = 1.25e9
 F = np.geomspace(20.0, 4000.0, 50)
 
@@ -42,14 +42,14 @@ def test_mean_square_over_half_a_bay_is_that_of_the_bay():
     track, positions = Track.named("nordborg"), 6
     x = (np.arange(2 * positions) + 0.5) * 0.6 / (2 * positions)
     bay = np.mean(np.abs(force_transfer(F, WHEEL, track, STIFFNESS, x)) ** 2, axis=0)
-    assert_allclose(mean_square_transfer(F, WHEEL, track, STIFFNESS, positions), bay, rtol=1e-8)
+    assert_allclose(mean_square_transfer(F, WHEEL, track, STIFFNESS, track.places(positions)), bay, rtol=1e-8)
 
 
 def test_mean_square_against_the_closed_form():
     assert force_transfer([0.0], WHEEL, Spring(), STIFFNESS, 0.0)[0] == 0.0
     # mean over the bay of 1/(a + c (1 − cos φ))² is (a + c)/(a (a + 2c))^1.5, a = 1/k without a wheel
     a, c = 1.0 / STIFFNESS, 3e-10
-    mean = mean_square_transfer(F, HEAVY, Spring(0.0, c), STIFFNESS)
+    mean = mean_square_transfer(F, HEAVY, Spring(0.0, c), STIFFNESS, Spring().places(12))
     assert_allclose(mean, (a + c) / (a * (a + 2 * c)) ** 1.5, rtol=1e-6)
 
 
@@ -96,7 +96,7 @@ def test_loss_factors_err_as_the_kernel_does(error):
         transform = kernel.weights @ np.exp(-2j * np.pi * lag[:, None] * frequency)
         rail = transform / np.sinc(frequency * STEP) ** 2
         nominal = np.array([LOSSY.receptance(frequency, x, x) for x in places])
-        carried = WHEEL.receptance(frequency) + 1.0 / STIFFNESS
+        carried = WHEEL(frequency) + 1.0 / STIFFNESS
         levels = [10 * np.log10(np.mean(np.abs(1 / (carried + each)) ** 2)) for each in (rail, nominal)]
         assert levels[0] - levels[1] == pytest.approx(force[band], abs=0.03)
 

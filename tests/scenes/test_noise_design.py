@@ -37,10 +37,10 @@ def roughness_psd(speed):
 def in_bands(track, speed=30.0):
     """Sound power levels of rail and sleepers in bands, dB re 1 pW, of one wheel."""
     lines, texture = FREQUENCY.ravel(), roughness_psd(speed).ravel()
-    force = mean_square_transfer(lines, WHEEL, track, STIFFNESS, positions=6) * texture / speed
+    force = mean_square_transfer(lines, WHEEL.receptance, track, STIFFNESS, track.places(6)) * texture / speed
 
     def spread(x):
-        return np.abs(force_transfer(lines, WHEEL, track, STIFFNESS, x)) ** 2
+        return np.abs(force_transfer(lines, WHEEL.receptance, track, STIFFNESS, x)) ** 2
 
     found = []
     for part in (RAIL, SLEEPER):

@@ -152,7 +152,7 @@ class TestTrack:
 
     def test_viscous_tracks_have_nothing_to_tell(self):
         track = Track.named("nordborg", rail_loss_factor=0.0)
-        viscous = loss_factor_error(track, Wheel(600.0, 65e3), 1.2e9, 2e3)
+        viscous = loss_factor_error(track, Wheel(600.0, 65e3).receptance, 1.2e9, 2e3)
         assert (viscous, list(described_losses(viscous))) == ({}, [])
 
     def test_the_limit_of_decay_rates(self):

@@ -52,7 +52,8 @@ def in_bands(force, texture, run, segment, low, high, speed=SPEED, wheel=WHEEL, 
     frequency, found = psd(force, step, segment=segment)
     _, density = psd(texture.at(run.position)[:, 0], speed * step, segment=segment)
     expected = np.zeros_like(found)
-    expected[1:] = mean_square_transfer(frequency[1:], wheel, track, STIFFNESS) * density[1:] / speed
+    alone = wheel.receptance, track, STIFFNESS, track.places(12)
+    expected[1:] = mean_square_transfer(frequency[1:], *alone) * density[1:] / speed
     return band_levels(frequency, np.stack([found, expected]), low=low, high=high)
 
 

@@ -150,7 +150,7 @@ def test_every_layer_relaxes_in_time():
     causal = causal_track(track)
     assert [name for name, each in vars(causal.relaxations).items() if each] == ["rail", *track.springs]
     assert (causal.receptance(np.geomspace(1.0, 2e4, 200), [0.0, 0.3], [0.0, 0.3]).imag < 0.0).all()
-    _, error = loss_factor_error(track, Wheel(600.0, 65e3), 1.2e9, 5000.0).values()
+    _, error = loss_factor_error(track, Wheel(600.0, 65e3).receptance, 1.2e9, 5000.0).values()
     assert np.abs(error).max() < 0.8
 
 

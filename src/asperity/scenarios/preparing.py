@@ -274,7 +274,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
         solutions["running in"] = running_in.running_in_solutions(prepared)
     contacts = len(prepared.scene.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.scene.points)
+    seconds = START_TIME + prepared.processor + TRACK_TIME * len(case.point_positions)
     seconds += STEP_TIME * steps * contacts * len(case.laws)
     if isinstance(prepared.scene.over, Track) and prepared.scene.over.bays:
         kernels = np.unique(np.round(np.subtract.outer(*[prepared.scene.offsets] * 2), 6)).size

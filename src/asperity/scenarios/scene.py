@@ -1,7 +1,7 @@
 """The scene of a case: what rolls, what it is rolled over, where both are looked at; and its linear force."""
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,19 +18,10 @@ from asperity.structures.wheel_modes import WheelModes
 
 PLACES = (0.3, 0.37, 0.45, 0.5, 0.6)
 """Places on a structure, in its lengths, over which a linear force is averaged: no mode has nodes at all."""
+Receptance = Callable[[ArrayLike], Complex]
+"""Displacement of a place per harmonic force there (f,), m/N, e^{+iωt}, by frequencies (f,), Hz."""
 POSITIONS = 4
 """Places in half a bay of a track, which is its own mirror image, over which a linear force is averaged."""
-
-
-@dataclass(frozen=True)
-class BodyAtContact:
-    """What rolls, as its first contact feels it."""
-
-    body: Body
-
-    def receptance(self, frequency: ArrayLike) -> Complex:
-        """Displacement of the contact per harmonic force there (f,), m/N, e^{+iωt}; frequencies in Hz."""
-        return self.body.receptance(frequency)[:, 0, 0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,14 +31,10 @@ class Scene:
     over: Modal | Track | None  # None for a rigid plane
     rolling: tuple[Body, ...]  # in the order of their positions
     positions: tuple[float, ...]  # of the bodies ahead of that of the run, m
-    sensors: tuple[float, ...]  # positions of accelerometers on what is rolled over, m
-    points: tuple[float, ...]  # positions at which the rail of a track is looked at, m
     # degrees of freedom by name, body by body, and what makes them lengths: 1, or a lever, m
     degrees: Mapping[str, float]
     wheel: Wheel | None  # what touches a rail, by itself: its mass and its modes
     modes: WheelModes | None  # its modes in the frame of the contact, where their shapes are known
-    place: float  # of the contact across the tread, m from its middle, to the field side
-    rail_place: float  # and across the rail head
 
     @property
     def offsets(self) -> tuple[float, ...]:
@@ -60,10 +47,9 @@ class Scene:
         """Static forces of all contacts (c,), N."""
         return np.concatenate([body.static_loads for body in self.rolling])
 
-    @property
-    def first(self) -> BodyAtContact:
-        """What rolls, as the first contact feels it."""
-        return BodyAtContact(self.rolling[0])
+    def first(self, frequency: ArrayLike) -> Complex:
+        """Displacement of the first contact of what rolls per force there (f,), m/N, e^{+iωt}; in Hz."""
+        return self.rolling[0].receptance(frequency)[:, 0, 0]
 
     def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> Complex:
         """Displacement of what is rolled over at `x` (p,), m, per force at `x0`, (p, f), m/N, e^{+iωt}."""
@@ -73,14 +59,6 @@ class Scene:
             return np.zeros((np.size(x), np.size(frequency)), dtype=complex)
         pairs = zip(np.atleast_1d(x), np.atleast_1d(x0), strict=True)
         return np.array(receptances_between(self.over, frequency, pairs))
-
-    def transfer(self, stiffness: float, places: ArrayLike, frequency: ArrayLike) -> Complex:
-        """Force of the linear contact per height of the texture (p, f), N/m, see `force_transfer`.
-
-        Of the first contact by itself, at rest at places (p,), m, by its stiffness, N/m, and frequencies
-        (f,), Hz; other contacts of its body bear their static load.
-        """
-        return force_transfer(frequency, self.first, self, stiffness, places)
 
     def coupled_transfer(self, stiffness: float, place: float, frequency: Array, count: int) -> Complex:
         """Forces of the first contacts per height under each of them (count, count, f), N/m, e^{+iωt}.
@@ -102,8 +80,11 @@ class Scene:
         return np.asarray(np.moveaxis(np.linalg.inv(answer), 0, -1))
 
     def square_transfer(self, stiffness: float, frequency: ArrayLike) -> Array:
-        """Mean square of `transfer` along what is rolled over (f,), (N/m)²."""
-        return np.asarray(np.mean(np.abs(self.transfer(stiffness, self._places, frequency)) ** 2, axis=0))
+        """Mean square of `force_transfer` of the first contact along what is rolled over (f,), (N/m)².
+
+        Other contacts of its body bear their static load.
+        """
+        return mean_square_transfer(frequency, self.first, self, stiffness, self._places)
 
     @property
     def _places(self) -> Array:
@@ -119,20 +100,16 @@ def scene_of(case: Case) -> Scene:
     """Build what rolls and what it rolls over, of a case."""
     body, over, highest = case.rolling, case.rolled_over, case.numerics.highest_frequency
     model = over.model(highest)
-    on_track, (place, rail_place) = isinstance(model, Track), case.contact_places
+    on_track, (place, _) = isinstance(model, Track), case.contact_places
     one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING, place)
     degrees = body.degrees if len(body.degrees) > 1 or case.ROLLING == "body" else {case.ROLLING: 1.0}
     return Scene(
         model,
         (one,) * len(body.positions),
         body.positions,
-        over.sensor_positions,
-        case.point_positions,
         degrees,
         body.tread(highest, case.speed, place) if on_track else None,
         body.turning_modes(highest, case.speed) if on_track else None,
-        place,
-        rail_place,
     )
 
 
@@ -158,29 +135,27 @@ class PreparedCase:
 
 
 def force_transfer(
-    frequency: ArrayLike, wheel: BodyAtContact | Wheel, track: Any, stiffness: float, x: ArrayLike
+    frequency: ArrayLike, wheel: Receptance, track: Any, stiffness: float, x: ArrayLike
 ) -> Complex:
     """Contact force per height of the texture, the wheel at given positions on the rail: (n, f), N/m.
 
-    F/z = 1/(α_W + α_C + α_R), force compressive, height out of the material, e^{+iωt}. Frequencies (f,), Hz,
-    zero or above: at zero the force is zero, since the wheel is free. Stiffness of the contact at the static
-    load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
+    F/z = 1/(α_W + α_C + α_R), force compressive, height out of the material, e^{+iωt}; of the wheel is given
+    α_W. Frequencies (f,), Hz, zero or above: at zero the force is zero, since the wheel is free. Stiffness of
+    the contact at the static load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
     positions, moving = np.atleast_1d(np.asarray(x, dtype=float)), f > 0.0
     transfer = np.zeros((positions.size, f.size), dtype=complex)
-    carried = wheel.receptance(f[moving]) + 1.0 / stiffness
+    carried = wheel(f[moving]) + 1.0 / stiffness
     transfer[:, moving] = 1.0 / (carried + track.receptance(f[moving], positions, positions))
     return transfer
 
 
 def mean_square_transfer(
-    frequency: ArrayLike, wheel: BodyAtContact | Wheel, track: Any, stiffness: float, positions: int = 12
+    frequency: ArrayLike, wheel: Receptance, track: Any, stiffness: float, x: ArrayLike
 ) -> Array:
-    """Mean square over a bay of the contact force per height of the texture, |F/z|², (f,), (N/m)².
+    """Mean square over positions of the contact force per height of the texture, |F/z|², (f,), (N/m)².
 
-    As `force_transfer`, at the midpoints of `positions` equal parts of half a bay, which is its own mirror
-    image; of bays that differ, all along their cell.
+    As `force_transfer`, for instance at `Track.places`.
     """
-    x = track.places(positions)
     return np.mean(np.abs(force_transfer(frequency, wheel, track, stiffness, x)) ** 2, axis=0)

@@ -166,7 +166,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             duration=duration,
             settling=case.settled_time,
             time_step=case.time_step,
-            sensors=scene.sensors,
+            sensors=case.rolled_over.sensor_positions,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
             checkpoint=checkpoint_of(laws[0], prepared, store),
@@ -175,7 +175,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         book(f"law {name}")
     scan = first.path_scan if Need.SCAN in needs_of(case.laws) else None
     computed = Computed(**vars(unused), over=over, runs=runs, scan=scan, running_in=ran)
-    if not scene.points:
+    if not case.point_positions:
         return computed
     computed = replace(computed, points=_passed(computed, progress))
     book("passed points")
@@ -196,7 +196,7 @@ def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     """Displacement, m, and velocity, m/s, of the rail at its points (laws, p, n), under all contacts."""
     forces, origins = computed.stacked("history"), computed.first.history_start
     settled = forces.shape[-1] - len(computed.first.time)
-    kernel, points = computed.rail.kernel, computed.scene.points
+    kernel, points = computed.rail.kernel, computed.case.point_positions
     parts = [
         passed_points(kernel, forces[:, k], float(origin), points, settled, progress)
         for k, origin in enumerate(origins)

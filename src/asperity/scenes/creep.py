@@ -125,8 +125,7 @@ def _facts(found: SlidingContact) -> Array:
 
 def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
     """Free motions of the wheel on the rail at mid-span, of a wheel whose axial modes are known."""
-    scene, side = computed.scene, Sideways(computed)
-    modes = scene.modes
+    side, modes, (place, _) = Sideways(computed), computed.scene.modes, computed.case.contact_places
     if modes is None or not modes.axial.any():
         return {}
 
@@ -139,8 +138,8 @@ def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
     omega = contact.roots(receptances, poles_of(modes))
     which, known = np.arange(len(omega)), np.isfinite(omega)
     forces = contact.force_ratio(receptances(omega[known]))
-    which[known] = ringing_modes(modes, scene.place, omega[known], forces)
-    radial, axial = (each[which] ** 2 for each in modes.at(scene.place))
+    which[known] = ringing_modes(modes, place, omega[known], forces)
+    radial, axial = (each[which] ** 2 for each in modes.at(place))
     return {
         schema.SQUEAL_MODE: 1 + np.arange(len(omega)),
         schema.SQUEAL_FREQUENCY: omega.real / (2.0 * np.pi),

@@ -171,7 +171,7 @@ def measured_track(run: compute.Computed) -> tuple[Values, Array, Array] | None:
         return None
     found, computed, laid_out = tests
     lines = computed.frequency
-    other = run.scene.first.receptance(lines.ravel()).reshape(lines.shape) + 1.0 / run.stiffness
+    other = run.scene.first(lines.ravel()).reshape(lines.shape) + 1.0 / run.stiffness
     longer, louder = found.longer(computed), found.louder(computed, other)
     known = np.isfinite(found.decay_rate) | np.isfinite(found.rms_mobility)
     laid_out[schema.MEASURED_POWER_CHANGE] = np.where(known, 10.0 * np.log10(longer * louder), np.nan)

@@ -4,7 +4,6 @@ import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from asperity.errors import Grade, PhysicsWarning, warn_of_findings
 from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice
-from asperity.scenarios.scene import PreparedCase
+from asperity.scenarios.scene import PreparedCase, force_transfer
 from asperity.scenes import creep, measured, noise, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
@@ -172,9 +171,9 @@ def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
 
 def rolling_group(computed: Computed) -> Values:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
-    scene, stack, first = computed.scene, computed.stacked, computed.first
+    case, scene, stack, first = computed.case, computed.scene, computed.stacked, computed.first
     runs, losses = computed.runs.values(), [run.contact_loss for run in computed.runs.values()]
-    over, rolls = (getattr(schema, name.upper()) for name in computed.case.DISPLACEMENTS)
+    over, rolls = (getattr(schema, name.upper()) for name in case.DISPLACEMENTS)
     laid_out: Values = {
         rolling.LAW: list(computed.runs),
         rolling.TIME: first.time,
@@ -196,13 +195,13 @@ def rolling_group(computed: Computed) -> Values:
         schema.ENERGY_TERM: list(first.energy.shares),
         schema.ENERGY: [list(run.energy.shares.values()) for run in runs],
         schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
-        rolling.SPEED: computed.case.speed,
+        rolling.SPEED: case.speed,
     }
-    if scene.sensors:
-        laid_out |= {schema.ROLLING_SENSOR: scene.sensors, schema.ACCELERATION: stack("acceleration")}
-    if scene.points:
+    if sensors := case.rolled_over.sensor_positions:
+        laid_out |= {schema.ROLLING_SENSOR: sensors, schema.ACCELERATION: stack("acceleration")}
+    if case.point_positions:
         moved, velocity = computed.points
-        laid_out |= {schema.ROLLING_POINT: scene.points}
+        laid_out |= {schema.ROLLING_POINT: case.point_positions}
         laid_out |= {schema.POINT_DISPLACEMENT: moved, schema.POINT_VELOCITY: velocity}
     return laid_out
 
@@ -236,9 +235,9 @@ def spectra_group(computed: Computed) -> Values:
             scene.offsets, computed.case.speed, computed.case.numerics.highest_frequency
         )
         laid_out |= {schema.PASSING_FREQUENCY: tones} if tones.size else {}
-    if scene.sensors:
+    if sensors := computed.case.rolled_over.sensor_positions:
         density = computed.psd(computed.stacked("acceleration"))
-        laid_out[schema.SPECTRA_SENSOR] = scene.sensors
+        laid_out[schema.SPECTRA_SENSOR] = sensors
         laid_out[schema.ACCELERATION_PSD] = density[..., shown]
         laid_out[schema.ACCELERATION_LEVEL] = computed.levels(density, schema.ACCELERATION_REFERENCE)
     if isinstance(scene.over, Track):
@@ -260,9 +259,9 @@ def sureness(computed: Computed) -> Values:
     seen = bands.values_seen(run.contact_force[0], case.time_step, band)
     record, (begin, end) = float(run.time[-1]), run.positions[0, [0, -1]]
     places = begin + (end - begin) * (np.arange(PLACES) + 0.5) / PLACES
-    transfer = partial(computed.scene.transfer, computed.stiffness, places)
+    of = (computed.scene.first, computed.scene, computed.stiffness, places)
     product = bands.band_product(band, time)
-    held, start = bands.chance_and_start(transfer, band, case.settled_time, record)
+    held, start = bands.chance_and_start(lambda f: force_transfer(f, *of), band, case.settled_time, record)
     values = np.minimum(product * seen, held * time / record)
     return {
         spectra.START_SHARE: spectra.START_SHARE.variable(start, most=bands.MOST_START),

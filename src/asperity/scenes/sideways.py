@@ -70,12 +70,13 @@ class Sideways:
 
     def rail(self, frequency: Array | Complex, x: float) -> Complex:
         """Receptances of the rail at the contact (2, 2, f), m/N, at a place along it, m; Hz."""
-        return self.track.answers(2.0 * np.pi * frequency, x, x, self.computed.scene.rail_place)
+        return self.track.answers(2.0 * np.pi * frequency, x, x, self.computed.case.contact_places[1])
 
     def wheel(self, frequency: Array | Complex) -> Complex:
         """Receptances of the wheel at the contact (2, 2, f), m/N; frequencies in Hz."""
-        scene, mass = self.computed.scene, self.computed.case.rolling.contact_mass
-        return lateral_rail.wheel_receptances(scene.modes, mass, frequency, scene.place)
+        case = self.computed.case
+        mass, (place, _) = case.rolling.contact_mass, case.contact_places
+        return lateral_rail.wheel_receptances(self.computed.scene.modes, mass, frequency, place)
 
     # --- as the mean over each line of the spectra, with every resonance of the wheel resolved
 
@@ -145,7 +146,7 @@ class Sideways:
 
     def rail_power(self) -> Array:
         """Sound power of the rail sideways (laws, f), W/Hz."""
-        case, place = self.computed.case, self.computed.scene.rail_place
+        case, (_, place) = self.computed.case, self.computed.case.contact_places
         forms = squared_lateral_mobility(self.track, self.lines, self.places, place)
         together = self.means(self.shares.real) + 1j * self.means(self.shares.imag)
         one = self.means(np.ones((1, len(self.fine[0]))))
@@ -167,7 +168,7 @@ class Sideways:
         spread = self.between(self.spread) / PLACES
         share = np.sum(spread * self.shares, axis=0).real
         square = np.sum(spread * np.abs(self.shares) ** 2, axis=0)
-        omega, place = 2.0 * np.pi * fine, self.computed.scene.place
+        omega, (place, _) = 2.0 * np.pi * fine, case.contact_places
         radial, axial = (each[:, None] for each in modes.at(place))
         answers = modal.modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
         moved = radial**2 + 2.0 * radial * axial * share + axial**2 * square
@@ -227,8 +228,8 @@ def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -
         schema.LATERAL_FORCE_SPREAD: np.sqrt(lateral.sum(axis=-1) * step),
         schema.SIDEWAYS_CONTACT: 1 + np.arange(contacts),
         schema.LATERAL_CONTACT_SPREAD: of_each,
-        schema.CONTACT_PLACE: computed.scene.place,
-        schema.RAIL_CONTACT_PLACE: computed.scene.rail_place,
+        schema.CONTACT_PLACE: case.contact_places[0],
+        schema.RAIL_CONTACT_PLACE: case.contact_places[1],
         schema.STICK_STIFFNESS: found.stiffness[1],
         schema.SLIP_FORCE: limit,
     }

@@ -12,10 +12,9 @@ from asperity.laws import Role, in_role
 from asperity.reduction.texture import along_path
 from asperity.reference.railways import iso_3095_decay_rate
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.scene import BodyAtContact, PreparedCase, Scene, mean_square_transfer
+from asperity.scenarios.scene import PreparedCase, Receptance, Scene, mean_square_transfer
 from asperity.scenes import compute, measured, noise, schema, validity
 from asperity.schema import Values
-from asperity.structures.body import Wheel
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
@@ -31,7 +30,7 @@ def track_spectra(computed: compute.Computed) -> Values:
         schema.TEXTURE_PSD: texture[shown],
         schema.LINEAR_REFERENCE_PSD: reference[shown],
         schema.LINEAR_REFERENCE_LEVEL: computed.levels(reference),
-        schema.SPECTRA_POINT: computed.scene.points,
+        schema.SPECTRA_POINT: computed.case.point_positions,
         schema.POINT_VELOCITY_PSD: velocity[..., shown],
         schema.POINT_VELOCITY_LEVEL: computed.levels(velocity, schema.VELOCITY_REFERENCE),
         **_roughness(computed),
@@ -41,7 +40,7 @@ def track_spectra(computed: compute.Computed) -> Values:
 
 
 PLACES = 12
-"""Of several contacts in a bay, over which their linear forces are averaged."""
+"""In a bay, over which linear forces are averaged; of one contact in half of it, its own mirror image."""
 MOST_PLACES = 120
 """In a cell of bays that differ."""
 
@@ -66,7 +65,8 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
     force, above = np.zeros_like(texture), frequency > 0.0
     lines, speed, stiffness = frequency[above], case.speed, computed.stiffness
     if len(scene.offsets) == 1:
-        force[above] = mean_square_transfer(lines, scene.first, track, stiffness) * texture[above]
+        square = mean_square_transfer(lines, scene.first, track, stiffness, track.places(PLACES))
+        force[above] = square * texture[above]
         return force, texture
     turning = textures.parts.get("wheel", np.zeros_like(textures.line))
     path, own = passed(textures.followed - turning), passed(turning)
@@ -165,7 +165,7 @@ def track_group(computed: compute.Computed, losses: Values) -> Values:
         schema.RECEPTANCE_MIDSPAN_PHASE: np.angle(midspan),
         schema.RECEPTANCE_SUPPORT: np.abs(support),
         schema.RECEPTANCE_SUPPORT_PHASE: np.angle(support),
-        schema.WHEEL_RECEPTANCE: np.abs(computed.scene.first.receptance(frequency)),
+        schema.WHEEL_RECEPTANCE: np.abs(computed.scene.first(frequency)),
         schema.CONTACT_RECEPTANCE: np.full(FREQUENCIES, 1.0 / computed.stiffness),
         schema.DECAY_RATE: decay_rate(track, frequency),
         schema.DECAY_RATE_EN15461: decay_rate_en15461(track, frequency),
@@ -212,7 +212,7 @@ LEAST_SHOWN = 0.05
 """Errors below this, dB, are not listed."""
 
 
-def loss_factor_error(track: Track, wheel: BodyAtContact | Wheel, stiffness: float, highest: float) -> Values:
+def loss_factor_error(track: Track, wheel: Receptance, stiffness: float, highest: float) -> Values:
     """Level of the linear contact force on the causal track that stands in time for one, over that on itself.
 
     Nothing for a causal one. Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to
@@ -226,7 +226,7 @@ def loss_factor_error(track: Track, wheel: BodyAtContact | Wheel, stiffness: flo
     frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
 
     def level(rail: Track) -> Array:
-        square = mean_square_transfer(frequency, wheel, rail, stiffness, POSITIONS)
+        square = mean_square_transfer(frequency, wheel, rail, stiffness, rail.places(POSITIONS))
         return 10.0 * np.log10(square.reshape(-1, LINES).mean(axis=-1))
 
     error = level(causal_track(track.regular)) - level(track.regular)
@@ -292,7 +292,7 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     if not track.continuous:
         passing = f"sleeper passing {case.speed / track.sleeper_spacing:.4g} Hz"
         frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, {passing}, {frequencies}"
-    points = ", ".join(f"{position:g} m" for position in scene.points)
+    points = ", ".join(f"{position:g} m" for position in case.point_positions)
     return [
         ("track", frequencies),
         *_rows_of_bays(track),
