@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from asperity.structures.wheel import Wheel
 from numpy.testing import assert_allclose
 from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
@@ -13,6 +12,7 @@ from asperity import Track
 from asperity.radiation import track as sound
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, RailSection, SleeperTop
 from asperity.scenarios.scene import force_transfer
+from asperity.structures.body import Wheel
 from asperity.structures.track_parameters import Bays
 from refusals import refusals
 
