@@ -26,7 +26,7 @@ from asperity.studies import table as tables
 from asperity.studies.axes import VARIANT
 from asperity.studies.definition import Study, separated, study_of
 from asperity.studies.effects import effects, weighted_levels, what_helps
-from asperity.studies.ensemble import FEWEST, SCATTER, SEED, mean_and_scatter, prediction_band
+from asperity.studies.ensemble import FEWEST, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES
 from asperity.studies.signals import SignalSet
 from asperity.terminal import line_width, remark, say, say_files, say_table
@@ -79,18 +79,18 @@ def run_study(
         with place as executor, progress_bar() as progress:
             table = computed(study, executor=executor, workers=workers, progress=progress, signals=heard)
         several = table.sizes.get(SEED, 0)
-        means = mean_and_scatter(table) if several > 1 else None
+        mean, scatter = mean_and_scatter(table) if several > 1 else (table, None)
         band = prediction_band(table) if several >= FEWEST and FORCE_LEVEL.name in table else None
         effect = effects(table) if VARIANT in table.dims and weighted_levels(table) else None
         told = _by_place(table, effect)
         for words, found in told:
             _print_effects(words, found)
         if asked or not told:
-            print_table(table if means is None else means, asked or tables.USUAL, asked=bool(asked))
+            print_table(mean, asked or tables.USUAL, scatter, asked=bool(asked))
         for name in (name for name in asked if name not in table):
             say(f"{name}: no member has it", err=True)
         _print_messages(table, left_out=bool(told))
-        written = _write(directory, table, means, band, effect, asked)
+        written = _write(directory, table, mean, scatter, band, effect, asked)
         if heard is not None:
             written["labels"] = heard.labels_file
             say(f"Signals: {heard.labels_file.resolve()}", lines=True)
@@ -166,7 +166,8 @@ def _refuse_other(study: Study, directory: Path) -> None:
 def _write(
     directory: Path,
     table: xarray.Dataset,
-    means: xarray.Dataset | None,
+    mean: xarray.Dataset,
+    scatter: xarray.Dataset | None,
     band: xarray.Dataset | None,
     effect: xarray.Dataset | None,
     asked: Sequence[str],
@@ -176,9 +177,9 @@ def _write(
     with files.together(directory, last=RESULTS) as new:
         save(xarray.DataTree(table), new / RESULTS)
         write_csv(new / TABLE, *tables.columns_of(table))
-        if means is not None:
+        if scatter is not None:
             names["mean"] = MEANS
-            write_csv(new / MEANS, *tables.columns_of(means))
+            write_csv(new / MEANS, *tables.columns_of(mean, scatter))
         if band is not None:
             names["ensemble"] = BAND
             axes = [str(name) for name in band["force_level"].dims if name not in ("law", "band")]
@@ -188,7 +189,7 @@ def _write(
             write_csv(new / EFFECTS, *tables.long_columns(effect, list(map(str, effect["effect"].dims))))
         told = _by_place(table, effect)
         blocks: list[page.Block] = [*_blocks(told)]
-        blocks += _figures(table, means, band, asked or tables.USUAL_IN_FIGURES)
+        blocks += _figures(mean, scatter, band, asked or tables.USUAL_IN_FIGURES)
         if blocks:
             names["page"] = PAGE
             beside = {words: names[what] for what, words in OFFERED.items() if what in names}
@@ -209,21 +210,16 @@ def _summary(table: xarray.Dataset) -> str:
 
 
 def _figures(
-    table: xarray.Dataset, means: xarray.Dataset | None, band: xarray.Dataset | None, names: Sequence[str]
+    mean: xarray.Dataset, scatter: xarray.Dataset | None, band: xarray.Dataset | None, names: Sequence[str]
 ) -> list[PageFigure]:
     """A figure for each swept key that is more than chance, of quantities by name, and one of the band."""
-    laws = data.read_entries(spec_of(str(law)).entry() for law in table["law"].values)
+    laws = data.read_entries(spec_of(str(law)).entry() for law in mean["law"].values)
     looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
-    drawn, scatter = table, None
-    if means is not None:
-        deviations = [str(name) for name in means.data_vars if str(name).endswith(SCATTER)]
-        drawn = means.drop_vars(deviations)
-        scatter = means[deviations].rename({name: name.removesuffix(SCATTER) for name in deviations})
     figures = []
-    for key in json.loads(table.attrs["sweep"]):
-        if drawn.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(drawn)):
-            chart = study_figures.key_chart(drawn, scatter, key, looks, names)
-            caption = study_figures.key_caption(drawn, scatter, key)
+    for key in json.loads(mean.attrs["sweep"]):
+        if mean.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(mean)):
+            chart = study_figures.key_chart(mean, scatter, key, looks, names)
+            caption = study_figures.key_caption(mean, scatter, key)
             figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart))
     if band is not None and VARIANT not in band.dims:
         chart = study_figures.ensemble_chart(band, looks)
@@ -264,7 +260,9 @@ def _print_effects(words: str, of: Effects) -> None:
 # --- what is printed
 
 
-def print_table(table: xarray.Dataset, names: Sequence[str], *, asked: bool) -> None:
+def print_table(
+    table: xarray.Dataset, names: Sequence[str], scatter: xarray.Dataset | None = None, *, asked: bool
+) -> None:
     """Print quantities by name, with ± where they are means over seeds.
 
     Unasked, neither what is missing throughout nor what each place on a body has for itself.
@@ -273,11 +271,9 @@ def print_table(table: xarray.Dataset, names: Sequence[str], *, asked: bool) -> 
     heading, rows = tables.columns_of(table[shown])
     keys, title = len(tables.axes_of(table[shown])), "Study"
     cells = [[*map(_short, row)] for row in rows]
-    deviations = {f"{name}{SCATTER}": name for name in shown if f"{name}{SCATTER}" in table}
-    if deviations:
+    if scatter is not None:
         title = f"Study: mean ± standard deviation over {table.attrs['members']} values of {SEED}"
-        scatter = tables.columns_of(table[list(deviations)].rename(deviations))[1]
-        for row, spread in zip(cells, scatter, strict=True):
+        for row, spread in zip(cells, tables.columns_of(scatter[shown])[1], strict=True):
             reach = map(_short, spread[keys:])
             row[keys:] = [
                 f"{word} ± {by}" if by != "–" else word for word, by in zip(row[keys:], reach, strict=True)

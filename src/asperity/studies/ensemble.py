@@ -14,8 +14,6 @@ SHARE = 0.8
 """Probability with which the band holds one more member."""
 FEWEST = 3
 """Members of which a band says something."""
-SCATTER = "_scatter"
-"""End of the names of standard deviations."""
 BANDED = ("dB", "N")
 """Beginnings of the units of what has a band: levels, and means and rms of forces."""
 
@@ -69,29 +67,30 @@ def prediction_band(table: xarray.Dataset, share: float = SHARE) -> xarray.Datas
         raise InputError("share", share, "a number above 0 and below 1")
     found: dict[str, xarray.Variable] = {}
     for name, values in table.data_vars.items():
-        if SEED in values.dims and str(values.attrs.get("units", "")).startswith(BANDED):
-            found |= _band(str(name), values, share)
+        if SEED not in values.dims or not str(values.attrs.get("units", "")).startswith(BANDED):
+            continue
+        finite = values.where(np.isfinite(values))
+        reach, n = student(finite, share)
+        mean, reach = finite.mean(SEED).where(n >= 2), reach * np.sqrt(n + 1.0)
+        units, what = values.attrs["units"], values.attrs["long_name"]
+        told = {"missing": "fewer than two members have it"} if (n < 2).any() else {}
+        ends = ("", mean, "mean"), ("_low", mean - reach, "low end"), ("_high", mean + reach, "high end")
+        for end, of, which in ends:
+            dims = list(map(str, of.dims))
+            found[f"{name}{end}"] = variable(dims, of.values, units, f"{what}, {which}", **told)
     kept = {name: values.variable for name, values in table.coords.items() if name != SEED}
-    count = int(table["completed"].sum(SEED).max())
-    attrs = {"over": SEED, "members": count, "share": share, "meaning": meaning(count, share)}
     for name in ("band_time_product", "start_share"):
         if name in table:
             found[name] = table[name].mean(SEED, keep_attrs=True).variable
-    return xarray.Dataset(found | kept, attrs=attrs)
-
-
-def _band(name: str, values: xarray.DataArray, share: float) -> dict[str, xarray.Variable]:
-    """Mean and ends of the band of a quantity."""
-    finite = values.where(np.isfinite(values))
-    reach, count = student(finite, share)
-    reach, mean = reach * np.sqrt(count + 1.0), finite.mean(SEED).where(count >= 2)
-    units, what = values.attrs["units"], values.attrs["long_name"]
-    told = {"missing": "fewer than two members have it"} if (count < 2).any() else {}
-    ends = {"": (mean, "mean"), "_low": (mean - reach, "low end"), "_high": (mean + reach, "high end")}
-    return {
-        f"{name}{end}": variable(list(map(str, of.dims)), of.values, units, f"{what}, {which}", **told)
-        for end, (of, which) in ends.items()
-    }
+    count = int(table["completed"].sum(SEED).max())
+    meaning = (
+        f"Line: mean over {count} values of {SEED}. Band: prediction interval; it holds the value of one "
+        f"more {SEED} with a probability of {100 * share:g} %: mean ± t s √(1 + 1/n), Student's t with n − 1 "
+        "degrees of freedom (Hahn and Meeker 1991)."
+    )
+    return xarray.Dataset(
+        found | kept, attrs={"over": SEED, "members": count, "share": share, "meaning": meaning}
+    )
 
 
 def student(values: xarray.DataArray, share: float) -> tuple[xarray.DataArray, xarray.DataArray]:
@@ -102,7 +101,7 @@ def student(values: xarray.DataArray, share: float) -> tuple[xarray.DataArray, x
     return values.std(SEED, ddof=1) * reach / np.sqrt(n), count
 
 
-def mean_and_scatter(table: xarray.Dataset) -> xarray.Dataset:
+def mean_and_scatter(table: xarray.Dataset) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Mean of the members of a study over its seeds, and how they scatter.
 
     Parameters
@@ -112,28 +111,10 @@ def mean_and_scatter(table: xarray.Dataset) -> xarray.Dataset:
 
     Returns
     -------
-    xarray.Dataset
-        Without the dimension `seed`: for every quantity its mean over the members that have it, and
-        ``…_scatter``, the standard deviation of a member (n − 1), NaN of fewer than two. Levels are averaged
-        as they are, in dB.
+    mean, scatter : xarray.Dataset
+        Without the dimension `seed`: of every quantity the mean over the members that have it, and the
+        standard deviation of a member (n − 1), NaN of fewer than two. Levels are averaged as they are, in dB.
     """
-    found: dict[str, xarray.Variable] = {}
-    for name, values in table.data_vars.items():
-        if SEED in values.dims and values.dtype.kind == "f":
-            count = values.notnull().sum(SEED)
-            attrs = {"units": values.attrs["units"], "long_name": f"{values.attrs['long_name']}, mean"}
-            found[str(name)] = values.mean(SEED).assign_attrs(attrs).variable
-            what = f"{values.attrs['long_name']}, standard deviation over {SEED}"
-            scatter = values.std(SEED, ddof=1).where(count >= 2).assign_attrs(attrs | {"long_name": what})
-            found[f"{name}{SCATTER}"] = scatter.variable
-    kept = {name: values.variable for name, values in table.coords.items() if name != SEED}
-    return xarray.Dataset(found | kept, attrs={**table.attrs, "members": table.sizes[SEED]})
-
-
-def meaning(count: int, share: float) -> str:
-    """Say what mean and band are."""
-    return (
-        f"Line: mean over {count} values of {SEED}. Band: prediction interval; it holds the value of one "
-        f"more {SEED} with a probability of {100 * share:g} %: mean ± t s √(1 + 1/n), Student's t with n − 1 "
-        "degrees of freedom (Hahn and Meeker 1991)."
-    )
+    held = table[[name for name, v in table.data_vars.items() if SEED in v.dims and v.dtype.kind == "f"]]
+    scatter = held.std(SEED, ddof=1, keep_attrs=True).where(held.count(SEED) >= 2)
+    return held.mean(SEED, keep_attrs=True).assign_attrs(members=table.sizes[SEED]), scatter

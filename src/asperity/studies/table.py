@@ -18,7 +18,6 @@ from asperity.results import variable
 from asperity.scenes.schema import SHOWN
 from asperity.schema import bearing, contact, rolling, spectra
 from asperity.studies.definition import Member, Study
-from asperity.studies.ensemble import SCATTER
 from asperity.studies.member import Failure, names_kept
 
 
@@ -151,31 +150,35 @@ def axes_of(table: xarray.Dataset) -> list[str]:
     return [name for name in (*json.loads(table.attrs["sweep"]), "law") if name in table.dims]
 
 
-def columns_of(table: xarray.Dataset, *, bands: bool = True) -> Rows:
-    """Heading and rows of a study, one for each member and law; with or without what has bands."""
-    axes = axes_of(table)
-    shown = [
-        (name, others)
-        for name, others in _in_order(table, axes)
-        if len(others) <= 1 and (bands or not _has_bands(others))
-    ]
-    return _laid_out(table, axes, shown)
+def columns_of(table: xarray.Dataset, scatter: xarray.Dataset | None = None, *, bands: bool = True) -> Rows:
+    """Heading and rows of a study, one for each member and law; with or without what has bands.
+
+    Behind each mean stands its scatter, where there is any.
+    """
+    axes, shown = axes_of(table), list[tuple[str, xarray.DataArray]]()
+    for name, values in table.data_vars.items():
+        shown += [(str(name), values)] + ([] if scatter is None else [(f"± {name}", scatter[name])])
+    shown = [each for each in shown if bands or not _has_bands(each[1])]
+    held = [each for each in shown if len(set(each[1].dims) - {*axes}) <= 1]
+    return _laid_out(table, axes, sorted(held, key=lambda each: _has_bands(each[1])))
 
 
 def long_columns(table: xarray.Dataset, axes: Sequence[str]) -> Rows:
     """Heading and rows of what has all these axes, one row for each place on them."""
-    held = [str(name) for name, values in table.data_vars.items() if set(values.dims) == set(axes)]
-    return _laid_out(table, axes, [(name, []) for name in held])
+    held = [(str(name), values) for name, values in table.data_vars.items() if {*values.dims} == {*axes}]
+    return _laid_out(table, axes, held)
 
 
-def _laid_out(table: xarray.Dataset, axes: Sequence[str], shown: Sequence[tuple[str, list[str]]]) -> Rows:
+def _laid_out(
+    table: xarray.Dataset, axes: Sequence[str], shown: Sequence[tuple[str, xarray.DataArray]]
+) -> Rows:
     """A row for each place on the axes; quantities have some of them, and at most one dimension beside."""
     heading = [key_title(table[axis]) for axis in axes]
     chosen: list[tuple[list[str], NDArray[Any]]] = []
-    for name, others in shown:
-        own = [axis for axis in axes if axis in table[name].dims]
-        chosen.append((own, table[name].transpose(*own, *others).values))
-        heading += _titles(table, name, others)
+    for name, values in shown:
+        own = [axis for axis in axes if axis in values.dims]
+        chosen.append((own, values.transpose(*own, ...).values))
+        heading += _titles(name, values, [str(dim) for dim in values.dims if dim not in axes])
     labels = {axis: typed_values(table[axis]) for axis in axes}
     rows: list[list[object]] = []
     for places in product(*(range(table.sizes[axis]) for axis in axes)):
@@ -187,31 +190,20 @@ def _laid_out(table: xarray.Dataset, axes: Sequence[str], shown: Sequence[tuple[
     return heading, rows
 
 
-def _in_order(table: xarray.Dataset, axes: Sequence[str]) -> list[tuple[str, list[str]]]:
-    """Quantities, each with its dimensions beside the axes: those with bands last, scatter after its mean."""
-    names = [str(name) for name in table.data_vars]
-    whole = [name for name in names if not name.endswith(SCATTER)]
-    paired = [each for name in whole for each in (name, f"{name}{SCATTER}") if each in names]
-    found = [(name, [str(dim) for dim in table[name].dims if dim not in axes]) for name in paired]
-    return sorted(found, key=lambda item: _has_bands(item[1]))
+def _has_bands(values: xarray.DataArray) -> bool:
+    return any(str(dim).endswith("band") for dim in values.dims)
 
 
-def _has_bands(dims: Sequence[str]) -> bool:
-    return any(dim.endswith("band") for dim in dims)
-
-
-def _titles(table: xarray.Dataset, name: str, others: Sequence[str]) -> list[str]:
-    own = name.removesuffix(SCATTER)
-    shown = own if own == name else f"± {own}"
-    units = table[name].attrs["units"]
+def _titles(name: str, values: xarray.DataArray, others: Sequence[str]) -> list[str]:
+    units = values.attrs["units"]
     if not others:
-        return [f"{shown} [{units}]"]
-    place = table[others[0]]
+        return [f"{name} [{units}]"]
+    place = values[others[0]]
     unit = "" if place.attrs["units"] == "1" else str(place.attrs["units"])
     words = [
         each if isinstance(each, str) else f"{each:.6g} {unit}".strip() for each in place.values.tolist()
     ]
-    return [f"{shown} {word} [{units}]" for word in words]
+    return [f"{name} {word} [{units}]" for word in words]
 
 
 def key_title(key: xarray.DataArray) -> str:
