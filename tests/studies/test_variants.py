@@ -228,14 +228,14 @@ def test_the_quietest_comes_first_and_what_is_left_out_last(table):
     assert np.isnan(total[-1])
     assert found["variant"].values.tolist() == ["smooth", "slow", "soft", "discs"]
     assert found["left_out"].values.tolist() == ["", "", "", "wheel.roughness is disc, not cast-iron"]
-    of = Effects.of(found)
+    of = Effects(found)
     assert of.parts == ["total", "rail", "sleepers"]  # the wheel is rigid, and silent
     rows = [[cell.text for cell in row] for row in effects_table(of).rows]
     assert [row[0] for row in rows] == ["as it is", "smooth", "slow", "soft", "discs"]
     assert rows[0][-1] == "Loudest: rail."
     assert rows[-1][1:] == ["–", "–", "–", "Left out: wheel.roughness is disc, not cast-iron."]
     assert of.best == f"Helps most: smooth, −5.0 dB(A). {rows[1][-1]}"
-    assert Effects.of(found.isel(variant=[2, 3])).best == ""
+    assert Effects(found.isel(variant=[2, 3])).best == ""
 
 
 def test_the_order_is_that_of_the_whole():
@@ -255,7 +255,7 @@ def said(level, effect, error, parts=("rail", "sleepers", "wheel", "total")):
         "level": ("radiator", level, {"long_name": "", "units": "dB(A) re 1 pW"}),
     }
     at = {"variant": ["new"], "radiator": list(parts)}
-    return Effects.of(xarray.Dataset(held, at, {"law": "areal", "seeds": 3})).in_words["new"]
+    return Effects(xarray.Dataset(held, at, {"law": "areal", "seeds": 3})).in_words["new"]
 
 
 def test_an_effect_is_said_in_words():

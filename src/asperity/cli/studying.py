@@ -239,7 +239,7 @@ def _by_place(table: xarray.Dataset, effect: xarray.Dataset | None) -> list[tupl
     places = product(*(range(effect.sizes[key]) for key in others))
     ats = [dict(zip(others, place, strict=True)) for place in places][: study_figures.MOST_PANELS]
     words = [", ".join(f"{key} = {data.typed_words(effect[key])[n]}" for key, n in at.items()) for at in ats]
-    found = zip(words, (Effects.of(effect.isel(at)) for at in ats), strict=True)
+    found = zip(words, (Effects(effect.isel(at)) for at in ats), strict=True)
     return [(told, of) for told, of in found if of.parts]  # none where the case as it is has failed
 
 

@@ -1,7 +1,5 @@
 """What helps: what named changes of a case do to what radiates, as a table and in words."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import xarray
 
@@ -14,41 +12,28 @@ HEARD = 0.05
 """Change of a level, dB, below which none is told."""
 
 
-@dataclass(frozen=True, eq=False)
 class Effects:
-    """Effects of variants on the parts of what is heard, from `asperity.effects`."""
+    """Effects of variants on the parts of what is heard, from `asperity.effects`.
 
-    variants: list[str]
-    left_out: list[str]  # why, by variant
-    parts: list[str]  # what radiates, the whole first; one without a name of any other level
-    level: Numbers  # of the case as it is (p,)
-    effect: Numbers  # dB (v, p)
-    error: Numbers  # half of its confidence interval, dB (v, p)
-    what: str  # level it is
-    units: str
-    law: str
-    seeds: int
+    By variant (v) and part (p), the whole first: `level` of the case as it is (p,), `effect` and `error`,
+    half of its confidence interval, dB (v, p), and why a variant was `left_out`. What is unknown goes; any
+    other level has one part without a name.
+    """
 
-    @classmethod
-    def of(cls, found: xarray.Dataset) -> "Effects":
-        """Take them from a dataset whose only dimensions are variants and parts; what is unknown goes."""
-        effect, level = found[schema.EFFECT.name], found[schema.EFFECT_LEVEL.name]
-        names = [str(name) for name in found[level.dims[0]].values] if level.dims else [""]
-        known = np.isfinite(np.atleast_1d(level.values))
+    def __init__(self, found: xarray.Dataset) -> None:
+        named = (schema.EFFECT_LEVEL.name, schema.EFFECT.name, schema.EFFECT_ERROR.name)
+        level = found[named[0]]
+        names = list(map(str, found[level.dims[0]].values)) if level.dims else [""]
+        numbers = [np.atleast_1d(found[name].values).reshape(-1, len(names)) for name in named]
+        known = np.isfinite(numbers[0][0])
         order = [n for n in (-1, *range(len(names) - 1)) if known[n]]  # the whole is the last
-        shape = (len(effect), len(names))
-        return cls(
-            [str(name) for name in found[schema.EFFECT_VARIANT.name].values],
-            [str(reason) for reason in found[schema.LEFT_OUT.name].values],
-            [names[n] for n in order],
-            np.atleast_1d(level.values)[order],
-            effect.values.reshape(shape)[:, order],
-            found[schema.EFFECT_ERROR.name].values.reshape(shape)[:, order],
-            str(level.attrs["long_name"]),
-            data.written_units(str(level.attrs["units"])),
-            str(found.attrs[schema.EFFECT_LAW.name]),
-            int(found.attrs[schema.EFFECT_SEEDS.name]),
-        )
+        (self.level,), self.effect, self.error = (each[:, order] for each in numbers)
+        self.parts = [names[n] for n in order]
+        self.variants = list(map(str, found[schema.EFFECT_VARIANT.name].values))
+        self.left_out = list(map(str, found[schema.LEFT_OUT.name].values))
+        self.what, self.units = str(level.attrs["long_name"]), data.written_units(str(level.attrs["units"]))
+        self.law = str(found.attrs[schema.EFFECT_LAW.name])
+        self.seeds = int(found.attrs[schema.EFFECT_SEEDS.name])
 
     @property
     def in_words(self) -> dict[str, str]:
@@ -113,7 +98,7 @@ def _cell(effect: float, error: float) -> tables.Cell:
 
 
 def _of_run(tree: xarray.DataTree) -> Effects:
-    return Effects.of(tree[schema.EFFECT.group].to_dataset())
+    return Effects(tree[schema.EFFECT.group].to_dataset())
 
 
 def what_helps_table(tree: xarray.DataTree) -> tables.ReportTable | None:
