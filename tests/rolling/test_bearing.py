@@ -14,7 +14,7 @@ from asperity.structures.ring import Ring
 from one_contact import Shelf
 from refusals import refusals
 
-RUN = {"speed": 30.0, "duration": 0.01, "time_step": 3.2e-6, "settling": 0.01}
+RUN = {"radial": 100.0, "speed": 30.0, "duration": 0.01, "time_step": 3.2e-6, "settling": 0.01}
 B6205 = BallBearing.named("6205")
 HOUSING = Ring.rigid(0.3, radial_stiffness=1e8, damping_ratio=0.02)
 RINGS = BearingRings(Ring.rigid(0.5), HOUSING)
@@ -24,6 +24,10 @@ def hertz(bearing, damping=20.0, textures=(None, None)):
     """Laws of both contacts."""
     both = bearing.inner_contact, bearing.outer_contact
     return [HertzLaw(each.stiffness_constant, h, damping) for each, h in zip(both, textures, strict=True)]
+
+
+def turned_by(rings=RINGS, laws=None, **keys):
+    return roll_bearing(B6205, rings, *(laws or hertz(B6205)), **RUN | keys)
 
 
 def waves(radius, order, amplitude):
@@ -38,13 +42,13 @@ def waves(radius, order, amplitude):
 
 def test_it_starts_as_the_static_solution_and_carries_the_load():
     """Independent of it: Newton's method on centres of grooves (`BallBearing.loaded`)."""
-    start = {"speed": 0.1, "duration": 2e-5, "time_step": 1e-6}
-    begun = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, centrifugal=False, **start)
+    start = {"speed": 0.1, "duration": 2e-5, "time_step": 1e-6, "settling": 0.0, "centrifugal": False}
+    begun = turned_by(**start)
     still = B6205.loaded(100.0, cage_angles=begun.cage[:1])
     assert_allclose(begun.inner_force[:, 0], still.inner_load[0], rtol=1e-6, atol=1e-6)
     apart = begun.inner_motion[:, 0] - begun.outer_motion[:, 0]
     assert_allclose(apart, still.displacement[0], rtol=1e-6, atol=1e-12)
-    run = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, centrifugal=False, **RUN)
+    run = turned_by(centrifugal=False)
     still = B6205.loaded(100.0)
     around = run.cage + 2 * np.pi * np.arange(9)[:, None] / 9
     assert (run.inner_force * np.cos(around)).sum(axis=0).mean() == pytest.approx(100.0, rel=1e-3)
@@ -55,7 +59,7 @@ def test_it_starts_as_the_static_solution_and_carries_the_load():
 
 
 def test_centrifugal_force_presses_the_outer_raceway_alone():
-    run = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, **RUN | {"speed": 150.0})
+    run = turned_by(speed=150.0)
     loose = run.inner_force.max(axis=1) == 0.0
     assert loose.any()
     mean = run.outer_force[loose].mean()
@@ -135,19 +139,18 @@ def test_perfect_surfaces_sound_at_the_passing_of_balls_alone():
 def test_a_run_that_is_stopped_goes_on_to_the_same_bits():
     textures = [waves(radius, 31, 1e-7) for radius in B6205.raceway_radii]
     ball = [1e-8 * np.cos(2 * np.pi * (3 + j) * np.arange(60) / 60) for j in range(9)]
-    call = (B6205, RINGS, *hertz(B6205, 20.0, textures))
-    keys = {"radial": 100.0, "ball_heights": ball, "slip": lambda t: 0.01 + 0.01 * np.sin(300 * t)} | RUN
-    keys["settling"] = 0.0
-    whole, shelf = roll_bearing(*call, **keys), Shelf()
+    keys = {"ball_heights": ball, "slip": lambda t: 0.01 + 0.01 * np.sin(300 * t), "settling": 0.0}
+    keys["laws"] = hertz(B6205, 20.0, textures)
+    whole, shelf = turned_by(**keys), Shelf()
 
     def stop(done, total, message):
         if done:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        roll_bearing(*call, **keys, progress=stop, checkpoint=shelf)
+        turned_by(**keys, progress=stop, checkpoint=shelf)
     assert 0 < shelf.arrays["motion.counts"][0] < len(whole.time)
-    again = roll_bearing(*call, **keys, checkpoint=shelf)
+    again = turned_by(**keys, checkpoint=shelf)
     for name in ("inner_force", "outer_force", "inner_motion", "ball_motion"):
         assert_array_equal(getattr(again, name), getattr(whole, name))
     assert whole.energy.residual < 1e-5
@@ -155,16 +158,18 @@ def test_a_run_that_is_stopped_goes_on_to_the_same_bits():
 
 def test_a_sensor_on_a_ring_feels_what_moves_it():
     sensors = [("outer", 0.5, "radial"), ("inner", 0.0, "radial")]
-    run = roll_bearing(B6205, RINGS, *hertz(B6205), radial=100.0, sensors=sensors, **RUN)
+    run = turned_by(sensors=sensors)
     outer = np.array([math.cos(0.5), math.sin(0.5), 0.0]) @ run.outer_motion
     for felt, moved in zip(run.acceleration, (outer, run.inner_motion[0]), strict=True):
         expected = np.gradient(np.gradient(moved, run.time), run.time)[20:-20]
         assert_allclose(felt[20:-20], expected, atol=0.05 * np.abs(expected).max())
 
 
-FREE = BearingRings(Ring.rigid(0.5), Ring.rigid(0.3))
-REFUSED = [
-    ({"rings": FREE}, "rings.*both free.*Give the shaft or the housing a stiffness"),
+test_what_cannot_turn_is_refused = refusals(
+    (
+        {"rings": BearingRings(Ring.rigid(0.5), Ring.rigid(0.3))},
+        "rings.*both free.*Give the shaft or the housing a stiffness",
+    ),
     ({"axial": 50.0}, "axial load.*0 on a ring whose contacts carry none"),
     ({"radial": 0.0, "centrifugal": False}, "load"),
     ({"ball_heights": [np.zeros(8)]}, "heights of the balls.*1.*9, one line for each ball"),
@@ -174,11 +179,5 @@ REFUSED = [
     ({"sensors": [("outer", 0.0, "sideways")]}, "direction.*radial"),
     ({"duration": 1e-9}, "duration"),
     ({"speed": 0.0}, "speed"),
-]
-
-
-def turned_by(rings=RINGS, **keys):
-    roll_bearing(B6205, rings, *hertz(B6205), **{"radial": 100.0} | RUN | keys)
-
-
-test_what_cannot_turn_is_refused = refusals(*REFUSED, of=lambda keys: turned_by(**keys))
+    of=lambda keys: turned_by(**keys),
+)

@@ -1,3 +1,6 @@
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -8,7 +11,7 @@ from asperity.laws.layout import force
 from asperity.scenarios.raceway_laws import FOLLOWED, OnRaceway, ball_heights, raceway_laws, raceway_on
 from asperity.scenarios.raceway_laws import raceway_with_balls as with_balls
 from asperity.surfaces.faults import Fault
-from asperity.surfaces.raceway import AroundTexture, Raceway
+from asperity.surfaces.raceway import AroundTexture
 
 MM, UM, NM = 1e-3, 1e-6, 1e-9
 CONTACT = BallBearing.named("6205").outer_contact
@@ -41,10 +44,9 @@ def test_smooth_raceway_is_solved_once_and_is_hertz():
     assert on.around.counts.solved == len(on.approaches)
     assert len(on.positions) > 15000
     law = laws_on(on.surface)
-    for share in (0.1, 0.5, 1.0, 3.0, 8.0):
-        for name in ALL:
-            found = force(law[name], [0.0, 1.0, -0.3], CONTACT.approach(share * LOAD))
-            assert_allclose(found, share * LOAD, rtol=5e-3)
+    for share, name in product((0.1, 0.5, 1.0, 3.0, 8.0), ALL):
+        found = force(law[name], [0.0, 1.0, -0.3], CONTACT.approach(share * LOAD))
+        assert_allclose(found, share * LOAD, rtol=5e-3)
     finer = solved(lambda x, y: 0.0, APPROACH)
     assert_allclose(force(law["table"], 0.0, APPROACH), finer, rtol=1e-3)
 
@@ -52,9 +54,7 @@ def test_smooth_raceway_is_solved_once_and_is_hertz():
 @pytest.mark.parametrize("where", ["heights", "line"])
 def test_higher_raceway_is_a_larger_approach(where):
     smooth, h = raceway_on(CONTACT, LOAD, 0.1 * MM), 0.2 * UM
-    raised = Raceway(np.full(smooth.heights.shape, h * (where == "heights")), smooth.spacing)
-    if where == "line":
-        raised = Raceway(smooth.heights, smooth.spacing, np.full(len(smooth.heights), h))
+    raised = replace(smooth, **{where: getattr(smooth, where) + h})
     before, after = laws_on(smooth), laws_on(raised)
     for name in ALL:
         wanted = force(before[name], 0.1 * MM, APPROACH + h)
@@ -67,11 +67,11 @@ def test_force_closes_around_a_rough_raceway():
     around = surface.circumference
     step = np.arange(-4, 5) * 1e-3 * surface.spacing[0]
     law = laws_on(surface)
+    places = np.linspace(0.0, around, 50, endpoint=False)
     for name in ALL:
-        places = np.linspace(0.0, around, 50, endpoint=False)
         found = force(law[name], places, APPROACH)
-        assert_allclose(force(law[name], places + around, APPROACH), found, rtol=1e-9)
-        assert_allclose(force(law[name], places - 3 * around, APPROACH), found, rtol=1e-9)
+        for turns in (1, -3):
+            assert_allclose(force(law[name], places + turns * around, APPROACH), found, rtol=1e-9)
         over = force(law[name], step, APPROACH)  # no jump, and one slope
         assert_allclose(np.diff(over), np.diff(over).mean(), rtol=0.05, atol=1e-9 * LOAD)
         assert np.ptp(found) > 0.01 * LOAD
@@ -101,13 +101,12 @@ def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
     with pytest.warns(OutOfRangeWarning, match=r"under 68 N; else they have 17 N .* has 16\.\d N, and 272 N"):
         law, middle = laws_on(on.surface), np.pi * MM
     assert 0 < on.around.counts.solved < 110 * len(on.approaches)  # of 720
-    for away in (0.0, 0.07 * MM, 0.12 * MM):
-        for approach in (APPROACH, CONTACT.approach(4 * LOAD)):
-            exact = solved(lambda x, y, x0=away: -0.28 * MM * (np.hypot(x + x0, y) < 0.09 * MM), approach)
-            found = force(law["table"], [middle + away, middle - away], approach)
-            assert 0.5 < exact / CONTACT.force(approach) < 1.001
-            assert_allclose(found, exact, rtol=6e-3)
-            assert_allclose(found[0], found[1], rtol=2e-3)
+    for away, approach in product((0.0, 0.07 * MM, 0.12 * MM), (APPROACH, CONTACT.approach(4 * LOAD))):
+        exact = solved(lambda x, y, x0=away: -0.28 * MM * (np.hypot(x + x0, y) < 0.09 * MM), approach)
+        found = force(law["table"], [middle + away, middle - away], approach)
+        assert 0.5 < exact / CONTACT.force(approach) < 1.001
+        assert_allclose(found, exact, rtol=6e-3)
+        assert_allclose(found[0], found[1], rtol=2e-3)
     assert 0.02 < 1.0 - force(law["table"], middle, APPROACH) / LOAD < 0.3
     # under the load for which they are made the simple laws have it, too; far from it nothing is lost
     sunk = APPROACH - ball_heights(CONTACT, on.surface, LOAD)[round(middle / on.surface.spacing[0])]
@@ -140,9 +139,7 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
 
 
 def test_unknown_law_is_refused():
-    with pytest.raises(
-        InputError, match="law of a raceway: received 'printed'; allowed: one of table, areal"
-    ):
+    with pytest.raises(InputError, match=r"law of a raceway: received 'printed'; .* one of table, areal"):
         laws_on(raceway_on(CONTACT, LOAD, 0.1 * MM), "printed")
 
 
@@ -165,10 +162,8 @@ def test_direct_sees_the_pits_of_ball_and_raceway_where_they_are(forwards):
     pit = Fault("pit", angle=beta, length=0.18 * MM, depth=0.28 * MM)
     ball = raceway_on(CONTACT, 0.8 * LOAD, radius, faults=(pit,))
     (law,) = with_balls(CONTACT, surface, [ball], LOAD, forwards=forwards)
-    spots = (
-        beta - (1.0 if forwards else -1.0) * np.array([away, -away]) / radius + 2 * np.pi * np.array([0, 7])
-    )
-    on = law.prepare(np.column_stack([[np.pi * MM - away] * 2, spots]))
+    ahead = np.array([away, -away]) / (radius if forwards else -radius)
+    on = law.prepare(np.column_stack([[np.pi * MM - away] * 2, beta - ahead + 2 * np.pi * np.array([0, 7])]))
     for step, places in enumerate(([away, away], [away, -away])):
 
         def both(x, y, places=places):
