@@ -58,6 +58,8 @@ class BearingRings:
 
 Sensor = tuple[str, float, Direction]
 """The ring that bears it, its angle, rad, and its direction."""
+AXES: tuple[tuple[float, Direction], ...] = ((0.0, "radial"), (0.5 * math.pi, "radial"), (0.0, "axial"))
+"""Angle and direction along the radial load, across it and along the axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,15 +142,14 @@ def roll_bearing(
     RolledBearing
     """
     total = round(settling / time_step) + round(duration / time_step)
-    turning = _Turning(bearing, rings.inner.contact_angle, speed, time_step, settling, total, slip)
-    force = turning.centrifugal_force if centrifugal else 0.0
-    mechanism = _mechanism(bearing, rings, (inner_law, outer_law), turning, force, ball_heights)
+    turning = _Turning(bearing, rings, speed, time_step, settling, total, slip)
+    mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
-    mechanism = _loaded(mechanism, rings, loads, turning)
+    mechanism = turning.loaded(mechanism, loads)
     rows = [
-        mechanism.row(place, row)
+        mechanism.row(place, ring.towards(angle, way))
         for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
-        for row in _axes(ring)
+        for angle, way in AXES
     ]
     rows += [_row_of(mechanism, rings, bearing, sensor) for sensor in sensors]
     run = roll_mechanism(
@@ -185,7 +186,7 @@ class _Turning:
     """Angles of everything at every step; those before and after the run go on."""
 
     bearing: BallBearing
-    contact_angle: float
+    rings: BearingRings
     speed: float
     time_step: float
     settling: float
@@ -194,8 +195,9 @@ class _Turning:
 
     def __post_init__(self) -> None:
         positive("speed (1/s)", self.speed)
+        self.contact_angle = self.rings.inner.contact_angle
         pure = self.bearing.kinematics(self.speed, contact_angle=self.contact_angle)
-        self.rings = pure.inner, pure.outer
+        self.turns = pure.inner, pure.outer
         time = self._time(-1, self.total + 2)
         slips = np.zeros(time.size) if self.slip is None else self.slip(time)
         slips = finite_array("slip of the cage", slips, "below 1", count=time.size, below=1.0)
@@ -215,7 +217,7 @@ class _Turning:
 
     def turned(self, ring: int) -> Along:
         """Angle by which a ring has turned."""
-        return lambda first, stop: TURN * self.rings[ring] * self._time(first, stop)
+        return lambda first, stop: TURN * self.turns[ring] * self._time(first, stop)
 
     def azimuth(self, ball: int, ring: int | None = None) -> Along:
         """Angle of a ball, in the frame of a ring that turns if there is one."""
@@ -245,34 +247,55 @@ class _Turning:
         shared = (5.0 * radial + (axial / sine if sine else 0.0)) / self.bearing.balls
         return shared + float(self.bearing.series_stiffness * overlap**1.5)
 
+    def mechanism(
+        self,
+        laws: tuple[Law | Sequence[Law], Law | Sequence[Law]],
+        ball_heights: Sequence[ArrayLike],
+        *,
+        centrifugal: bool,
+    ) -> Mechanism:
+        """Balls outwards along the normal, first on the inner ring, then on the outer one."""
+        of, bending = self.bearing, self.rings.bending
+        allowed = f"{of.balls}, one line for each ball, or none"
+        require(len(ball_heights) in (0, of.balls), "heights of the balls", len(ball_heights), allowed)
+        none, both = np.zeros((1, 1)), np.array([[1.0], [-1.0]])
+        pressing = np.array([-(self.centrifugal_force if centrifugal else 0.0)])
+        ball = Body(np.array([[of.ball_mass]]), none, none, both, pressing, np.zeros(2))
+        edges = []
+        for j in range(of.balls):
+            for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
+                sides = [Side(ring, self.azimuth(j), sign)]
+                if ring in bending:
+                    sides.append(Side(bending[ring][0], self.azimuth(j, ring), sign))
+                apart = 0.0 if ring else of.apart(self.contact_angle)
+                heights = _heights(ball_heights[j] if ball_heights else None, self.spot(ring), -apart)
+                law, along = laws[ring], self.on_raceway(j, ring)
+                if isinstance(law, Sequence):
+                    law, along = law[j], self.on_both(j, ring)
+                edges.append(Edge(law, along, tuple(sides), heights))
+        return Mechanism(self.rings.structures, [ball] * of.balls, edges)
 
-def _mechanism(
-    bearing: BallBearing,
-    rings: BearingRings,
-    laws: tuple[Law | Sequence[Law], Law | Sequence[Law]],
-    turning: _Turning,
-    centrifugal: float,
-    ball_heights: Sequence[ArrayLike],
-) -> Mechanism:
-    """Balls outwards along the normal, first on the inner ring, then on the outer one."""
-    allowed = f"{bearing.balls}, one line for each ball, or none"
-    require(len(ball_heights) in (0, bearing.balls), "heights of the balls", len(ball_heights), allowed)
-    none, both = np.zeros((1, 1)), np.array([[1.0], [-1.0]])
-    pressing = np.array([-centrifugal])
-    ball = Body(np.array([[bearing.ball_mass]]), none, none, both, pressing, np.zeros(2))
-    edges = []
-    for j in range(bearing.balls):
-        for ring, sign in ((INNER, -1.0), (OUTER, 1.0)):
-            sides = [Side(ring, turning.azimuth(j), sign)]
-            if ring in rings.bending:
-                sides.append(Side(rings.bending[ring][0], turning.azimuth(j, ring), sign))
-            apart = 0.0 if ring else bearing.apart(turning.contact_angle)
-            heights = _heights(ball_heights[j] if ball_heights else None, turning.spot(ring), -apart)
-            law, along = laws[ring], turning.on_raceway(j, ring)
-            if isinstance(law, Sequence):
-                law, along = law[j], turning.on_both(j, ring)
-            edges.append(Edge(law, along, tuple(sides), heights))
-    return Mechanism(rings.structures, [ball] * bearing.balls, edges)
+    def loaded(self, mechanism: Mechanism, loads: tuple[float, float]) -> Mechanism:
+        """Press the rings together, with springs that are free of force where they then are."""
+        inner, outer = self.rings.inner, self.rings.outer
+        pressed = [np.zeros(len(each.natural_frequencies)) for each in mechanism.structures]
+        pressed[INNER], pressed[OUTER] = inner.pressed(*loads), -outer.pressed(*loads)
+        load = self.usual_load(*loads)
+        require(load > 0.0, "load", "none", "a load, or a preload")
+        held = np.maximum(inner.frequencies, outer.frequencies)
+        what, remedy = "rings", "Give the shaft or the housing a stiffness."
+        require(np.all(held > 0.0), what, "both free", "one that is held", remedy)
+        loose = [
+            replace(inner, frequencies=np.zeros(len(held))),
+            replace(outer, frequencies=np.full(len(held), HELD)),
+            *mechanism.structures[2:],
+        ]
+        trial = replace(mechanism, structures=loose, pressed=pressed)
+        passing = self.bearing.balls * abs(self.bearing.kinematics(self.speed).cage) * self.time_step
+        places = np.linspace(0.0, min(1.0 / passing, self.total), INSTANTS, endpoint=False).astype(int)
+        rest = np.mean([rest_of(trial, int(step), load)[: len(held)] for step in places], axis=0)
+        pressed[INNER] = pressed[INNER] + (TURN * inner.frequencies) ** 2 * rest
+        return replace(mechanism, pressed=pressed)
 
 
 def _heights(line: ArrayLike | None, spots: Along, raised: float) -> Along:
@@ -286,35 +309,6 @@ def _heights(line: ArrayLike | None, spots: Along, raised: float) -> Along:
     angles = TURN * np.arange(heights.size + 1) / heights.size
     spline = CubicSpline(angles, np.append(heights, heights[0]), bc_type="periodic")
     return lambda first, stop: np.asarray(spline(spots(first, stop))) + raised
-
-
-def _loaded(
-    mechanism: Mechanism, rings: BearingRings, loads: tuple[float, float], turning: _Turning
-) -> Mechanism:
-    """Press the rings together, with springs that are free of force where they then are."""
-    pressed = [np.zeros(len(each.natural_frequencies)) for each in rings.structures]
-    pressed[INNER], pressed[OUTER] = rings.inner.pressed(*loads), -rings.outer.pressed(*loads)
-    require(turning.usual_load(*loads) > 0.0, "load", "none", "a load, or a preload")
-    held = np.maximum(rings.inner.frequencies, rings.outer.frequencies)
-    what, remedy = "rings", "Give the shaft or the housing a stiffness."
-    require(np.all(held > 0.0), what, "both free", "one that is held", remedy)
-    loose = [
-        replace(rings.inner, frequencies=np.zeros(len(held))),
-        replace(rings.outer, frequencies=np.full(len(held), HELD)),
-        *rings.structures[2:],
-    ]
-    trial = replace(mechanism, structures=loose, pressed=pressed)
-    passing = turning.bearing.balls * abs(turning.bearing.kinematics(turning.speed).cage) * turning.time_step
-    places = np.linspace(0.0, min(1.0 / passing, turning.total), INSTANTS, endpoint=False).astype(int)
-    load = turning.usual_load(*loads)
-    rest = np.mean([rest_of(trial, int(step), load)[: len(held)] for step in places], axis=0)
-    pressed[INNER] = pressed[INNER] + (TURN * rings.inner.frequencies) ** 2 * rest
-    return replace(mechanism, pressed=pressed)
-
-
-def _axes(ring: Ring) -> list[Array]:
-    """Motion of a rigid ring along the radial load, across it and along the axis, for each mode."""
-    return [ring.towards(0.0), ring.towards(0.5 * math.pi), ring.towards(0.0, "axial")]
 
 
 def _row_of(mechanism: Mechanism, rings: BearingRings, bearing: BallBearing, sensor: Sensor) -> Array:

@@ -88,16 +88,10 @@ class Mechanism:
         counts = [len(each.natural_frequencies) for each in self.structures]
         return np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
 
-    def joined(self, name: str) -> Array:
-        """What each mode of all structures has, by the name of the attribute (s,)."""
-        return np.concatenate([np.zeros(0), *(getattr(each, name) for each in self.structures)])
-
     @property
     def constant(self) -> Array:
-        """Constant forces on all modes (s,)."""
-        if not self.pressed:
-            return np.zeros(self.first_modes[-1])
-        return np.concatenate([np.asarray(each, dtype=float) for each in self.pressed])
+        """Constant forces on all modes (s,), or none."""
+        return np.concatenate([np.zeros(0), *self.pressed])
 
     def row(self, structure: int, values: Array) -> Array:
         """Row over all modes (s,) of values for the modes of one structure."""
@@ -246,7 +240,14 @@ def roll_mechanism(
     require(recorded >= 1, "duration (s)", duration, f"at least one time step of {h:.6g} s")
     course = _OnEdges(mechanism, h, settled + recorded)
     seen = np.zeros((0, mechanism.first_modes[-1])) if sensors is None else np.asarray(sensors, dtype=float)
-    stepper = _at_rest(course, seen, positive("load (N)", load), highest_frequency)
+    looked_at = np.unique(np.linspace(0, course.total, LOOKED_AT).astype(int)).tolist()
+    bodies, laws, prepared = mechanism.still(), [edge.law for edge in mechanism.edges], course.at_start()
+    ground, damping = _ground(course, seen, looked_at), np.array([law.damping for law in laws])
+    loads = np.full(course.contacts, positive("load (N)", load))
+    system = assembly.system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
+    # with contacts that are soft enough for the time step
+    given = assembly.softened(_start, ground, bodies, system, prepared, damping, highest_frequency)
+    stepper = Stepper(course, bodies, laws, course.whole, *given, np.inf, displacements=True)
     energies = stepper.energies()
     stepper.run(progress, checkpoint)
     _warn(stepper, course)
@@ -272,24 +273,12 @@ def rest_of(mechanism: Mechanism, step: int, load: float) -> Array:
     return _start(ground, bodies, system, laws)[1].displacement[: mechanism.first_modes[-1]]
 
 
-def _at_rest(course: _OnEdges, sensors: Array, load: float, highest_frequency: float | None) -> Stepper:
-    """Set everything at rest under the constant forces, with contacts soft enough for the time step."""
-    mechanism, h, bodies = course.mechanism, course.time_step, course.mechanism.still()
-    looked_at = np.unique(np.linspace(0, course.total, LOOKED_AT).astype(int)).tolist()
-    ground, prepared = _ground(course, sensors, looked_at), course.at_start()
-    loads = np.full(course.contacts, load)
-    system = assembly.system_of(ground, bodies, loads, h, 1.0, mechanism.constant)
-    laws = [edge.law for edge in mechanism.edges]
-    given, damping = (ground, bodies, system, prepared), np.array([law.damping for law in laws])
-    system, motion, largest = assembly.softened(_start, *given, damping, highest_frequency)
-    return Stepper(course, bodies, laws, course.whole, system, motion, largest, np.inf, displacements=True)
-
-
 def _ground(course: _OnEdges, sensors: Array, looked_at: Sequence[int]) -> Ground:
     """All structures as one: what they are to the contacts at the first of some steps, and at worst."""
     mechanism, n = course.mechanism, course.contacts
-    natural = 2.0 * np.pi * mechanism.joined("natural_frequencies")
-    ratios = mechanism.joined("damping_ratios")
+    none, of = np.zeros(0), mechanism.structures
+    natural = 2.0 * np.pi * np.concatenate([none, *(each.natural_frequencies for each in of)])
+    ratios = np.concatenate([none, *(each.damping_ratios for each in of)])
     each = steps.alternating_of_modes(steps.resolved_step(natural, ratios, course.time_step))
     shapes, slopes = np.zeros((2, 1, n, natural.size))
     least = 0.0

@@ -52,8 +52,6 @@ class LoadedBearing:
     imbalance : float
         Force that is left out of balance, over the load, or over what the interference or the centrifugal
         force of a ball presses if that is more.
-    steps : int
-        Newton steps that it took.
     """
 
     bearing: BallBearing
@@ -68,7 +66,6 @@ class LoadedBearing:
     outer_angle: Array
     stiffness: Array
     imbalance: float
-    steps: int
 
     def semi_axes(self, ring: str) -> tuple[Array, Array]:
         """Semi-axes of the contacts with the ``"inner"`` or ``"outer"`` ring, along and across (m, Z), m."""
@@ -158,8 +155,8 @@ def _link(stretch: Array, length: float, constant: float) -> tuple[Array, Array,
 
 def _descended(
     energy_of: Callable[[Array], tuple[Array, Array, Array]], start: Array, scale: float, what: str
-) -> tuple[Array, float, int]:
-    """Least energies by Newton's method with halved steps: places (…, n), imbalance, and number of steps.
+) -> tuple[Array, float]:
+    """Least energies by Newton's method with halved steps: places (…, n), and the imbalance.
 
     `energy_of` gives energies (…), gradients (…, n) and Hessians (…, n, n) of convex functions; a gradient
     counts as zero below `TOLERANCE` of the scale.
@@ -169,7 +166,7 @@ def _descended(
     for step in range(MOST_STEPS):
         size = np.linalg.norm(gradient, axis=-1)
         if size.max() <= (TOLERANCE if step < PATIENCE else ROUNDED) * scale:
-            return place, float(size.max() / scale), step
+            return place, float(size.max() / scale)
         trace = np.trace(hessian, axis1=-2, axis2=-1)
         least = np.maximum(np.maximum(1e-13 * trace, 1e-9 * trace.max()), (trace == 0.0) * scale / LOOSE)
         ridge = least[..., None, None] * np.eye(place.shape[-1])
@@ -222,7 +219,7 @@ class _Balls:
             return energy, force, stiffness, ball
         free = np.zeros_like(stretch)
         free[..., 0] = length + (self.lift / constant) ** (2.0 / 3.0)
-        ball, *_ = _descended(
+        ball, _ = _descended(
             lambda at: self._apart(stretch, at),
             np.where((load > self.lift)[..., None], ball, free),
             0.1 * max(self.lift, float(load.max())),
@@ -264,7 +261,7 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
     pressed = (5.0 * scale / bearing.balls / bearing.series_stiffness) ** (2.0 / 3.0)
     start[:, 0] = (max(0.5 * bearing.radial_clearance, 0.0) + pressed) * (radial > 0.0)
     start[:, 2] = (A * math.sin(bearing.free_angle) + math.sqrt(2.0 * A * pressed)) * (axial > 0.0)
-    ring, imbalance, steps = _descended(energy_of, start, max(scale, lift), "balance of the inner ring")
+    ring, imbalance = _descended(energy_of, start, max(scale, lift), "balance of the inner ring")
     stretch = stretched(ring)
     ball = balls.together(stretch)[3]
     inner, outer = _link(stretch - ball, *balls.inner), _link(ball, *balls.outer)
@@ -273,7 +270,7 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
         for link in (inner, outer)
     )
     found = azimuth, ring, inner[3], outer[3], inner_angle, outer_angle, energy_of(ring)[2]
-    return LoadedBearing(bearing, radial, axial, speed, *found, imbalance, steps)
+    return LoadedBearing(bearing, radial, axial, speed, *found, imbalance)
 
 
 def _doubt(found: LoadedBearing) -> None:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -195,13 +194,6 @@ class Raceway:
     def circumference(self) -> float:
         """Length of the path, m."""
         return len(self.heights) * self.spacing[0]
-
-    @cached_property
-    def amplitudes(self) -> Array:
-        """Amplitudes, m, of 0, 1, 2, … waves per turn along the path, without faults."""
-        along = self.heights[:, self.heights.shape[1] // 2] + self.line
-        found = np.abs(fft.rfft(along)) * (2.0 / len(along))
-        return np.append(0.5 * found[0], found[1:])
 
 
 def raceway(
