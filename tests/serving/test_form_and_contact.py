@@ -20,35 +20,33 @@ def no_file(identifier):
     return None
 
 
-@pytest.mark.parametrize("form", forms(), ids=lambda form: form.kind)
-def test_the_form_holds_every_key_with_its_words(form):
-    fields = {field.key: field for group in form.groups for field in group.fields}
-    model = case_class(form.kind)
+def fields_of(kind):
+    return {field["key"]: field for group in forms()[kind]["groups"] for field in group["fields"]}
+
+
+@pytest.mark.parametrize("kind", forms())
+def test_the_form_holds_every_key_with_its_words_and_opens_as_a_case(kind):
+    fields, model = fields_of(kind), case_class(kind)
     every = {entry.dotted for entry in entries(model)}
     hidden = {f"{title}.{name}" for title in model.SHOWN for name in model.sections()[title].model.keys}
     hidden -= {f"{title}.{name}" for title, names in model.SHOWN.items() for name in names}
     assert set(fields) == every - hidden - {"kind"}
-    assert all(field.meaning and field.allowed for field in fields.values())
-    keys = {group.title for group in form.groups for field in group.fields}
-    assert "" in keys
+    assert all(field["meaning"] and field["allowed"] for field in fields.values())
+    assert "" in {group["title"] for group in forms()[kind]["groups"]}
     for field in fields.values():  # keys that go with others name keys of the form
-        for companion in filter(None, field.goes_with.split(" or ")):
+        for companion in filter(None, field["goes_with"].split(" or ")):
             assert companion.partition("=")[0] in fields, field
+    values = {key: field["value"] for key, field in fields.items()}
+    assert case_of(case_data(kind, values, no_file), UNITS).kind == kind
 
 
-@pytest.mark.parametrize("kind", [form.kind for form in forms()])
+@pytest.mark.parametrize("kind", forms())
 def test_what_is_typed_reads_as_the_case_file_does(kind):
     text = template(kind)
     data = read_toml(text, "case", "case")
     typed = form_values(data, lambda path: None)
     assert case_of(case_data(kind, typed, no_file), UNITS) == parse_case(text)
     assert all(isinstance(value, str) for value in typed.values())
-
-
-@pytest.mark.parametrize("form", forms(), ids=lambda form: form.kind)
-def test_the_form_as_it_opens_is_a_case(form):
-    values = {field.key: field.value for group in form.groups for field in group.fields}
-    assert case_of(case_data(form.kind, values, no_file), UNITS).kind == form.kind
 
 
 def test_lists_flags_numbers_and_materials_are_typed():

@@ -2,7 +2,6 @@
 
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from itertools import groupby
 from pathlib import Path
@@ -23,39 +22,6 @@ YES, NO = "yes", "no"
 _KIND = "kind"
 
 
-@dataclass(frozen=True)
-class FormField:
-    """One key of a case as the form shows it."""
-
-    key: str  # with its section, as "contact.spacing"
-    name: str
-    meaning: str
-    allowed: str  # what may stand there, in words
-    otherwise: str  # what holds where nothing is typed
-    control: str  # "text", "choice" (one of them), "choices" (several) or "file"
-    choices: tuple[str, ...]
-    value: str  # what stands there at first
-    goes_with: str  # keys, with " or " between them, or "key=value", without which it has no meaning
-
-
-@dataclass(frozen=True)
-class FormGroup:
-    """The keys of one section."""
-
-    title: str  # name of the section; empty for the keys at the top
-    meaning: str
-    fields: tuple[FormField, ...]
-
-
-@dataclass(frozen=True)
-class CaseForm:
-    """All keys of a kind of case, section by section."""
-
-    kind: str
-    title: str  # what rolls over what
-    groups: tuple[FormGroup, ...]
-
-
 SLIDERS = (("Roughness", "surface.rms surface.level"), ("Load", ".load"), ("Speed", "speed"))
 """What is turned most, and ends of the keys that do it: the first of them that holds a number."""
 
@@ -69,41 +35,48 @@ def page_text() -> str:
 
 
 @cache
-def forms() -> tuple[CaseForm, ...]:
-    """Make the form of each kind of bodies that roll."""
-    return tuple(_form(name) for name in PRESETS if issubclass(cases.case_class(name), scene.Case))
+def forms() -> dict[str, dict[str, Any]]:
+    """Make the form of each kind of bodies that roll: what it is, and its sections with their keys."""
+    return {name: _form(model) for name in PRESETS if issubclass(model := cases.case_class(name), scene.Case)}
 
 
-def _form(name: str) -> CaseForm:
-    model, groups = cases.case_class(name), []
-    whole = model.TITLE.rstrip(".")
+def _form(model: type[scene.Case]) -> dict[str, Any]:
+    whole, sections = model.TITLE.rstrip("."), model.sections()
     shown = [
-        each for each in any_case.entries(model) if each.name in model.SHOWN.get(each.section, (each.name,))
+        each
+        for each in any_case.entries(model)
+        if each.dotted != _KIND and each.name in model.SHOWN.get(each.section, (each.name,))
     ]
-    for title, keys in groupby(shown, lambda entry: entry.section):
-        meaning = model.sections()[title].meaning if title else whole
-        fields = (_field(entry, title, model.WRITTEN_OUT) for entry in keys if entry.dotted != _KIND)
-        groups.append(FormGroup(title, meaning, tuple(fields)))
-    return CaseForm(name, whole, tuple(groups))
+    groups = [
+        {
+            "title": title,
+            "meaning": sections[title].meaning if title else whole,
+            "fields": [_field(entry, model.WRITTEN_OUT.get(entry.dotted)) for entry in keys],
+        }
+        for title, keys in groupby(shown, lambda entry: entry.section)
+    ]
+    return {"title": whole, "groups": groups}
 
 
-def _field(entry: any_case.CaseKey, title: str, written_out: Mapping[str, str]) -> FormField:
-    usual, written, companion = entry.key.default, written_out.get(entry.dotted), entry.key.goes_with
-    control, choices = _control(entry)
-    return FormField(
-        entry.dotted,
-        entry.name,
-        entry.key.meaning,
-        any_case.allowed_in(entry.key).removesuffix(" in quotes"),
-        entry.key.otherwise if usual is None else typed(usual),
-        control,
-        choices,
-        "" if written is None else typed(tomllib.loads(f"v = {written}")["v"]),
-        " or ".join(f"{title}.{each}".lstrip(".") for each in companion.split(" or ")) if companion else "",
-    )
+def _field(entry: any_case.CaseKey, written: str | None) -> dict[str, Any]:
+    """A key as the form shows it: its words, its control, and what stands there at first."""
+    usual, companion = entry.key.default, entry.key.goes_with
+    with_section = f"{entry.section}.{{}}".lstrip(".")
+    return {
+        "key": entry.dotted,
+        "name": entry.name,
+        "meaning": entry.key.meaning,
+        "allowed": any_case.allowed_in(entry.key).removesuffix(" in quotes"),
+        "otherwise": entry.key.otherwise if usual is None else typed(usual),  # where nothing is typed
+        "value": "" if written is None else typed(tomllib.loads(f"v = {written}")["v"]),
+        # keys, with " or " between them, or "key=value", without which it has no meaning
+        "goes_with": " or ".join(map(with_section.format, filter(None, (companion or "").split(" or ")))),
+        **dict(zip(("control", "choices"), _control(entry), strict=True)),
+    }
 
 
 def _control(entry: any_case.CaseKey) -> tuple[str, tuple[str, ...]]:
+    """Of "text", "choice" (one of them), "choices" (several) and "file", and the words to choose from."""
     match entry.key.kind:
         case Choice() as choice:
             return "choice", choice.known
