@@ -52,6 +52,8 @@ LETTER, ROW, HANDLE = 0.068, 13.0, 10
 OPPOSITE = 32.0
 """Points that an axis opposite takes above a panel."""
 HATCHES = {"/": "///", "\\": "\\\\\\", "x": "xxx", ".": "..", "-": "---"}
+MARGIN = 0.04
+"""Share of the height of a panel that is left free above and below its marks."""
 Ends = tuple[float, float]
 
 
@@ -92,12 +94,16 @@ def save_figure(figure: Figure, file: BinaryIO, format: str) -> None:
 
 def _draw_panel(axes: Axes, panel: chart.Panel, width: float, named: set[tuple[str, str]]) -> None:
     """Draw a panel of a width in inches; what is `named` already gets no second place in a legend."""
-    x, y = chart.limits(panel, "x"), chart.limits(panel, "y")
-    _draw_axis(axes, "x", panel.x, x, width)
-    _draw_axis(axes, "y", panel.y, y, panel.height)
-    for order, mark in enumerate(panel.marks):
-        _draw_mark(axes, mark, x, y, width, 2 + order / len(panel.marks))
-    axes.set(xlim=x, ylim=y)
+    axes.set(xscale="log" if panel.x.log else "linear", yscale="log" if panel.y.log else "linear")
+    axes.margins(0.0, MARGIN)
+    ends = {"xlim": (panel.x.low, panel.x.high), "ylim": (panel.y.low, panel.y.high)}
+    for endless in (False, True):  # what goes by the ends of the panel comes when the others have set them
+        for order, mark in enumerate(panel.marks):
+            if _is_endless(mark) == endless:
+                _draw_mark(axes, mark, width, 2 + order / len(panel.marks))
+        axes.set(**ends)
+    _draw_axis(axes, "x", panel.x, axes.get_xlim(), width)
+    _draw_axis(axes, "y", panel.y, axes.get_ylim(), panel.height)
     if panel.equal:
         axes.set_aspect("equal")
     if panel.plain or any(isinstance(mark, chart.Field) for mark in panel.marks):
@@ -111,10 +117,17 @@ def _draw_panel(axes: Axes, panel: chart.Panel, width: float, named: set[tuple[s
         axes.set_title(panel.title, pad=6 + above)
 
 
+def _is_endless(mark: chart.Mark) -> bool:
+    """Whether a mark is as long as the panel, or stands where there is room."""
+    if isinstance(mark, chart.Boxes):
+        return not np.isfinite([mark.left, mark.right, mark.low, mark.high]).all()
+    return isinstance(mark, chart.Rules | chart.Note)
+
+
 def _draw_axis(axes: Axes, way: str, axis: chart.Axis, ends: Ends, length: float) -> None:
-    """Scale, ticks and name of an axis of a length in inches, and what stands opposite to it."""
+    """Ticks and name of an axis of a length in inches, and what stands opposite to it."""
     side, (low, high) = axes.xaxis if way == "x" else axes.yaxis, sorted(ends)
-    axes.set(**{f"{way}label": axis.label, f"{way}scale": "log" if axis.log else "linear"})
+    side.set_label_text(axis.label)
     if axis.ticks:
         at, names = zip(*axis.ticks, strict=True)
         side.set_major_locator(ticker.FixedLocator(at))
@@ -160,8 +173,8 @@ def _draw_second(axes: Axes, way: str, second: chart.Second, log: bool, ends: En
         side.set_major_formatter(words)
 
 
-def _draw_mark(axes: Axes, mark: chart.Mark, x: Ends, y: Ends, width: float, order: float) -> None:
-    """Draw a mark in a panel of a width in inches that reaches from end to end of `x` and `y`."""
+def _draw_mark(axes: Axes, mark: chart.Mark, width: float, order: float) -> None:
+    """Draw a mark in a panel of a width in inches."""
     look: dict[str, Any] = {"label": getattr(mark, "label", "") or None, "zorder": order}
     match mark:
         case chart.Line():
@@ -172,7 +185,7 @@ def _draw_mark(axes: Axes, mark: chart.Mark, x: Ends, y: Ends, width: float, ord
             look["linewidth"] = 0.4 if mark.opacity == 1.0 else 0.0  # seen at all where it is flat
             axes.fill_between(mark.x, mark.low, mark.high, color=mark.colour, alpha=mark.opacity, **look)
         case chart.Boxes():
-            _draw_boxes(axes, mark, x, y, look)
+            _draw_boxes(axes, mark, look)
         case chart.Rules():  # across the panel, or short ones at its edge
             look |= {"linestyle": _style(mark.dashes, mark.width), "linewidth": mark.width}
             along_x, end = mark.along == "x", 0.04 if mark.short else 1.0
@@ -180,7 +193,7 @@ def _draw_mark(axes: Axes, mark: chart.Mark, x: Ends, y: Ends, width: float, ord
             lines = axes.vlines if along_x else axes.hlines
             lines(mark.at, 0.0, end, color=mark.colour, transform=transform, **look)
         case chart.Note():
-            _write_note(axes, mark, x, y)
+            _write_note(axes, mark)
         case chart.Field():
             _draw_field(axes, mark, width)
         case chart.Shape():
@@ -193,22 +206,25 @@ def _style(dashes: Sequence[float], width: float) -> Any:
     return "none" if width <= 0 else (0, tuple(dashes)) if dashes else "-"
 
 
-def _draw_boxes(axes: Axes, mark: chart.Boxes, x: Ends, y: Ends, look: dict[str, Any]) -> None:
+def _draw_boxes(axes: Axes, mark: chart.Boxes, look: dict[str, Any]) -> None:
     """Draw rectangles, the endless ones behind the grid."""
-    if not np.isfinite([*mark.left, *mark.right, *mark.low, *mark.high]).all():
+    left, right, low, high = mark.left, mark.right, mark.low, mark.high
+    if _is_endless(mark):
         look["zorder"] = 0.2
-    left, right = (np.clip(edge, min(x), max(x)) for edge in (mark.left, mark.right))
-    low, high = (np.clip(edge, min(y), max(y)) for edge in (mark.low, mark.high))
+        x, y = axes.get_xlim(), axes.get_ylim()
+        left, right = (np.clip(edge, min(x), max(x)) for edge in (left, right))
+        low, high = (np.clip(edge, min(y), max(y)) for edge in (low, high))
     corners = np.stack([left, low, left, high, right, high, right, low], axis=-1).reshape(-1, 4, 2)
     if mark.hatch:  # drawn in the colour of the outline
         look["hatch"] = HATCHES[mark.hatch]
     look |= {"edgecolors": mark.edge or ("white" if mark.hatch else "none")}
     look |= {"linewidths": 0.8 if mark.edge else 0.0, "alpha": mark.opacity}
-    axes.add_collection(PolyCollection(list(corners), facecolors=mark.colour, **look), autolim=False)
+    axes.add_collection(PolyCollection(list(corners), facecolors=mark.colour, **look))
 
 
-def _write_note(axes: Axes, note: chart.Note, x: Ends, y: Ends) -> None:
+def _write_note(axes: Axes, note: chart.Note) -> None:
     """Write words at a place, a little beside it; what lies outside the panel is left out."""
+    x, y = axes.get_xlim(), axes.get_ylim()
     inside = (note.x_share or min(x) <= note.x <= max(x)) and (note.y_share or min(y) <= note.y <= max(y))
     if not inside:
         return
