@@ -1,5 +1,6 @@
 """Figures as files: what matplotlib draws of a chart, what a drawing is as SVG, which figures are meant."""
 
+from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
@@ -75,6 +76,8 @@ def test_an_axis_names_its_ticks(axis, named):
 def test_an_axis_opposite_shows_what_it_is_scaled_to():
     top = axes_of(x=wavenumber_axis(10, 1e4)).child_axes[0]
     assert ticks(top)[:4] == ["100 µm", "200 µm", "500 µm", "1 mm"]
+    orders = replace(frequency_axis(20, 1200), second=Second("orders", 0.05))
+    assert ticks(axes_of(x=orders).child_axes[0]) == ["1", "2", "5", "10", "20", "50"]
     state = Axis("approach", 0.0, 4.0, second=Second("state", offset=1.0))
     opposite = axes_of(x=state).child_axes[0]
     assert ticks(opposite)[0] == "1.0"

@@ -171,6 +171,8 @@ def _draw_second(axes: Axes, way: str, second: chart.Second, log: bool, ends: En
         digits = 1 if log else 3
         words = ticker.FuncFormatter(lambda value, _: data.engineering(value, second.unit, digits))
         side.set_major_formatter(words)
+    elif log:
+        side.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def _draw_mark(axes: Axes, mark: chart.Mark, width: float, order: float) -> None:
