@@ -37,7 +37,7 @@ from asperity.structures.outline import WheelSection
 from asperity.structures.wheel_modes import BEYOND, wheel_modes
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))
-from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
+from exact_fields import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 BANDS = 10.0 ** (np.arange(17, 38) / 10.0)  # 50 Hz to 5 kHz
 WITHIN = 10.0 ** (0.1 * (np.arange(25) - 12.0) / 25.0)

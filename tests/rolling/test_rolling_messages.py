@@ -1,9 +1,11 @@
-"""What rolling bodies refuse, warn of, and fail with."""
+"""What rolling bodies refuse, warn of, and fail with; a contact that does not carry its load in the mean."""
 
 import warnings
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from rolling_parts import rough
 
 from asperity import errors
@@ -13,8 +15,9 @@ from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.assembly import at_rest
-from asperity.rolling.roll import roll_bodies
-from asperity.structures.beam import Beam
+from asperity.rolling.ground import Path, ground_of
+from asperity.rolling.roll import free_motion, refuse_missed_load, roll_bodies
+from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailBetween
@@ -125,3 +128,71 @@ def test_forces_that_miss_the_tolerance_are_counted(monkeypatch):
     (message,) = seen[errors.UnconvergedWarning]
     assert "stepped: 10 of 10 time steps (100 %) missed the tolerance" in message
     assert (run.outcome, run.unconverged_steps) == (Outcome.STEPS_UNCONVERGED, 10)
+
+
+WEIGHT, INERTIA, STEP = 65e3, 600.0, 1e-4
+
+
+def judge(force, reach=0.5e-3, settled=0):
+    refuse_missed_load("hertz", force, WEIGHT, INERTIA, reach, STEP, settled)
+
+
+def bounded(seed, count):
+    """Force of a bounded motion, whose acceleration is the difference of random velocities of 5 cm/s."""
+    return WEIGHT - INERTIA * np.diff(0.05 * np.random.default_rng(seed).normal(size=count + 1)) / STEP
+
+
+test_a_mass_that_falls_or_flies_off_is_refused = refusals(
+    (bounded(0, 10000) - 0.05 * WEIGHT, r"hertz: the mean .* misses the load of 6.5e.*rolls 2.7 m away"),
+    (bounded(0, 10000) - WEIGHT, "misses the load"),
+    (np.where(np.arange(10000) % 1500 == 0, 4e8, 0.0), "standard error"),  # several loads in the mean
+    (np.repeat([WEIGHT, 0.0], [20, 30]), r"nothing touches in all of the rec.* load 6.5e\+04 N"),
+    of=lambda force: judge(force, settled=20),
+    error=ComputationError,
+)
+
+
+@given(seed=st.integers(0, 10**6), count=st.integers(2, 3000))
+@settings(max_examples=60)
+def test_a_bounded_motion_is_never_refused_however_short(seed, count):
+    judge(bounded(seed, count), reach=0.05 * STEP * 3)
+
+
+@given(st.floats(0.01, 30.0), st.floats(0.0, 6.3), st.floats(0.0, 0.9), st.integers(300, 3000))
+@settings(max_examples=60)
+def test_a_slow_oscillation_is_never_refused_however_short(periods, phase, amplitude, count):
+    """In contact throughout, with what it deflects and no more."""
+    angle = 2 * np.pi * periods * np.arange(count) / count + phase
+    displacement = amplitude * WEIGHT / INERTIA * (count * STEP / (2 * np.pi * periods)) ** 2 * np.sin(angle)
+    judge(WEIGHT * (1.0 + amplitude * np.sin(angle)), reach=max(np.ptp(displacement), 1e-12))
+
+
+@given(restitution=st.floats(0.3, 0.95), height=st.floats(1e-4, 1e-2), count=st.integers(50, 5000))
+@settings(max_examples=60)
+def test_flights_are_never_refused(restitution, height, count):
+    """It hops, thrown anew whenever it has come to rest."""
+    pull = WEIGHT / INERTIA
+    thrown = speed = np.sqrt(2 * height * pull)
+    force = [WEIGHT, WEIGHT + INERTIA * speed / STEP]
+    while len(force) < count:
+        steps = max(int(2 * speed / pull / STEP), 1)
+        back = restitution * speed if speed > 0.3 * thrown else thrown
+        force += [0.0] * steps + [INERTIA * (steps * pull * STEP - speed + back) / STEP + WEIGHT]
+        speed = back
+    judge(np.array(force[:count]), reach=1e-4)
+
+
+def test_a_body_on_two_contacts_falls_as_one():
+    """A bar of 4 kg and 0.1 kg m² on two contacts, 0.3 and 0.5 m from its middle."""
+    none, rest = np.zeros((2, 2)), (np.array([[1.0, 0.3], [1.0, -0.5]]), np.array([40.0, 0.0]), np.zeros(2))
+    shape, moved, load = free_motion(Body(np.diag([4.0, 0.1]), none, none, *rest))
+    np.testing.assert_allclose([*shape, moved, load], [1.0, 1.0, 4.0, 40.0])
+    assert free_motion(Body(np.diag([4.0, 0.1]), none, np.diag([1e6, 0.0]), *rest)) is None
+
+
+def test_a_beam_gives_way_by_what_it_bends_at_most():
+    """F L³/48 B in its middle; without bound where nothing holds it."""
+    path = Path.laid(0.1, 1.0, 1e-4, 0.8, 0.0)
+    for beam, expected in ((Beam, 1.0 / 48e4), (SupportedBeam, np.inf)):
+        over = beam(1.0, 1e4, 10.0, highest_frequency=2e4)
+        assert ground_of(over, path, np.zeros(0)).softest == pytest.approx(expected, rel=1e-3)

@@ -1,17 +1,87 @@
-"""Sound power of runs from the vibration itself."""
+"""Sound power of runs: from the vibration itself, and by CNOSSOS-EU with its labels."""
 
 import json
 
 import numpy as np
 import pytest
 
-from asperity.case.bodies import WheelOnRail
+from asperity import WheelOnRail
+from asperity.errors import Grade, OutOfRangeWarning
 from asperity.radiation.track import SleeperTop
+from asperity.reference import cnossos
 from asperity.reporting.chart import Line
+from asperity.running import prepare_case
+from asperity.scenes import noise
 from asperity.scenes.figures.noise import noise_answers, radiated_power_bands, sound_power_table
-from asperity.scenes.noise import RADIATORS, rail_section, silent_wheel
-from asperity.spectra import HALF_BAND, band_energies
+from asperity.scenes.noise import RADIATORS, rail_section, rolling_sound_power, silent_wheel
+from asperity.scenes.track import planned_track
+from asperity.spectra import HALF_BAND, a_weighted_total, band_energies
 from small_cases import HEARD
+
+OF_WHEEL = cnossos.wheel_roughness("disc")
+OF_TRACK = cnossos.track_transfer("medium")
+TRANSFER = cnossos.wheel_transfer("920 mm")
+
+
+def test_bands_without_roughness_are_unknown_and_left_out():
+    # the wheel's table begins at 1 m: at 100 m/s nothing is known below 100 Hz
+    centres, levels = rolling_sound_power(100.0, None, OF_WHEEL, OF_TRACK, TRANSFER)
+    assert np.isnan(levels[:, centres < 90.0]).all()
+    assert np.isfinite(levels[:, centres > 90.0]).all()
+    assert np.isfinite(a_weighted_total(levels, centres)).all()
+
+
+def labelled(track=None, wheel=None, **keys):
+    sections = {"track": track or {}, "wheel": wheel or {}}
+    return WheelOnRail(surface={"spectrum": "iso3095"}, **sections, **keys)
+
+
+def test_pads_have_the_class_of_the_directive_and_wheels_the_nearest_diameter():
+    """Table [2.3.b]: 150 to 250, 250 to 800, 800 to 1000 MN/m."""
+    pads = {80e6: "soft", 200e6: "soft", 250e6: "medium", 799e6: "medium", 900e6: "hard", 2e9: "hard"}
+    for stiffness, name in pads.items():
+        assert noise.track_label(labelled(track={"pad_stiffness": stiffness})) == name
+    for diameter, name in {0.6: "680 mm", 0.8: "840 mm", 0.9: "920 mm", 1.25: "1200 mm"}.items():
+        assert noise.wheel_label(labelled(wheel={"radius": diameter / 2})) == name
+
+
+@pytest.mark.parametrize(
+    ("sections", "told"),
+    [
+        ({}, None),
+        (
+            {"track": {"pad_stiffness": 100e6}},
+            "dynamic stiffness of the rail pads, MN/m, for CNOSSOS-EU: 100, in range 150 to 250. "
+            "CNOSSOS-EU's sound power is that of another one. Take the sound power from the vibra",
+        ),
+        ({"track": {"pad_stiffness": 1200e6}}, "in range 800 to 1000."),
+        ({"track": {"sleeper_mass": 40.0}}, "half a sleeper, kg, for CNOSSOS-EU: 40, in range 110 to 210"),
+        ({"track": {"sleeper_mass": 400.0}}, "for CNOSSOS-EU: 400, in range 110 to 210"),
+        (
+            {"wheel": {"radius": 0.25}},
+            "diameter of the wheel, mm, for CNOSSOS-EU: 500, in range 591.3 to 782",
+        ),
+    ],
+)
+def test_a_label_that_does_not_fit_is_told_with_what_to_do(sections, told):
+    found = noise.findings_of_labels(labelled(**sections))
+    assert [finding.grade for finding in found] == [Grade.WARNING] * (told is not None)
+    assert all(told in finding.message for finding in found)
+
+
+def test_a_check_says_whose_sound_power_is_computed():
+    found = dict(planned_track(prepare_case(labelled())))
+    assert found["sound power"] == (
+        "of rail, sleepers and wheel; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
+    )
+    rigid = dict(planned_track(prepare_case(labelled(wheel={"section": "rigid"}))))["sound power"]
+    assert rigid.startswith("of rail and sleepers: of this wheel it is not known how")
+    hard = {"pad_stiffness": 1200e6}
+    with pytest.warns(OutOfRangeWarning, match="in range 800 to 1000"):
+        planned_track(prepare_case(labelled(track=hard)))
+    without = prepare_case(labelled(track=hard, laws=["hertz"]))
+    assert "CNOSSOS" not in dict(planned_track(without))["sound power"]
+
 
 CASE = HEARD | {"duration": "0.6 s"}
 MODES = np.array(

@@ -1,9 +1,22 @@
-"""Supports of a rail as chains: closed forms of two layers, free and bedded beams, limits, dissipation."""
+"""Supports of a rail: chains by closed forms, sleepers by their receptance, against free and bedded beams."""
 
 import numpy as np
 import pytest
 
-from asperity.structures.support import BendingSleeper, Chain, ConstantLoss, Relaxation, RigidMass, Spring
+from asperity import Track
+from asperity.structures.causal_track import causal_track
+from asperity.structures.lateral_rail import LateralTrack
+from asperity.structures.mobility import dissipated_power
+from asperity.structures.support import (
+    BendingSleeper,
+    Chain,
+    ConstantLoss,
+    Relaxation,
+    RigidMass,
+    Spring,
+    measured_sleeper,
+)
+from refusals import refusals
 
 OMEGA = 2.0 * np.pi * np.array([1.0, 30.0, 90.0, 276.0, 600.0, 1500.0, 4000.0])
 LOWER = OMEGA * (1.0 - 0.1j)  # in the lower half-plane
@@ -61,3 +74,92 @@ def test_a_sleeper_is_right_at_any_complex_frequency():
     assert (1.0 / sleeper.on(ring, BALLAST.stiffness(ring))).mean() == pytest.approx(
         1.0 / sleeper.on(middle, BALLAST.stiffness(middle)), rel=1e-12, abs=0.0
     )
+
+
+MASS, LENGTH, BENDING, SEATS = 150.0, 2.6, 6e6, 1.5
+FREQUENCY = np.geomspace(20.0, 6000.0, 250)
+LOOKED = np.array([30.0, 121.0, 280.0, 650.0, 1063.0, 1600.0, 2900.0, 4500.0])
+NOTHING = np.zeros(len(FREQUENCY), complex)
+
+
+def beam(bending=BENDING):
+    """Seat receptance of a free beam, both seats pressed alike, at `FREQUENCY`.
+
+    B w'''' = k⁴ B w: cos kx and cosh kx from the middle to the seat; from there two sums that leave the end
+    free, of y, from the end. At the seat w, w', w'' go on, and B w''' falls by the force.
+    """
+    k = (MASS * (2.0 * np.pi * FREQUENCY) ** 2 / (0.5 * LENGTH) / bending + 0j) ** 0.25
+    x, y = k * 0.5 * SEATS, k * 0.5 * (LENGTH - SEATS)
+    even, odd = [np.cosh, np.sinh] * 2, [np.sinh, np.cosh] * 2
+    rows = []
+    for n in range(4):
+        turn, back = 0.5 * n * np.pi, (-1.0) ** n
+        end = [np.cos(y + turn) + even[n](y), np.sin(y + turn) + odd[n](y)]
+        rows.append([np.cos(x + turn), even[n](x), *(-back * each for each in end)])
+    matrix = np.moveaxis(np.array(rows), 2, 0)
+    force = np.multiply.outer(-1.0 / (bending * k**3), [[0.0], [0.0], [0.0], [1.0]])
+    amplitude = np.linalg.solve(matrix, force)[:, :, 0]
+    return amplitude[:, 0] * np.cos(x) + amplitude[:, 1] * np.cosh(x)
+
+
+@pytest.mark.parametrize("name", ["nordborg", "nordborg-loss-factor"])
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_a_table_of_a_beam_is_the_track_on_such_beams(name, noise):
+    """A per cent of noise on the table is less on the track."""
+    draws = np.random.default_rng(3)
+    around = 1.0 + noise * (draws.standard_normal(250) + 1j * draws.standard_normal(250))
+    sleeper = measured_sleeper(FREQUENCY, around * beam(BENDING * (1.0 + 1e-9j)), MASS)
+    assert sleeper.fit_error < (0.1 if noise else 0.005)
+    found = Track.named(name, measured_sleeper=sleeper, ballast_mass=300.0, subgrade_stiffness=9e7)
+    bends = {"sleeper_bending_stiffness": BENDING, "sleeper_length": LENGTH, "seat_distance": SEATS}
+    exact = Track.named(name, **bends, ballast_mass=300.0, subgrade_stiffness=9e7)
+    near = noise or 1e-4
+    for x in (0.0, 0.3):
+        expected = exact.receptance(LOOKED, x, x)
+        np.testing.assert_allclose(found.receptance(LOOKED, x, x), expected, rtol=near)
+    assert found.support.static == pytest.approx(exact.support.static, rel=near)
+    squares = (each.support.sleeper_square(2.0 * np.pi * LOOKED) for each in (found, exact))
+    np.testing.assert_allclose(*squares, rtol=10.0 * near)
+
+
+def test_a_table_of_a_mass_is_a_mass():
+    omega = 2.0 * np.pi * FREQUENCY
+    sleeper = measured_sleeper(FREQUENCY, -1.0 / (MASS * omega**2) + NOTHING, MASS)
+    below = 150e6 * (1.0 + 0.4j) + NOTHING
+    np.testing.assert_allclose(sleeper.on(omega, below), RigidMass(MASS).on(omega, below), rtol=1e-12)
+    assert sleeper.on(0.0, np.asarray(150e6 + 0j)) == pytest.approx(150e6, rel=1e-12)
+    found, exact = (Track.named("uic60", **each) for each in ({"measured_sleeper": sleeper}, {}))
+    at = LOOKED, 0.0, 0.0
+    np.testing.assert_allclose(found.receptance(*at), exact.receptance(*at), rtol=1e-9)
+    sideways = (LateralTrack(each).support(omega) for each in (found, exact))
+    np.testing.assert_allclose(*sideways, rtol=1e-12)
+
+
+def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power():
+    """Its receptance is analytic in the lower half-plane: the mean on a circle is the value in the middle."""
+    sleeper = measured_sleeper(FREQUENCY, beam(BENDING * (1.0 + 0.03j)), MASS)
+    ring = 4000.0 - 300.0j + 200.0 * np.exp(2j * np.pi * np.arange(64) / 64) * np.array([[1.0], [0.0]])
+    around, middle = np.mean(1.0 / sleeper.on(ring, 150e6 + 5e4j * ring), axis=1)
+    assert around == pytest.approx(middle, rel=1e-12, abs=0.0)
+    omega = np.geomspace(1.0, 1e6, 400)
+    assert (sleeper.on(omega, np.full(400, 150e6 + 0j)).imag >= 0.0).all()
+    track = Track.named("nordborg", rail_loss_factor=0.0, measured_sleeper=sleeper)
+    assert causal_track(track) is track
+    parts = dissipated_power(track, LOOKED, 0.1)
+    assert list(parts) == ["rail", "pad", "sleeper", "ballast"]
+    fed = -2.0 * np.pi * LOOKED * track.receptance(LOOKED, 0.1, 0.1).imag
+    np.testing.assert_allclose(sum(parts.values()), fed, rtol=1e-9)
+    assert parts["sleeper"].max() > 0.01 * fed.max()
+
+
+test_sleepers_that_cannot_be_are_refused = refusals(
+    (np.where(FREQUENCY < 300.0, 1.0, 1.0 + 0.2j), "imaginary part above zero from 3.* to 6000 Hz, by which"),
+    (np.where(FREQUENCY < 300.0, 1.0, 0.0), "size of a receptance"),
+    (np.full(len(FREQUENCY), 1e30), "1e-20 to 1e+20 m/N"),
+    (beam(), "remove sleeper_bending_stiffness"),
+    of=lambda receptance: Track.named(
+        "uic60",
+        measured_sleeper=measured_sleeper(FREQUENCY, receptance + 0j, MASS),
+        sleeper_bending_stiffness=BENDING,
+    ),
+)

@@ -1,4 +1,4 @@
-"""Tracks on other supports than pad, sleeper and ballast: rigid ground, foundations, rail dampers, tables."""
+"""Tracks on other supports than pad, sleeper and ballast, by closed forms; and where their power goes."""
 
 import math
 from dataclasses import replace
@@ -10,6 +10,7 @@ from asperity import Track
 from asperity.scenes.track import loss_factor_error
 from asperity.structures.body import Wheel
 from asperity.structures.causal_track import causal_track
+from asperity.structures.mobility import dissipated_power
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
 from asperity.structures.support import BendingSleeper, RigidMass, Spring, TunedDamper
 from asperity.structures.track_parameters import Bays
@@ -194,4 +195,49 @@ test_bad_supports_are_refused = refusals(
         "an imaginary part below zero from 20 to 30 Hz, by which the pad would make energy",
     ),
     (lambda: StiffnessTable((1.0, 2.0, 3.0), (1e8, 1e8, 0.0), (0.0,) * 3), "real part of zero or less at 3"),
+)
+
+
+# --- power that goes into a track is dissipated by its parts, each integrated by itself
+
+SOFT = {"under_sleeper_pad_stiffness": 2e8, "under_sleeper_pad_damping": 1e4}
+BENT = SOFT | {"sleeper_bending_stiffness": 6e6}
+TRACKS = {
+    "uic60": Track.named("uic60"),
+    "uic60-euler": Track.named("uic60-euler"),
+    "all layers": Track.named("nordborg-loss-factor", **BENT, **BED),
+    "in time": causal_track(Track.named("nordborg-loss-factor")),
+    "dampers": Track.named("uic60", **DAMPERS),
+    "dampers, bending": Track.named("nordborg", **DAMPERS, **BENT),
+    "slab-blocks": Track.named("slab-blocks"),
+    "embedded": Track.named("embedded", **DAMPERS),
+    "embedded, Euler-Bernoulli": Track.named("embedded", shear_stiffness=None, rotary_inertia=None),
+    "rigid ground": Track.named("uic60", ballast_stiffness=np.inf),
+    "continuous, with sleepers": Track.named("uic60", continuous=True, **BED),
+}
+
+
+@pytest.mark.parametrize("name", TRACKS)
+def test_what_goes_in_is_dissipated(name):
+    track = TRACKS[name]
+    for x in (0.0, 0.11, 0.3, 0.5, 7.9):
+        parts = dissipated_power(track, FREQUENCY, x)
+        fed = -2.0 * np.pi * FREQUENCY * track.receptance(FREQUENCY, x, x).imag
+        np.testing.assert_allclose(sum(parts.values()), fed, rtol=1e-9)
+        assert all((power >= 0.0).all() for power in parts.values())
+    assert set(parts) == {"rail", *track.springs} | ({"rail_damper"} if track.damper else set())
+
+
+def test_what_dissipates_nothing_gets_nothing():
+    track = Track.named("uic60", pad_damping=None, ballast_damping=None)
+    parts = dissipated_power(track, FREQUENCY, 0.2)
+    assert not parts["pad"].any()
+    assert not parts["ballast"].any()
+    assert (parts["rail"] > 0.0).all()
+
+
+test_bad_questions_of_power_are_refused = refusals(
+    ([100.0, 0.0], 0.0, "frequency"),
+    ([1.0], np.nan, "force"),
+    of=lambda frequency, x: dissipated_power(TRACKS["uic60"], frequency, x),
 )

@@ -1,4 +1,4 @@
-"""Tracks whose bays differ: against equal bays, superposed supports of 360 bays, and a published trend."""
+"""Tracks whose bays differ, and waves of a cell: against equal bays, superposed supports, a known trend."""
 
 from dataclasses import replace
 
@@ -7,6 +7,7 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
+from asperity.structures.cell_waves import cell_waves
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import decay_rate, decay_rate_en15461
@@ -14,19 +15,72 @@ from asperity.structures.track_parameters import Bays
 from refusals import refusals
 from superposed import free_rail, superposed, supports_by_hand
 
+SHEARED = {"shear_stiffness": 243e6, "rotary_inertia": 0.24}
+PLACES = [(0.0, 0.0), (0.3, 0.3), (0.1, 0.5), (0.6, 0.2), (13.3, 0.25), (0.31, -8.21), (59.9, 59.7)]
+
+
+def random_cell(track, omega, count, seed=1):
+    """Waves of a cell whose supports and distances are random_cell."""
+    draw, support = np.random.default_rng(seed), track.support.stiffness(omega)
+    supports = support * draw.uniform(0.3, 2.0, (count, 1))
+    return cell_waves(*track.rail.waves(omega), supports, draw.uniform(0.5, 0.7, count), count)
+
+
+@pytest.mark.parametrize("section", [{}, SHEARED])
+@pytest.mark.parametrize("shift", [0.0, 33.0])
+@pytest.mark.parametrize("count", [1, 2, 7, 100])
+def test_equal_bays_answer_as_one(section, shift, count):
+    track = Track.named("x2000", **section)
+    omega = np.concatenate([np.geomspace(30.0, 3e4, 40), np.linspace(4e4, 5e5, 10)]) - 1j * shift
+    one, support = track.waves(omega), track.support.stiffness(omega)
+    cell = cell_waves(*track.rail.waves(omega), np.array([support] * count), np.full(count, 0.6), count)
+    for x, x0 in PLACES:
+        assert cell.receptance(x, x0) == pytest.approx(one.receptance(x, x0), rel=1e-9, abs=1e-200)
+    slowest = np.abs(one.multipliers).max(axis=0)
+    assert np.abs(cell.multipliers).max(axis=0) == pytest.approx(slowest**count, rel=1e-10, abs=0.0)
+    for bay in (0, count // 2, count - 1):
+        assert np.abs(cell.bay(bay).multipliers).max(axis=0) == pytest.approx(slowest, rel=1e-10)
+
+
+def test_a_stretch_of_it_answers_like_one_bay():
+    cell = random_cell(Track.named("x2000"), np.geomspace(60.0, 2e5, 30) - 10j, 5)
+    length = cell.spacing / cell.bays
+    here, there = cell.bay(1), cell.bay(4)
+    for x, x0 in [(0.1, 0.2), (0.55, 0.0), (0.3, 0.59)]:
+        carried = cell.carried(1, 9)
+        seen = np.sum(there.outgoing(x) * carried * here.coefficients * here.incoming(x0), axis=0)
+        exact = cell.receptance(9 * length + x, length + x0)
+        assert seen == pytest.approx(exact, rel=1e-10, abs=1e-60)
+    nodes = np.linspace(0.0, length, 5)
+    for of_nodes, of_places in zip(here.shapes_at_nodes(4), here.symmetric_shapes(nodes), strict=True):
+        assert of_nodes == pytest.approx(of_places, rel=1e-12)
+    assert cell.carried(-9, -6) == pytest.approx(cell.carried(1, 4), rel=1e-12)
+    assert cell.carried(9, 1) == pytest.approx(
+        np.prod([cell.bay(n).multipliers for n in range(1, 9)], axis=0), rel=1e-6, abs=0.0
+    )
+
+
+def test_waves_lost_between_two_supports_are_refused():
+    with pytest.raises(InputError, match="at most 200"):
+        random_cell(Track.named("x2000"), np.array([1e9 + 0j]), 2)
+    cell = random_cell(Track.named("x2000"), np.array([2e5 + 0j]), 30)
+    with pytest.raises(InputError, match="at most 200"):
+        cell.outgoing(cell.spacing)
+
+
 EULER = Track.named("x2000")
 UIC60 = Track.named("uic60")
 VARIED = Bays.drawn(6, spacing=0.05, pad=0.2, ballast=0.3, seed=4)
 STEP = 5e-5
 
 
-def in_bays(track: Track, bays: Bays = VARIED) -> Track:
+def in_bays(track, bays=VARIED):
     return replace(track, bays=bays)
 
 
 @pytest.mark.parametrize("named", ["x2000", "uic60"])
 @pytest.mark.parametrize("frequency", [80.0, 330.0, 1050.0, 1250.0, 2500.0])
-def test_it_is_the_superposition_of_360_bays(named: str, frequency: float) -> None:
+def test_it_is_the_superposition_of_360_bays(named, frequency):
     track, omega = in_bays(Track.named(named, rail_loss_factor=0.05)), 2.0 * np.pi * frequency
     bays, pairs = track.bays, [(0.3, 0.3), (0.61, 0.3), (2.7, 0.3)]
     supports = [supports_by_hand(track, omega, *share) for share in zip(bays.pad, bays.ballast, strict=True)]
@@ -38,7 +92,7 @@ def test_it_is_the_superposition_of_360_bays(named: str, frequency: float) -> No
 
 
 @pytest.mark.parametrize("track", [EULER, UIC60])
-def test_equal_bays_are_one(track: Track) -> None:
+def test_equal_bays_are_one(track):
     cell, frequency = in_bays(track, Bays.equal(5)), np.geomspace(40.0, 5e3, 20)
     for rate in (decay_rate, decay_rate_en15461):
         assert rate(cell, frequency) == pytest.approx(rate(track, frequency), rel=1e-9)
@@ -50,7 +104,7 @@ def test_equal_bays_are_one(track: Track) -> None:
     assert (cell.period, cell.mid_spans[-1]) == pytest.approx((5 * 0.6, 2.7))
 
 
-def test_sleepers_and_mid_spans_are_those_of_the_bays() -> None:
+def test_sleepers_and_mid_spans_are_those_of_the_bays():
     track = in_bays(EULER)
     ends = np.append(track.sleepers, track.period)
     assert np.diff(ends) == pytest.approx(0.6 * np.array(VARIED.spacing))
@@ -63,14 +117,14 @@ def test_sleepers_and_mid_spans_are_those_of_the_bays() -> None:
 
 
 @pytest.mark.parametrize("distance", [0.0, 1.3, -2.5])
-def test_kernels_of_equal_bays_are_that_of_one(distance: float) -> None:
+def test_kernels_of_equal_bays_are_that_of_one(distance):
     like = {"duration": 0.03, "positions": 6, "distance": distance}
     one = moving_kernel(EULER, 56.0, STEP, **like).weights
     cell = moving_kernel(in_bays(EULER, Bays.equal(3)), 56.0, STEP, **like).weights.reshape(3, *one.shape)
     assert np.abs(cell - one).max() < 1e-9 * np.abs(one).max()
 
 
-def test_a_force_over_a_sleeper_is_followed_where_bays_are_not_its_mirror_image() -> None:
+def test_a_force_over_a_sleeper_is_followed_where_bays_are_not_its_mirror_image():
     like = {"duration": 0.02, "positions": 6}
     track = in_bays(EULER)
     here, beside = (moving_kernel(track, 56.0, STEP, distance=d, **like).weights for d in (0.0, 1e-9))
@@ -78,7 +132,7 @@ def test_a_force_over_a_sleeper_is_followed_where_bays_are_not_its_mirror_image(
 
 
 @pytest.mark.parametrize("distance", [0.0, 1.8, -1.8])
-def test_a_kernel_at_rest_is_the_receptance_of_its_bay(distance: float) -> None:
+def test_a_kernel_at_rest_is_the_receptance_of_its_bay(distance):
     kernel = moving_kernel(in_bays(EULER), 0.0, STEP, positions=4, distance=distance)
     frequency = np.array([60.0, 400.0, 1300.0])
     transform = kernel.weights @ np.exp(
@@ -91,7 +145,7 @@ def test_a_kernel_at_rest_is_the_receptance_of_its_bay(distance: float) -> None:
         assert np.all(np.abs(off) < 0.01 * np.abs(near))
 
 
-def test_poles_stand_for_all_bays_and_contacts_feel_each_other_across_them() -> None:
+def test_poles_stand_for_all_bays_and_contacts_feel_each_other_across_them():
     kernel = moving_kernel(in_bays(EULER, Bays.drawn(3, ballast=0.4, seed=1)), 56.0, 2e-4, positions=6)
     poles = rail_poles(kernel, 60)
     assert poles.accepted
@@ -100,13 +154,13 @@ def test_poles_stand_for_all_bays_and_contacts_feel_each_other_across_them() -> 
     assert between.between(2.5).kernel.weights.shape == kernel.weights.shape
 
 
-def test_more_bays_than_memory_holds_are_refused() -> None:
+def test_more_bays_than_memory_holds_are_refused():
     track = in_bays(EULER, Bays.equal(100))
     with pytest.raises(InputError, match=r"received 100, for a kernel of 0.4 s.*at most 31 of them"):
         moving_kernel(track, 56.0, 5e-6, duration=0.4)
 
 
-def test_static_deflection_is_the_limit_of_the_receptance() -> None:
+def test_static_deflection_is_the_limit_of_the_receptance():
     for track in (in_bays(EULER), in_bays(UIC60)):
         for x in (0.0, 0.25, 2.9):
             slow = replace(track, pad_loss_factor=None, ballast_loss_factor=None, rail_loss_factor=0.0)
@@ -114,7 +168,7 @@ def test_static_deflection_is_the_limit_of_the_receptance() -> None:
             assert limit == pytest.approx(slow.static_deflection(1.0, x), rel=1e-4, abs=0.0)
 
 
-def test_scattered_sleepers_lower_and_widen_the_pinned_pinned_peak() -> None:
+def test_scattered_sleepers_lower_and_widen_the_pinned_pinned_peak():
     """T. X. Wu and D. J. Thompson, Acustica 86 (2000) 313-321: it may be suppressed by random spacing."""
     frequency, track = np.linspace(1000.0, 1400.0, 201), Track.named("nordborg")
     peaks = [np.abs(track.receptance(frequency, 0.3, 0.3))]
@@ -129,7 +183,7 @@ def test_scattered_sleepers_lower_and_widen_the_pinned_pinned_peak() -> None:
     assert np.all(np.diff(widths) > 0.0)
 
 
-def test_draws_are_those_of_their_seed_alone() -> None:
+def test_draws_are_those_of_their_seed_alone():
     bays = Bays.drawn(100, spacing=0.05, pad=0.1, ballast=0.2, seed=2)
     assert bays == Bays.drawn(100, spacing=0.05, pad=0.1, ballast=0.2, seed=2)
     assert bays.pad == Bays.drawn(100, pad=0.1, seed=2).pad
