@@ -106,7 +106,6 @@ test_what_is_said_of_other_arguments = refusals(
     (lambda: moving_kernel("x2000", 20.0, 1e-4), "track: received 'x2000'; allowed: a Track, as Track.named"),
     (lambda: Track.named(None), "track name: received None"),
     (lambda: study(KEYS), "sweep: received nothing; allowed: keys of the case"),
-    (lambda: asperity.run({}), 'kind: received nothing; allowed: "ball-on-beam"'),
     (lambda: asperity.run(KEYS, progress="yes"), "progress: received 'yes'"),
     (lambda: one_of("x", "miror", WORDS), "received 'miror'; allowed: one of refuse, mirror. Did you mean"),
     (lambda: one_of("x", 3, WORDS), "x: received 3; allowed: one of refuse, mirror."),

@@ -16,7 +16,6 @@ from asperity.scenarios.preparing import expect, scan_sizes, try_contacts
 from asperity.scenes.compute import compute
 from asperity.store import Store
 from one_contact import first_contact
-from small_cases import changed
 
 CASE = {
     "kind": "ball-on-beam",
@@ -47,13 +46,14 @@ def prepared_of(case=CASE, spacing="10 um", **keys):
 def test_sizes_and_states_are_those_of_the_run(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
     prepared = prepared_of(spacing=spacing, duration="2 ms")
-    expected = scan_sizes(prepared)["path"]
+    sizes = scan_sizes(prepared)
+    expected = sizes["path"]
     tried = try_contacts(prepared, quiet)
     computed = compute(prepared, quiet)
     scanned, reduction = computed.scan, computed.reduction
     assert scanned.forces.shape == (expected.states, expected.positions)
-    files = [Store().path(key) for key in scanned.forces.keys]
-    assert sum(file.stat().st_size for file in files) == pytest.approx(expected.bytes, rel=0.05)
+    planned, kept = sum(each.bytes for each in sizes.values()), Store().size()  # of the filters, too
+    assert 0.94 * planned < kept <= planned
     assert 0 < scanned.counts.solved <= expected.solutions
     reach = np.ptp(reduction.approaches)
     np.testing.assert_allclose(tried.approaches, reduction.approaches, atol=0.1 * reach)
@@ -120,20 +120,6 @@ def test_every_scan_of_a_case_has_the_tolerance_of_its_key(monkeypatch):
         mine = [text for text in told if f"contact solutions of {what} (" in text and "missed" in text]
         assert len(mine) == 1, told
         assert f"Try a larger numerics.{key}" in mine[0]
-
-
-@IGNORED
-@pytest.mark.parametrize(
-    ("approaches", "message"),
-    [
-        (["-0.1 um", "0.1 um", "0.3 um"], r"contact\.approaches: received up to 0\.3 um"),
-        (["-2 um", "-1 um", "3 um"], "at least two approaches in contact"),
-    ],
-)
-def test_approaches_that_do_not_reach_the_load_are_refused(approaches, message):
-    case = changed("ball-on-beam", laws=["areal"], contact={"approaches": approaches})
-    with pytest.raises(InputError, match=message):
-        compute(prepare_case(case), quiet)
 
 
 # --- states, by the load that places carry
