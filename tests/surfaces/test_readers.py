@@ -13,7 +13,7 @@ from surface_files import SDF_TYPES, npy, sdf_ascii, sdf_binary, x3p, zipped
 
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import read_surface, read_surfaces
+from asperity.surfaces.readers import read_all, read_surface
 from refusals import refusals
 
 # 4 points along x, 3 along y, no symmetry, nm
@@ -151,7 +151,7 @@ def test_a_line_is_the_same_in_every_format(write, name, contents, spacing):
 ])  # fmt: skip
 def test_an_ensemble_is_read_whole_or_by_sample(write, name, contents, hints):
     file = write(name, contents)
-    samples = read_surfaces(file, **hints)
+    samples = read_all(file, **hints)
     assert len(samples) == 2
     assert samples[1].source.endswith("[1]")
     for one in (samples[1], read_surface(file, index=1, **hints)):
@@ -207,11 +207,6 @@ test_what_a_file_does_not_say_is_asked_for = refusals(
     *REFUSED,
     of=lambda name, contents, hints, write: read_surface(write(name, contents), **hints),
 )
-
-
-def test_maps_are_no_lines(write):
-    with pytest.raises(InputError, match="received a line; allowed: a height map"):
-        read_surfaces(write("a.npy", npy(HEIGHTS[:, 0])), **NM)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from asperity.arguments import FORMS, Array, require, shown
+from asperity.arguments import FORMS, Array, real_array, require, shown
 from asperity.case import tables, toml
 from asperity.case.form import Section, holds_memory
 from asperity.errors import InputError
@@ -29,7 +29,7 @@ from asperity.parameters import (
 )
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import rotated
-from asperity.surfaces.readers import read_surface, read_surfaces
+from asperity.surfaces.readers import read_all
 from asperity.surfaces.readers.hints import spell
 from asperity.units import factor, written
 
@@ -308,24 +308,21 @@ def surfaces_from(
     """Make height maps or a profile of the array that a key of a section holds, with its spacing and unit."""
     if not isinstance(heights := given.get(name), np.ndarray):
         return given
-    keys = dict(given)
-    errors = []
+    keys, problems = dict(given), []
     if heights.ndim not in dimensions:
         shapes = " or ".join(f"{n} dimensions" if n > 1 else "one dimension" for n in dimensions)
-        errors.append(InputError(name, f"an array of shape {heights.shape}", f"an array of {shapes}"))
-    if heights.dtype.kind not in "fiu":
-        errors.append(InputError(name, f"data of type {heights.dtype}", "an array of real numbers"))
+        problems.append(InputError(name, f"an array of shape {heights.shape}", f"an array of {shapes}"))
     if keys.get(spacing) is None:
         remedy = f"Give {spacing} beside the array, or hand over a map or a line that knows it."
-        errors.append(InputError(spacing, "nothing", "the distance of the points of an array", remedy))
-    if errors:
-        raise Problems(errors)
+        problems.append(InputError(spacing, "nothing", "the distance of the points of an array", remedy))
+    if problems:
+        raise Problems(problems)
     try:
-        step = LENGTH(keys.pop(spacing))
-        scale = factor(LengthUnit()(keys.pop(unit, None) or "m"), "m")
+        step, unit = LENGTH(keys.pop(spacing)), LengthUnit()(keys.pop(unit, None) or "m")
+        scaled = real_array(name, heights, "an array of real numbers") * factor(unit, "m")
         made = tuple(
-            HeightMap(each * scale, (step, step)) if each.ndim == 2 else Profile(each * scale, step)
-            for each in (heights if heights.ndim == 3 else [heights])
+            HeightMap(each, (step, step)) if each.ndim == 2 else Profile(each, step)
+            for each in (scaled if scaled.ndim == 3 else [scaled])
         )
     except InputError as error:
         raise Problems([error.about(name)]) from None
@@ -369,7 +366,7 @@ class Recipe(Section):
 
     @property
     def hints(self) -> dict[str, Any]:
-        """What is said of the file, as `read_measured` takes it."""
+        """What is said of the file, as `read_all` takes it."""
         found = {name: value for name, value in self.given().items() if name not in STEPS}
         if self.pixel is not None:
             found["pixel"] = f"{self.pixel!r} m"  # whatever the unit of coordinates
@@ -377,7 +374,7 @@ class Recipe(Section):
 
     def surfaces(self, file: Path) -> list[HeightMap | Profile]:
         """Read the map, the line, or all maps of an ensemble, and prepare them."""
-        return [self.stepped(surface) for surface in read_measured(file, **self.hints)]
+        return [self.stepped(surface) for surface in read_all(file, **self.hints)]
 
     def stepped(self, surface: S) -> S:
         """Cut a piece, remove a form, filter, and turn into the direction of rolling."""
@@ -396,20 +393,6 @@ class Recipe(Section):
             require(is_map, spell("direction"), "a line", "a height map", "Leave it out.")
             done = rotated(done, self.direction)
         return done
-
-
-def read_measured(
-    file: Path, *, index: int | None = None, lines: bool | None = None, **hints: Any
-) -> list[HeightMap | Profile]:
-    """Read the map, the line, or all maps of an ensemble; hints are as `read_surface` takes them."""
-    if index is not None:
-        return [read_surface(file, index=index, lines=lines, **hints)]
-    try:
-        return [read_surface(file, lines=lines, **hints)]
-    except InputError as error:
-        if error.allowed != "one sample":
-            raise
-    return list(read_surfaces(file, **hints))
 
 
 def read_recipe(path: str | os.PathLike[str]) -> Recipe:

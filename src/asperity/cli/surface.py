@@ -22,6 +22,7 @@ from asperity.surfaces import cleaning, likeness, statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
+from asperity.surfaces.readers import read_all
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.spectra import psd_1d, psd_radial
 from asperity.terminal import say
@@ -58,7 +59,7 @@ def show_surface(
     if picture.resolve() == file.resolve():
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
     with spelled(on_command_line):
-        read: Surfaces = recipes.read_measured(file, **steps.hints)
+        read: Surfaces = read_all(file, **steps.hints)
         lines = _side_by_side(read, steps.lines)
         surfaces = [steps.stepped(each) for each in lines or read]
     if store is not None:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import cast
 
@@ -21,7 +20,7 @@ from asperity.surfaces import measured_lines, synthesis
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import QUARTER, band_limit, level, resample, rotated
-from asperity.surfaces.readers import read_surface, read_surfaces
+from asperity.surfaces.readers import read_all, read_surface
 from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.strip import Rows, Strip
 
@@ -138,10 +137,7 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
     if surface.recipe is not None:
         return read_recipe(surface.recipe).surfaces(surface.file)
     with spelled(in_case("surface", _MAP_KEYS)):
-        read = read_surfaces if surface.index is None else partial(read_surface, index=surface.index)
-        hints = {name: getattr(surface, name) for name in _MAP_KEYS if name != "index"}
-        found = read(surface.file, **hints)
-    return found if isinstance(found, list) else [found]
+        return read_all(surface.file, **{name: getattr(surface, name) for name in _MAP_KEYS})
 
 
 def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:

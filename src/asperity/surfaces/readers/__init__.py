@@ -3,7 +3,7 @@
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +14,8 @@ from asperity.surfaces.readers import arrays, guards, sdf, text, x3p
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.instruments import read_apart
 
-__all__ = ["read_surface", "read_surfaces"]
+__all__ = ["read_all", "read_surface"]
 
-S = TypeVar("S", HeightMap, Profile, guards.Surface)
 Reader = Callable[[Path, Hints], list[guards.Surface]]
 
 READ_AS_TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
@@ -105,28 +104,36 @@ def read_surface(
     ((40, 30), (1.5e-06, 1.5e-06))
     """
     surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
-    allowed = f"0 to {len(surfaces) - 1}"
-    remedy = advice("index", 0, f"Choose one of {allowed}, as in", "Keep one in the file.")
+    remedy = advice("index", 0, f"Choose one of 0 to {len(surfaces) - 1}, as in", "Keep one in the file.")
     single = index is not None or len(surfaces) == 1
     require(single, str(path), f"an ensemble of {len(surfaces)} samples", "one sample", remedy)
-    what, index = f"index of a sample in {path}", 0 if index is None else index
-    chosen = whole(what, index, allowed, at_least=0, at_most=len(surfaces) - 1)
-    return _finished([surfaces[chosen]], transpose, fill, spikes, lines)[0]
+    return _finished(_chosen(surfaces, index, path), transpose, fill, spikes, lines)[0]
 
 
-def read_surfaces(
-    path: str | Path, *, transpose: bool = False, fill: bool = False, spikes: bool = False, **hints: Any
-) -> list[HeightMap]:
-    """Read all samples of an ensemble of maps, as `read_surface` does: a list, of one for a single map.
+def read_all(
+    path: str | Path,
+    *,
+    index: int | None = None,
+    transpose: bool = False,
+    fill: bool = False,
+    spikes: bool = False,
+    lines: bool | None = None,
+    **hints: Any,
+) -> list[guards.Surface]:
+    """Read the line, the map, all maps of an ensemble, or one of them; hints are those of `read_surface`.
 
-    Hints are those of `read_surface`. In a 3-D array the sample is the first axis, then x, then y. A line is
-    refused.
+    In a 3-D array the sample is the first axis, then x, then y.
     """
-    surfaces = _read(path, checked_hints(**hints))
-    maps = [surface for surface in surfaces if isinstance(surface, HeightMap)]
-    remedy = "Read it with read_surface, or give a map."
-    require(len(maps) == len(surfaces), str(path), "a line", "a height map", remedy)
-    return _finished(maps, transpose, fill, spikes)
+    surfaces = _chosen(_read(path, checked_hints(**hints)), index, path)
+    return _finished(surfaces, transpose, fill, spikes, lines)
+
+
+def _chosen(surfaces: list[guards.Surface], index: int | None, path: str | Path) -> list[guards.Surface]:
+    """The sample of an index, or all where there is none."""
+    what, last = f"index of a sample in {path}", len(surfaces) - 1
+    if index is None:
+        return surfaces
+    return [surfaces[whole(what, index, f"0 to {last}", at_least=0, at_most=last)]]
 
 
 def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
@@ -167,8 +174,8 @@ def _by_content(file: Path, head: bytes) -> str | None:
 
 
 def _finished(
-    surfaces: list[S], transpose: bool, fill: bool, spikes: bool, lines: bool | None = None
-) -> list[S]:
+    surfaces: list[guards.Surface], transpose: bool, fill: bool, spikes: bool, lines: bool | None
+) -> list[guards.Surface]:
     """Take spikes out, turn and fill as it was asked for, and warn of points without a height."""
     of_lines = "Lines of a rail or a wheel have processing of their own."
     of_maps = {"transpose": "Leave it out.", "spikes": of_lines}
