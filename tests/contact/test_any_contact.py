@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from asperity import HalfSpace
-from asperity.contact.scan import ContactInPlace
+from asperity.kernels.scanning import continue_rolling
+from asperity.laws import Direct
 from asperity.surfaces.synthesis import self_affine
 from like_measured import either, sheet
 
@@ -172,18 +173,17 @@ def test_no_iteration_raises_the_energy(yielding):
     """
     n, spacing = 60, (1e-6, 1e-4)  # slender cells, which take many iterations
     overlap = 1e-5 + 1e-7 * np.random.default_rng(5).standard_normal((n, n))
-    half_space = HalfSpace((n, n), spacing, MODULUS, 1e10)
-    compliance = yielding * half_space.influence.table[0, 0]
-    contact = ContactInPlace(half_space, -overlap, 1e-12)
+    law = Direct(np.zeros((n + 1, n)), -overlap, spacing, MODULUS, 0.0, hardness=1e10, rtol=1e-12)
     energies = []
     for most in range(1, 141):
+        contact = law.prepare([n // 2 * spacing[0]])
         contact.block = contact.block._replace(max_iterations=most)
-        contact.forget()
-        found = contact.solve(np.zeros((n, n)), 0.0, compliance / half_space.cell_area)
+        compliance = yielding * contact.half_space.influence.table[0, 0]
+        contact.settle(0, 0.0, compliance / contact.half_space.cell_area)
         p = contact.pressure
-        stored = np.vdot(p, half_space.displacement(p)) + compliance * p.sum() ** 2
+        stored = np.vdot(p, contact.half_space.displacement(p)) + compliance * p.sum() ** 2
         energies.append(0.5 * stored - np.vdot(p, overlap))
-    assert found.iterations > 120
+    assert contact.counts[1] > 120
     assert np.all(np.diff(energies) <= 1e-13 * abs(energies[-1]))
 
 
@@ -202,38 +202,33 @@ def test_what_the_bodies_yield_and_the_contact_agree(yielding, rms, hardness):
     noise = np.random.default_rng(0).standard_normal((N + 20, N))
     smoothed = np.apply_along_axis(np.convolve, 0, noise, np.hanning(7), mode="same")
     space, heights = HalfSpace((N, N), DX, 115e9, hardness), rms * smoothed / smoothed.std()
-    contact, free = ContactInPlace(space, BALL, RTOL), 0.6e-6
+    rows, free = range(0, 20, 5), 0.6e-6
+    law = Direct(heights, BALL, (DX, DX), 115e9, 0.0, hardness, RTOL).prepare((np.array(rows) + N // 2) * DX)
     compliance = yielding / space.solve(BALL - heights[:N], load=3.0).stiffness
-    for row in range(0, 20, 5):  # from nothing, and from what stands there
-        found = contact.solve(heights[row : row + N], free, compliance)
-        assert found.converged
-        p, gap = contact.pressure, BALL - heights[row : row + N]
-        force = p.sum() * DX**2
-        assert found.force == pytest.approx(force, rel=1e-12, abs=0.0)
-        assert found.approach == pytest.approx(free - compliance * force, rel=1e-9, abs=1e-15)
-        open_by = gap + space.displacement(p) - (free - compliance * force)
-        limit = RTOL * found.overlap
-        assert found.overlap == pytest.approx(found.approach - gap.min(), rel=1e-6, abs=0.0)
+    for step, row in enumerate(rows):  # from nothing, and from what was there
+        force, p, gap = law.settle(step, free, compliance), law.pressure, BALL - heights[row : row + N]
+        assert force == pytest.approx(p.sum() * DX**2, rel=1e-12, abs=0.0)
+        open_by, overlap = gap + space.displacement(p) - free + compliance * force, free - compliance * force
+        limit = RTOL * (overlap - gap.min())
+        assert law.overlap >= (1 - 1e-6) * (overlap - gap.min())
         assert p.min() >= 0.0
         assert p.max() <= space.pressure_cap
         assert open_by[p < space.pressure_cap].min() >= -limit
         assert open_by[p > 0.0].max() <= limit
-        contact.start_again()
-    found = contact.solve(heights[:N], -2e-6, compliance)
-    assert (found.force, found.approach, found.converged) == (0.0, -2e-6, True)
-    assert not contact.pressure.any()
+        law.accept(step)
+    assert law.counts[[0, 2]].tolist() == [len(rows), 0]
+    assert law.settle(0, -2e-6, compliance) == 0.0
+    assert not law.pressure.any()
 
 
 def test_pressures_follow_the_surface_or_stay_in_the_window():
     """As they did from the one before to the last; on the way they go on straight, within the hardness."""
-    contact = ContactInPlace(HalfSpace((N, N), DX, 115e9, hardness=2.0), BALL, RTOL)
-    asperity, patch = np.zeros((2, N, N))
+    asperity, patch, start = np.zeros((3, N, N))
     asperity[20, 20], patch[18:23, 18:23] = 1.0, 1.0
     moved = 1.5 * np.roll(asperity, -2, axis=0)
-    contact.start_from(moved, asperity, 2, 2)
-    assert contact.start[16, 20] == 2.0  # 1.5 + 0.5, at the cap
-    assert contact.start.sum() == 2.0
-    contact.start_from(moved, asperity, 3, 2)  # another stride: no line
-    assert contact.start[15, 20] == contact.start.sum() == 1.5
-    contact.start_from(1.1 * patch, patch, 2, 2)
-    assert np.array_equal(contact.start, 1.1 * patch)
+    continue_rolling(moved, asperity, 2, 2, 2.0, start)
+    assert start[16, 20] == start.sum() == 2.0  # 1.5 + 0.5, at the cap
+    continue_rolling(moved, asperity, 3, 2, 2.0, start)  # another stride: no line
+    assert start[15, 20] == start.sum() == 1.5
+    continue_rolling(1.1 * patch, patch, 2, 2, 2.0, start)
+    assert np.array_equal(start, 1.1 * patch)

@@ -15,7 +15,7 @@ from asperity.laws import spec
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
-    from asperity.contact.scan import ContactInPlace
+    from asperity.contact.halfspace import HalfSpace
 
 AT_REST = 1e-6
 """Largest tolerance of contacts at rest, before anything rolls: they must carry the load to five digits."""
@@ -75,7 +75,6 @@ class Direct:
     def prepare(self, positions: ArrayLike) -> DirectOnPath:
         """Lay the law out on positions (n,) of the contact, m."""
         from asperity.contact.halfspace import HalfSpace
-        from asperity.contact.scan import ContactInPlace
         from asperity.reduction.texture import grid_index
 
         (dx, _), half = self.spacing, self.body.shape[0] // 2
@@ -83,7 +82,7 @@ class Direct:
         grid_index("texture under the contact window", rows, self.start + half * dx, dx, positions)
         index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / dx
         half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness)
-        return DirectOnPath(self, ContactInPlace(half_space, self.body, self.rtol), index - half)
+        return DirectOnPath(self, half_space, index - half)
 
 
 class Accepted(NamedTuple):
@@ -100,8 +99,8 @@ class DirectOnPath:
     ----------
     law : Direct
         The law.
-    contact : ContactInPlace
-        The solver.
+    half_space : HalfSpace
+        On which its contacts are solved, one after the other, without making anything anew.
     offsets : ndarray, shape (n,)
         First row of the window at each position; between rows the texture is interpolated.
 
@@ -109,11 +108,16 @@ class DirectOnPath:
     ----------
     counts : ndarray, shape (4,)
         Solutions in contact so far, iterations, solutions that missed the tolerance, and those cut off.
+    pressure : ndarray, shape (nx, ny)
+        Of the last solution, Pa.
     """
 
-    def __init__(self, law: Direct, contact: ContactInPlace, offsets: Array) -> None:
-        self.law, self.contact, self.offsets = law, contact, offsets
-        self.counts, self.overlap = np.zeros(4, dtype=np.int64), 0.0
+    def __init__(self, law: Direct, half_space: HalfSpace, offsets: Array) -> None:
+        self.law, self.half_space, self.offsets = law, half_space, offsets
+        heights = np.zeros(half_space.shape)
+        self.block = half_space.block(heights, law.body, np.zeros(1), np.zeros(1), 0, law.rtol)
+        self.pressure, self.start = self.block.pressures[:, 0]
+        self.counts, self.overlap = self.block.counts, 0.0
         self.other: DirectOnPath | None = None  # what rolls on it, where that is rough, too
         self._step, self._heights = -1, np.zeros(0)
         self._tried = False  # whether there is a solution of this step
@@ -123,29 +127,32 @@ class DirectOnPath:
     def evaluate(self, step: int, approach: float) -> tuple[float, float]:
         """Elastic force, N, and its exact tangent dF/dδ, N/m, at a step of the path."""
         force = self.settle(step, approach, 0.0)
-        contact = self.contact
-        return force, contact.half_space.tangent_stiffness(contact.pressure) if force > 0.0 else 0.0
+        return force, self.half_space.tangent_stiffness(self.pressure) if force > 0.0 else 0.0
 
     def settle(self, step: int, approach: float, compliance: float) -> float:
         """Elastic force, N, of bodies that yield to it by a compliance, m/N; approach without force, m."""
         if self._step != step:
             self._step, self._heights, self._tried = step, self._under(step), False
         if self._tried:
-            self.contact.start_again()
+            self.start[:], self.block.solved[0] = self.pressure, 1
         else:
             self._start(step)
+        self.block.approaches[0], self.block.rows[:] = approach, self._heights
+        space, solved = self.half_space, int(self.counts[0])
         rtol = min(self.law.rtol, AT_REST) if self._last is None else self.law.rtol
-        found = self.contact.solve(self._heights, approach, compliance, rtol)
-        self._tried = True
-        self.overlap = max(self.overlap, found.overlap)
-        self.counts += (found.force > 0.0, found.iterations, not found.converged, found.truncated)
-        return found.force
+        space.solve_block(self.block._replace(compliance=compliance * space.cell_area, rtol=rtol))
+        self._tried, overlap = True, approach - float(self.block.room.lowest.min())
+        if self.counts[0] == solved:
+            self.pressure[:] = 0.0
+            return 0.0
+        self.overlap = max(self.overlap, overlap + float(self.block.levels[0, 0]))
+        return float(self.block.totals[0, 0]) * space.cell_area
 
     def accept(self, step: int) -> None:
         """Keep the last solution of this step: shifted against the motion, it starts the next."""
         if self._tried:
-            kept = self._before.pressure if self._before else np.empty_like(self.contact.pressure)
-            kept[:] = self.contact.pressure
+            kept = self._before.pressure if self._before else np.empty_like(self.pressure)
+            kept[:] = self.pressure
             self._before, self._last = self._last, Accepted(kept, round(self.offsets[step]))
         self._tried = False
 
@@ -200,14 +207,18 @@ class DirectOnPath:
         return np.asarray(self.law.between_rows(offset + np.arange(self.law.body.shape[0])))
 
     def _start(self, step: int) -> None:
-        """Let a step start from the accepted pressures."""
-        last, before = self._last, self._before
-        if last is None or not 0 <= (rows := round(self.offsets[step]) - last.row) < len(last.pressure):
-            self.contact.forget()
+        """Let a step start from the accepted pressures, else from nothing."""
+        from asperity.kernels.scanning import continue_rolling
+
+        last, before, size = self._last, self._before, len(self.pressure)
+        self.block.solved[0] = 0
+        if last is None or not 0 <= (rows := round(self.offsets[step]) - last.row) < size:
             return
-        if before is None or not 0 <= last.row - before.row < len(last.pressure):
+        if before is None or not 0 <= last.row - before.row < size:
             before = last
-        self.contact.start_from(last.pressure, before.pressure, rows, last.row - before.row)
+        moved, cap = last.row - before.row, self.half_space.pressure_cap
+        continue_rolling(last.pressure, before.pressure, rows, moved, cap, self.start)
+        self.block.solved[0] = 1
 
 
 LAW = spec.LawSpec(
