@@ -17,6 +17,8 @@ from asperity.surfaces.strip import Strip
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
 """Distances, points, and sixty times the weights of differences of heights in the slope between them."""
+MARGIN = 3
+"""Neighbours on either side that the slope at a point needs."""
 CORE = 0.4
 """Share of the curve over which its secant is least steep, and which the straight line is fitted to."""
 
@@ -78,7 +80,7 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     the seven-point formula of ISO 4287:1997. If the autocorrelation does not fall to 0.2 inside the map,
     there is a warning, see `autocorrelation_lengths`.
     """
-    square = _square_slope(surface)
+    square = _square_slopes(surface.heights, surface.spacing)
     slopes = {"dq": np.sqrt(np.nanmean(square)), "dr": np.nanmean(np.sqrt(1.0 + square)) - 1.0}
     whole, texture = cleaning.nearly_complete(surface), dict.fromkeys(("al", "tr", "td"), np.nan)
     if whole is not None:
@@ -98,7 +100,7 @@ def profile_statistics(
     Rp and Rv are means over its whole sections of a length, m: a fifth of it by default; of a line that was
     filtered, the nesting index of the L-filter. Slopes are by the seven-point formula of ISO 4287:1997.
     """
-    rms_slope = np.sqrt(np.nanmean(_slope(profile.heights, profile.spacing, 0) ** 2))
+    rms_slope = np.sqrt(np.nanmean(_slopes(profile.heights, profile.spacing, 0) ** 2))
     values = _amplitudes(*_powers(profile.heights))
     heights = profile.heights - np.nanmean(profile.heights)
     points = max(1, min(round(section / profile.spacing) if section else heights.size // 5, heights.size))
@@ -143,33 +145,26 @@ def _amplitudes(powers: Array, total: float) -> dict[str, float]:
 
 def rms_slope(surface: HeightMap) -> float:
     """Rms slope Sdq of levelled heights, m; missing points are left out."""
-    return float(np.sqrt(np.nanmean(_square_slope(surface))))
+    return float(np.sqrt(np.nanmean(_square_slopes(surface.heights, surface.spacing))))
 
 
-def _square_slope(surface: HeightMap) -> Array:
-    along, across = (_slope(surface.heights, d, axis) for axis, d in enumerate(surface.spacing))
-    return along**2 + across**2
+def _square_slopes(heights: Array, spacing: tuple[float, float]) -> Array:
+    """Squares of slopes at all points with three neighbours on every side; heights and spacings in m."""
+    along = _slopes(heights[:, MARGIN:-MARGIN], spacing[0], 0)
+    return along**2 + _slopes(heights[MARGIN:-MARGIN], spacing[1], 1) ** 2
 
 
-def _slope(heights: Array, spacing: float, axis: int) -> Array:
-    """Seven-point derivative along an axis at points with three neighbours on either side, others NaN."""
-    inner = _inner_slope(heights, spacing, axis)
-    received = f"no seven valid points in a row along axis {axis}"
-    usable = not np.isnan(inner).all()
-    require(usable, "surface", received, "enough valid points for slopes", "Use fill first.")
-    slope = np.full(heights.shape, np.nan)
-    np.moveaxis(slope, axis, 0)[3:-3] = np.moveaxis(inner, axis, 0)
-    return slope
-
-
-def _inner_slope(heights: Array, spacing: float, axis: int) -> Array:
+def _slopes(heights: Array, spacing: float, axis: int) -> Array:
     """Seven-point derivative along an axis, without the three points at either end; heights, spacing in m."""
     z = np.moveaxis(heights, axis, 0)
-    n = z.shape[0] - 6
+    n = z.shape[0] - 2 * MARGIN
     require(n >= 1, "surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
     slope = np.zeros_like(z[:n])
     for k, weight in SEVEN_POINTS:
         slope += weight / (60.0 * spacing) * (z[3 + k : n + 3 + k] - z[3 - k : n + 3 - k])
+    received = f"no seven valid points in a row along axis {axis}"
+    usable = np.isfinite(slope).any() or not slope.size
+    require(usable, "surface", received, "enough valid points for slopes", "Use fill first.")
     return np.moveaxis(slope, 0, axis)
 
 
@@ -208,8 +203,6 @@ PIECE = 2**20
 """Points of a strip that are looked at in one go."""
 FEWEST_ROWS = 1024
 """Rows of such a piece, at least: correlations are known up to half of them."""
-MARGIN = 3
-"""Neighbours on either side that the slope at a point needs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,8 +267,7 @@ def _sums(rows: Array, inner: slice, spacing: tuple[float, float], segment: int)
     Of |z|, z², z³ and z⁴; of squares of slopes, of developed areas beyond the plane's, and the number of
     these; spectra, m³, and the number of segments that they are of.
     """
-    square = _inner_slope(rows[:, MARGIN:-MARGIN], spacing[0], 0) ** 2
-    square += _inner_slope(rows[MARGIN:-MARGIN], spacing[1], 1) ** 2
+    square = _square_slopes(rows, spacing)
     slopes = np.array([square.sum(), (np.sqrt(1.0 + square) - 1.0).sum(), square.size])
     z = rows[inner]
     squared = z * z
