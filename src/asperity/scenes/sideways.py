@@ -33,12 +33,6 @@ SOURCES = (
 )
 
 
-def moves_sideways(computed: compute.Computed) -> bool:
-    """Whether anything does: where the contact is off the middle, or the web of a drawn wheel may be bent."""
-    case = computed.case
-    return "sideways" in case.inner and (any(case.contact_places) or case.rolling.is_drawn)
-
-
 @dataclass(frozen=True, eq=False)
 class Sideways:
     """Forces and motion sideways, of what was rolled on one rail, on the lines of the spectra."""
@@ -130,7 +124,7 @@ class Sideways:
         """Its second part, the sum over all contacts (laws, f)."""
         return np.asarray(self.seen[1].sum(axis=1))
 
-    def means(self, values: Array) -> Array:
+    def means(self, values: NDArray[Any]) -> NDArray[Any]:
         """Means over the lines (n, f) of values per square of the vertical force (n, k)."""
         return line_means(values / self.seen[0], *self.fine)
 
@@ -139,19 +133,13 @@ class Sideways:
         """|T/F|² at each place (n, f), over |α₀|² + |α_W|²."""
         return self.means(np.abs(self.shares) ** 2)
 
-    @cached_property
-    def force_psd(self) -> Array:
-        """PSD of the lateral force of each contact (laws, contacts, f), N²/Hz."""
-        return np.asarray(np.mean(self.spread * self.squares, axis=0) * self.seen[1])
-
     def rail_power(self) -> Array:
         """Sound power of the rail sideways (laws, f), W/Hz."""
         case, (_, place) = self.computed.case, self.computed.case.contact_places
         forms = squared_lateral_mobility(self.track, self.lines, self.places, place)
-        together = self.means(self.shares.real) + 1j * self.means(self.shares.imag)
         one = self.means(np.ones((1, len(self.fine[0]))))
         of_force = forms[:, 0, 0].real * one + forms[:, 1, 1].real * self.squares
-        of_force += 2.0 * (forms[:, 0, 1] * together).real
+        of_force += 2.0 * (forms[:, 0, 1] * self.means(self.shares)).real
         square = np.mean(self.spread * of_force, axis=0) * self.seen_of_all
         side = SideOfRail(self.track.height, case.track.rail_foot_width, case.track.rail_head_width)
         return side.power(self.lines, square)
@@ -183,11 +171,12 @@ class Sideways:
 def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -> Values:
     """Lay out receptances and decay sideways, the lateral force of each law, its grip and its sound power.
 
-    The sound power of all together takes that of rail and sleepers from the spectra.
+    Nothing moves where the contact is in the middle, and no web of a drawn wheel may be bent. The sound power
+    of all together takes that of rail and sleepers from the spectra.
     """
-    if not moves_sideways(computed):
-        return {}
     found, case, band = Sideways(computed), computed.case, computed.band
+    if "sideways" not in case.inner or not (any(case.contact_places) or case.rolling.is_drawn):
+        return {}
     contacts, limit = len(computed.scene.offsets), case.sideways.friction * computed.shape.load
     step = found.lines[1] - found.lines[0]
 
@@ -201,7 +190,8 @@ def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -
     up = over_frequency[schema.RADIATED_POWER_LEVEL.name].sel(radiator=["rail", "sleepers"]).values
     together = np.concatenate([np.nan_to_num(up, nan=-np.inf), power], axis=1)
     power = np.append(power, energy_sum(together, axis=1)[:, None], axis=1)
-    lateral, of_each = (found.force_psd.sum(axis=1) / contacts, np.sqrt(found.force_psd.sum(axis=-1) * step))
+    density = np.mean(found.spread * found.squares, axis=0) * found.seen[1]  # of each contact, N²/Hz
+    lateral, of_each = density.sum(axis=1) / contacts, np.sqrt(density.sum(axis=-1) * step)
     with np.errstate(divide="ignore"):
         slips = np.vectorize(math.erfc)(limit / (math.sqrt(2.0) * of_each)).mean(axis=1)
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)

@@ -6,7 +6,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import data, headline, panels
-from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Line, Mark, Note, Panel, Rules
+from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Line, Note, Panel
 from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.reporting.texture_figures import map_panel
@@ -27,21 +27,14 @@ FORCE = schema.LATERAL_FORCE_LEVEL
 )
 def lateral_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Lateral force of each law per one-third octave, the vertical one of the main law, and friction."""
-    lateral = panels.styled(tree, lines.at, lines.of(FORCE), markers=True)
-    main = data.main_law(tree, FORCE)
-    vertical = [
-        Line(lines.at, series.values, f"vertical, {main}", MUTED, (6, 1.5), 1.2)
-        for series in lines.of(spectra.FORCE_LEVEL, law=main)
+    vertical = lines.of(spectra.FORCE_LEVEL, law=data.main_law(tree, FORCE))
+    friction = np.full(len(lines.at), 20.0 * np.log10(data.number(tree, schema.SLIP_FORCE) or np.nan))
+    levels = [
+        *panels.styled(tree, lines.at, lines.of(FORCE), markers=True),
+        *panels.styled(tree, lines.at, vertical, colour=MUTED, dashes=(6, 1.5), width=1.2),
+        Line(lines.at, friction, "friction of the static load", MUTED, (1.5, 1.5), 1.0),
     ]
-    marks: list[Mark] = [*lateral, *vertical]
-    every = [line.y for line in (*lateral, *vertical)]
-    if limit := data.number(tree, schema.SLIP_FORCE):
-        level = 20.0 * np.log10(limit)
-        marks += [Rules(np.array([level]), "y"), Note("friction of the static load", lines.at[0], level)]
-        every.append(np.array([level]))
-    shades = panels.doubtful_boxes(lines.at, data.doubtful(tree, spectra.BAND_TIME_PRODUCT))
-    axis = panels.levels_axis("contact force level / dB re 1 N", every)
-    yield Panel(panels.band_axis(lines.at), axis, (*shades, *marks), height=4.4)
+    yield panels.band_panel(tree, lines, "contact force level / dB re 1 N", levels, span=80.0)
     (change,) = (series.values for series in lines.of(schema.VERTICAL_FORCE_CHANGE))
     most = change[np.argmax(np.abs(change))]
     yield (
@@ -185,19 +178,23 @@ def _growing(tree: DataTree) -> list[int]:
     return [int(n) for n in np.argsort(-growth, kind="stable") if growth[n] > 0.0]
 
 
-def squeal_sentence(tree: DataTree) -> str:
-    """Say whether the wheel squeals, and in which modes; n are nodal diameters."""
+def creep_answers(tree: DataTree) -> headline.Answers | None:
+    """Say whether a wheel that creeps squeals, and in which modes; n are nodal diameters."""
+    if not data.present(tree, schema.STICK_AREA):
+        return None
     if not data.present(tree, GROWTH):
-        return "Whether it squeals is not known, for want of the wheel's axial modes."
+        unknown = "Whether it squeals is not known, for want of the wheel's axial modes."
+        return headline.Answers(more=unknown)
     growing, growth = _growing(tree), data.values(tree, GROWTH)
     modes = f"{np.isfinite(growth).sum()} modes of the wheel on the rail"
     if not growing:
-        return f"Squeal: no, all {modes} decay (linear stability)."
+        return headline.Answers(more=f"Squeal: no, all {modes} decay (linear stability).")
     of = (schema.SQUEAL_DIAMETERS, schema.SQUEAL_FREQUENCY, schema.AXIAL_SHARE)
     fastest = np.transpose([data.values(tree, entry)[growing[:3]] for entry in of]).tolist()
     told = [f"{'axial' if axial > 0.5 else 'radial'} n = {n:.0f} at {at:.0f} Hz" for n, at, axial in fastest]
     first = f"{', '.join(told)}, the first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}"
-    return f"Squeal: yes, {len(growing)} of {modes} grow (linear stability); fastest {first}."
+    more = f"Squeal: yes, {len(growing)} of {modes} grow (linear stability); fastest {first}."
+    return headline.Answers(more=more)
 
 
 @figure(
@@ -250,10 +247,3 @@ def friction_table(tree: DataTree) -> ReportTable:
     }
     note = "Friction on the wheel: under the working load, and mean over time, forces at the first contact."
     return table("friction_table", "Friction", columns, note)
-
-
-def creep_answers(tree: DataTree) -> headline.Answers | None:
-    """Say whether a wheel that creeps squeals."""
-    if not data.present(tree, schema.STICK_AREA):
-        return None
-    return headline.Answers(more=squeal_sentence(tree))
