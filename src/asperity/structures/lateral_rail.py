@@ -1,13 +1,13 @@
 """The rail sideways: lateral bending and torsion on periodic supports, solved exactly."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.parameters import Quantity, checked_parameters, parameter
 from asperity.structures import modal, periodic_rail
-from asperity.structures.support import BendingSleeper, MeasuredSleeper, RigidMass
 from asperity.structures.track import VANISHING_DAMPING, Track
 from asperity.structures.wheel_modes import WheelModes
 
@@ -16,8 +16,6 @@ from asperity.structures.wheel_modes import WheelModes
 _YOUNG, _SHEAR, _AREA, _DENSITY = 210e9, 80.769e9, 76.7e-4, 60.2 / 76.7e-4
 THIRD = 1.0 / 3.0
 """Lateral stiffness of a pad over its vertical one."""
-POLISHED = 2
-"""Steps of Newton's on the roots of the dispersion relation."""
 _PADS, _RAILS = "pads lie between", "rails lie between"
 _STIFF, _HEAVY = f"100 N m^2 to 1 GN m^2: {_RAILS}", f"1e-6 kg m to 1000 kg m: {_RAILS}"
 _LONG = f"1 mm to 1 m: {_RAILS}"
@@ -38,13 +36,8 @@ def _roots(cubic: Complex) -> tuple[Complex, Complex]:
     companion[:, 0] = -(cubic[1:] / cubic[0]).T
     companion[:, 1, 0] = companion[:, 2, 1] = 1.0
     root = np.asarray(np.linalg.eigvals(companion).T, dtype=complex)
-    for _ in range(POLISHED):
-        root = root - np.polyval(cubic[:, None], root) / np.polyval(_derived(cubic), root)
-    return root, np.asarray(np.polyval(_derived(cubic), root), dtype=complex)
-
-
-def _derived(cubic: Complex) -> Complex:
-    return (cubic[:3] * np.array([3.0, 2.0, 1.0])[:, None])[:, None]
+    derived = cubic[:3] * np.array([[3.0], [2.0], [1.0]])
+    return root, np.asarray(np.polyval(derived[:, None], root), dtype=complex)
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,24 +202,16 @@ class LateralTrack:
 
         That of the chain of springs and masses below, on the foot, and the pad's stiffness against roll.
         """
-        vertical, even = self.track, self.foot_width**2 / 12.0
-        shares = {
-            "pad": _share(self.pad_stiffness, vertical.pad_stiffness, THIRD),
-            "ballast": _share(self.ballast_stiffness, vertical.ballast_stiffness, 1.0),
-        }
-        below: Complex | None = None
-        for name, element in reversed(vertical.elements.items()):
-            if isinstance(element, RigidMass | BendingSleeper | MeasuredSleeper):
-                below = RigidMass(element.mass).on(omega, below)
-            else:
-                spring, share = vertical.springs[name], shares.get(name, 1.0)
-                softer = replace(spring, nominal=share * spring.nominal, damping=share * spring.damping)
-                below = softer.on(omega, below)
-        assert below is not None
+        track, even = self.track, self.foot_width**2 / 12.0
+        pad = _share(self.pad_stiffness, track.pad_stiffness, THIRD)
+        ballast = _share(self.ballast_stiffness, track.ballast_stiffness, 1.0)
+        rigid: dict[str, Any] = dict.fromkeys(("measured_sleeper", "sleeper_bending_stiffness"))
+        rigid |= {name: getattr(Track, name) for name in ("sleeper_length", "seat_distance")}
+        moved = replace(track.scaled(pad, ballast), **rigid)
         foot = np.array([1.0, -self.foot_depth])
-        found = np.multiply.outer(np.outer(foot, foot), below)
-        roll = _share(self.pad_roll_stiffness, vertical.pad_stiffness, even)
-        found[1, 1] += roll * vertical.springs["pad"].stiffness(omega)
+        found = np.multiply.outer(np.outer(foot, foot), moved.support.stiffness(omega))
+        roll = _share(self.pad_roll_stiffness, track.pad_stiffness, even)
+        found[1, 1] += roll * track.springs["pad"].stiffness(omega)
         return np.asarray(found)
 
     def free_waves(self, omega: Complex, foundation: Complex | float = 0.0) -> FreeWaves:
@@ -316,7 +301,8 @@ class LateralTrack:
 
 
 def _share(stiffness: float | None, vertical: float, usual: float) -> float:
-    return usual if stiffness is None else stiffness / vertical
+    """Of the vertical stiffness; the usual one where nothing is given, or nothing gives way."""
+    return usual if stiffness is None or np.isinf(vertical) else stiffness / vertical
 
 
 def _angular(frequency: ArrayLike) -> Array:

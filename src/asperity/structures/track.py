@@ -235,10 +235,10 @@ class Track(track_parameters.TrackParameters):
     def bay_tracks(self) -> list[Track]:
         """Tracks of equal bays, one for each bay of the cell, on such supports as it begins with."""
         bays = self.bays or track_parameters.Bays.equal()
-        return [self.regular._scaled(*each) for each in zip(bays.pad, bays.ballast, strict=True)]
+        return [self.regular.scaled(*each) for each in zip(bays.pad, bays.ballast, strict=True)]
 
-    def _scaled(self, pad: float, ballast: float) -> Track:
-        """With pads and ballast scaled, their damping with them."""
+    def scaled(self, pad: float, ballast: float) -> Track:
+        """The track with pads and ballast scaled, their damping with them."""
         parts = (("pad", pad), ("ballast", ballast))
         scaled = {f"{part}_{what}": factor for part, factor in parts for what in _SCALED}
         given = {key: factor * getattr(self, key) for key, factor in scaled.items() if getattr(self, key)}
