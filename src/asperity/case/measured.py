@@ -53,9 +53,9 @@ def read_decay_rates(table: TableSource) -> tuple[Array, Array, Array | None]:
     centres (n,), Hz.
     """
     rows = read_table(table, (_FREQUENCY, _VERTICAL), (_LATERAL,))
-    _refuse_few(table, rows)
-    numbers, rates = band_numbers(table, rows[:, 0]), rows[:, 1:]
+    rates = rows[:, 1:]
     _refuse_beyond(table, rates, DECAY_RATES, "a decay rate", "dB/m")
+    numbers = band_numbers(table, rows[:, 0])
     return 10.0 ** (0.1 * numbers), rates[:, 0], rates[:, 1] if rates.shape[1] > 1 else None
 
 
@@ -66,7 +66,6 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
     it holds mobility, accelerance or receptance.
     """
     rows, unit = _in_some_unit(table, _FREQUENCY, ("magnitude or real part", "imaginary part"), FORMS)
-    _refuse_few(table, rows)
     frequency = rows[:, 0]
     refuse_disorder(table, frequency)
     whole = rows.shape[1] == 3  # with its phase
@@ -89,7 +88,6 @@ def read_band_levels(table: TableSource) -> tuple[Array, Array]:
     Without weighting; a file says by the unit dB(A) that its levels are A-weighted.
     """
     rows, unit = _in_some_unit(table, _FREQUENCY, ("level",), SOUND)
-    _refuse_few(table, rows)
     _refuse_beyond(table, level := rows[:, 1], SOUND_LEVELS, "a level", "dB re 20 uPa")
     centres = 10.0 ** (0.1 * band_numbers(table, rows[:, 0]))
     return centres, level - (a_weighting(centres) if unit == SOUND[1] else 0.0)
@@ -98,7 +96,9 @@ def read_band_levels(table: TableSource) -> tuple[Array, Array]:
 def _refuse_beyond(
     table: TableSource, values: Array, within: tuple[float, float], what: str, unit: str
 ) -> None:
-    """Refuse values beyond the limits of what is plausible, and ask for their unit."""
+    """Refuse values at few frequencies, and those beyond what is plausible: ask for their unit."""
+    if len(values) < FEWEST:
+        raise InputError(name_of(table), f"{len(values)} frequencies", f"at least {FEWEST}")
     if (wrong := (values < within[0]) | (values > within[1])).any():
         received, allowed = f"{what} of {values[wrong][0]:.3g} {unit}", "{:g} to {:g} ".format(*within) + unit
         raise InputError(name_of(table), received, allowed, "Is the unit right?")
@@ -121,8 +121,3 @@ def _in_some_unit(
     told, *_ = errors
     allowed = told.allowed.replace(tried[0], " or ".join(tried))
     raise InputError(told.what, told.received, allowed, told.remedy)
-
-
-def _refuse_few(table: TableSource, rows: Array) -> None:
-    if len(rows) < FEWEST:
-        raise InputError(name_of(table), f"{len(rows)} frequencies", f"at least {FEWEST}")

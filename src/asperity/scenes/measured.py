@@ -15,7 +15,7 @@ from asperity.errors import Finding, Grade, MeasuredTrackWarning
 from asperity.radiation.pass_by import Receiver
 from asperity.reference import cnossos, railways
 from asperity.scenes import compute, schema
-from asperity.schema import Attribute, Values, spectra
+from asperity.schema import Values, spectra
 from asperity.spectra import HALF_BAND, nominal_frequency
 from asperity.structures.track import Track, decay_rate_en15461
 from asperity.surfaces.bands import likely_band
@@ -218,12 +218,9 @@ def measured_passage(keys: NoiseKeys, band: Array) -> Values:
     laid_out: Values = {}
     if keys.measured_bands is not None:
         laid_out[schema.MEASURED_BAND_LEVEL] = in_bands(band, *read_band_levels(keys.measured_bands))
-    told: dict[Attribute, float | None] = {
-        schema.MEASURED_MAXIMUM_LEVEL: keys.measured_maximum_level,
-        schema.MEASURED_EQUIVALENT_LEVEL: keys.measured_equivalent_level,
-        schema.MEASURED_EXPOSURE_LEVEL: keys.measured_exposure_level,
-    }
-    return laid_out | {entry: value for entry, value in told.items() if value is not None}
+    told = schema.MEASURED_MAXIMUM_LEVEL, schema.MEASURED_EQUIVALENT_LEVEL, schema.MEASURED_EXPOSURE_LEVEL
+    values = {entry: getattr(keys, entry.name) for entry in told}  # the keys are called alike
+    return laid_out | {entry: value for entry, value in values.items() if value is not None}
 
 
 # --- limits of TSI Noise

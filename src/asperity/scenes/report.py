@@ -56,7 +56,7 @@ CHAPTERS = (
         "pass_by",
         "Pass-by",
         (noise.pass_by_level, measured.pass_by_bands),
-        (measured.limits_table, noise.pass_by_table, measured.passage_table),
+        (measured.limits_table, noise.pass_by_table),
         noise.pass_by_answers,
     ),
     Chapter(

@@ -124,40 +124,6 @@ def pass_by_bands(tree: DataTree, lines: figure.Lines) -> Iterator[chart.Panel |
     yield data.missing(tree, schema.MEASURED_BAND_LEVEL)
 
 
-_NUMBERS = {
-    "L_pAFmax": (schema.MEASURED_MAXIMUM_LEVEL, schema.PASS_BY_MAXIMUM_LEVEL),
-    "L_pAeq,Tp": (schema.MEASURED_EQUIVALENT_LEVEL, schema.PASS_BY_EQUIVALENT_LEVEL),
-    "TEL": (schema.MEASURED_EXPOSURE_LEVEL, schema.TRANSIT_EXPOSURE_LEVEL),
-}
-
-
-def compared_numbers(tree: DataTree) -> dict[str, tuple[float, float]]:
-    """Single numbers of a passage by name, measured and computed by the main law, dB(A)."""
-    found = {}
-    for name, (own, computed) in _NUMBERS.items():
-        measured = data.number(tree, own)
-        if measured is not None and (laws := data.laws(tree, computed)):
-            found[name] = measured, float(data.of_law(tree, computed, laws[0])[-1])
-    return found
-
-
-def passage_table(tree: DataTree) -> tables.ReportTable | None:
-    """Single numbers of a passage, measured and computed, and what lies between them."""
-    if not (found := compared_numbers(tree)):
-        return None
-    measured, computed = np.array(list(found.values())).T
-    columns = {
-        "": tables.text_cells(found),
-        "measured / dB(A)": tables.number_cells(measured, "{:.1f}"),
-        "computed / dB(A)": tables.number_cells(computed, "{:.1f}"),
-        "computed over measured / dB": tables.change_cells(
-            computed - measured, np.zeros(len(found), dtype=bool)
-        ),
-    }
-    note = f"Re 20 µPa. Computed by {data.laws(tree, schema.PASS_BY_MAXIMUM_LEVEL)[0]}, all that is known."
-    return tables.table("measured_passage", "Pass-by: measured against computed", columns, note)
-
-
 # --- limits of TSI Noise
 
 _ABBREVIATED = ("emu", "dmu")

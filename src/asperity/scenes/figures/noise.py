@@ -13,7 +13,7 @@ from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Numbers
 from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
-from asperity.scenes.figures.measured import LOOKS, compared_numbers, limit_sentence
+from asperity.scenes.figures.measured import LOOKS, limit_sentence
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -197,6 +197,11 @@ SINGLE_NUMBERS = {
     "TEL / dB(A)": schema.TRANSIT_EXPOSURE_LEVEL,
     "SEL / dB(A)": schema.SOUND_EXPOSURE_LEVEL_A,
 }
+MEASURED = {
+    "L_pAFmax / dB(A)": schema.MEASURED_MAXIMUM_LEVEL,
+    "L_pAeq,Tp / dB(A)": schema.MEASURED_EQUIVALENT_LEVEL,
+    "TEL / dB(A)": schema.MEASURED_EXPOSURE_LEVEL,
+}
 
 
 def _passing_parts(tree: DataTree) -> list[str]:
@@ -247,13 +252,17 @@ def pass_by_table(tree: DataTree) -> ReportTable:
     laws = data.held_laws(tree, PASSING)
     *parts, whole = _passing_parts(tree)
     shown = [(law, whole) for law in laws] + [(laws[0], part) for part in parts]
-    names, radiating = zip(*shown, strict=True)
+    heard = {head: data.number(tree, each) for head, each in MEASURED.items()}
+    beside = any(level is not None for level in heard.values())
+    further = [("measured", "all"), ("computed over measured", whole)] if beside else []
+    names, radiating = zip(*shown, *further, strict=True)
     columns = {"law": text_cells(names), "what radiates": text_cells(radiating)}
     for head, entry in SINGLE_NUMBERS.items():
         if data.present(tree, entry):
-            found = data.variable_of(tree, entry)
+            found, own = data.variable_of(tree, entry), heard.get(head) or np.nan
             level = [float(found.sel(law=law, radiator=part)) for law, part in shown]
-            columns[head] = number_cells(level, "{:.1f}")
+            columns[head] = number_cells([*level, own] if beside else level, "{:.1f}")
+            columns[head] += number_cells([level[0] - own] if beside else [], data.signed)
     note = (
         "Re 20 µPa, SEL in 1 s. L_pAFmax: the largest level, time weighting F. SEL: all of the passage. "
         "L_pAeq,Tp: from when the front of the train is opposite to when its rear is; TEL: all between the "
@@ -333,7 +342,7 @@ def pass_by_answers(tree: DataTree) -> headline.Answers | None:
     where = "" if away is None else f", {away:g} m from the track"
     told = "".join(f"; {name} {other:.1f} dB(A)" for name, other in others)
     held = "" if "wheel" in _passing_parts(tree) else ", without the wheel"
-    heard, _ = compared_numbers(tree).get(first, (None, None))
+    heard = data.number(tree, MEASURED[f"{first} / dB(A)"])
     measured = "" if heard is None else f"; {first} measured {heard:.1f} dB(A)"
     if schema.WITH_SIDEWAYS in (parts := parts_of(tree, _HEADLINES[first])):
         entry = _HEADLINES[first]
