@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from asperity import files
+from asperity.arguments import Array
 from asperity.case import any_case, toml
 from asperity.case.form import content, file_digest
 from asperity.cli.commands import taken_folder
@@ -50,15 +51,15 @@ def run_optimisation(
         _refuse_other(asked, written["case"])
     with files.alone_in(directory), progress_bar() as progress:
         found = optimised(case, aim, progress)
-        bands = _bands(found)
+        columns = _columns(found)
+        rows = np.stack(list(columns.values()), axis=1).tolist()
         with files.together(directory, last=FILES["case"]) as new:
-            _write(found, bands, new, report=report)
+            _write(found, columns, rows, new, report=report)
             keys = any_case.in_toml(found.case, in_memory=lambda *_: FILES["texture"])
             text = toml.toml_text({"kind": found.case.kind, **keys})
             files.write_bytes(new / FILES["case"], f"{_mark(asked, text)}{text}".encode())
     say(found.sentence)
     say_files(written)
-    titles, rows = _table(bands, found.measure.units)
     return {
         "summary": found.sentence,
         "quantity": found.measure.meaning,
@@ -66,7 +67,7 @@ def run_optimisation(
         "settled": found.settled,
         "changes": found.changes,
         "limits": found.active,
-        "columns": titles,
+        "columns": list(columns),
         "rows": rows,
         "files": written,
     }
@@ -88,57 +89,44 @@ def _refuse_other(asked: str, case: Path) -> None:
         raise taken_folder(case.parent, f"a folder that holds another {case.name}", "optimisation")
 
 
-def _write(found: Optimised, bands: study_figures.TextureBands, directory: Path, *, report: bool) -> None:
+def _write(
+    found: Optimised, columns: dict[str, Array], rows: list[list[float]], directory: Path, *, report: bool
+) -> None:
     """Write the texture found as tables and on a page, and the runs before and after it."""
     texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
     write_csv(directory / FILES["texture"], ["wavelength (m)", "level (dB re 1 um)"], texture)
-    write_csv(directory / FILES["table"], *_table(bands, found.measure.units))
+    write_csv(directory / FILES["table"], list(columns), rows)
     for what, tree in (("before", found.result_before), ("after", found.result_after)):
         run = save(tree, directory / FILES[what])
         if report:
             write_page(tree, run.with_name(REPORT))
-    files.write_bytes(directory / FILES["page"], _page(found, bands, report=report).encode())
+    files.write_bytes(directory / FILES["page"], _page(found, columns, report=report).encode())
 
 
-def _bands(found: Optimised) -> study_figures.TextureBands:
-    """Numbers of the bands: of those that were changed."""
-    changed, aim = found.after.changed, found.aim
-    trees = {"before": found.result_before, "after": found.result_after}
-    return study_figures.TextureBands(
-        found.after.changed_wavelength,
-        {"before": found.before.levels[changed], "after": found.after.levels[changed]},
-        found.limits.lowest,
-        found.limits.highest,
-        np.sqrt(np.prod(found.after.edges(found.case.speed), axis=0)),
-        {
-            law: {name: found.band_levels(tree, law) for name, tree in trees.items()}
-            for law in dict.fromkeys((aim.verify, aim.law))
-        },
-    )
-
-
-def _table(bands: study_figures.TextureBands, units: str) -> tuple[list[str], list[list[float]]]:
+def _columns(found: Optimised) -> dict[str, Array]:
+    """Numbers of the bands that were changed, by the titles of their columns."""
+    changed, units = found.after.changed, found.measure.units
     columns = {
-        "wavelength [m]": bands.wavelength,
-        "frequency [Hz]": bands.frequency,
-        **{f"level {name} [dB re 1 um]": levels for name, levels in bands.levels.items()},
-        "lowest [dB re 1 um]": bands.lowest,
-        "highest [dB re 1 um]": bands.highest,
+        "wavelength [m]": found.after.changed_wavelength,
+        "frequency [Hz]": np.sqrt(np.prod(found.after.edges(found.case.speed), axis=0)),
+        "level before [dB re 1 um]": found.before.levels[changed],
+        "level after [dB re 1 um]": found.after.levels[changed],
+        "lowest [dB re 1 um]": found.limits.lowest,
+        "highest [dB re 1 um]": found.limits.highest,
     }
-    for law, levels in bands.heard.items():
-        columns |= {f"{law} {name} [{units}]": each for name, each in levels.items()}
-    return list(columns), np.stack(list(columns.values()), axis=1).tolist()
+    for law in found.changes:
+        for name, tree in (("before", found.result_before), ("after", found.result_after)):
+            columns[f"{law} {name} [{units}]"] = found.band_levels(tree, law)
+    return columns
 
 
-def _page(found: Optimised, bands: study_figures.TextureBands, *, report: bool) -> str:
-    laws = data.read_entries(spec_of(law).entry() for law in bands.heard)
+def _page(found: Optimised, columns: dict[str, Array], *, report: bool) -> str:
+    laws = data.read_entries(spec_of(law).entry() for law in found.changes)
     colours = {name: law.colour for name, law in laws.items()}
-    chart = study_figures.optimised_chart(bands, found.measure.meaning, found.measure.units, colours)
+    chart = study_figures.optimised_chart(columns, found.measure.meaning, found.measure.units, colours)
     caption = (
         "Above, the texture before and after, and what it was allowed to be; below, what is heard of it."
     )
-    titles, rows = _table(bands, found.measure.units)
-    columns = dict(zip(titles, np.transpose(rows), strict=True))
     name = "Texture and response in bands"
     figure = PageFigure("bands", name, caption, chart, FILES["table"], columns)
     offered = {"texture (CSV)": "texture", "case": "case"}

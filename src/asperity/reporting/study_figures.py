@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
@@ -73,38 +73,34 @@ def ensemble_chart(bands: xarray.Dataset, looks: Looks) -> Chart:
 # --- an optimised texture
 
 
-@dataclass(frozen=True, eq=False)
-class TextureBands:
-    """Numbers of the figure, by one-third octave of wavelength (b,)."""
+def optimised_chart(
+    columns: Mapping[str, Numbers], heard: str, units: str, colours: Mapping[str, str]
+) -> Chart:
+    """The texture above, and below what is heard of it in each band, of each law that has a colour.
 
-    wavelength: Numbers  # centres, m
-    levels: Mapping[str, Numbers]  # before and after, dB re 1 µm
-    lowest: Numbers  # bounds of the levels; NaN where a band was not to be changed
-    highest: Numbers
-    frequency: Numbers  # at which they are passed, Hz
-    # level of the response while they are passed, dB, by law, before and after
-    heard: Mapping[str, Mapping[str, Numbers]]
-
-
-def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mapping[str, str]) -> Chart:
-    """The texture above, and below what is heard of it in each band; colours by law."""
-    edges = bands.wavelength / panels.EDGE, bands.wavelength * panels.EDGE
-    bounds = np.stack([*edges, bands.lowest, bands.highest])
+    Columns by their titles, each by one-third octave of wavelength (b,), begin with these, the frequencies
+    at which they are passed, the texture before and after, and its bounds, NaN where a band was not to be
+    changed; those of the response, with its units, are as ``"areal after [dB]"``.
+    """
+    wavelength, frequency, *levels = list(columns.values())[:6]
+    edges = wavelength / panels.EDGE, wavelength * panels.EDGE
+    bounds = np.stack([*edges, *levels[2:]])
     left, right, low, high = bounds[:, np.isfinite(bounds).all(axis=0)]
     order = np.argsort(edges[0])
     steps = np.stack(edges, axis=1)[order].ravel()  # a level keeps its height within each band
     texture: list[Mark] = [Boxes(left, right, low, high, "allowed", chart.MUTED, 0.15)]
     response: list[Mark] = []
-    for name, dashes in (("before", (1.5, 1.5)), ("after", ())):
-        texture.append(Line(steps, np.repeat(bands.levels[name][order], 2), name, INK, dashes))
-        for law, levels in bands.heard.items():
-            look: dict[str, Any] = {"colour": colours.get(law, INK), "dashes": dashes, "marker": "o"}
-            response.append(Line(bands.wavelength, levels[name], f"{law}, {name}", law=law, **look))
-    along = panels.band_axis(np.sort(bands.wavelength), "one-third octave of wavelength", nominal_length)
-    speed = float(np.median(bands.wavelength * bands.frequency))
+    for name, dashes, level in (("before", (1.5, 1.5), levels[0]), ("after", (), levels[1])):
+        texture.append(Line(steps, np.repeat(level[order], 2), name, INK, dashes))
+        for law, colour in colours.items():
+            look: dict[str, Any] = {"colour": colour, "dashes": dashes, "marker": "o"}
+            response.append(
+                Line(wavelength, columns[f"{law} {name} [{units}]"], f"{law}, {name}", law=law, **look)
+            )
+    along = panels.band_axis(np.sort(wavelength), "one-third octave of wavelength", nominal_length)
+    speed = float(np.median(wavelength * frequency))
     along = panels.long_waves_left(along, "frequency at which it is passed", speed, "wavelength")
-    found = [*bands.levels.values(), bands.lowest, bands.highest]
-    above = panels.levels_axis("roughness level / dB re 1 µm", found)
+    above = panels.levels_axis("roughness level / dB re 1 µm", levels)
     below = Axis(f"in the band / {data.written_units(units)}")
     upper = Panel(along, above, tuple(texture), height=3.2)
     return Chart((upper, Panel(along, below, tuple(response), heard, height=3.2)))
