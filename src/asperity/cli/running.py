@@ -221,18 +221,14 @@ def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
 
     Of a bearing the rms velocities, m/s, in the bands in which it is judged, at the first accelerometer.
     """
-    if bearing.BAND_VELOCITY.group in tree.children:
-        found = tree[bearing.BAND_VELOCITY.group].to_dataset()[bearing.BAND_VELOCITY.name]
-        first = zip(found["law"].values.tolist(), found.values[:, 0].tolist(), strict=True)
-        return [{"law": law, bearing.BAND_VELOCITY.name: velocities} for law, velocities in first]
-    group = tree["rolling"].to_dataset().isel({rolling.CONTACT.name: 0}, missing_dims="ignore")
-    force = group[rolling.CONTACT_FORCE.name]
-    reduced = zip(rolling.FORCES, (force.mean, force.std, force.max), strict=True)
-    numbers = {name: of("time") for name, of in reduced}
-    numbers |= {entry.name: group[entry.name] for entry in rolling.LOSSES if entry.name in group}
+    from asperity.studies.member import kept
+
+    found, velocity = kept(tree), bearing.BAND_VELOCITY.name
+    names = [*rolling.FORCES, *(entry.name for entry in rolling.LOSSES)]
+    told = [velocity] if velocity in found else [name for name in names if name in found]
     return [
-        {"law": law} | {name: float(values.sel(law=law)) for name, values in numbers.items()}
-        for law in group["law"].values.tolist()
+        {"law": law} | {name: found[name].sel(law=law).values.tolist() for name in told}
+        for law in found["law"].values.tolist()
     ]
 
 
