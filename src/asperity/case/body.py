@@ -27,22 +27,10 @@ STIFFNESS, DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
 INERTIA = Quantity("kg m^2", above=0)
 _BODIES, _FLAT = "bodies that roll lie between", {"goes_with": "flat_depth or flat_length"}
 PROFILE = File(held=(Profile,))
-
-
 OF_SEVERAL = (
-    "type",
-    "positions",
-    "groove_radius",
-    "raceway_radius",
-    "raceway",
-    "masses",
-    "springs",
-    "dampers",
-    "contacts",
-    "distance",
-    "inertia",
-    "flat_contacts",
-)
+    "type", "positions", "groove_radius", "raceway_radius", "raceway", "masses", "springs", "dampers",
+    "contacts", "distance", "inertia", "flat_contacts",
+)  # fmt: skip
 """Keys of what rolls on several contacts, or in a groove."""
 
 

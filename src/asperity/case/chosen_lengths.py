@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from asperity.case.scene import Case
@@ -30,23 +30,17 @@ _FIT_FOR_ALL = {
 """Which of several chosen lengths suits all cases."""
 
 
-class NominalPatch(NamedTuple):
-    """Contact of smooth bodies under the working load: within a tenth where radii differ by up to five."""
+def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
+    """Grid, window and waves of a self-affine texture, m, by section: as given, else as fits the contact.
 
-    semi_axes: tuple[float, float]  # along and across the path, m
-    approach: float  # m
-
-    @classmethod
-    def of(cls, modulus: float, radius_x: float, radius_y: float, load: float) -> Self:
-        """Take the circle of mean relative radius, drawn out; E*, Pa, relative radii, m, and load, N."""
-        radius, stretch = math.sqrt(radius_x * radius_y), (radius_x / radius_y) ** (1.0 / 3.0)
-        a = (0.75 * load * radius / modulus) ** (1.0 / 3.0)
-        return cls((a * stretch, a / stretch), a**2 / radius)
-
-
-def chosen_lengths(case: "Case", patch: NominalPatch) -> dict[str, dict[str, float]]:
-    """Grid, window and waves of a self-affine texture, m, by section: as given, else as fits the contact."""
-    small, large = min(patch.semi_axes), max(patch.semi_axes)
+    The contact of smooth bodies under the working load is taken for the circle of mean relative radius, drawn
+    out: within a tenth where radii differ by up to five.
+    """
+    hertz = case.smooth_contact
+    radius = math.sqrt(hertz.radius_x * hertz.radius_y)
+    stretch = (hertz.radius_x / hertz.radius_y) ** (1.0 / 3.0)
+    circle = (0.75 * case.rolling.contact_load * radius / hertz.modulus) ** (1.0 / 3.0)
+    small, large = sorted((circle * stretch, circle / stretch))
     surface, contact = (
         {name: getattr(section, name) for name in names if name in section.given_names}
         for section, names in ((case.surface, ("longest", "shortest")), (case.contact, ("spacing", "window")))
@@ -63,7 +57,7 @@ def chosen_lengths(case: "Case", patch: NominalPatch) -> dict[str, dict[str, flo
         longest = surface.get("longest", max(rounded(LONGEST * large), 4.0 * shortest))
         surface = {"shortest": shortest, "longest": longest}
         roughness = rms * min(SIDE * large / longest, 1.0) ** case.surface.hurst
-    peaks = min(PEAKS * roughness / patch.approach, MOST_PEAKS)
+    peaks = min(PEAKS * roughness / (circle**2 / radius), MOST_PEAKS)
     window = rounded(max(SIDE * large * math.sqrt(1.0 + peaks), SIDE * large + case.defect_length), up=True)
     return {"surface": surface, "contact": {"spacing": spacing, "window": window}}
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from asperity.case.any_case import AnyCase
 from asperity.case.body import Rolling
-from asperity.case.chosen_lengths import NominalPatch, chosen_lengths
+from asperity.case.chosen_lengths import chosen_lengths
 from asperity.case.form import Inner, Section, section
 from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
@@ -160,12 +160,6 @@ class Case(AnyCase):
         return Hertz(contact_modulus(body.material, over.material), *radii)
 
     @property
-    def nominal_patch(self) -> NominalPatch:
-        """Contact of its smooth bodies, from which grid and window are chosen."""
-        hertz = self.smooth_contact
-        return NominalPatch.of(hertz.modulus, hertz.radius_x, hertz.radius_y, self.rolling.contact_load)
-
-    @property
     def upper_stiffness(self) -> float:
         """Stiffness, N/m, of the contact above each element of a carriage, which is shaped as that below."""
         if self.rolling.type != "carriage":
@@ -303,7 +297,7 @@ class Case(AnyCase):
 
     def _choose(self) -> None:
         with suppress(InputError):  # bodies that do not touch in a point: `problems` say so
-            for title, lengths in chosen_lengths(self, self.nominal_patch).items():
+            for title, lengths in chosen_lengths(self).items():
                 self.__dict__[title] = getattr(self, title).with_chosen(**lengths)
         with suppress(InputError):  # of a track that does not exist
             if isinstance(over := self.rolled_over, TrackKeys):
