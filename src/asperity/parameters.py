@@ -392,16 +392,13 @@ GIVEN = "given in the case"
 """Source of a material that states none."""
 
 
-Within = tuple[str, str, str]
-"""The least and the largest plausible value, as they are written in TOML, and the reason."""
-
 _SOLIDS = "solids that roll lie between"
-_OF_A_MATERIAL: dict[str, tuple[ValueKind, Within | None]] = {
-    "name": (Text(), None),
-    "youngs_modulus": (Quantity("Pa", above=0), ("1 kPa", "10 TPa", _SOLIDS)),
-    "poisson_ratio": (Number(above=-1, at_most=0.5), None),
-    "density": (Quantity("kg/m^3", above=0), ("1 kg/m^3", "100000 kg/m^3", _SOLIDS)),
-    "citation": (Text(), None),
+_OF_A_MATERIAL: dict[str, tuple[ValueKind, str]] = {
+    "name": (Text(), ""),
+    "youngs_modulus": (Quantity("Pa", above=0), f"1 kPa to 10 TPa: {_SOLIDS}"),
+    "poisson_ratio": (Number(above=-1, at_most=0.5), ""),
+    "density": (Quantity("kg/m^3", above=0), f"1 kg/m^3 to 100000 kg/m^3: {_SOLIDS}"),
+    "citation": (Text(), ""),
 }
 
 
@@ -456,11 +453,11 @@ def name_of_numbers(youngs_modulus: float) -> str:
     return f"{youngs_modulus / 1e9:.4g} GPa"
 
 
-def outside(name: str, value: object, kind: ValueKind, within: Within | None) -> Iterator[InputError]:
+def outside(name: str, value: object, kind: ValueKind, within: str) -> Iterator[InputError]:
     """Error about a number out of its limits; zero, infinity and NaN, where they may stand, may."""
-    if within is None or not isinstance(value, int | float) or value in (0.0, math.inf) or value != value:
+    if not within or not isinstance(value, int | float) or value in (0.0, math.inf) or value != value:
         return
-    low, high, reason = within
+    low, high, reason = limits_in(within)
     unit = kind.dimension if isinstance(kind, Quantity) else ""
     least, most = (quantity(limit, unit) if unit else float(limit) for limit in (low, high))
     if not least <= value <= most:
@@ -480,8 +477,8 @@ class Key:
         As it would be written in TOML; None where there is no fixed one.
     meaning : str
         What it is.
-    within : (str, str, str), optional
-        Its plausible limits.
+    within : str
+        Its plausible limits, as in `key`.
     otherwise : str
         What happens without it, where there is no fixed default.
     example : object
@@ -493,7 +490,7 @@ class Key:
     kind: ValueKind
     default: Any
     meaning: str
-    within: Within | None = None
+    within: str = ""
     otherwise: str = ""
     example: Any = None
     goes_with: str = ""
@@ -531,14 +528,14 @@ def key(kind: ValueKind, default: Any, meaning: str, within: str = "", *, goes_w
     Key
         Typed as Any: in a class it stands for its value.
     """
-    return Key(kind, default, meaning, limits_in(within), goes_with=goes_with)
+    return Key(kind, default, meaning, within, goes_with=goes_with)
 
 
 def optional(
     kind: ValueKind, example: Any, meaning: str, otherwise: str = "", within: str = "", *, goes_with: str = ""
 ) -> Any:
     """Declare a key that may be left out: `otherwise` says what happens then; the rest is as in `key`."""
-    return Key(kind, None, meaning, limits_in(within), otherwise, example, goes_with)
+    return Key(kind, None, meaning, within, otherwise, example, goes_with)
 
 
 def parameter(
@@ -555,7 +552,7 @@ def parameter(
 
     `default` is that of the class, in SI; the rest is as in `optional`.
     """
-    declared = Key(kind, None, meaning, limits_in(within), otherwise, example, goes_with)
+    declared = Key(kind, None, meaning, within, otherwise, example, goes_with)
     return dataclasses.field(default=default, metadata={"key": declared})
 
 
@@ -589,10 +586,8 @@ def checked_parameters(model: Any) -> None:
                 raise first.about(f"{name} of the {of}") from None
 
 
-def limits_in(within: str) -> Within | None:
+def limits_in(within: str) -> tuple[str, str, str]:
     """Limits and reason of a text as ``"1 mm to 1 km: beams lie between"``."""
-    if not within:
-        return None
     limits, _, reason = within.partition(": ")
     least, _, most = limits.partition(" to ")
     return least, most, reason

@@ -13,7 +13,7 @@ from asperity.case import PRESETS
 from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class
 from asperity.errors import CaseError
-from asperity.parameters import ListOf, Number, Quantity
+from asperity.parameters import ListOf, Number, Quantity, limits_in
 from asperity.structures.track_parameters import LAYERS
 from asperity.units import quantity
 
@@ -74,8 +74,8 @@ def plausible(entry):
     """Least and largest value in SI, and the unit; those of the kind, where it has both."""
     kind = entry.key.one
     unit = kind.dimension if isinstance(kind, Quantity) else ""
-    if entry.key.within is not None:
-        low, high, reason = entry.key.within
+    if entry.key.within:
+        low, high, reason = limits_in(entry.key.within)
         assert len(reason) > 10
         return *(quantity(each, unit) for each in (low, high)), unit
     return kind.above if kind.at_least is None else kind.at_least, kind.at_most, unit
@@ -92,7 +92,7 @@ def test_every_number_has_limits_and_beyond_them_is_told_why(kind):
         low, high, unit = plausible(entry)
         assert -math.inf < low < high < math.inf, entry.dotted
         for value in (1.01 * high, low / 1.01 if low > 0 else 1.01 * low):
-            if value == 0.0 or entry.key.within is None:
+            if value == 0.0 or not entry.key.within:
                 continue
             given = f"{value!r} {unit}" if unit else value
             keys = {entry.name: [given] if isinstance(entry.key.kind, ListOf) else given}
@@ -102,7 +102,7 @@ def test_every_number_has_limits_and_beyond_them_is_told_why(kind):
             message = str(caught.value)
             stricter = "; allowed: a" in message  # its kind is, as a length greater than 0
             assert entry.dotted in message
-            assert stricter or entry.key.within[2][1:] in message, entry.dotted
+            assert stricter or limits_in(entry.key.within)[2][1:] in message, entry.dotted
 
 
 # --- keys that nothing reads

@@ -12,7 +12,7 @@ import asperity
 from asperity.case.any_case import entries
 from asperity.case.cases import case_class, case_of
 from asperity.errors import AsperityError
-from asperity.parameters import Choice, Number, Quantity
+from asperity.parameters import Choice, Number, Quantity, limits_in
 from asperity.units import quantity
 from small_cases import unmarked
 
@@ -44,9 +44,9 @@ def drawn(entry, source):
         low, high = kind.at_least or kind.above or 0.0, kind.at_most or 10.0
         return source.choice([low, high, source.uniform(low, high), 0.5 * default])
     within = entry.key.within
-    if not isinstance(kind, Quantity) or within is None:
+    if not isinstance(kind, Quantity) or not within:
         return None
-    limits = [quantity(limit, kind.dimension) for limit in within[:2]]
+    limits = [quantity(limit, kind.dimension) for limit in limits_in(within)[:2]]
     example = entry.key.written_example
     if not isinstance(example, str) or example == "inf":
         return None

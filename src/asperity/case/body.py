@@ -106,15 +106,14 @@ class FlatOnTread(MeasuredLine):
         if self.flat is None:
             return
         deepest = DEEPEST_FLAT * self.radius
-        allowed = f"at most {DEEPEST_FLAT:g} of the radius, {written(deepest, 'm', 'mm')}"
-        if self.flat_depth is None:
-            longest = math.sqrt(8.0 * self.radius * deepest)
-            if self.flat[1] > longest:
-                allowed = f"at most {longest * 1e3:.4g} mm, where the depth of its chord is {allowed}"
-                yield InputError("flat_length", written(self.flat[1], "m", "mm"), allowed)
-        elif self.flat_depth > deepest:
-            yield InputError("flat_depth", written(self.flat_depth, "m", "mm"), allowed)
-        elif self.flat_length is not None:
+        if self.flat[0] > deepest:
+            name = "flat_length" if self.flat_depth is None else "flat_depth"
+            chord = f"{math.sqrt(8.0 * self.radius * deepest) * 1e3:.4g} mm"
+            allowed = (
+                f"at most {DEEPEST_FLAT:g} of the radius deep, {deepest * 1e3:.4g} mm, a chord of {chord}"
+            )
+            yield InputError(name, written(getattr(self, name), "m", "mm"), allowed)
+        elif self.flat_depth is not None and self.flat_length is not None:
             yield from self._problem_of_both(self.flat_depth, self.flat_length)
         if self.flat_position is not None and self.flat_position >= self.circumference:
             allowed = f"less than the circumference, {self.circumference:.4g} m"
