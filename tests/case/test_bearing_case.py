@@ -6,9 +6,11 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
+import asperity
 from asperity.case.cases import as_case, parse_case, template
-from asperity.errors import CaseError, InputError
+from asperity.errors import CaseError
 from asperity.scenarios.bearing import bearing_rings, expected, prepare_bearing
+from asperity.serving.worker import read_case_file
 from asperity.structures.modal import ModalStructure
 from asperity.structures.ring import Ring
 from asperity.studies.definition import study_of
@@ -144,23 +146,30 @@ def test_rings_bend_in_the_modes_of_a_file(tmp_path):
     assert as_case(CASE | {"housing": {"modes": held}}).housing.bending(0.0).extent == (-math.inf, math.inf)
 
 
-@pytest.mark.parametrize(("how", "message"), [
-    ({"until": 355}, r"0 to 6\.19592 \(angles of modes \(rad\)\); allowed: 0 to 2π"),
-    ({"last": 0.9}, r"apart \(modes around a circle\); .* Repeat the first row"),
-    ({"lowest": 0.0}, r"one of 0 Hz; allowed: modes that bend"),
-    ({"angle": "position (mm)"}, r"angle \(rad\) and mode shapes"),
-    ({"angle": "angle"}, r"no unit of the angle"),
-])  # fmt: skip
-def test_modes_that_do_not_go_around_are_refused(how, message, tmp_path):
-    with pytest.raises(CaseError, match=rf"housing\.modes: received .*{message}"):
-        as_case(CASE | {"housing": {"modes": table_of_modes(tmp_path / "around.csv", **how)}})
+def bytes_of_modes(path):
+    path.write_bytes(b"\x00\x89HDF")
+    return str(path)
 
 
-@pytest.mark.parametrize("name", ["around.csv", "around.nc"])
-def test_files_that_hold_no_modes_are_refused(name, tmp_path):
-    (tmp_path / name).write_bytes(b"\x00\x89HDF")
-    with pytest.raises(CaseError, match=r"shaft\.modes: received"):
-        as_case(CASE | {"shaft": {"modes": str(tmp_path / name)}})
+test_files_that_do_not_go_around_are_refused = refusals(
+    ("modes", table_of_modes, {"until": 355}, r"6\.19592 \(angles of modes \(rad\)\); allowed: 0 to 2π"),
+    ("modes", table_of_modes, {"last": 0.9}, r"apart \(modes around a circle\); .* Repeat the first row"),
+    (
+        "modes",
+        table_of_modes,
+        {"lowest": 0.0},
+        r"housing.modes: received one of 0 Hz; .* modes that bend",
+    ),
+    ("modes", table_of_modes, {"angle": "position (mm)"}, r"angle \(rad\) and mode shapes"),
+    ("modes", table_of_modes, {"angle": "angle"}, r"no unit of the angle"),
+    ("modes", bytes_of_modes, {}, r"housing.modes: received"),
+    ("trace", trace, {"drift": 2.0}, r"outer_raceway.trace.*ends that differ by 2 um"),
+    ("trace", trace, {"turned": 300.0}, "300 deg in around.csv; allowed: one turn, 360 deg"),
+    of=lambda key, write, how, tmp_path: as_case(
+        CASE | {{"modes": "housing"}.get(key, "outer_raceway"): {key: write(tmp_path / "around.csv", **how)}}
+    ),
+    error=CaseError,
+)
 
 
 def test_a_plan_says_how_many_balls_speed_lifts_off_the_inner_ring():
@@ -182,36 +191,17 @@ def test_a_roundness_trace_is_read_with_its_units(tmp_path):
     assert np.delete(waves, 5).max() < 1e-9
 
 
-@pytest.mark.parametrize(("shape", "message"), [
-    ({"drift": 2.0}, r"ends that differ by 2 um"),
-    ({"turned": 300.0}, "300 deg in open.csv; allowed: one turn, 360 deg")
-])  # fmt: skip
-def test_a_trace_that_does_not_close_is_refused(shape, message, tmp_path):
-    with pytest.raises(CaseError, match=rf"outer_raceway\.trace.*{message}"):
-        as_case(CASE | {"outer_raceway": {"trace": str(trace(tmp_path / "open.csv", **shape))}})
-
-
-@pytest.mark.parametrize(("fault", "message"), [
+test_a_fault_off_the_raceway_is_refused_before_the_run = refusals(
     ({"on": "outer", "length": "0.2 mm", "depth": "10 um", "offset": "5 mm"}, r"outer raceway: offset of"),
-    ({"on": "inner", "length": "5 mm", "depth": "10 um", "count": 90}, r"inner raceway: length of the fault")
-])  # fmt: skip
-def test_a_fault_off_the_raceway_is_refused_before_the_run(fault, message):
-    from asperity.running import prepare_case
-
-    with pytest.raises(InputError, match=message):
-        prepare_case(as_case(CASE | {"fault": fault}))
+    ({"on": "inner", "length": "5 mm", "depth": "10 um", "count": 90}, r"inner raceway: length of the fault"),
+    of=lambda fault: prepare_bearing(as_case(CASE | {"fault": fault})),
+)
 
 
-@pytest.mark.parametrize("what", ["optimisation", "what helps", "convergence", "page"])
-def test_what_is_not_there_for_a_bearing_says_so(what):
-    import asperity
-    from asperity.serving.worker import read_case_file
-
-    asked = {
-        "optimisation": lambda: asperity.optimise(CASE),
-        "what helps": lambda: asperity.what_helps(CASE),
-        "convergence": lambda: asperity.run(CASE, converge=True),
-        "page": lambda: read_case_file(as_case(CASE).to_toml(), "."),
-    }[what]
-    with pytest.raises(InputError, match=f"{what}: received a ball-bearing case, of which there is none"):
-        asked()
+NOT_THERE = "received a ball-bearing case, of which there is none"
+test_what_is_not_there_for_a_bearing_says_so = refusals(
+    (lambda: asperity.optimise(CASE), f"optimisation: {NOT_THERE}"),
+    (lambda: asperity.what_helps(CASE), f"what helps: {NOT_THERE}"),
+    (lambda: asperity.run(CASE, converge=True), f"convergence: {NOT_THERE}"),
+    (lambda: read_case_file(as_case(CASE).to_toml(), "."), f"page: {NOT_THERE}"),
+)

@@ -57,16 +57,13 @@ def test_a_pit_of_the_inner_ring_has_side_bands_one_turn_beside_its_lines():
     found = group(asperity.run(case, brief=True))
     assert found["lines_found"].values[0].tolist() == [0.0, 1.0, 0.0]
     assert found["line_frequency"].values[0, 1] == pytest.approx(INNER * np.arange(1, 6), abs=0.5 / 0.25)
-    spectrum, frequency = found["envelope"].values[0], found["envelope_frequency"].values
-
-    def near(tone):
-        return spectrum[np.abs(frequency - tone) < 0.5 / 0.25].max()
-
-    beside = min(near(INNER - TURNS), near(INNER + TURNS))
-    assert near(INNER) > beside > 0.3 * near(INNER)
-    assert beside > 5.0 * near(INNER + 0.5 * TURNS)
-    higher = max(near(INNER - TURNS), near(INNER + TURNS))
-    assert found["line_side_bands"].values[0, 1, 0] == pytest.approx(higher, rel=0.05)
+    at = found["envelope_frequency"].values
+    line, between, *beside = (
+        found["envelope"].values[0, np.abs(at - tone) < 0.5 / 0.25].max()
+        for tone in (INNER, INNER + 0.5 * TURNS, INNER - TURNS, INNER + TURNS)
+    )
+    assert line > min(beside) > max(0.3 * line, 5.0 * between)
+    assert found["line_side_bands"].values[0, 1, 0] == pytest.approx(max(beside), rel=0.05)
 
 
 def test_a_pit_strikes_by_what_the_static_load_loses_over_it():
@@ -137,8 +134,8 @@ def test_the_cage_slips_within_its_bounds_and_by_its_share(runs):
     slipping = as_case(BEARING | {"cage_slip": [0.01, 0.03], "duration": "3 s"})
     drawn = cage_slip(slipping)(np.linspace(-0.01, 3.0, 20_001))
     assert 0.01 <= drawn.min() < 0.012 < 0.028 < drawn.max() <= 0.03
-    whole = np.arange(20) / slipping.kinematics.cage - slipping.settling  # turns of the cage
-    values, between = (cage_slip(slipping)(whole + part / slipping.kinematics.cage) for part in (0.0, 0.5))
+    whole, turn = np.arange(20), 1.0 / slipping.kinematics.cage
+    values, between = (cage_slip(slipping)((whole + part) * turn - slipping.settling) for part in (0, 0.5))
     assert between[:-1] == pytest.approx(0.5 * (values[1:] + values[:-1]), rel=1e-9)
     assert len(np.unique(values)) == 20
     even = runs(SMOOTH | {"cage_slip": [0.02, 0.02]})

@@ -107,16 +107,13 @@ def test_it_is_in_balance_by_another_solution(bearing, radial, axial, speed, ang
 )  # fmt: skip
 def test_forces_balance(radial, axial, speed, angle, bearing):
     found = bearing.loaded(radial, axial, speed=speed, cage_angles=[angle])
-    inner, outer = np.nan_to_num(found.inner_angle), np.nan_to_num(found.outer_angle)
-    inward, along = found.inner_load * np.cos(inner), found.inner_load * np.sin(inner)
-    total = axial + bearing.preload
+    inner, outer = np.exp(1j * np.nan_to_num([found.inner_angle, found.outer_angle]))  # inwards and along
+    inward, total = found.inner_load * inner, axial + bearing.preload
     scale = max(radial, total, found.outer_load.max())
-    assert (inward * np.cos(found.azimuth)).sum() == pytest.approx(radial, abs=2e-9 * scale)
-    assert (inward * np.sin(found.azimuth)).sum() == pytest.approx(0.0, abs=2e-9 * scale)
-    assert along.sum() == pytest.approx(total, abs=2e-9 * scale)
+    across = (inward.real * np.exp(1j * found.azimuth)).sum()
+    np.testing.assert_allclose([across, inward.imag.sum()], [radial, total], rtol=0.0, atol=2e-9 * scale)
     lift = bearing.centrifugal_force(speed)
-    np.testing.assert_allclose(found.outer_load * np.cos(outer) - inward, lift, atol=1e-8 * scale)
-    np.testing.assert_allclose(found.outer_load * np.sin(outer), along, atol=1e-8 * scale)
+    np.testing.assert_allclose(found.outer_load * outer - inward, lift, rtol=0.0, atol=1e-8 * scale)
     assert found.imbalance <= 1e-10
 
 
