@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -69,6 +69,14 @@ LOAD, LOADS = Quantity("N", at_least=0), "0 N to 100 MN: bearings carry less"
 SPEEDS = "0 Hz to 10 kHz: bearings turn slower"
 
 
+def _refused(made: Callable[[], object]) -> Iterator[InputError]:
+    """Why something cannot be made, if so."""
+    try:
+        made()
+    except InputError as error:
+        yield error
+
+
 class BearingGeometry(Section, parameters=DIMENSIONS):
     """A ball bearing, named or by its dimensions."""
 
@@ -89,10 +97,7 @@ class BearingGeometry(Section, parameters=DIMENSIONS):
             remedy = f"Named bearings: {', '.join(BEARINGS)}."
             yield InputError("name", f"none, and no {' and no '.join(missing)}", "these, or a name", remedy)
             return
-        try:
-            _ = self.bearing
-        except InputError as error:
-            yield error
+        yield from _refused(lambda: self.bearing)
 
 
 class BearingKeys(BearingGeometry):
@@ -208,10 +213,7 @@ class AroundKeys(Section, parameters=_AROUND | {"trace": replace(_AROUND["trace"
 
     def problems(self) -> Iterator[InputError]:
         """Waves with their amplitudes, one texture of each sort."""
-        try:
-            self.texture()
-        except InputError as error:
-            yield error
+        yield from _refused(self.texture)
 
 
 class FaultKeys(Section, parameters=_keys_of(Fault)):
@@ -223,11 +225,11 @@ class FaultKeys(Section, parameters=_keys_of(Fault)):
     )
 
     @property
-    def faults(self) -> tuple[Fault, ...]:
+    def fault(self) -> Fault | None:
         """The fault, if there is one."""
         given = _values(self)
         del given["ball"]
-        return (Fault(**given),) if given.pop("on", None) else ()
+        return Fault(**given) if given.pop("on", None) else None
 
     def lies_on(self, part: str, ball: int) -> bool:
         """Whether a raceway has it, or the ball of a number."""
@@ -237,10 +239,7 @@ class FaultKeys(Section, parameters=_keys_of(Fault)):
         """All that a fault of its shape has, and a part that has it."""
         if self.on is None and self.given():
             yield InputError("on", "nothing", Choice(PARTS).allowed, "Say which part has the fault.")
-        try:
-            _ = self.faults
-        except InputError as error:
-            yield error
+        yield from _refused(lambda: self.fault)
 
 
 class BallBearingCase(AnyCase):

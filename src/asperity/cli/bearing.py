@@ -9,6 +9,7 @@ import numpy as np
 from asperity import diagnostics
 from asperity.arguments import Array, require
 from asperity.case.ball_bearing import BearingKeys, read_bearing
+from asperity.diagnostics import LineFamily
 from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, static_group, tones_group
 from asperity.scenes.figures.bearing import ball_contacts_table, envelope_spectrum, load_zone
@@ -19,6 +20,7 @@ from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
 
+Band = tuple[float, float] | None
 WIDTH = 122
 TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "band", "lines", "faults",
         "verdict")  # fmt: skip
@@ -134,16 +136,15 @@ def _heard(
     say(verdict)
     if picture is not None:
         highest = REACH * HARMONICS * max(tone for tone, _ in turning.families.values())
-        drawn = envelope_group({"signal": spectrum}, [found], [faults], highest, "unit of the file")
-        write_chart(
-            envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart, f"{name}: {verdict}", picture
-        )
+        drawn = envelope_group(["signal"], [spectrum], [found], [faults], highest, "unit of the file")
+        chart = envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart
+        write_chart(chart, f"{name}: {verdict}", picture)
     names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
     told = {part: {name: getattr(found[part], name) for name in names} for part in PARTS}
     return {"speed": speed, "band": within, "lines": told, "faults": faults, "verdict": verdict}
 
 
-def _band(values: Array, rate: float, band: str | None, least: float) -> tuple[float, float] | None:
+def _band(values: Array, rate: float, band: str | None, least: float) -> Band:
     """Band of the envelope, Hz: found, given as ``"2 kHz, 4 kHz"``, or none for ``"all"``."""
     if band is None:
         return diagnostics.impulsive_band(values, rate, least)
@@ -152,12 +153,7 @@ def _band(values: Array, rate: float, band: str | None, least: float) -> tuple[f
     return (edges[0], edges[1]) if edges else None
 
 
-def _say_lines(
-    found: dict[str, diagnostics.LineFamily],
-    faults: list[str],
-    speed: float,
-    band: tuple[float, float] | None,
-) -> None:
+def _say_lines(found: dict[str, LineFamily], faults: list[str], speed: float, band: Band) -> None:
     rows = []
     for part in PARTS:
         lines = found[part]

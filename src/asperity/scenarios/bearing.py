@@ -61,8 +61,8 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
         case.loaded()
         for number, (name, keys, radius) in enumerate(parts):
             contact, load = case.contacts[min(number, 1)]  # of balls those with the outer ring
-            found = (each.faults for each in case.faults.values() if each.lies_on(name, number - 1))
-            faults = [fault for each in found for fault in each]
+            on_it = (each for each in case.faults.values() if each.lies_on(name, number - 1))
+            faults = [each.fault for each in on_it if each.fault]
             seed = SEEDS * case.seed + number
             try:
                 made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))

@@ -161,11 +161,10 @@ def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values
     lines = [amplitude_spectrum(law[0], rate) for law in signals]
     frequency = lines[0][0]
     kept = (frequency > 0.0) & (frequency <= case.highest_frequency)
-    struck = {name: envelope_spectrum(run.acceleration[0], rate, (low, high)) for name, run in runs.items()}
+    struck = [envelope_spectrum(law[0], rate, (low, high)) for law in signals]
     slip = max(case.cage_slip) + RESOLVED
-    found = [
-        explained_lines(each, turning.families, slip=slip, harmonics=HARMONICS) for each in struck.values()
-    ]
+    found = [explained_lines(each, turning.families, slip=slip, harmonics=HARMONICS) for each in struck]
+    clear = [clear_families(each, SILENT) for each in found]
     judged = [[band_velocities(one, rate, quantity="acceleration") for one in law] for law in signals]
     return {
         spectra.LAW: list(runs),
@@ -176,23 +175,24 @@ def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values
         bearing.BAND_VELOCITY: judged,
         bearing.ENVELOPE_LOW: low,
         bearing.ENVELOPE_HIGH: high,
-        **envelope_group(struck, found, [clear_families(each, SILENT) for each in found], highest),
+        **envelope_group(list(runs), struck, found, clear, highest),
     }
 
 
 def envelope_group(
-    struck: Mapping[str, Spectrum],
+    names: Sequence[str],
+    struck: Sequence[Spectrum],
     found: Sequence[Mapping[str, LineFamily]],
     clear: Sequence[Sequence[str]],
     highest: float,
     units: str = bearing.ENVELOPE.units,
 ) -> Values:
     """Lay out spectra of envelopes by name up to a frequency, Hz, lines of the parts, and which are clear."""
-    frequency = next(iter(struck.values()))[0]
+    frequency = struck[0][0]
     within = frequency <= highest
-    envelopes = np.array([each[within] for _, each in struck.values()])
+    envelopes = np.array([each[within] for _, each in struck])
     return {
-        bearing.LAW: list(struck),
+        bearing.LAW: names,
         bearing.ENVELOPE_FREQUENCY: frequency[within],
         bearing.ENVELOPE: bearing.ENVELOPE.variable(envelopes, units=units),
         bearing.HARMONIC: 1 + np.arange(HARMONICS),

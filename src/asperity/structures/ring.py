@@ -69,18 +69,15 @@ class Ring(Modal):
         size = positive("mass of a ring (kg)", mass) ** -0.5
         radial = not_negative("radial stiffness of a ring (N/m)", radial_stiffness)
         axial = not_negative("axial stiffness of a ring (N/m)", axial_stiffness)
-        stiffness = np.array([radial, radial, axial])
         ratio = real("damping_ratio", damping_ratio, "0 and more, below 1", at_least=0.0, below=1.0)
-        count = 3 if contact_angle else 2
-        return cls(
-            (np.sqrt(stiffness / mass) / (2.0 * math.pi))[:count],
-            np.full(count, ratio),
-            np.array([1.0, 1.0, 0.0])[:count],
-            np.array([0.0, 0.5 * math.pi, 0.0])[:count],
-            np.array([size, size, 0.0])[:count],
-            np.array([0.0, 0.0, size])[:count],
-            contact_angle,
+        modes = (
+            (radial, 1.0, 0.0, size, 0.0),
+            (radial, 1.0, 0.5 * math.pi, size, 0.0),
+            (axial, 0.0, 0.0, 0.0, size),
         )
+        stiffness, lobes, phases, moved, along = np.array(modes[: 3 if contact_angle else 2]).T
+        frequencies = np.sqrt(stiffness / mass) / (2.0 * math.pi)
+        return cls(frequencies, np.full(len(lobes), ratio), lobes, phases, moved, along, contact_angle)
 
     @classmethod
     def bending(
@@ -207,17 +204,12 @@ class Around(Modal):
 
     def __post_init__(self) -> None:
         first, last = self.modes.extent
-        whole_turn = math.isclose(first, 0.0, abs_tol=1e-9) and math.isclose(
-            last, 2.0 * math.pi, rel_tol=1e-6
-        )
+        whole_turn = abs(first) <= 1e-9 and math.isclose(last, 2.0 * math.pi, rel_tol=1e-6)
         require(whole_turn, "angles of modes (rad)", f"{first:.6g} to {last:.6g}", "0 to 2π, a whole turn")
-        ends, _ = self.modes.shapes([first, last])
-        largest = float(np.abs(self.modes.shapes(np.linspace(first, last, 64))[0]).max())
-        missed = float(np.abs(ends[1] - ends[0]).max())
-        allowed, remedy = "the same shapes at 0 and 2π", "Repeat the first row at the end."
-        require(
-            missed <= CLOSED * largest, "modes around a circle", f"ends {missed:.2g} apart", allowed, remedy
-        )
+        shapes, _ = self.modes.shapes(np.linspace(first, last, 64))
+        missed, allowed = float(np.abs(shapes[-1] - shapes[0]).max()), "the same shapes at 0 and 2π"
+        closed, received = missed <= CLOSED * np.abs(shapes).max(), f"ends {missed:.2g} apart"
+        require(closed, "modes around a circle", received, allowed, "Repeat the first row at the end.")
 
     @property
     def natural_frequencies(self) -> Array:
@@ -242,7 +234,5 @@ class Around(Modal):
 
     def towards(self, angle: float, direction: Direction = "radial") -> Array:
         """As of `Ring`: outwards at an angle, rad; none axially."""
-        shapes = self.modes.shapes([angle % (2.0 * math.pi)])[0][0]
-        return np.asarray(
-            shapes if one_of("direction", direction, ("radial", "axial")) == "radial" else 0.0 * shapes
-        )
+        radial = one_of("direction", direction, ("radial", "axial")) == "radial"
+        return np.asarray(self.modes.shapes([angle % (2.0 * math.pi)])[0][0] * float(radial))

@@ -15,17 +15,7 @@ import numpy as np
 import xarray
 
 from asperity import files
-from asperity.arguments import (
-    Array,
-    ArrayLike,
-    NDArray,
-    file_path,
-    finite_array,
-    one_of,
-    positive,
-    require,
-    shown,
-)
+from asperity.arguments import Array, ArrayLike, file_path, finite_array, one_of, positive, require, shown
 from asperity.case import any_case
 from asperity.case.ball_bearing import BallBearingCase
 from asperity.errors import InputError
@@ -205,7 +195,7 @@ def _labels(member: Member, case: BallBearingCase) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for section, keys in (case.faults or {"fault": case.fault}).items():
         own = {"on": keys.on, "ball": keys.ball if keys.on == "ball" else 0}
-        (fault,) = keys.faults or (None,)
+        fault = keys.fault
         for name, missing in FAULT.items():
             given = own[name] if name in own else getattr(fault, name, missing)
             found[_titled(f"{section}.{name}")] = given if fault else missing
@@ -269,7 +259,7 @@ def read_signal(
     return values, float(rate or 0.0)
 
 
-def _of_wav(file: Path) -> tuple[float, NDArray[Any]]:
+def _of_wav(file: Path) -> tuple[float, Any]:
     from scipy.io import wavfile
 
     with warnings.catch_warnings(action="ignore"):  # of pieces that it does not know
@@ -281,7 +271,7 @@ def _of_wav(file: Path) -> tuple[float, NDArray[Any]]:
     return float(rate), values / full
 
 
-def _of_text(file: Path) -> NDArray[Any]:
+def _of_text(file: Path) -> Array:
     """Numbers of a table, below lines of words."""
     rows: list[list[float]] = []
     for line, cells in lines_of_cells(read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT)):

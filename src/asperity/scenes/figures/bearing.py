@@ -8,18 +8,6 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import (
-    BLUE,
-    GREEN,
-    INK,
-    VERMILLION,
-    Axis,
-    Line,
-    Mark,
-    Numbers,
-    Panel,
-    Shape,
-)
 from asperity.reporting.figure import Lines, Of, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
@@ -35,33 +23,33 @@ PER_OCTAVE = 96
 LOWEST = 10.0
 """Hz, from which spectra are drawn."""
 NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
-RINGS = {"inner": (VERMILLION, ()), "outer": (BLUE, (5.0, 1.5))}
+RINGS = {"inner": (chart.VERMILLION, ()), "outer": (chart.BLUE, (5.0, 1.5))}
 """Looks of lines of the contacts with each ring."""
-COLOURS = {"outer": BLUE, "inner": VERMILLION, "ball": GREEN}
+COLOURS = {"outer": chart.BLUE, "inner": chart.VERMILLION, "ball": chart.GREEN}
 """Of the parts of a bearing."""
 RIGHT_ANGLES = tuple((each, f"{each:g}") for each in (-180.0, -90.0, 0.0, 90.0, 180.0))
-AROUND = Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_ANGLES)
+AROUND = chart.Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_ANGLES)
 
 
 def _main(tree: DataTree) -> str:
     return data.main_law(tree, bearing.LINES_FOUND)
 
 
-def _degrees(azimuth: Numbers) -> Numbers:
+def _degrees(azimuth: chart.Numbers) -> chart.Numbers:
     return np.degrees(np.angle(np.exp(1j * azimuth)))
 
 
 # --- how it carries its load
 
 
-def _at(radius: Any, azimuth: Any) -> tuple[Numbers, Numbers]:
+def _at(radius: Any, azimuth: Any) -> tuple[chart.Numbers, chart.Numbers]:
     """Places on paper: the load points down, and what turns turns anticlockwise."""
     return np.atleast_1d(radius * np.sin(azimuth)), np.atleast_1d(-radius * np.cos(azimuth))
 
 
-def _round(radius: float, x: Any = 0.0, y: Any = 0.0, **look: Any) -> Shape:
+def _round(radius: float, x: Any = 0.0, y: Any = 0.0, **look: Any) -> chart.Shape:
     around = _at(radius, np.linspace(0.0, 2.0 * np.pi, CORNERS, endpoint=False))
-    return Shape(x + around[0], y + around[1], **look)
+    return chart.Shape(x + around[0], y + around[1], **look)
 
 
 @figure(
@@ -70,7 +58,7 @@ def _round(radius: float, x: Any = 0.0, y: Any = 0.0, **look: Any) -> Shape:
     Of(bearing.AZIMUTH),
     Of(bearing.BALL_LOAD, "load on the {ring} ring"),
 )
-def load_zone(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """The bearing from the side, each ball as dark as it is loaded, and its load outside."""
     azimuth, _, outer = (series.values for series in lines.lines)
     lengths = (bearing.BALL_DIAMETER, bearing.PITCH_DIAMETER, bearing.CONTACT_ANGLE)
@@ -80,14 +68,14 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     raceways = {"inner": 0.5 * pitch - half, "outer": 0.5 * pitch + half}
     rim = raceways["outer"] + RING * ball
     circles = (raceways["inner"] - RING * ball, *raceways.values(), rim)
-    marks: list[Mark] = [_round(radius, width=1.0) for radius in circles]
+    marks: list[chart.Mark] = [_round(radius, width=1.0) for radius in circles]
     for place, share in zip(azimuth, outer / max(outer.max(), 1e-300), strict=True):
         x, y = _at(0.5 * pitch, place)
-        fill = _round(0.5 * ball, x, y, fill=BLUE, colour="", opacity=0.08 + 0.8 * float(share))
+        fill = _round(0.5 * ball, x, y, fill=chart.BLUE, colour="", opacity=0.08 + 0.8 * float(share))
         marks += [fill, _round(0.5 * ball, x, y)]
         if share:
             bar = _at(rim + np.array([0.1, 0.1 + 1.3 * share]) * ball, place)
-            marks.append(Line(*bar, colour=VERMILLION, width=2.2))
+            marks.append(chart.Line(*bar, colour=chart.VERMILLION, width=2.2))
     every_fault = _faults(tree)
     for part, faults in every_fault.items():
         where, balls = (np.array(each) for each in zip(*faults, strict=True))
@@ -98,13 +86,13 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
             against = -1.0 if data.case_words(tree, "bearing.turning") == "outer" else 1.0
             (x, y), middle = _at(0.5 * ball, place + against * where), _at(0.5 * pitch, place)
         named = f"{'faults' if len(faults) > 1 else 'fault'} of the {NAMES[part]}", COLOURS[part]
-        marks.append(Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
+        marks.append(chart.Line(x + middle[0], y + middle[1], *named, width=0.0, marker="D"))
     if data.present(tree, bearing.SENSOR):
         sensors = _at(rim - 0.5 * RING * ball, data.values(tree, bearing.SENSOR))
-        marks.append(Line(*sensors, "accelerometer", INK, width=0.0, marker="^"))
-    side = Axis("mm", -rim - 1.5 * ball, rim + 1.5 * ball)
+        marks.append(chart.Line(*sensors, "accelerometer", chart.INK, width=0.0, marker="^"))
+    side = chart.Axis("mm", -rim - 1.5 * ball, rim + 1.5 * ball)
     seen = "from the side, the radial load downwards"
-    yield Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)
+    yield chart.Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)
     yield (
         "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
         "below the load; balls are as dark, and bars as long, as their static load. The bearing turns "
@@ -144,20 +132,22 @@ def _one_turn(tree: DataTree) -> slice:
     Of(bearing.OUTER_FORCE, "outer force", "on the outer ring"),
     rows=_one_turn,
 )
-def ball_turn(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def ball_turn(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """Forces over the azimuth, and behind them those at rest."""
     degrees, places = _degrees(lines.at), _degrees(data.values(tree, bearing.AZIMUTH).ravel())
     back = np.abs(np.diff(degrees, prepend=degrees[0])) > 180.0  # where the turn begins again on the left
     order, loads = np.argsort(places), data.values(tree, bearing.BALL_LOAD).reshape(2, -1)
     drawn = [
-        Line(places[order], load[order], f"static, {ring} ring", INK, RINGS[ring][1], 2.4, opacity=0.4)
+        chart.Line(
+            places[order], load[order], f"static, {ring} ring", chart.INK, RINGS[ring][1], 2.4, opacity=0.4
+        )
         for ring, load in zip(RINGS, loads, strict=True)
     ]
     drawn += [
-        Line(degrees, np.where(back, np.nan, each.values), each.label, *RINGS[ring], 0.9)
+        chart.Line(degrees, np.where(back, np.nan, each.values), each.label, *RINGS[ring], 0.9)
         for each, ring in zip(lines.lines, RINGS, strict=True)
     ]
-    yield Panel(AROUND, Axis("force / N", low=0.0), tuple(drawn), height=4.0)
+    yield chart.Panel(AROUND, chart.Axis("force / N", low=0.0), tuple(drawn), height=4.0)
     yield (
         "Contact forces of the first ball by the main law in its last turn, over the load that it has at "
         "rest."
@@ -176,18 +166,18 @@ def _some_turns(tree: DataTree) -> slice:
     Of(bearing.RING_ACCELERATION, "{law}"),
     rows=_some_turns,
 )
-def ring_acceleration(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def ring_acceleration(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """Acceleration of all laws over a few turns."""
     axis, unit = panels.time_axis(tree, lines.at)
     drawn = [replace(each, width=0.8) for each in panels.styled(tree, lines.at / unit, lines.lines)]
-    yield Panel(axis, Axis("acceleration / (m/s²)"), tuple(drawn), height=3.4)
+    yield chart.Panel(axis, chart.Axis("acceleration / (m/s²)"), tuple(drawn), height=3.4)
     yield "At the first accelerometer, radially outwards, in the first three turns of the record."
 
 
 # --- how quiet it is, and what is heard
 
 
-def _tones(tree: DataTree, highest: float) -> list[Mark]:
+def _tones(tree: DataTree, highest: float) -> list[chart.Mark]:
     """Tones of the parts and their multiples."""
     count = len(data.values(tree, bearing.HARMONIC))
     return [
@@ -205,7 +195,7 @@ def _orders(tree: DataTree) -> chart.Second:
 
 
 @figure("Spectrum of the radial velocity", Of(spectra.FREQUENCY), Of(bearing.VELOCITY_AMPLITUDE, "{law}"))
-def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """Highest lines in stretches of an octave, in dB, and the tones of the parts."""
     kept = lines.at >= LOWEST
     frequency = lines.at[kept]
@@ -217,7 +207,7 @@ def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     drawn = panels.styled(tree, frequency[starts], levels)
     along = replace(panels.frequency_axis(LOWEST, frequency[-1]), second=_orders(tree))
     across = panels.levels_axis("amplitude of the velocity / dB re 1 µm/s", [each.y for each in drawn], 100.0)
-    yield Panel(along, across, (*_tones(tree, frequency[-1]), *drawn), height=4.4)
+    yield chart.Panel(along, across, (*_tones(tree, frequency[-1]), *drawn), height=4.4)
     yield (
         "Lines of the radial velocity of the outer ring at the first accelerometer; the highest of each 1/96 "
         "octave. Dashed: at which frequencies the places of a part are met, in pure rolling."
@@ -225,22 +215,22 @@ def velocity_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 
 @figure("Envelope spectrum", Of(bearing.ENVELOPE_FREQUENCY), Of(bearing.ENVELOPE, "{law}"))
-def envelope_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+def envelope_spectrum(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     """Envelope of all laws, and what of it the main law's lines are."""
     highest = float(lines.at[-1])
     main = _main(tree)
     found = data.of_law(tree, bearing.LINES_FOUND, main)
     where, size = (data.of_law(tree, each, main) for each in (bearing.LINE_FREQUENCY, bearing.LINE_AMPLITUDE))
     marks = [
-        Line(where[row], size[row], f"{NAMES[part]}: found", COLOURS[part], width=0.0, marker="o")
+        chart.Line(where[row], size[row], f"{NAMES[part]}: found", COLOURS[part], width=0.0, marker="o")
         for row, part in enumerate(data.words(tree, bearing.PART))
         if found[row]
     ]
     drawn = [replace(each, width=0.9) for each in panels.styled(tree, lines.at, lines.lines)]
-    along = Axis("frequency / Hz", 0.0, highest, second=_orders(tree))
+    along = chart.Axis("frequency / Hz", 0.0, highest, second=_orders(tree))
     units = str(data.variable_of(tree, bearing.ENVELOPE).attrs["units"]).replace("m/s2", "(m/s²)")
-    across = Axis(f"amplitude of the envelope / {units}", low=0.0)
-    yield Panel(along, across, (*_tones(tree, highest), *drawn, *marks), height=4.4)
+    across = chart.Axis(f"amplitude of the envelope / {units}", low=0.0)
+    yield chart.Panel(along, across, (*_tones(tree, highest), *drawn, *marks), height=4.4)
     low, high = (data.number(tree, each) or 0.0 for each in (bearing.ENVELOPE_LOW, bearing.ENVELOPE_HIGH))
     yield (
         "How evenly the outer ring is struck: lines in the envelope of its acceleration between "
