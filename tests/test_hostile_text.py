@@ -87,10 +87,6 @@ REFUSED = [
     # a key is never taken for the place of an error
     *((case, f"a = {{ x = 1 }}\na.{key}.y = 2", "no TOML")
       for key in ("'at line 9999'", "'(at line 9999, column 1)'", "'\\'")),
-    (case, f'speed = "5e-324 m/s"{ROUGH}', "speed: received '5e-324 m/s'.*between 1e-30 and 1e[+]30"),
-    (case, f'duration = "1e31 s"{ROUGH}', "duration: .*between 1e-30 and 1e[+]30"),
-    (case, f'numerics.highest_frequency = "1e300 Hz"{ROUGH}', "numerics.highest_frequency: .*between"),
-    (case, f"numerics.rtol = 1e-300{ROUGH}", "numerics.rtol: received 1e-300"),
     (case, f"seed = {'1' * 400}{ROUGH}", "seed: received 1111"),
     (study, 'ball.load = ["1 N"]\n"ball.load" = ["2 N", "3 N"]', TWICE),
     (study, '"ball.load" = ["1 N"]\n[sweep.ball]\nload = ["2 N"]', TWICE),

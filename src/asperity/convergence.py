@@ -110,7 +110,7 @@ def _both(
     prepared: PreparedCase, base: xarray.Dataset, setting: Setting, way: Way, progress: Progress
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the finer and of the coarser computation; `base` are those of the case."""
-    changed = changed_case(prepared, way)
+    changed = prepare(prepared.case.with_(**way.changes))
     if not setting.laid_anew:
         return _levels(changed.case, "", lambda: changed, progress), base
     small, large = (changed, prepared) if way.coarser else (prepared, changed)
@@ -119,11 +119,6 @@ def _both(
     if way.coarser:
         return base, twin
     return _levels(changed.case, "", lambda: changed, progress), twin
-
-
-def changed_case(prepared: PreparedCase, way: Way) -> PreparedCase:
-    """The case with a setting changed."""
-    return prepare(prepared.case.with_(**way.changes))
 
 
 def on_the_surface_of(small: PreparedCase, large: PreparedCase) -> PreparedCase:

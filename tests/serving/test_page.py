@@ -185,15 +185,6 @@ def test_a_bad_upload_is_refused_and_a_good_one_is_pressed(tab, served, tmp_path
     tab.wait_for_selector("#contact-note:has-text('samples measured, good.txt')")
 
 
-def test_a_gigabyte_is_refused(tab, tmp_path):
-    vast = tmp_path / "vast.npy"
-    with vast.open("wb") as file:
-        file.truncate(2**30)  # it takes no space
-    tab.set_input_files("#surface-file", vast)
-    tab.wait_for_selector("#upload-state.alert")
-    assert "received 1024 MiB; allowed: at most 256 MiB" in tab.inner_text("#upload-state")
-
-
 def test_without_the_token_there_is_nothing(served):
     path = urlsplit(served.address).path
     status, words = served.ask(f"{path[:-3]}/ask/runs")

@@ -49,15 +49,9 @@ def tabulated(
                 places = [_places(coordinates[str(dim)], table[dim].values) for dim in first.dims]
                 here: tuple[Any, ...] = (*index, ...)
                 values[here][np.ix_(*places)] = table[name].values
-        variables[name] = xarray.Variable((*swept, *first.dims), values, first.attrs | _missing(values))
+        gaps = {} if np.isfinite(values).all() else {"missing": "the member failed, or has no such value"}
+        variables[name] = xarray.Variable((*swept, *first.dims), values, first.attrs | gaps)
     return xarray.Dataset(variables, attrs=_attributes(study, members, ordered, failures))
-
-
-def _missing(values: NDArray[Any]) -> dict[str, str]:
-    """Say why values of a quantity are missing, where some are."""
-    if values.dtype.kind != "f" or np.isfinite(values).all():
-        return {}
-    return {"missing": "the member failed, or has no such value"}
 
 
 def _first_of_each(tables: Sequence[xarray.Dataset]) -> dict[str, xarray.Variable]:
