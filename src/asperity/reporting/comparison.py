@@ -10,12 +10,13 @@ import xarray
 
 from asperity.reporting import chart, data
 from asperity.results import variable
-from asperity.schema import Attribute, Entry, contact, provenance, rolling, spectra
+from asperity.schema import Entry, contact, provenance, rolling, spectra
 from asperity.spectra import a_weighted_total, level_of
 
 POINTS_PER_DECADE = 40
 """Wavenumbers at which filters are compared."""
 NO_VALUE = "the run does not have it"
+ALL_BANDS = ", all bands of the run"
 DEVIATION = "level_deviation"
 MAIN = "main law"
 """Stands for the first law of each run where those differ."""
@@ -28,6 +29,8 @@ OF_FORCE: Mapping[str, tuple[str, Entry, Callable[[Any], Any]]] = {
 _WORKING = (contact.WORKING_LOAD, contact.WORKING_APPROACH, contact.WORKING_STIFFNESS)
 OF_CONTACT = (*_WORKING, contact.CONTACT_AREA_RATIO)
 """Attributes of the reduced contact that are compared."""
+RATIOS = (contact.WORKING_STIFFNESS.name, "stiffness")
+"""Quantities of which 20 lg of the ratio is told in place of the difference."""
 Variables = dict[str, xarray.Variable]
 Curve = tuple[chart.Numbers, chart.Numbers]
 
@@ -79,20 +82,17 @@ def compared(runs: Sequence[NamedRun], levels: Sequence[Entry]) -> ComparedRuns:
     every = list(dict.fromkeys(law for run in runs for law in run.laws))
     mains = {run.laws[0] for run in runs if run.laws}
     laws = [MAIN, *every] if len(mains) > 1 else every
-    found = {
-        "run": variable("run", np.array([run.name for run in runs]), "1", "run, the first the reference"),
-        "law": variable("law", np.array(laws), "1", "contact law"),
-    }
-    found |= _levels(runs, laws, levels) | _of_laws(runs, laws) | _of_contacts(runs)
-    found |= _stiffness(runs) | _filters(runs)
-    attrs = {"cases": json.dumps(_differing_keys(runs), ensure_ascii=False)}
-    table = xarray.Dataset(found, attrs=attrs)
+    pieces = [_of_run(run, levels, main=MAIN in laws) for run in runs]
+    told = {str(name): values.attrs for piece in pieces for name, values in piece.data_vars.items()}
+    table = xarray.concat(pieces, "run", data_vars="all", join="outer", combine_attrs="drop")
+    found = _with_differences(table.reindex(law=laws)[list(told)].assign(run=[r.name for r in runs]), told)
+    found.attrs["cases"] = json.dumps(_differing_keys(runs), ensure_ascii=False)
     own = {
-        entry: [n for n in found if f"{n}_a" in found and (n == entry.name or n.startswith(f"{entry.name}_"))]
+        entry: [n for n in told if f"{n}_a" in told and (n == entry.name or n.startswith(f"{entry.name}_"))]
         for entry in levels
     }
-    told = {each[-1]: found[each[-1]].attrs["long_name"] for each in own.values() if each}
-    return ComparedRuns(runs, table, {n: str(what).partition(", energy mean")[0] for n, what in told.items()})
+    shown = {each[-1]: str(told[each[-1]]["long_name"]) for each in own.values() if each}
+    return ComparedRuns(runs, found, {n: what.partition(", energy mean")[0] for n, what in shown.items()})
 
 
 def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
@@ -108,65 +108,95 @@ def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
     return [item for item in found if not of_kinds or None not in item["values"]]
 
 
-def _by_law(
-    runs: Sequence[NamedRun], laws: Sequence[str], held: Sequence[xarray.DataArray | None], **places: Any
-) -> chart.Numbers:
-    """Numbers of runs by the laws of the comparison, and at common places; NaN where a run lacks them."""
-    rows = []
-    for run, found in zip(runs, held, strict=True):
-        own = [next(iter(run.laws), "") if law == MAIN else law for law in laws]
-        empty = np.full((len(laws), *map(len, places.values())), np.nan)
-        rows.append(empty if found is None else found.reindex(law=own, **places).values)
-    return np.stack(rows)
+def _of_run(run: NamedRun, levels: Sequence[Entry], *, main: bool) -> xarray.Dataset:
+    """Quantities of one run by law, place of a band, approach, and step of the wavenumber.
+
+    The `main` law stands under this name as well, where runs differ in it.
+    """
+    tree, found = run.tree, dict[str, xarray.DataArray]()
+
+    def add(name: str, values: xarray.DataArray, units: str, meaning: str) -> None:
+        found[name] = values.reset_coords(drop=True).assign_attrs(units=units, long_name=meaning)
+
+    for entry in levels:
+        for name, meaning, level in _pieces(tree, entry):
+            add(name, level, entry.units, meaning)
+            total = xarray.DataArray(a_weighted_total(level, _centres(level)), {"law": level["law"]})
+            units = entry.units.replace("dB", "dB(A)")
+            add(f"{name}_a", total, units, f"A-weighted {meaning}{ALL_BANDS}")
+    if levels and data.present(tree, spectra.LEVEL_DEVIATION, spectra.BAND):
+        meaning = "standard deviation of a level by the chance of one record"
+        add(DEVIATION, _placed(data.variable_of(tree, spectra.LEVEL_DEVIATION)), "dB", meaning)
+    for name, (meaning, entry, reduce) in OF_FORCE.items():
+        of_laws = {law: float(reduce(data.of_law(tree, entry, law))) for law in data.laws(tree, entry)}
+        numbers = xarray.DataArray(list(of_laws.values()), {"law": list(of_laws)})
+        add(name, numbers, entry.units, meaning)
+    for of in OF_CONTACT:
+        number = data.number(tree, of)
+        add(of.name, xarray.DataArray(np.nan if number is None else number), of.units, of.meaning)
+    if data.present(tree, contact.APPROACH, contact.STIFFNESS):
+        stiffness = data.variable_of(tree, contact.STIFFNESS).dropna("approach")
+        meaning = "contact stiffness F/r, mean of the samples"
+        add("stiffness", stiffness, contact.STIFFNESS.units, meaning)
+    if (curve := working_filter(tree)) is not None:
+        wavenumber, magnitude = curve
+        low, high = np.log10(wavenumber[[0, -1]]) * POINTS_PER_DECADE
+        step = np.arange(np.ceil(low - 1e-9), np.floor(high + 1e-9) + 1)
+        there = np.interp(np.log(10.0 ** (step / POINTS_PER_DECADE)), np.log(wavenumber), magnitude)
+        meaning = "magnitude of the fitted contact filter at the working approach"
+        add("filter", xarray.DataArray(there, {"step": step}), "dB", meaning)
+    held = xarray.Dataset(found)
+    if main and run.laws:
+        held = xarray.concat([held.sel(law=run.laws[:1]).assign_coords(law=[MAIN]), held], "law", "minimal")
+    return held
+
+
+def _with_differences(table: xarray.Dataset, told: Mapping[str, Mapping[str, str]]) -> xarray.Dataset:
+    """Quantities of all runs by band and wavenumber, and what they differ by from those of the first."""
+    axes = {"run": ("run", "1", "run, the first the reference"), "law": ("law", "1", "contact law")}
+    if "place" in table.dims:
+        table = table.assign_coords(place=_centres(table))
+        axes["place"] = ("band", "Hz", spectra.BAND.long_name)
+    if "step" in table.dims:
+        table = table.assign_coords(step=10.0 ** (table["step"] / POINTS_PER_DECADE))
+        axes["step"] = ("wavenumber", "1/m", contact.WAVENUMBER.long_name)
+    if "approach" in table.dims:
+        table["stiffness"] = table["stiffness"].interpolate_na("approach")
+        axes["approach"] = ("approach", "m", contact.APPROACH.long_name)
+    found: Variables = {
+        name: variable(name, table[dim].values, units, meaning)
+        for dim, (name, units, meaning) in axes.items()
+    }
+    for name, attrs in told.items():
+        values, dims = table[name].values, [axes[str(dim)][0] for dim in table[name].dims]
+        found[name] = _variable(dims, values, attrs["units"], attrs["long_name"])
+        less, how = values - values[:1], f"{attrs['long_name']}, less that of the first run"
+        if name in RATIOS:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                less = 20.0 * np.log10(values / values[:1])
+            how = f"{attrs['long_name']}: 20 lg of the ratio to the first run"
+        elif (level := name.removesuffix("_a")) in told and level != name:
+            by_band, bands = table[level].values, table["place"].values
+            shared = np.isfinite(by_band) & np.isfinite(by_band[:1])
+            own, first = (np.where(shared, each, np.nan) for each in (by_band, by_band[:1]))
+            less = a_weighted_total(own, bands) - a_weighted_total(first, bands)
+            meaning = attrs["long_name"].removesuffix(ALL_BANDS)
+            how = f"{meaning}, less that of the first run, over the bands of both"
+        elif f"{name}_a" not in told and name != "filter":
+            continue
+        found[f"{name}_difference"] = _variable(dims, less, "dB", how)
+    return xarray.Dataset(found)
 
 
 def _variable(dims: Sequence[str], numbers: chart.Numbers, units: str, meaning: str) -> xarray.Variable:
     finite = np.where(np.isfinite(numbers), numbers, np.nan)
-    told = {} if np.isfinite(finite).all() else {"missing": NO_VALUE}
-    return variable(("run", *dims), finite, units, meaning, **told)
+    missing = {} if np.isfinite(finite).all() else {"missing": NO_VALUE}
+    return variable(dims, finite, units, meaning, **missing)
 
 
-def _with_difference(
-    name: str, dims: Sequence[str], numbers: chart.Numbers, units: str, meaning: str, *, ratio: bool = False
-) -> Variables:
-    """Numbers of runs, and their differences to the first, or 20 lg of their ratios to it."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        less = 20.0 * np.log10(numbers / numbers[:1]) if ratio else numbers - numbers[:1]
-    how = ": 20 lg of the ratio to the first run" if ratio else ", less that of the first run"
-    return {
-        name: _variable(dims, numbers, units, meaning),
-        f"{name}_difference": _variable(dims, less, "dB", f"{meaning}{how}"),
-    }
-
-
-# --- levels
-
-
-def _levels(runs: Sequence[NamedRun], laws: Sequence[str], entries: Sequence[Entry]) -> Variables:
-    """Levels by run, law and band, A-weighted totals, and what chance makes of a level."""
-    pieces: dict[tuple[str, str, str], list[xarray.DataArray | None]] = {}
-    for entry in entries:
-        for r, run in enumerate(runs):
-            for name, meaning, level in _pieces(run.tree, entry):
-                pieces.setdefault((name, entry.units, meaning), [None] * len(runs))[r] = level
-    every = (level for held in pieces.values() for level in held if level is not None)
-    places = sorted({int(place) for level in every for place in level["place"]})
-    if not places:
-        return {}
-    band = np.array([10.0 ** (place / 10.0) for place in places])
-    found = {"band": variable("band", band, "Hz", spectra.BAND.long_name)}
-    for (name, units, meaning), held in pieces.items():
-        numbers = _by_law(runs, laws, held, place=places)
-        found |= _with_difference(name, ("law", "band"), numbers, units, meaning)
-        found |= _weighted(name, numbers, band, units, meaning)
-    deviation = [
-        _placed(data.variable_of(run.tree, spectra.LEVEL_DEVIATION)).reindex(place=places).values
-        if data.present(run.tree, spectra.LEVEL_DEVIATION, spectra.BAND)
-        else np.full(len(places), np.nan)
-        for run in runs
-    ]
-    meaning = "standard deviation of a level by the chance of one record"
-    return found | {DEVIATION: _variable(("band",), np.array(deviation), "dB", meaning)}
+def _centres(found: xarray.Dataset | xarray.DataArray) -> chart.Numbers:
+    """Centres of bands, Hz, by their places."""
+    return np.array([10.0 ** (place / 10.0) for place in found["place"].values.tolist()])
 
 
 def _placed(found: xarray.DataArray) -> xarray.DataArray:
@@ -190,86 +220,6 @@ def _pieces(tree: xarray.DataTree, entry: Entry) -> Iterator[tuple[str, str, xar
         mean = (10.0 ** (found / 10.0)).mean(others).transpose("law", "place")
         found = mean.copy(data=level_of(mean.values))
     yield entry.name, entry.long_name + (", energy mean of the places" if others else ""), found
-
-
-def _weighted(name: str, level: chart.Numbers, band: chart.Numbers, units: str, meaning: str) -> Variables:
-    """A-weighted totals, and their differences over the bands that a run shares with the first."""
-    shared = np.isfinite(level) & np.isfinite(level[:1])
-    own, first = (a_weighted_total(np.where(shared, each, np.nan), band) for each in (level, level[:1]))
-    what, total = f"A-weighted {meaning}", a_weighted_total(level, band)
-    told = f"{what}, less that of the first run, over the bands of both"
-    weighted = _variable(("law",), total, units.replace("dB", "dB(A)"), f"{what}, all bands of the run")
-    return {f"{name}_a": weighted, f"{name}_a_difference": _variable(("law",), own - first, "dB", told)}
-
-
-# --- numbers by law and by run
-
-
-def _of_laws(runs: Sequence[NamedRun], laws: Sequence[str]) -> Variables:
-    """Mean, rms and peak of the force, and the loss of contact."""
-
-    def numbers(run: NamedRun, entry: Entry, reduce: Callable[[Any], Any]) -> xarray.DataArray | None:
-        names = data.laws(run.tree, entry)
-        found = [float(reduce(data.of_law(run.tree, entry, law))) for law in names]
-        return xarray.DataArray(found, {"law": names}) if names else None
-
-    found: Variables = {}
-    for name, (meaning, entry, reduce) in OF_FORCE.items():
-        by_law = _by_law(runs, laws, [numbers(run, entry, reduce) for run in runs])
-        found[name] = _variable(("law",), by_law, entry.units, meaning)
-    return found
-
-
-def _of_contacts(runs: Sequence[NamedRun]) -> Variables:
-    """Numbers of the contact under the load; of the stiffness also 20 lg of the ratio."""
-
-    def held(of: Attribute) -> chart.Numbers:
-        return np.array([np.nan if (n := data.number(r.tree, of)) is None else n for r in runs])
-
-    found = {of.name: _variable((), held(of), of.units, of.meaning) for of in OF_CONTACT}
-    of, name = contact.WORKING_STIFFNESS, f"{contact.WORKING_STIFFNESS.name}_difference"
-    return found | {name: _with_difference(of.name, (), held(of), "", of.meaning, ratio=True)[name]}
-
-
-# --- the contact over approach and wavenumber
-
-
-def _between(x: chart.Numbers, curves: Sequence[Curve | None]) -> chart.Numbers:
-    """Curves of all runs at common places (runs, n), straight between their own and NaN beyond."""
-    nothing = np.full(len(x), np.nan)
-    return np.stack([nothing if c is None else np.interp(x, *c, left=np.nan, right=np.nan) for c in curves])
-
-
-def _stiffness(runs: Sequence[NamedRun]) -> Variables:
-    """k_c of all runs at the approaches of all."""
-    held: list[Curve | None] = [None] * len(runs)
-    for r, run in enumerate(runs):
-        if data.present(run.tree, contact.APPROACH, contact.STIFFNESS):
-            x, y = data.values(run.tree, contact.APPROACH), data.values(run.tree, contact.STIFFNESS)
-            held[r] = x[np.isfinite(y)], y[np.isfinite(y)]
-    every = [curve[0] for curve in held if curve is not None]
-    if not every:
-        return {}
-    approach = np.unique(np.concatenate(every))
-    axis = variable("approach", approach, "m", contact.APPROACH.long_name)
-    meaning, units = "contact stiffness F/r, mean of the samples", contact.STIFFNESS.units
-    numbers = _between(approach, held)
-    found = _with_difference("stiffness", ("approach",), numbers, units, meaning, ratio=True)
-    return {"approach": axis} | found
-
-
-def _filters(runs: Sequence[NamedRun]) -> Variables:
-    """Magnitude of the contact filter of all runs at the working approach, in dB."""
-    held = [working_filter(run.tree) for run in runs]
-    every = np.concatenate([np.zeros(0), *(curve[0] for curve in held if curve is not None)])
-    if not every.size:
-        return {}
-    low, high = (np.log10(edge) * POINTS_PER_DECADE for edge in (every.min(), every.max()))
-    wavenumber = 10.0 ** (np.arange(np.ceil(low - 1e-9), np.floor(high + 1e-9) + 1) / POINTS_PER_DECADE)
-    axis = variable("wavenumber", wavenumber, "1/m", contact.WAVENUMBER.long_name)
-    level = _between(np.log(wavenumber), [None if c is None else (np.log(c[0]), c[1]) for c in held])
-    meaning = "magnitude of the fitted contact filter at the working approach"
-    return {"wavenumber": axis} | _with_difference("filter", ("wavenumber",), level, "dB", meaning)
 
 
 def working_filter(tree: xarray.DataTree) -> Curve | None:
