@@ -153,7 +153,8 @@ def test_spectra_integrate_to_the_mean_square_under_their_windows():
     assert_allclose(areal.sum() * (qx[1] - qx[0]) * (qy[1] - qy[0]), expected, rtol=1e-12)
     for axis, weight in enumerate((along, across)):
         wavenumber, profile = spectra.psd_1d(surface, axis)
-        expected = np.average((z**2).mean(axis=1 - axis), weights=weight)
+        of_lines = z - z.mean(axis=axis, keepdims=True)
+        expected = np.average((of_lines**2).mean(axis=1 - axis), weights=weight)
         assert_allclose(profile.sum() * wavenumber[1], expected, rtol=1e-12)
 
 

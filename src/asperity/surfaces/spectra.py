@@ -6,7 +6,7 @@ from scipy import fft
 
 from asperity.arguments import Array, require
 from asperity.errors import ShortRecordWarning
-from asperity.spectra import hann_window
+from asperity.spectra import hann_window, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.threads import thread_count
 
@@ -14,17 +14,12 @@ from asperity.threads import thread_count
 def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     """One-sided profile spectrum along an axis, averaged over all lines: wavenumber, cycles/m, and PSD, m³.
 
-    The heights are complete and levelled, m; the mean of the surface is removed, not that of each line. The
-    integral of the PSD is Sq², weighted by the squared Hann window.
+    The heights are complete and levelled, m; the mean of each line is removed. The integral of the PSD is
+    Rq², weighted by the squared Hann window.
     """
     lines = np.moveaxis(_complete(surface), axis, -1)
-    spacing = float(np.atleast_1d(surface.spacing)[axis])
-    length, window = lines.shape[-1], hann_window(lines.shape[-1])
-    density = np.abs(fft.rfft(lines * window, axis=-1)) ** 2 * (2.0 * spacing / np.sum(window**2))
-    density[..., 0] /= 2.0
-    if length % 2 == 0:
-        density[..., -1] /= 2.0
-    return fft.rfftfreq(length, spacing), density.reshape(-1, density.shape[-1]).mean(axis=0)
+    wavenumber, density = psd(lines, float(np.atleast_1d(surface.spacing)[axis]))
+    return wavenumber, density.reshape(-1, wavenumber.size).mean(axis=0)
 
 
 def _complete(surface: HeightMap | Profile) -> Array:
