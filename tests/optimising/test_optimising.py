@@ -1,13 +1,11 @@
 """From a case to a texture that was rolled over: quieter within its limits, by another law too."""
 
 import csv
-import errno
 import json
 import os
 import re
 import shutil
 from pathlib import Path
-from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -97,10 +95,6 @@ def again(folder, tmp_path, monkeypatch):
     return lambda *words: optimised(tmp_path, *words)
 
 
-def contents(place):
-    return {path.relative_to(place): path.read_bytes() for path in place.rglob("*.*") if path.is_file()}
-
-
 @pytest.mark.parametrize("written", ["texture.csv", "case.toml"])
 def test_interrupted_at_its_end_the_same_command_goes_on(again, tmp_path, monkeypatch, written):
     """Whether what it has found lies in the folder by then, or only a part of it."""
@@ -117,15 +111,6 @@ def test_interrupted_at_its_end_the_same_command_goes_on(again, tmp_path, monkey
         assert again().exit_code == 130
     assert again().exit_code == 0
     assert not list(tmp_path.rglob("*.part"))
-
-
-def test_what_was_found_earlier_stays_whole_until_all_is_there_that_replaces_it(again, tmp_path, monkeypatch):
-    before = contents(tmp_path / "out")
-    full = OSError(errno.ENOSPC, "full")
-    with monkeypatch.context() as patch:
-        patch.setattr(optimising, "write_csv", Mock(side_effect=[None, full]))
-        assert again("--overwrite").exit_code == 3
-    assert contents(tmp_path / "out") == before
 
 
 @pytest.mark.parametrize("file", ["aim.toml", "out/case.toml"])
