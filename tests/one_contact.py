@@ -13,7 +13,7 @@ from asperity.structures.rail_poles import RailBetween
 
 OF_CONTACTS = (
     "positions", "contact_force", "relative_displacement", "over_displacement", "rolling_displacement",
-    "in_contact", "contact_loss",
+    "in_contact", "flights",
 )  # fmt: skip
 
 

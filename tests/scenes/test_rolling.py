@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from asperity.laws import HertzLaw, Linear, Printed, Shifted
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.roll import contact_losses
+from asperity.rolling.roll import RolledBodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import GRAVITY, Body
 from one_contact import Shelf, Stepped, roll_ball
@@ -89,9 +90,9 @@ def test_ball_leaves_a_step_on_a_parabola():
     drop, x = 20e-6, np.arange(0.29, 0.35, 1e-5)
     texture = StateTexture.unfiltered(0.5 * drop * (1 + np.tanh((x - 0.305) / 2e-5)), 1e-5, 0.29)
     run = rolled(HertzLaw(K, texture), duration=0.008)
-    first = run.contact_loss[0]
-    assert_allclose(first.start, 0.005, atol=1e-4)
-    flying = (run.time >= first.start) & (run.time < first.start + first.duration)
+    start, duration = (each[0] for each in run.flights)
+    assert_allclose(start, 0.005, atol=1e-4)
+    flying = (run.time >= start) & (run.time < start + duration)
     assert flying.sum() > 50
     # half a step is needed to lose the force that stood at the last touch
     fall = np.diff(run.rolling_displacement[flying][1:], 2) / 1e-10
@@ -100,15 +101,18 @@ def test_ball_leaves_a_step_on_a_parabola():
 
 
 def test_flights_are_found():
-    events = contact_losses(np.array([1, 1, 0, 0, 1, 0, 1, 1, 1], dtype=bool), 0.5)
-    assert [(e.start, e.duration) for e in events] == [(0.0, 1.0), (2.0, 0.5), (3.0, 1.5)]
+    in_contact = np.array([[0, 0, 1, 1, 0, 1, 0, 0, 0], np.ones(9)], dtype=bool)
+    record = SimpleNamespace(time=0.5 * np.arange(9), in_contact=in_contact)
+    (starts, durations), (never, _) = RolledBodies.flights.fget(record)
+    assert (starts.tolist(), durations.tolist()) == ([0.0, 2.0, 3.0], [1.0, 0.5, 1.5])
+    assert not len(never)
 
 
 def test_a_linear_contact_pulls_and_is_never_lost_and_printed_flies_though_its_damper_acts():
     texture = rough_texture(1e-6)
     run = rolled(Linear(LOAD, 2e7, 0.0, texture))
     assert run.contact_force.min() < 0.0
-    assert run.contact_loss == []
+    assert not len(run.flights[0])
     run = rolled(Printed(HERTZ, texture, datum=0.0, damping=20.0))
     assert 0.0 < run.in_contact.mean() < 1.0
     assert np.all(run.contact_force[~run.in_contact][1:] != 0.0)

@@ -12,7 +12,7 @@ from asperity.structures.body import Wheel
 from asperity.structures.causal_track import causal_track
 from asperity.structures.mobility import dissipated_power
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
-from asperity.structures.support import BendingSleeper, RigidMass, Spring, TunedDamper
+from asperity.structures.support import BendingSleeper, RigidMass, Spring, tuned_damper
 from asperity.structures.track_parameters import Bays
 from refusals import refusals
 from superposed import free_rail, superposed
@@ -86,7 +86,7 @@ def test_rail_dampers_are_superposed_points():
     track, pairs = timoshenko(**DAMPERS), ((0.0, 0.0), (0.3, 0.3), (1.27, 0.1))
     for frequency in (120.0, 800.0, 1063.0):
         omega = 2.0 * np.pi * frequency
-        points = [each.stiffness(omega) for each in (track.support, TunedDamper(15.0, 800.0, 0.35))]
+        points = [each.stiffness(omega) for each in (track.support, tuned_damper(15.0, 800.0, 0.35))]
         stiffness = np.resize(points, 1001)
         expected = superposed(free_rail(track, omega), stiffness, 0.3 * (np.arange(1001) - 500), pairs)
         found = [track.receptance(frequency, *pair) for pair in pairs]
@@ -103,12 +103,10 @@ def test_bays_with_dampers_that_do_not_differ_are_one_bay():
 
 def test_a_damper_is_a_mass_on_a_spring():
     """Against the matrix of a mass that carries it; at its frequency its spring is as stated."""
-    damper = TunedDamper(15.0, 800.0, 0.35)
-    spring = damper.spring(OMEGA)
-    assert damper.spring(2.0 * np.pi * 800.0) == pytest.approx(
-        15.0 * (2.0 * np.pi * 800.0) ** 2 * (1 + 0.35j)
-    )
-    for omega, k, found in zip(OMEGA, spring, damper.stiffness(OMEGA), strict=True):
+    damper = tuned_damper(15.0, 800.0, 0.35)
+    spring = damper.elements[0].stiffness
+    assert spring(2.0 * np.pi * 800.0) == pytest.approx(15.0 * (2.0 * np.pi * 800.0) ** 2 * (1 + 0.35j))
+    for omega, k, found in zip(OMEGA, spring(OMEGA), damper.stiffness(OMEGA), strict=True):
         inverse = np.linalg.inv([[k + 2e8 - 40.0 * omega**2, -k], [-k, k - 15.0 * omega**2]])
         assert 1.0 / (found + 2e8 - 40.0 * omega**2) == pytest.approx(inverse[0, 0], rel=1e-12, abs=0.0)
 

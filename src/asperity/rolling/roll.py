@@ -63,11 +63,20 @@ class RolledBodies:
     degrees_of_freedom: tuple[Array, ...]  # of each body (d, n), m or rad, positive upwards
     acceleration: Array  # (sensors, n), of what is rolled over, m/s², positive downwards
     in_contact: NDArray[np.bool_]  # (c, n), whether the surfaces touch
-    contact_loss: tuple[list[ContactLoss], ...]  # flights at each contact
     energy: Ledger  # where the work of the loads went, in run-in and run
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
     outcome: errors.Outcome  # whether all steps converged
+
+    @property
+    def flights(self) -> list[tuple[Array, Array]]:
+        """When each contact is lost, and how long for, s."""
+        none, step, found = np.zeros(1, dtype=bool), self.time[1], []
+        for touching in self.in_contact:
+            edges = np.diff(np.concatenate([none, ~touching, none]).astype(np.int8))
+            starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+            found.append((starts * step, (ends - starts) * step))
+        return found
 
 
 def roll_bodies(
@@ -166,7 +175,6 @@ def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, f
         history_start=path.starts,
         degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
         in_contact=~apart,
-        contact_loss=tuple(contact_losses(each, path.time_step) for each in apart),
         energy=ledger_of(stepper, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),
@@ -204,24 +212,6 @@ def ledger_of(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
         "slope of the structure": ledger[stepping.SLOPE_WORK],
     }
     return Ledger(shares, ledger[stepping.CONTACT_DAMPING], ledger[stepping.THROUGHPUT])
-
-
-@dataclass(frozen=True)
-class ContactLoss:
-    """One flight."""
-
-    start: float  # time of the first sample out of contact, s
-    duration: float  # samples out of contact times the time step, s
-
-
-def contact_losses(flying: NDArray[np.bool_], time_step: float) -> list[ContactLoss]:
-    """Flights in a record, in order of time; `flying` (n,) says whether bodies are apart; time step in s."""
-    edges = np.diff(np.concatenate([[False], np.asarray(flying, dtype=bool), [False]]).astype(np.int8))
-    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return [
-        ContactLoss(float(start * time_step), float((end - start) * time_step))
-        for start, end in zip(starts, ends, strict=True)
-    ]
 
 
 def flying(prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:

@@ -172,7 +172,8 @@ def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
 def rolling_group(computed: Computed) -> Values:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
     case, scene, stack, first = computed.case, computed.scene, computed.stacked, computed.first
-    runs, losses = computed.runs.values(), [run.contact_loss for run in computed.runs.values()]
+    runs = computed.runs.values()
+    lost = [[duration for _, duration in run.flights] for run in runs]
     over, rolls = (getattr(schema, name.upper()) for name in case.DISPLACEMENTS)
     laid_out: Values = {
         rolling.LAW: list(computed.runs),
@@ -186,10 +187,8 @@ def rolling_group(computed: Computed) -> Values:
         over: stack("over_displacement"),
         rolls: stack("rolling_displacement"),
         rolling.CONTACT_LOSS_SHARE: 1.0 - stack("in_contact").mean(axis=-1),
-        rolling.CONTACT_LOSS_EVENTS: [[len(flights) for flights in run] for run in losses],
-        rolling.LONGEST_LOSS: [
-            [max((flight.duration for flight in flights), default=0.0) for flights in run] for run in losses
-        ],
+        rolling.CONTACT_LOSS_EVENTS: [[len(durations) for durations in run] for run in lost],
+        rolling.LONGEST_LOSS: [[durations.max(initial=0.0) for durations in run] for run in lost],
         schema.ROLLING_DEGREE: list(scene.degrees),
         schema.BODY_DISPLACEMENT: _motion(computed),
         schema.ENERGY_TERM: list(first.energy.shares),

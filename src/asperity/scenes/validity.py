@@ -281,11 +281,11 @@ def _varies(run: RolledBodies) -> str:
 
 def _contact(run: RolledBodies, body: str) -> str:
     """Say how often the contact of a body is lost; of several contacts, which, and how much of the time."""
-    share, (first, *others) = 100.0 * (1.0 - run.in_contact.mean(axis=-1)), run.contact_loss
-    if not others and not first:
+    share, (starts, _), one = 100.0 * (1.0 - run.in_contact.mean(axis=-1)), run.flights[0], len(run.body) == 1
+    if one and not len(starts):
         return f"The {body} never loses contact"
-    if not others:
-        times = f"{len(first)} time{'s' if len(first) > 1 else ''}"
+    if one:
+        times = f"{len(starts)} time{'s' if len(starts) > 1 else ''}"
         return f"The {body} loses contact {times}, {share[0]:.2g} % of the time"
     lost = [f"{k + 1} ({part:.2g} %)" for k, part in enumerate(share) if part > 0.0]
     if not lost:

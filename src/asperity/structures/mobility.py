@@ -168,17 +168,15 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
     """
     at = np.atleast_1d(finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0))
     field = _Field(track, 2.0 * np.pi * at, real("position of the force (m)", x, "a finite number"))
-    chain, omega = track.support, field.omega
-    moved = field.supports()
-    found = {"rail": omega * field.strained()}
-    parts = zip(track.elements.items(), chain.squares(omega), chain.below(omega), strict=True)
-    for (name, element), (square, squeezed), below in parts:
-        if isinstance(element, Spring):
-            found[name] = omega * element.stiffness(omega).imag * squeezed * moved
-        if isinstance(element, MeasuredSleeper):
-            found[name] = omega * element.lost(omega, below) * square * moved
-    if (damper := track.damper) is not None:
-        found["rail_damper"] = omega * damper.spring(omega).imag * damper.squeezed(omega) * field.dampers()
+    omega, found = field.omega, {"rail": field.omega * field.strained()}
+    hung = [] if track.damper is None else [(["rail_damper", "its mass"], track.damper, field.dampers())]
+    for names, chain, moved in [(list(track.elements), track.support, field.supports()), *hung]:
+        parts = zip(names, chain.elements, chain.squares(omega), chain.below(omega), strict=True)
+        for name, element, (square, squeezed), below in parts:
+            if isinstance(element, Spring):
+                found[name] = omega * element.stiffness(omega).imag * squeezed * moved
+            if isinstance(element, MeasuredSleeper):
+                found[name] = omega * element.lost(omega, below) * square * moved
     return found
 
 

@@ -182,36 +182,17 @@ class _SleeperWaves:
 
 
 @dataclass(frozen=True)
-class TunedDamper:
-    """A mass that hangs at the rail on a standard linear solid: a spring beside a Maxwell element.
+class HangingMass(RigidMass):
+    """A mass with nothing below."""
 
-    At its frequency, where it dissipates most, the solid has the stiffness m (2πf)² and the loss factor η:
-    1 − η of that stiffness is the spring's, 2 η the Maxwell element's. It is causal as it is.
-    """
-
-    mass: float  # m, kg
-    frequency: float  # f, at which the mass would swing on the real part of its spring, Hz
-    loss_factor: float  # η, below 1
-
-    def spring(self, omega: ArrayLike) -> Complex:
-        """Dynamic stiffness of the solid, N/m."""
-        solid = Relaxation(1.0 - self.loss_factor, (2.0 * self.loss_factor,), (self.frequency,))
-        return self.mass * (2.0 * np.pi * self.frequency) ** 2 * solid.at(omega)
-
-    def stiffness(self, omega: ArrayLike) -> Complex:
-        """Dynamic stiffness at the rail, N/m: -k m ω²/(k - m ω²)."""
-        spring, inertia = self.spring(omega), self.mass * np.asarray(omega, dtype=complex) ** 2
-        return -spring * inertia / (spring - inertia)
-
-    def squeezed(self, omega: ArrayLike) -> Array:
-        """Square of how much the solid is stretched per square of the rail's displacement."""
-        inertia = self.mass * np.asarray(omega, dtype=complex) ** 2
-        return np.abs(inertia / (self.spring(omega) - inertia)) ** 2
+    def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
+        """Its inertia alone."""
+        return super().on(omega, np.zeros(np.shape(omega), complex))
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Support of a rail: elements from the rail down to rigid ground, first of them a spring.
+    """Elements from the rail down, to rigid ground or a hanging mass; the first of them is a spring.
 
     Angular frequencies, rad/s, have a positive real part or, if all is causal, are in the lower half-plane.
     """
@@ -261,6 +242,16 @@ class Chain:
         """Stiffness at rest, N/m."""
         still = [each.at_rest if isinstance(each, Spring) else each for each in self.elements]
         return float(Chain(tuple(still)).stiffness(0.0).real)
+
+
+def tuned_damper(mass: float, frequency: float, loss_factor: float) -> Chain:
+    """A mass m that hangs at the rail on a standard linear solid: a spring beside a Maxwell element.
+
+    At its frequency f, where it dissipates most, the solid has the stiffness m (2πf)² and the loss factor η,
+    below 1: 1 − η of that stiffness is the spring's, 2 η the Maxwell element's. It is causal as it is.
+    """
+    solid = Relaxation(1.0 - loss_factor, (2.0 * loss_factor,), (frequency,))
+    return Chain((Spring(mass * (2.0 * np.pi * frequency) ** 2, solid, 0.0), HangingMass(mass)))
 
 
 CREATED = 0.05

@@ -60,7 +60,7 @@ class Track(track_parameters.TrackParameters):
     continuous : bool
         Whether the supports are spread evenly along the rail: s(omega) = K(omega)/L.
     rail_damper_mass, rail_damper_frequency, rail_damper_loss_factor : float, optional
-        Of a `asperity.structures.support.TunedDamper` in the middle of each bay: kg, Hz, 1.
+        Of a `asperity.structures.support.tuned_damper` in the middle of each bay: kg, Hz, 1.
     pad_table : StiffnessTable, optional
         Measured stiffness of the pad over frequency, to which `pad_stiffness` gives the scale: its real part
         at 300 Hz, by default that of the table in `Track.named`.
@@ -181,14 +181,14 @@ class Track(track_parameters.TrackParameters):
         return chains.Chain(tuple(self.elements.values()))
 
     @property
-    def damper(self) -> chains.TunedDamper | None:
+    def damper(self) -> chains.Chain | None:
         """What hangs at the rail in the middle of each bay."""
         if self.rail_damper_mass is None:
             return None
         assert self.rail_damper_frequency is not None
         assert self.rail_damper_loss_factor is not None
         tuning = self.rail_damper_frequency, self.rail_damper_loss_factor
-        return chains.TunedDamper(self.rail_damper_mass, *tuning)
+        return chains.tuned_damper(self.rail_damper_mass, *tuning)
 
     @property
     def lossy(self) -> dict[str, chains.Losses]:
