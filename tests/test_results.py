@@ -11,7 +11,7 @@ import asperity
 from asperity.errors import InputError
 from asperity.results import GROUPS, case_text, read_result, save, variable
 from asperity.sandbox import sandboxed
-from asperity.scenes.notebook import Result
+from asperity.scenes.report import Result
 from asperity.schema import VERSION
 
 CASE = "kind = 'ball-on-beam'  # µm"

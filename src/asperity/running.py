@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from asperity.case.any_case import AnyCase, ReadyCase
     from asperity.progress import Progress
-    from asperity.scenes.notebook import Result
+    from asperity.scenes.report import Result
 
 
 def run(
@@ -68,7 +68,7 @@ def run(
     from asperity.case.cases import as_case, of_bodies
     from asperity.errors import PhysicsWarning
     from asperity.progress import shown_progress
-    from asperity.scenes.notebook import Result
+    from asperity.scenes.report import Result
     from asperity.threads import one_thread_in_linear_algebra
 
     loaded = case if isinstance(case, ReadyCase) else as_case(case)
@@ -130,7 +130,7 @@ def open_result(path: str | os.PathLike[str]) -> Result:
     True
     """
     from asperity.results import read_result
-    from asperity.scenes.notebook import Result
+    from asperity.scenes.report import Result
 
     return Result.of(read_result(path))
 

@@ -13,7 +13,7 @@ import xarray as xr
 import asperity
 from asperity.errors import InputError
 from asperity.progress import shown_progress
-from asperity.scenes.notebook import Result
+from asperity.scenes.report import Result
 
 CASE = asperity.BallOnBeam(laws=["hertz", "linear"], duration=5e-3, surface={"spectrum": "iso3095"})
 

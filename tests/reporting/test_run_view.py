@@ -8,7 +8,7 @@ import pytest
 from report_tree import report_tree
 
 from asperity.results import save
-from asperity.scenes.notebook import Result
+from asperity.scenes.report import Result
 from asperity.schema.rolling import POSITION
 from asperity.serving.run_view import STRETCH, _about_long_waves, compared_runs, viewed_run
 from asperity.serving.worker import answered

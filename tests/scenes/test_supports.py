@@ -88,10 +88,7 @@ test_bays_that_cannot_be_are_refused = refusals(
     ({"bays": 1}, "track.bays.*at least 2"),
     ({"bays": 101}, "track.bays.*at most 100"),
     ({"bays": 20, "spacing_scatter": 0.4}, "spacing_scatter.*at most 0.3"),
-    (
-        {"bays": 100, "ballast_scatter": 0.9},
-        "track.ballast_scatter: received -.*in bay.*Lower its scatter",
-    ),
+    ({"bays": 100, "ballast_scatter": 0.9}, "track.ballast_scatter: received -.*in bay.*Lower its scatter"),
     ({"bays": 20, "bay_table": BAYS}, "both bay_table and bays"),
     ({"sleeper_spacing": 0.6, "bay_table": BAYS}, "both bay_table and sleeper_spacing"),
     ({"bay_table": BAYS * [1, 1, 0]}, "ballast stiffness of 0 N/m in bay 1.*hangs"),

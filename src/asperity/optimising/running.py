@@ -30,7 +30,7 @@ from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 
 if TYPE_CHECKING:
-    from asperity.scenes.notebook import Result
+    from asperity.scenes.report import Result
 
 FORMAT = 1
 """Raise it when what is kept of a trial no longer means what it meant."""

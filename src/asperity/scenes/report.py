@@ -1,37 +1,41 @@
-"""Pages and the numbers of their figures: the report of a run of any scene, and runs beside each other."""
+"""The report of a run of any scene: its page and the numbers of its figures; in a notebook; beside others."""
 
+import base64
 import os
 from collections.abc import Sequence
 from functools import cache
+from html import escape
 from importlib.metadata import entry_points
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import xarray
 
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError, printable
 from asperity.files import together, write_bytes
-from asperity.reporting import contact_figures, headline, tables, texture_figures
+from asperity.reporting import contact_figures, data, headline, tables, texture_figures
 from asperity.reporting.comparison import ComparedRuns, NamedRun, compared
 from asperity.reporting.comparison_page import MOST_RUNS, comparison_page, table_rows
-from asperity.reporting.figure import Chapter, PageFigure, figure_format, write_columns, write_figures
+from asperity.reporting.figure import (
+    Chapter,
+    PageFigure,
+    chosen_figures,
+    figure_format,
+    write_columns,
+    write_figures,
+)
 from asperity.reporting.page import answers_of, drawn_figures, page, sections_of
 from asperity.results import read_result
-from asperity.scenes.figures import (
-    bearing,
-    effects,
-    force,
-    measured,
-    motion,
-    noise,
-    roughness,
-    scene,
-    sideways,
-    track,
-)
+from asperity.scenes.figures import bearing, effects, force, measured, motion, noise, scene, sideways, track
 from asperity.scenes.schema import KEPT
+from asperity.schema import bearing as of_bearing
+from asperity.schema import provenance, rolling
 from asperity.schema.spectra import FORCE_LEVEL
 from asperity.text_files import csv_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as MatplotlibFigure
 
 PAGE = "report.html"
 OF_OTHERS = "asperity.chapters"
@@ -59,13 +63,7 @@ CHAPTERS = (
         (measured.limits_table, noise.pass_by_table),
         noise.pass_by_answers,
     ),
-    Chapter(
-        "effects",
-        "What helps?",
-        (),
-        (effects.what_helps_table,),
-        effects.what_helps_answers,
-    ),
+    Chapter("effects", "What helps?", (), (effects.what_helps_table,), effects.what_helps_answers),
     Chapter("acceleration", "Acceleration", motion.ACCELERATION, answers=motion.acceleration_answers),
     Chapter("motion", "Motion of the bodies", (motion.body_acceleration,)),
     Chapter("force", "Contact force", force.FORCE, (tables.loss_table,), headline.force_answers),
@@ -74,7 +72,7 @@ CHAPTERS = (
     Chapter(
         "texture",
         "Texture",
-        (roughness.roughness, *texture_figures.TEXTURE),
+        (track.roughness, *texture_figures.TEXTURE),
         (tables.statistics_table, tables.homogeneity_table),
     ),
     Chapter(
@@ -195,6 +193,84 @@ def names_of_reports() -> list[str]:
     return [PAGE, *dict.fromkeys(f"{name}.{ending}" for name in figures for ending in ("csv", "svg"))]
 
 
+# --- a result that shows itself in a notebook
+
+MAIN = ("force_bands", "load_zone")
+"""Figures that stand for a run, the second for that of a bearing."""
+
+
+class Result(xarray.DataTree):  # type: ignore[no-untyped-call]
+    """The result of a run: a tree of datasets, which a notebook shows as verdict, numbers and a figure.
+
+    It is an `xarray.DataTree` with the groups scenario, surface, contact, rolling and spectra, and what the
+    kind of case adds; `plot` draws its figures, and `asperity.report` writes all of it as a page.
+    """
+
+    __slots__ = ()
+
+    @classmethod
+    def of(cls, tree: xarray.DataTree) -> "Result":
+        """Make a result of a tree."""
+        return cls(tree.to_dataset(inherit=False), children=tree.children)
+
+    def plot(self, name: str | None = None) -> "MatplotlibFigure":
+        """Draw a figure of the result, for a notebook to show or for ``savefig``.
+
+        Parameters
+        ----------
+        name : str, optional
+            A figure of the report by the name of its file, as ``"force_bands"``, or by its title or the
+            beginning of it, as ``"contact force levels"``; by default this one, of a bearing its load zone.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure.
+
+        Raises
+        ------
+        InputError
+            If the result has no such figure; the message lists those that it has, and the nearest.
+
+        Examples
+        --------
+        >>> import asperity
+        >>> result = asperity.run(case)
+        >>> result.plot().savefig("force.png")
+        >>> result.plot("force_bands").axes[0].get_xlabel()
+        'one-third octave band / Hz'
+        """
+        from asperity.reporting.paper import draw  # matplotlib, which nothing else needs
+
+        figures = figures_of(self)
+        main = next((figure.name for figure in figures if figure.name in MAIN), None)
+        (figure,) = chosen_figures(figures, [main if name is None else name])
+        return draw(figure.chart)
+
+    def _repr_html_(self) -> str:
+        tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]
+        rolled = data.present(self, rolling.CONTACT_FORCE) or data.present(self, of_bearing.BALL_LOAD)
+        if data.stated(self, provenance.VERDICT) is None or not rolled:
+            return tree
+        title, verdict = (
+            escape(str(data.stated(self, each))) for each in (provenance.TITLE, provenance.VERDICT)
+        )
+        valid = headline.validity(headline.lights(self)).quantity
+        image = base64.b64encode(self.plot()._repr_png_()).decode()  # type: ignore[attr-defined]
+        return (
+            f"<div><p><strong>{title}.</strong> {verdict} {valid}</p>\n{_numbers(self)}\n"
+            f'<img alt="main figure" width="840" src="data:image/png;base64,{image}">\n'
+            f"<details><summary>All data</summary>{tree}</details></div>"
+        )
+
+
+def _numbers(tree: xarray.DataTree) -> str:
+    """The numbers with which the page of the result begins."""
+    cells = ((each.name, each.value, each.note) for each in answers_of(tree, chapters()).numbers)
+    rows = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in cells)
+    return f"<table>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"
+
+
 # --- runs beside each other
 
 
@@ -254,8 +330,7 @@ def compare(
 
 
 def comparison_of(
-    results: Sequence[xarray.DataTree | str | os.PathLike[str]],
-    names: Sequence[str] | None = None,
+    results: Sequence[xarray.DataTree | str | os.PathLike[str]], names: Sequence[str] | None = None
 ) -> ComparedRuns:
     """Read runs, name them so that they can be told apart, and compare all levels over bands."""
     allowed = f"two to {MOST_RUNS} runs"

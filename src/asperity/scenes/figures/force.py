@@ -208,13 +208,7 @@ def _mean(tree: DataTree) -> Iterator[Series]:
     yield Series(MEAN, CONTACT_FORCE_LEVEL.units, mean, None, f"{MEAN} of all", look=(chart.INK, (), 2.0))
 
 
-@figure(
-    "Force of each contact",
-    Of(BAND, "band centre"),
-    panels.products(BAND_TIME_PRODUCT),
-    _LEVELS,
-    _mean,
-)
+@figure("Force of each contact", Of(BAND, "band centre"), panels.products(BAND_TIME_PRODUCT), _LEVELS, _mean)
 def contact_levels(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """One-third-octave levels of the force of each contact, all or some from the first to the last."""
     every = lines.of(CONTACT_FORCE_LEVEL)
