@@ -129,40 +129,6 @@ def test_signals_come_in_files_of_several_kinds(kind):
     assert "2 s at 12000 Hz" in told
 
 
-HEARD = "6205 --speed 30_Hz --rate 12_kHz --signal "
-
-
-@pytest.mark.parametrize(("words", "message"), [
-    ("6209", "allowed: the path of a bearing file (TOML). Named bearings: 6203, 6205."),
-    ("6205 --radial 5", "radial: received '5'; allowed: a force at least 0, with its unit"),
-    ("both.toml", "received both clearance and contact_angle"),
-    ("wrong.toml", "ball_diametre: received an unknown key"),
-    ("6205 --signal s.npy --rate 12_kHz", "speed: received nothing; allowed: the speed at which"),
-    ("6205 --speed 30_Hz --signal s.npy", 'allowed: samples per second. Give it, as in --rate "12 kHz".'),
-    (f"{HEARD} two.npz", "arrays of signals in two.npz: received a, b; allowed: exactly one."),
-    (f"{HEARD} two.npz --array a", "received 3 columns; allowed: one of 1 to 3. Choose it with --column."),
-    (f"{HEARD} two.npz --array b", "an array of shape (2, 2, 2)"),
-    (f"{HEARD} words.txt", "words in line 3; allowed: numbers below the heading."),
-    (f"{HEARD} uneven.txt", "uneven.txt: received 1 cells in line 2; allowed: 2."),
-    (f"{HEARD} none.txt", "none.txt: received no numbers"),
-    ("6205 --speed 30_Hz --signal bad.wav", "an intact wav file"),
-    (f"{HEARD} s.npy --band 1_kHz", "--band: received 1 kHz"),
-    ("6205 --speed 0.1_Hz --signal s.npy --rate 12_kHz", "Record longer."),
-])  # fmt: skip
-def test_what_cannot_be_is_told(words, message):
-    both = 'name = "6205"\nclearance = "1 um"\ncontact_angle = "15 deg"\naxial = "9 N"\n'
-    Path("both.toml").write_text(both)
-    Path("wrong.toml").write_text(OWN.replace("ball_diameter", "ball_diametre"))
-    np.save("s.npy", pulses(100.0))
-    np.savez("two.npz", a=np.ones((9, 3)), b=np.ones((2, 2, 2)))
-    Path("words.txt").write_text("time\n1.0\nbroken\n")
-    Path("uneven.txt").write_text("1 2\n3\n")
-    Path("none.txt").write_text("nothing here\n")
-    Path("bad.wav").write_bytes(b"RIFF\x10\x00\x00\x00WAVEfmt ")
-    told = call("bearing", *(word.replace("_", " ") for word in words.split()), code=2).stderr
-    assert message in told
-
-
 def test_a_bearing_is_checked_run_reported_drawn_and_heard():
     case = BEARING | {"duration": "50 ms", "fault": BEARING["fault"] | {"on": "inner"}}
     Path("bearing.toml").write_text(as_case(case).to_toml())

@@ -45,8 +45,24 @@ CASES = {
     "heading": on('line = "pairs.txt"\nline_unit = "um"'),
     "wheel": RAIL + WHEEL,
     "distance": f'{RAIL}{WHEEL}line_spacing = "1 mm"\n',
+    "smooth": on("smooth = true") + BALL,
+    "rigid": 'kind = "wheel-on-rail"\n[surface]\nsmooth = true\n[wheel]\nsection = "rigid"\n',
+    "both": 'name = "6205"\nclearance = "1 um"\ncontact_angle = "15 deg"\naxial = "9 N"\n',
+    "wrong": 'balls = 9\nball_diametre = "7.94 mm"\npitch_diameter = "39.04 mm"\nradial = "1 kN"\n',
     "study": 'case = "case.toml"\n[sweep]\nseed = [1, 2]\n',
 }  # fmt: skip
+OTHERS = {
+    "metres.csv": "radius (mm), axial place (mm)\n" + "9e5, 0\n9e5, 1e5\n1e6, 1e5\n1e6, 0\n",
+    "words.txt": "time\n1.0\nbroken\n",
+    "uneven.txt": "1 2\n3\n",
+    "none.txt": "nothing here\n",
+    "comma.txt": "0,5\n1,5\n2,75\n",
+    "pairs.txt": "".join(f"{x} {x % 3}\n" for x in range(20)),
+    "odd.txt": "# unit: kg\n1\n2\n",
+    "map.png": "heights in a picture",
+    "bad.wav": "RIFF\x10\0\0\0WAVEfmt ",
+    "taken": "in the way",
+}
 ENCODED = {
     "little": CASE.encode("utf-16-le"),
     "odd": CASE.encode("utf-16")[:-1],
@@ -72,11 +88,10 @@ def own_folder(tmp_path_factory):
         hole[3:8, 3:30] = np.nan
         np.save("hole.npy", hole)
         np.savez("maps.npz", polished=rng.normal(size=(3, 40, 32)), line=rng.normal(size=200))
-        Path("comma.txt").write_text("0,5\n1,5\n2,75\n")
-        Path("pairs.txt").write_text("".join(f"{x} {x % 3}\n" for x in range(20)))
-        Path("odd.txt").write_text("# unit: kg\n1\n2\n")
-        Path("map.png").write_bytes(b"heights in a picture")
-        Path("taken").write_text("in the way")
+        np.save("signal.npy", rng.normal(size=24_000))
+        np.savez("two.npz", a=np.ones((9, 3)), b=np.ones((2, 2, 2)))
+        for name, text in OTHERS.items():
+            Path(name).write_text(text)
         for name, file in (("others", "run.nc"), ("page", "report.html")):
             Path(name).mkdir()
             Path(name, file).write_text("precious")
@@ -85,6 +100,7 @@ def own_folder(tmp_path_factory):
 
 HINTS = "--height-unit um --pixel '2 um'"
 VARY = "study rail.toml --vary"
+HEARD = "bearing 6205 --speed '30 Hz' --rate '12 kHz' --signal"
 WINDOWS = r"write Windows paths in single quotes, as in file = 'C:\data\beam.x3p', or with /"
 REFUSED = [
     # use
@@ -151,6 +167,31 @@ REFUSED = [
      "--direction: received a line; allowed: a height map. Leave it out."),
     ("surface|bearing|creep map.npy -o picture.doc", "a name that ends in .svg, .pdf, .png"),
     ("surface map.png -o map.png", "another name"),
+    # creep, wheels and bearings
+    ("creep smooth.toml --friction 0", "--friction: received 0"),
+    ("creep smooth.toml --points 1", "--points: received 1; allowed: a whole number from 2 to 1000"),
+    ("creep smooth.toml --states", "surface: received none, or as a line alone; allowed: a rough surface"),
+    ("creep smooth.toml --states --friction 0.2", "--states: received --direction or --friction with it"),
+    ("creep smooth.toml --states --direction spin", "--states: received --direction or --friction with it"),
+    ("wheel straight", "allowed: curved-web, straight-web, bent-web, or the path of an outline"),
+    ("wheel rigid.toml", "a wheel that is not drawn"),
+    ("wheel metres.csv", "Is the unit of the coordinates right?"),
+    ("wheel straight-web --highest 4", 'as "5 kHz"'),
+    ("bearing 6209", "allowed: the path of a bearing file (TOML). Named bearings: 6203, 6205."),
+    ("bearing 6205 --radial 5", "radial: received '5'; allowed: a force at least 0, with its unit"),
+    ("bearing both.toml", "received both clearance and contact_angle"),
+    ("bearing wrong.toml", "ball_diametre: received an unknown key"),
+    ("bearing 6205 --signal signal.npy --rate '12 kHz'", "speed: received nothing; allowed: the speed at"),
+    ("bearing 6205 --speed '30 Hz' --signal signal.npy", 'Give it, as in --rate "12 kHz".'),
+    (f"{HEARD} two.npz", "arrays of signals in two.npz: received a, b; allowed: exactly one."),
+    (f"{HEARD} two.npz --array a", "received 3 columns; allowed: one of 1 to 3. Choose it with --column."),
+    (f"{HEARD} two.npz --array b", "an array of shape (2, 2, 2)"),
+    (f"{HEARD} words.txt", "words in line 3; allowed: numbers below the heading."),
+    (f"{HEARD} uneven.txt", "uneven.txt: received 1 cells in line 2; allowed: 2."),
+    (f"{HEARD} none.txt", "none.txt: received no numbers"),
+    (f"{HEARD} bad.wav", "an intact wav file"),
+    (f"{HEARD} signal.npy --band '1 kHz'", "--band: received 1 kHz"),
+    ("bearing 6205 --speed '0.1 Hz' --signal signal.npy --rate '12 kHz'", "Record longer."),
     # studies
     (f"{VARY} speed", "--vary: received 'speed'; allowed: a key of the case, =, and its values"),
     (f"{VARY} seed=1 --vary seed=1", "--vary: received seed more than once"),
@@ -160,6 +201,8 @@ REFUSED = [
     (f"{VARY} seed=1 --show 'transit exposure'", "--show: received 'transit_exposure'; allowed: names of "
      "what a study keeps: "),
     (f"{VARY} seed=1 -o rail.toml", "rail.toml is a file)"),
+    (f"{VARY} seed=1 --noise '20 dB'", "--noise: received signals of no study; allowed: it goes with"),
+    ("run|study small.toml --what-helps", "what helps: received a ball-on-beam case; allowed: a case over a"),
     # runs
     ("listen {run} --what drums", "received 'drums'; allowed: acceleration"),
     ("figures {run} scene force_band -o new", 'Nearest: "force_bands" (Contact force levels in one-third '

@@ -42,18 +42,3 @@ def test_states_of_a_rough_case_are_told_written_and_drawn():
     light, heavy = table["ratio_of_longitudinal_creep_1"]
     assert light < heavy == pytest.approx(1.0, abs=0.03)
     assert Path("states.svg").stat().st_size > 1000
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (("--friction", "0"), "--friction: received 0"),
-        (("--points", "1"), "--points: received 1; allowed: a whole number from 2 to 1000"),
-        (("--states",), "surface: received none, or as a line alone; allowed: a rough surface with samples"),
-        (("--states", "--friction", "0.2"), "--states: received --direction or --friction with it"),
-        (("--states", "--direction", "spin"), "--states: received --direction or --friction with it"),
-    ],
-)
-def test_what_cannot_be_drawn_is_refused(words, told):
-    Path("case.toml").write_text(BALL.format("smooth = true"))
-    assert told in call("creep", "case.toml", *words, code=2).stderr

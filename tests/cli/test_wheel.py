@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from asperity.case.bodies import WheelOnRail
 from asperity.case.tables import read_mode_table
@@ -47,20 +46,3 @@ def test_a_case_brings_dimensions_and_damping():
     call("wheel", "case.toml", *LOW, "-o", "modes.csv")
     expected = modes_of(section="straight-web", web_thickness=0.04, added_damping=0.02)
     assert (read_mode_table(Path("modes.csv")) == expected).all()
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (("straight",), "allowed: curved-web, straight-web, bent-web, or the path of an outline"),
-        (("rigid.toml",), "a wheel that is not drawn"),
-        (("metres.csv",), "Is the unit of the coordinates right?"),
-        (("straight-web", "--highest", "4"), 'as "5 kHz"'),
-    ],
-)
-def test_what_is_no_section_is_refused(words, told):
-    Path("rigid.toml").write_text(
-        'kind = "wheel-on-rail"\n[surface]\nsmooth = true\n[wheel]\nsection = "rigid"\n'
-    )
-    outline(Path("metres.csv"), 1e6)
-    assert told in call("wheel", *words, code=2).stderr

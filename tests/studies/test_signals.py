@@ -141,8 +141,6 @@ def test_the_command_line_writes_them():
     assert len(Path(said["files"]["labels"]).read_text().splitlines()) == 4
     assert {"band_velocity 50 to 300 Hz [m/s]", "line_amplitude outer [m/s2]"} < set(said["columns"])
     assert "rms radial velocity in a band" in Path("out/study.html").read_text().replace("\u00a0", " ")
-    refused = call("study", "study.toml", "--noise", "20 dB", code=2).stderr
-    assert "--noise: received signals of no study; allowed: it goes with --signals" in refused
 
 
 def test_labels_tell_every_fault_and_none_where_there_is_none():

@@ -5,10 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray
-from executors import BALL, Here
+from executors import Here
 
 import asperity
-from asperity.case.cases import parse_case
 from asperity.errors import CaseError, InputError
 from asperity.scenes import schema
 from asperity.scenes.figures.effects import Effects, effects_table
@@ -299,8 +298,6 @@ def test_the_ready_list_suits_cases_over_a_track():
     bodies = what_helps(changed("bodies", **keys))
     assert "body.roughness_level" in bodies.sweep["variant"]["wheel 5 dB smoother"]
     assert what_helps(RAIL, {"seed": [4]}).sweep["seed"] == [4]
-    with pytest.raises(InputError, match="what helps: received a ball-on-beam case; allowed: a case over"):
-        what_helps(parse_case(BALL))
 
 
 def test_what_helps_stands_in_the_result_of_a_run(table, cache, monkeypatch):
