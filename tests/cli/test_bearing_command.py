@@ -3,11 +3,11 @@
 import importlib
 import json
 import re
-import wave
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import wavfile
 
 from asperity.case.cases import as_case
 from command_line import call, words_of
@@ -42,25 +42,22 @@ def pulses(tone, seed=0):
     return rung[: TIME.size] + 0.02 * np.random.default_rng(seed).normal(size=TIME.size)
 
 
-def heard(signal, *words, code=0):
+def heard(signal, *words):
     np.save("run.npy", signal)
     given = ("--speed", "1800 1/min", "--signal", "run.npy", "--rate", "12 kHz")
-    return call("bearing", "6205", *given, *words, code=code)
+    return call("bearing", "6205", *given, *words).stdout
 
 
 def test_loads_tones_and_waviness(drawn):
     said = call("bearing", "6205", "--radial", "100 N", "--speed", "1797 1/min", "-o", "a.png").stdout
-    words = words_of(said)
-    assert "9 balls of 7.94 mm, pitch diameter 39.04 mm, grooves of 0.52 D (inner)" in words
-    assert re.search(r" 0° +68.15 +0.0 +0.057 +0.536 +1.06 +68.38 ", words)
-    assert re.search(r" -40° +20.79 ", words)
-    assert "2 to 3 of 9 balls touch the inner ring" in words
-    assert re.search(r"along 8\.7\d+ µm, varying by 0.045 µm, 44.35 to 48.88 MN/m", words)
-    assert re.search(r"outer ring +107.4 +3.5848 ", words)
-    assert re.search(r"inner ring +162.2 +5.4152 .* ± 29.95 as it turns", words)
-    assert re.search(r"inner ring +10 +– +192.1 ", words)
-    assert re.search(r"ball +2 +141.2 +129.2, 153.1 ", words)
-    assert "There is no film of lubricant" in words
+    for told in (
+        r"9 balls of 7.94 mm, pitch diameter 39.04 mm, grooves of 0.52 D \(inner\)",
+        r" 0° +68.15 +0.0 +0.057 +0.536 +1.06 +68.38 .* -40° +20.79 .* no film of lubricant",
+        r"2 to 3 of 9 balls touch the inner ring", r"outer ring +107.4 +3.5848 ",
+        r"inner ring +162.2 +5.4152 .* ± 29.95 as it turns", r"inner ring +10 +– +192.1 ",
+        r"ball +2 +141.2 +129.2, 153.1 "
+    ):  # fmt: skip
+        assert re.search(told, words_of(said)), told
     ((chart, title),) = drawn
     assert title == "6205, 100 N radial, 0 N axial"
     bars = [mark for mark in chart.panels[0].marks if getattr(mark, "width", 0.0) == 2.2]
@@ -84,7 +81,7 @@ def test_a_bearing_of_ones_own_and_options_that_are_stronger():
 
 
 def test_a_fault_is_heard_and_drawn(drawn):
-    said = words_of(heard(pulses(108.0), "-o", "b.png").stdout)
+    said = words_of(heard(pulses(108.0), "-o", "b.png"))
     assert "There are lines of the outer ring at 108." in said
     assert "1800 1/min as given: it has no clear lines" in said
     assert re.search(r"outer ring +107.5\d .*? 108.\d+ +3.6\d+ +\+0.\d+ % +1 2 3 4 5 ", said)
@@ -97,14 +94,14 @@ def test_a_fault_is_heard_and_drawn(drawn):
 @pytest.mark.parametrize(("share", "faults"), [(0.05, ["outer"]), (0.6, ["outer", "ball"])])
 def test_of_two_faults_a_faint_one_is_left_to_what_modulates_the_clear_one(share, faults):
     both = pulses(108.0) + share * pulses(142.0)
-    document = json.loads(heard(both, "--json", "--band", "1 kHz, 5 kHz").stdout)
+    document = json.loads(heard(both, "--json", "--band", "1 kHz, 5 kHz"))
     assert document["lines"]["ball"]["found"]
     assert document["faults"] == faults
 
 
 def test_noise_is_no_fault_and_lines_of_the_turns_give_the_speed():
     turns = sum(0.05 * np.sin(2 * np.pi * n * 29.8 * TIME) for n in (1, 2, 3))
-    said = heard(pulses(1e-9) + turns, "--band", "all").stdout
+    said = heard(pulses(1e-9) + turns, "--band", "all")
     assert "No lines of rings or balls stand out." in said
     speed = float(re.search(r"([\d.]+) 1/min by its lines", said)[1])
     assert speed == pytest.approx(60 * 29.8, abs=2.0)
@@ -112,18 +109,11 @@ def test_noise_is_no_fault_and_lines_of_the_turns_give_the_speed():
 
 @pytest.mark.parametrize("kind", ["npz", "txt", "wav"])
 def test_signals_come_in_files_of_several_kinds(kind):
-    signal, words = pulses(108.0), ["--rate", "12 kHz"]
-    if kind == "npz":
-        np.savez("run.npz", a=signal, b=np.zeros(4))
-        words += ["--array", "a"]
-    elif kind == "txt":
-        np.savetxt("run.txt", np.stack([TIME, signal], axis=1), header="time acceleration", comments="")
-        words += ["--column", "2"]
-    else:
-        with wave.open("run.wav", "wb") as file:
-            file.setparams((1, 2, RATE, 0, "NONE", ""))
-            file.writeframes((signal / np.abs(signal).max() * 32000).astype("<i2").tobytes())
-        words = []
+    signal, words = pulses(108.0), {"npz": ["--array", "a"], "txt": ["--column", "2"]}.get(kind, [])
+    np.savez("run.npz", a=signal, b=np.zeros(4))
+    np.savetxt("run.txt", np.stack([TIME, signal], axis=1), header="time acceleration", comments="")
+    wavfile.write("run.wav", RATE, (signal / np.abs(signal).max() * 32000).astype("<i2"))
+    words += ["--rate", "12 kHz"] if words else []
     told = call("bearing", "6205", "--speed", "1800 1/min", "--signal", f"run.{kind}", *words).stdout
     assert "There are lines of the outer ring at 108." in told
     assert "2 s at 12000 Hz" in told

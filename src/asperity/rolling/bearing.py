@@ -68,8 +68,6 @@ class RolledBearing:
 
     time: Array  # (n,), s, from zero, after the run-in
     cage: Array  # (n,), angle of the first ball from the radial load
-    inner_angle: Array  # (n,), by which the inner ring has turned
-    outer_angle: Array  # (n,)
     inner_force: Array  # (Z, n), compression positive
     outer_force: Array  # (Z, n)
     ball_motion: Array  # (Z, n), outwards along the contacts' normal
@@ -164,12 +162,9 @@ def roll_bearing(
         checkpoint=checkpoint,
     )
     steps = run.contact_force.shape[1]
-    kept = turning.total + 1 - steps, turning.total + 1
     return RolledBearing(
         np.asarray(time_step * np.arange(steps)),
-        turning.cage(*kept),
-        turning.turned(INNER)(*kept),
-        turning.turned(OUTER)(*kept),
+        turning.cage(turning.total + 1 - steps, turning.total + 1),
         run.contact_force[0::2],
         run.contact_force[1::2],
         np.concatenate(run.bodies),
@@ -215,17 +210,13 @@ class _Turning:
         """Angle of the first ball."""
         return self._cage[first + 1 : stop + 1]
 
-    def turned(self, ring: int) -> Along:
-        """Angle by which a ring has turned."""
-        return lambda first, stop: TURN * self.turns[ring] * self._time(first, stop)
-
     def azimuth(self, ball: int, ring: int | None = None) -> Along:
         """Angle of a ball, in the frame of a ring that turns if there is one."""
         ahead = TURN * ball / self.bearing.balls
         if ring is None:
             return lambda first, stop: self.cage(first, stop) + ahead
-        turned = self.turned(ring)
-        return lambda first, stop: self.cage(first, stop) + ahead - turned(first, stop)
+        rate = TURN * self.turns[ring]
+        return lambda first, stop: self.cage(first, stop) + ahead - rate * self._time(first, stop)
 
     def on_raceway(self, ball: int, ring: int) -> Along:
         """Position of a ball along a raceway, m, from 0 to its circumference."""

@@ -159,17 +159,14 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
             centrifugal=case.centrifugal, sensors=sensors, highest_frequency=case.highest_frequency,
             progress=progress
         )  # fmt: skip
-        record: dict[str, Any] = {each: getattr(run, each)[:: case.steps_per_sample] for each in ANGLES}
-        record |= {each: thinned(getattr(run, each), case.steps_per_sample) for each in RECORDED}
-        found[name] = replace(run, **record)
+        every = case.steps_per_sample
+        signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
+        found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
     return found
 
 
-ANGLES = ("time", "cage", "inner_angle", "outer_angle")
-RECORDED = (
-    "inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion", "acceleration"
-)  # fmt: skip
-"""What a run holds over time: what grows evenly, and signals."""
+SIGNALS = ("inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion", "acceleration")
+"""What a run holds over time, beside what grows evenly."""
 
 
 def thinned(signal: Array, every: int) -> Array:
