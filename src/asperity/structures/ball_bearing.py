@@ -133,10 +133,6 @@ class BallBearing:
 
     def __post_init__(self) -> None:
         checked_parameters(self)
-        self._check_fit()
-
-    def _check_fit(self) -> None:
-        """Balls beside each other, a gap of the grooves that closes, and no dents before any load."""
         D, d_m = self.ball_diameter, self.pitch_diameter
         room = d_m * math.sin(math.pi / self.balls)  # between the centres of neighbours
         received = f"{self.balls} of {D * 1e3:.4g} mm on a pitch diameter of {d_m * 1e3:.4g} mm"
@@ -154,23 +150,14 @@ class BallBearing:
         allowed = f"less than {most * 1e6:.4g} µm, where the balls touch at 41 deg"
         require(clearance < most, "clearance", f"{clearance * 1e6:.4g} µm", allowed, remedy)
         if clearance < 0.0:
-            peak = self._pressed_free(-0.5 * clearance)
-            elastic = 2e6 * self._largest_interference
+            load = self.series_stiffness * (-0.5 * clearance) ** 1.5
+            contacts = self.inner_contact, self.outer_contact
+            peak = max(each.peak_pressure(each.approach(load)) for each in contacts)
+            # it grows with the root of the overlap
+            elastic = -1e6 * clearance * (STATIC_PRESSURE / peak) ** 2
             received = f"{clearance * 1e6:.4g} µm, which presses the balls with {peak / 1e9:.3g} GPa unloaded"
             allowed = f"-{elastic:.3g} µm or more, {STATIC_PRESSURE / 1e9:g} GPa, where dents begin (ISO 76)"
             require(peak <= STATIC_PRESSURE, "clearance", received, allowed, "Take a looser fit.")
-
-    def _pressed_free(self, overlap: float) -> float:
-        """Largest pressure, Pa, of a ball that both rings overlap by so much together, m."""
-        load = self.series_stiffness * overlap**1.5
-        return max(
-            each.peak_pressure(each.approach(load)) for each in (self.inner_contact, self.outer_contact)
-        )
-
-    @property
-    def _largest_interference(self) -> float:
-        """Overlap at which dents begin, m: the peak pressure grows with its square root."""
-        return (STATIC_PRESSURE / self._pressed_free(1e-6)) ** 2 * 1e-6
 
     @classmethod
     def named(cls, name: str, **others: Any) -> BallBearing:
