@@ -1,7 +1,6 @@
 """What moves sideways in a run: nothing in the middle; off it by the formulas, at every place of a bay."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,10 +11,7 @@ from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference.materials import MATERIALS
 from asperity.reporting.data import unless_missing
-from asperity.scenarios.preparing import prepare
-from asperity.scenarios.scene import scene_of
 from asperity.scenes import schema
-from asperity.scenes.compute import compute
 from asperity.scenes.figures.measured import limits_table
 from asperity.scenes.figures.noise import (
     noise_answers,
@@ -26,9 +22,6 @@ from asperity.scenes.figures.noise import (
 )
 from asperity.scenes.figures.sideways import SIDEWAYS, sideways_table
 from asperity.scenes.noise import pass_by_group
-from asperity.scenes.result import spectra_group
-from asperity.scenes.sideways import sideways_group
-from asperity.schema import group
 from asperity.spectra import HALF_BAND, band_energies, energy_sum
 from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
 from asperity.structures.modal import modal_answers
@@ -228,18 +221,6 @@ def bodies(body, surface):
     over = {name: each for name, each in HEARD.items() if name != "wheel"} | {"speed": 56.0, "start": "20 m"}
     own = {"body": body, "surface": surface, "sideways": {"contact_place": PLACE}}
     return Bodies(**over | own | {"over": "track", "numerics": HEARD["numerics"] | {"time_step": STEP}})
-
-
-@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")  # of a coarse grid
-def test_one_body_is_the_wheel_on_the_rail():
-    """Of one and the same motion, to the last bit."""
-    own = WheelOnRail(**HEARD | {"wheel": RINGING, "sideways": {"contact_place": PLACE}})
-    own = own.with_(**{"numerics.time_step": STEP})
-    computed, other = compute(prepare(own), lambda *_: None), bodies(ONE, CASE["surface"])
-    up = group(spectra_group(computed))
-    found = sideways_group(replace(computed, case=other, scene=scene_of(other)), up)
-    for entry, expected in sideways_group(computed, up).items():
-        np.testing.assert_array_equal(found[entry], expected)
 
 
 def test_a_bogie_on_two_equal_wheels_far_apart_is_twice_as_loud_as_one(runs):
