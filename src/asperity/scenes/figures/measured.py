@@ -22,7 +22,7 @@ def over_bands(
     of: Entry,
     look: tuple[Any, ...] = _LOOK,
     label: str = MEASURED,
-    frequency: Entry = schema.TRACK_FREQUENCY,
+    at: Entry = schema.TRACK_FREQUENCY,
 ) -> figure.Columns:
     """Column of what holds for one-third octaves, at the frequencies of a figure of the track.
 
@@ -32,12 +32,12 @@ def over_bands(
     def columns(tree: DataTree) -> Iterator[figure.Series]:
         if not data.present(tree, entry):
             return
-        at, band = data.values(tree, frequency), data.values(tree, spectra.BAND)
-        number = np.rint(10.0 * np.log10(at / band[0])).astype(int)
+        frequency, band = data.values(tree, at), data.values(tree, spectra.BAND)
+        number = np.rint(10.0 * np.log10(frequency / band[0])).astype(int)
         inside = (number >= 0) & (number < len(band))
         found = np.where(inside, data.values(tree, entry)[np.clip(number, 0, len(band) - 1)], np.nan)
         if entry.units == "(m/s)/N":
-            found = found / (2.0 * np.pi * at)
+            found = found / (2.0 * np.pi * frequency)
         if np.isfinite(found).any():
             yield figure.Series(entry.name, of.units, found, of, label, look=look)
 

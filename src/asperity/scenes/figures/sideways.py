@@ -6,7 +6,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import data, headline, panels
-from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Line, Note, Panel
+from asperity.reporting.chart import BLUE, MUTED, VERMILLION, Axis, Line, Note, Panel
 from asperity.reporting.figure import Lines, Of, field, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.reporting.texture_figures import map_panel
@@ -15,7 +15,7 @@ from asperity.scenes.figures import force
 from asperity.scenes.figures.measured import over_bands
 from asperity.schema import rolling, spectra
 
-FORCE = schema.LATERAL_FORCE_LEVEL
+FORCE, _DOTS = schema.LATERAL_FORCE_LEVEL, (1.5, 1.5)
 
 
 @figure(
@@ -32,7 +32,7 @@ def lateral_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     levels = [
         *panels.styled(tree, lines.at, lines.of(FORCE), markers=True),
         *panels.styled(tree, lines.at, vertical, colour=MUTED, dashes=(6, 1.5), width=1.2),
-        Line(lines.at, friction, "friction of the static load", MUTED, (1.5, 1.5), 1.0),
+        Line(lines.at, friction, "friction of the static load", MUTED, _DOTS, 1.0),
     ]
     yield panels.band_panel(tree, lines, "contact force level / dB re 1 N", levels, span=80.0)
     (change,) = (series.values for series in lines.of(schema.VERTICAL_FORCE_CHANGE))
@@ -64,21 +64,11 @@ def lateral_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     "Receptances and decay sideways",
     Of(schema.SIDEWAYS_FREQUENCY),
     Of(schema.RAIL_LATERAL_RECEPTANCE, "", "rail, sideways", (VERMILLION, (), 1.6)),
-    *(
-        Of(entry, "", label, look, optional=True)
-        for entry, label, look in (
-            (schema.RAIL_CROSS_RECEPTANCE, "rail, by a vertical force", (VERMILLION, (1.5, 1.5))),
-            (schema.WHEEL_LATERAL_RECEPTANCE, "wheel, axial", (BLUE, (), 1.6)),
-            (schema.WHEEL_CROSS_RECEPTANCE, "wheel, by a vertical force", (BLUE, (1.5, 1.5))),
-            (schema.LATERAL_DECAY_RATE, "rail, sideways", (VERMILLION, (), 1.6)),
-        )
-    ),
-    over_bands(
-        schema.MEASURED_LATERAL_DECAY_RATE,
-        schema.LATERAL_DECAY_RATE,
-        (INK, (), 2.0),
-        frequency=schema.SIDEWAYS_FREQUENCY,
-    ),
+    Of(schema.RAIL_CROSS_RECEPTANCE, "", "rail, by a vertical force", (VERMILLION, _DOTS), optional=True),
+    Of(schema.WHEEL_LATERAL_RECEPTANCE, "", "wheel, axial", (BLUE, (), 1.6), optional=True),
+    Of(schema.WHEEL_CROSS_RECEPTANCE, "", "wheel, by a vertical force", (BLUE, _DOTS), optional=True),
+    Of(schema.LATERAL_DECAY_RATE, "", "rail, sideways", (VERMILLION, (), 1.6), optional=True),
+    over_bands(schema.MEASURED_LATERAL_DECAY_RATE, schema.LATERAL_DECAY_RATE, at=schema.SIDEWAYS_FREQUENCY),
 )
 def lateral_receptance(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Receptances of rail and wheel sideways, and below them the decay along the rail."""
