@@ -10,6 +10,7 @@ from report_tree import LAWS, figures_by_name, laws_in, report_tree, uncertain, 
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules
 from asperity.reporting.data import law_entries, missing
+from asperity.scenes.figures.force import TO_REFERENCE
 from asperity.schema import contact
 
 PARTS = figures_by_name()
@@ -171,12 +172,14 @@ def test_bands_that_say_little_or_hold_the_start_are_shaded(name):
 def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
     part, spectra = PARTS["force_bands"], tree["spectra"].to_dataset()
     labels = [panel.y.label for panel in panels("force_bands", tree)]
-    assert labels[1:] == ["level − linear-filtered / dB", "level − linear / dB"]
-    assert len(marks("force_bands", tree, Rules)) == 2  # zero
+    assert labels[1:] == [f"level − {law} / dB" for law in ("linear-filtered", "linear", "table")]
+    assert len(marks("force_bands", tree, Rules)) == 3  # zero
     columns = part.drawn(tree).columns
     own = [name for name in columns if name.startswith("areal minus l")]
     assert own == ["areal minus linear-filtered [dB]", "areal minus linear [dB]"]
     for law in ("linear-filtered", "linear"):
         expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
         np.testing.assert_allclose(columns[f"areal minus {law} [dB]"], expected)
+    solved = columns["areal minus reference [dB]"]
+    np.testing.assert_array_equal(solved, spectra[TO_REFERENCE.name].sel(law="areal"))
     assert "minus that of linear-filtered and that of linear" in part.drawn(tree).caption

@@ -11,7 +11,7 @@ from asperity.results import read_result, save
 from asperity.scenes.report import CHAPTERS, figures_of, page_of
 
 TABLES = {
-    "ball-on-beam": {"statistics", "reference", "contact_loss", "energy_balance"},
+    "ball-on-beam": {"statistics", "contact_loss", "energy_balance"},
     "wheel-on-rail": {"statistics", "contact_loss", "sound_power"},
     "bodies": {"statistics", "contact_loss", "where_contacts_are", "energy_balance"},
 }

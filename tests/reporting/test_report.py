@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 import xarray as xr
 from report_reading import HOSTILE, Reader, own_scripts
-from report_tree import LAWS, figures_by_name, report_tree, uncertain, with_force
+from report_tree import LAWS, figures_by_name, report_tree, with_force
 
 from asperity.convergence import sentence
 from asperity.errors import ComputationError, InputError
 from asperity.laws import spec_of
 from asperity.reporting.chart import envelope, smooth_on_log_axis
-from asperity.reporting.data import engineering, nominal_band, power_of_ten, unless_missing
+from asperity.reporting.data import engineering, nominal_band, power_of_ten
 from asperity.reporting.headline import deciding_bands, force_answers, lights
 from asperity.reporting.page import literature
-from asperity.reporting.tables import reference_table, uncertainty_table
+from asperity.reporting.tables import uncertainty_table
 from asperity.scenes.figures.motion import acceleration_answers
 from asperity.scenes.report import page_of, report
 from asperity.spectra import a_weighting, nominal_frequency
@@ -55,10 +55,6 @@ def contact_only(**attrs):
         del tree[group]
     tree.attrs.update({name: json.dumps(value) for name, value in attrs.items()})
     return tree
-
-
-def read_number(cell):
-    return float(cell.strip("()").replace("−", "-"))
 
 
 # --- the page
@@ -157,7 +153,6 @@ def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
     files = {f"{name}.{ending}" for name in drawn for ending in ("csv", "svg")}
     assert {file.name for file in tmp_path.iterdir()} == {"report.html", *files}
     assert set(Reader(page.read_text(encoding="utf-8")).all("id")) & set(PARTS) == drawn
-    assert unless_missing(reference_table, small()) is None
 
 
 def test_wrong_folders_and_formats_are_told(tmp_path):
@@ -248,37 +243,6 @@ def test_long_lines_keep_their_extremes_and_their_level():
     assert np.allclose(psd, 3.0, rtol=1e-12)
     assert np.array_equal(smooth[:10], frequency[:10])
     assert len(smooth) < 300
-
-
-# --- tables of level differences
-
-
-def test_level_differences_are_tabulated(tree):
-    table, found = reference_table(tree), tree["spectra/force_level_difference_to_reference"]
-    column, bands = table.head.index("printed"), tree["spectra/band"].values
-    assert [row[0].text for row in table.rows[:-2]] == [nominal_band(band) for band in bands]
-    shown = [read_number(row[column].text) for row in table.rows[:-2]]
-    np.testing.assert_allclose(shown, found.sel(law="printed").values, atol=0.051)
-    assert "minus that of table" in table.title
-
-
-def test_bands_that_say_little_are_marked_and_not_summed_up():
-    tree, little = uncertain(0.4)
-    table = reference_table(tree)
-    column = table.head.index("areal")
-    difference = tree["spectra/force_level_difference_to_reference"].sel(law="areal").values
-    for row, doubt in zip(table.rows, little, strict=False):
-        assert ("faint" in row[0].look) == ("faint" in row[column].look) == doubt
-        assert (row[column].text[0] == "(") == doubt
-    mean, largest = (read_number(row[column].text) for row in table.rows[-2:])
-    assert mean == pytest.approx(difference[~little].mean(), abs=0.051)
-    assert largest == pytest.approx(np.abs(difference[~little]).max(), abs=0.051)
-    assert "below 10, or that hold the start; they say little" in table.note
-    nothing = reference_table(uncertain(1.0)[0])
-    assert [row[column].text for row in nothing.rows[-2:]] == ["–", "–"]
-    columns = PARTS["force_bands"].drawn(tree).columns
-    assert np.array_equal(columns["level says something [1]"] == 0.0, little)
-    assert np.array_equal(columns["B T [1]"], tree["spectra/band_time_product"].values)
 
 
 # --- the range of validity

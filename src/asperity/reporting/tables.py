@@ -11,7 +11,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data
 from asperity.schema import Attribute, Entry, contact, convergence, provenance, rolling, spectra, surface
-from asperity.spectra import LEAST_PRODUCT, say_little
+from asperity.spectra import say_little
 
 
 @dataclass(frozen=True)
@@ -216,33 +216,6 @@ def condition_table(tree: DataTree) -> ReportTable:
 
 
 # --- the laws
-
-
-def reference_table(tree: DataTree) -> ReportTable | None:
-    """Level differences to the reference law per one-third octave."""
-    entry = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
-    to = str(data.variable_of(tree, entry).attrs["reference"])
-    laws = [law for law in data.laws(tree, entry) if law != to]
-    if not laws:
-        return None
-    faint = data.doubtful(tree, spectra.BAND_TIME_PRODUCT)
-    ends = text_cells(("mean", "largest size"), "total")
-    columns = {"band / Hz": [*band_cells(data.values(tree, spectra.BAND), faint), *ends]}
-    for law in laws:
-        found = data.of_law(tree, entry, law)
-        told = found[np.isfinite(found) & ~faint]
-        ends = text_cells(
-            [data.signed(told.mean()), f"{np.abs(told).max():.1f}"] if told.size else "––", "number total"
-        )
-        columns[law] = [*change_cells(found, faint), *ends]
-    note = "Shaded: more than 1 dB, more than 3 dB away."
-    if faint.any():
-        note += (
-            " In grey and in brackets: bands whose bandwidth times averaging time is below "
-            f"{LEAST_PRODUCT:g}, or that hold the start; they say little, and are not in the last two rows."
-        )
-    return table("reference", f"Contact force level minus that of {to}, in dB", columns, note)
-
 
 LOSSES: dict[Entry, tuple[str, str | Writer]] = {
     rolling.CONTACT_LOSS_SHARE: ("time without contact", data.in_percent),

@@ -97,7 +97,6 @@ CHAPTERS = (
         "laws",
         "How the contact laws work",
         (contact_figures.contact_force, contact_figures.contact_filter),
-        (tables.reference_table,),
     ),
     Chapter(
         "uncertainty",

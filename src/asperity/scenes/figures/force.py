@@ -17,6 +17,7 @@ from asperity.schema import rolling, spectra
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, CONTACT_FORCE_LEVEL
 from asperity.spectra import energy_sum
 
+TO_REFERENCE = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
 FORCES = Of(rolling.CONTACT_FORCE, "{law}")
 IN_FREQUENCY = "linear, frequency domain"
 """Name of the linear contact that is solved there."""
@@ -37,7 +38,7 @@ REFERENCE_PSD, REFERENCE_LEVEL = (
 
 def _differences(tree: DataTree) -> Iterator[Series]:
     """Differences to the linear laws and to the reference law."""
-    compared = data.differences(tree) | {spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE: "reference"}
+    compared = data.differences(tree) | {TO_REFERENCE: "reference"}
     for entry, law in compared.items():
         for series in Of(entry, "{law}", optional=True)(tree):
             yield replace(series, name=f"{series.name} minus {law}")
@@ -52,22 +53,27 @@ def _differences(tree: DataTree) -> Iterator[Series]:
     REFERENCE_LEVEL,
 )
 def force_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
-    """Levels in one-third octaves, and below them the differences to the linear laws."""
+    """Levels in one-third octaves, and below them the differences to the linear laws and to the reference."""
     found = lines.of(spectra.FORCE_LEVEL)
     levels = panels.styled(tree, lines.at, found, markers=True)
     reference = [chart.Line(lines.at, s.values, **REFERENCE_STYLE) for s in lines.of(REFERENCE_LEVEL.entry)]
     label, every = "contact force level / dB re 1 N", [*levels, *reference]
     yield panels.band_panel(tree, lines, label, every, of=levels, span=100.0, height=3.6)
     under = (*panels.shaded_bands(tree, labelled=False), panels.zero())
-    for entry, law in data.differences(tree).items():
+    compared, whole = data.differences(tree), data.stored_variable(tree, TO_REFERENCE)
+    solved = {} if whole is None else {TO_REFERENCE: str(whole.attrs["reference"])}
+    for entry, law in (compared | solved).items():
         less = panels.styled(tree, lines.at, lines.of(entry), markers=True, main=found[0].law)
         axis = panels.levels_axis(f"level − {law} / dB", [line.y for line in less], span=np.inf, step=5.0)
         yield Panel(panels.band_axis(lines.at), axis, (*under, *less), height=2.4)
     yield "Levels per one-third octave (IEC 61260-1, base 10)."
     if reference:
         yield "Dashed: the linear contact solved in the frequency domain."
-    if compared := " and that of ".join(data.differences(tree).values()):
-        yield f"Below: level minus that of {compared}; positive where linear contact underestimates."
+    if compared:
+        others = " and that of ".join(compared.values())
+        yield f"Below: level minus that of {others}; positive where linear contact underestimates."
+    for law in solved.values():
+        yield f"Last: level minus that of {law}, which solves or scans the whole contact."
     yield panels.shaded_words(tree)
 
 
