@@ -155,18 +155,16 @@ def styled(
     for; `look` overrides looks of lines.
     """
     shown = list(lines)
-    if any(line.law for line in shown):
-        main = main or shown[0].law
-        shown.sort(key=lambda line: line.law == main)
-        looks = [data.law_style(tree, line.law, main) for line in shown]
-        for line, each in zip(shown, looks, strict=True):
-            each |= {"marker": data.law_entry(tree, line.law).marker} if markers else {}
-    else:
-        own = [dict(zip(("colour", "dashes", "width", "marker"), line.look, strict=False)) for line in shown]
-        sequence = chart.sequence_styles(len(shown))
-        looks = [one or other for one, other in zip(own, sequence, strict=True)]
-    named = zip(shown, looks, strict=True)
-    return [Line(x, line.values / size, line.label, **(each | look)) for line, each in named]
+    main = main or next((line.law for line in shown), "")
+    shown.sort(key=lambda line: (not line.law, line.law == main))
+    drawn = []
+    for line, usual in zip(shown, chart.sequence_styles(len(shown)), strict=True):
+        own = dict(zip(("colour", "dashes", "width", "marker"), line.look, strict=False)) or usual
+        if line.law:
+            own = data.law_style(tree, line.law, main)
+            own |= {"marker": data.law_entry(tree, line.law).marker} if markers else {}
+        drawn.append(Line(x, line.values / size, line.label, **(own | look)))
+    return drawn
 
 
 def frequency_range(tree: DataTree) -> tuple[float, float]:

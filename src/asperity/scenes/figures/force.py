@@ -21,14 +21,8 @@ TO_REFERENCE = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
 FORCES = Of(rolling.CONTACT_FORCE, "{law}")
 IN_FREQUENCY = "linear, frequency domain"
 """Name of the linear contact that is solved there."""
-REFERENCE_STYLE: dict[str, Any] = {
-    "colour": chart.INK,
-    "dashes": (3.0, 3.0),
-    "width": 1.0,
-    "label": IN_FREQUENCY,
-}
 REFERENCE_PSD, REFERENCE_LEVEL = (
-    Of(entry, IN_FREQUENCY, optional=True)
+    Of(entry, IN_FREQUENCY, look=(chart.INK, (3.0, 3.0), 1.0), optional=True)
     for entry in (schema.LINEAR_REFERENCE_PSD, schema.LINEAR_REFERENCE_LEVEL)
 )
 
@@ -54,16 +48,17 @@ def _differences(tree: DataTree) -> Iterator[Series]:
 )
 def force_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Levels in one-third octaves, and below them the differences to the linear laws and to the reference."""
-    found = lines.of(spectra.FORCE_LEVEL)
-    levels = panels.styled(tree, lines.at, found, markers=True)
-    reference = [chart.Line(lines.at, s.values, **REFERENCE_STYLE) for s in lines.of(REFERENCE_LEVEL.entry)]
+    levels, reference = (
+        panels.styled(tree, lines.at, lines.of(entry), markers=True)
+        for entry in (spectra.FORCE_LEVEL, REFERENCE_LEVEL.entry)
+    )
     label, every = "contact force level / dB re 1 N", [*levels, *reference]
     yield panels.band_panel(tree, lines, label, every, of=levels, span=100.0, height=3.6)
     under = (*panels.shaded_bands(tree, labelled=False), panels.zero())
     compared, whole = data.differences(tree), data.stored_variable(tree, TO_REFERENCE)
     solved = {} if whole is None else {TO_REFERENCE: str(whole.attrs["reference"])}
     for entry, law in (compared | solved).items():
-        less = panels.styled(tree, lines.at, lines.of(entry), markers=True, main=found[0].law)
+        less = panels.styled(tree, lines.at, lines.of(entry), markers=True, main=levels[-1].law)
         axis = panels.levels_axis(f"level − {law} / dB", [line.y for line in less], span=np.inf, step=5.0)
         yield Panel(panels.band_axis(lines.at), axis, (*under, *less), height=2.4)
     yield "Levels per one-third octave (IEC 61260-1, base 10)."
@@ -83,8 +78,7 @@ def force_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 def force_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Power spectral densities over frequency, with the track's marks behind."""
     at, levels = panels.narrow_levels(tree, lines, lines.lines)
-    drawn = panels.styled(tree, at, [series for series in levels if series.law])
-    drawn += [chart.Line(at, series.values, **REFERENCE_STYLE) for series in levels if not series.law]
+    drawn = panels.styled(tree, at, levels)
     ends = panels.frequency_range(tree)
     behind = (*track.sleeper_tones(tree, *ends), *track.split_rules(tree, *ends))
     yield panels.spectrum_panel(tree, "contact force PSD / dB re 1 N²/Hz", drawn, behind)
