@@ -8,6 +8,7 @@ import pytest
 import xarray
 
 import asperity
+from asperity import HeightMap
 from asperity import convergence as converging
 from asperity.case.cases import as_case
 from asperity.convergence import halves, on_the_surface_of
@@ -18,7 +19,6 @@ from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted, settings_for
 from asperity.scenes.report import CHAPTERS
 from asperity.schema import Entry, convergence
-from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import LongStrip
 from command_line import call
 from small_cases import COARSE, changed

@@ -7,10 +7,7 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.reference.materials import material
-from asperity.structures.ball_bearing import BallBearing
-from asperity.structures.beam import Beam, Support, SupportedBeam
-from asperity.structures.body import Wheel
+from asperity import BallBearing, Beam, Support, SupportedBeam, Wheel, material
 from asperity.structures.outline import checked_outline, mesh_of
 from asperity.structures.wheel_modes import natural_modes
 

@@ -8,12 +8,11 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
+from asperity import Track, Wheel
 from asperity.reference import cnossos
 from asperity.scenarios.scene import force_transfer
 from asperity.scenes.noise import rolling_sound_power
 from asperity.spectra import a_weighted_total
-from asperity.structures.body import Wheel
-from asperity.structures.track import Track
 
 TABLES = Path(__file__).parent / "data" / "railway_tables.json"
 LEVEL = partial(Check, unit="dB", tolerance=1e-9, absolute=True)

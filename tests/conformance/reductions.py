@@ -7,12 +7,10 @@ import numpy as np
 from ledger import Check
 from scipy.integrate import cumulative_trapezoid
 
-from asperity import HalfSpace, Hertz
+from asperity import Beam, HalfSpace, Hertz, material
 from asperity.laws import Linear
 from asperity.reduction.filter import punch_taps, response
 from asperity.reduction.texture import areal_texture
-from asperity.reference.materials import material
-from asperity.structures.beam import Beam
 from asperity.structures.body import Body
 from one_contact import roll_ball
 

@@ -9,11 +9,10 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
+from asperity import HeightMap, Profile, read_surface
 from asperity.surfaces.defects import flat_length, flat_trajectory
-from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level
 from asperity.surfaces.measured_lines import remove_spikes, roll_over
-from asperity.surfaces.readers import read_surface
 from asperity.surfaces.spectra import psd_1d
 from asperity.surfaces.statistics import areal_statistics
 from asperity.surfaces.synthesis import self_affine

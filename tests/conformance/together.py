@@ -5,11 +5,10 @@ import numpy as np
 from ledger import Check
 from scipy.integrate import solve_ivp
 
+from asperity import Beam, material
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.reference.materials import material
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.beam import Beam
 from asperity.structures.body import Body
 
 EMPTY = np.zeros(0)

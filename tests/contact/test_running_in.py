@@ -5,11 +5,10 @@ import warnings
 import numpy as np
 import pytest
 
-from asperity import HalfSpace
+from asperity import HalfSpace, HeightMap
 from asperity.contact.running_in import RunningIn, run_in
 from asperity.errors import TruncatedContactWarning, UnconvergedWarning
 from asperity.store import Store
-from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.synthesis import self_affine
 
 STEEL, LOAD, DX = 115e9, 2.0, 8e-6

@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from asperity import laws
+from asperity import laws, report, run
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
 from asperity.laws import LawSpec, Look, Need, Role, Variant
-from asperity.running import run
-from asperity.scenes.report import report
 from small_cases import CASES
 
 

@@ -9,7 +9,7 @@ from exact_fields import INSIDE_60E1, SECTION_60E1, axial_ratio, mirrored, power
 from numpy.testing import assert_allclose
 from scipy.special import jv
 
-from asperity import Track
+from asperity import Track, Wheel
 from asperity.radiation import track as sound
 from asperity.radiation import wheel as module
 from asperity.radiation.track import (
@@ -23,7 +23,6 @@ from asperity.radiation.track import (
 from asperity.radiation.wheel import RadiatingWheel, axial_transition, radial_transition
 from asperity.scenarios.scene import force_transfer
 from asperity.spectra import band_energies, psd, third_octave_bands
-from asperity.structures.body import Wheel
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.track_parameters import Bays
 from refusals import refusals

@@ -5,13 +5,11 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from rolling_parts import rigid_bar, rough, same
 
+from asperity import Beam, ModalStructure, material
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.reference.materials import material
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.beam import Beam
 from asperity.structures.body import Body, chain
-from asperity.structures.modal import ModalStructure
 from one_contact import Shelf, Stepped, first_contact
 
 STEEL = material("steel")

@@ -8,20 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rolling_parts import rough
 
-from asperity import errors
+from asperity import Beam, SupportedBeam, Track, errors, material
 from asperity.errors import ComputationError, Outcome
 from asperity.kernels import stepping
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.reference.materials import material
 from asperity.rolling.assembly import at_rest
 from asperity.rolling.ground import Path, ground_of
 from asperity.rolling.roll import free_motion, refuse_missed_load, roll_bodies
-from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailBetween
-from asperity.structures.track import Track
 from one_contact import Stepped
 from refusals import refusals
 

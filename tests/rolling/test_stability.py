@@ -9,19 +9,16 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from rolling_parts import rigid_bar, rough
 
-from asperity import HalfSpace
+from asperity import Beam, HalfSpace, Track, material
 from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflectionWarning
 from asperity.laws import Direct, HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.reference.materials import material
 from asperity.rolling import stepper as stepping
 from asperity.rolling import steps
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.beam import Beam
 from asperity.structures.body import GRAVITY, Body, Wheel
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import RailBetween, rail_poles
-from asperity.structures.track import Track
 from one_contact import roll_ball, roll_wheel
 
 STEEL = material("steel")

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity import WheelOnRail
+from asperity import HeightMap, Profile, WheelOnRail
 from asperity.case.cases import as_case
 from asperity.cli.running import plan
 from asperity.reference.law_accuracy import Place, law_map, mapped_points
@@ -20,7 +20,6 @@ from asperity.scenarios.law_choice import ExpectedError, choose, expected_error,
 from asperity.scenarios.preparing import Work
 from asperity.scenarios.scene import scene_of
 from asperity.scenes.validity import doubted_by_area
-from asperity.surfaces.heightmap import HeightMap, Profile
 
 ROOT = Path(__file__).parents[2]
 BALL = {

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from asperity import Track, Wheel, wheel_modes
 from asperity.case.bodies import WheelOnRail
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.scenarios.scene import mean_square_transfer
@@ -10,11 +11,8 @@ from asperity.scenes import schema
 from asperity.scenes.figures.noise import LOUDEST, wheel_table
 from asperity.scenes.noise import mode_by_mode, radiating_wheel
 from asperity.spectra import a_weighted_total
-from asperity.structures.body import Wheel
 from asperity.structures.modal import modal_answers
 from asperity.structures.outline import FINENESS, mean_thickness
-from asperity.structures.track import Track
-from asperity.structures.wheel_modes import wheel_modes
 from small_cases import HEARD
 
 CASE = HEARD | {"settling": "20 ms", "numerics": {"highest_frequency": "1.6 kHz", "kernel": "scatter"}}

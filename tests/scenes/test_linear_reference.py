@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from asperity import Track, Wheel
 from asperity.errors import LossFactorWarning, warn_of_findings
 from asperity.scenarios.scene import force_transfer, mean_square_transfer
 from asperity.scenes.track import findings_of_losses, linear_reference, loss_factor_error
 from asperity.spectra import nominal_frequency, psd
-from asperity.structures.body import Wheel
 from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.track import Track
 
 WHEEL, HEAVY = Wheel(600.0, 65e3).receptance, Wheel(1e12, 65e3).receptance
 STIFFNESS = 1.25e9

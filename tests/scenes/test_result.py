@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 import asperity
+from asperity import Track, Wheel
 from asperity.case.cases import parse_case
 from asperity.laws import names
 from asperity.optimising.definition import ACCELERATION, measures_of
 from asperity.reference.railways import iso_3095_decay_rate
 from asperity.scenes.track import described_losses, loss_factor_error
 from asperity.spectra import nominal_frequency
-from asperity.structures.body import Wheel
-from asperity.structures.track import Track
 from small_cases import changed
 
 EVERY = {

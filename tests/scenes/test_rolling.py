@@ -9,13 +9,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
+from asperity import Beam, material
 from asperity.errors import ComputationError, InputError
 from asperity.laws import HertzLaw, Linear, Printed, Shifted
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture
-from asperity.reference.materials import material
 from asperity.rolling.roll import RolledBodies
-from asperity.structures.beam import Beam
 from asperity.structures.body import GRAVITY, Body
 from one_contact import Shelf, Stepped, roll_ball
 from refusals import refusals

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from asperity import Track, Wheel
 from asperity.errors import InputError
 from asperity.laws import HertzLaw, Linear
 from asperity.radiation.passing import passed_points
@@ -12,9 +13,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
 from asperity.scenarios.scene import mean_square_transfer
 from asperity.spectra import band_levels, psd
-from asperity.structures.body import Wheel
 from asperity.structures.moving_kernel import ZONES, HatResponse, moving_kernel
-from asperity.structures.track import Track
 from asperity.structures.track_parameters import Bays
 from asperity.surfaces.bands import from_bands
 from one_contact import roll_wheel

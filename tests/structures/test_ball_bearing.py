@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import least_squares
 
+from asperity import BallBearing, ModalStructure
 from asperity.errors import HalfSpaceWarning, InputError, OutOfRangeWarning
-from asperity.structures.ball_bearing import BallBearing
-from asperity.structures.modal import ModalStructure
 from asperity.structures.ring import Around, Ring
 from refusals import refusals
 

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from asperity import errors
+from asperity import Beam, errors, material
 from asperity.errors import InputError, UnconvergedWarning
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
-from asperity.reference.materials import material
 from asperity.rolling.roll import roll_bodies
 from asperity.spectra import psd
-from asperity.structures.beam import Beam
 from asperity.structures.body import Body, Wheel
 from asperity.structures.modal_fit import vector_fit, warn_of_wide_lines
 from asperity.structures.receptance_fit import fit_body, fit_structure, receptances_in

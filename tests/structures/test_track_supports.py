@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from asperity import Track
+from asperity import Track, Wheel
 from asperity.scenes.track import loss_factor_error
-from asperity.structures.body import Wheel
 from asperity.structures.causal_track import causal_track
 from asperity.structures.mobility import dissipated_power
 from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload

@@ -6,10 +6,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy import fft, stats
 from scipy.special import k1
 
-from asperity import spectra
+from asperity import HeightMap, spectra
 from asperity.reference import cnossos
 from asperity.surfaces.bands import band_levels_of, from_bands, strip_from_bands
-from asperity.surfaces.heightmap import HeightMap
 from refusals import refusals
 
 MM, UM = 1e-3, 1e-6

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from asperity import BallOnBeam
+from asperity import BallOnBeam, HeightMap, Profile
 from asperity.errors import CaseError, ShortRecordWarning
-from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, inscribed, level, resample, rotated
 from asperity.surfaces.spectra import texture_direction
 from refusals import refusals

@@ -5,8 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy import fft, integrate, stats
 
-from asperity import spectra
-from asperity.surfaces.heightmap import HeightMap
+from asperity import HeightMap, spectra
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.likeness import gaussian_correlation, height_table
 from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, psd_2d

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from asperity import HeightMap, read_surface
 from asperity.errors import InputError, MissingPointsWarning
-from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.readers import read_surface
 from refusals import refusals
 
 # 3 lines along x, 4 points across, in um
