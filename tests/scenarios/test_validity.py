@@ -13,7 +13,6 @@ from asperity.contact.scan import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import try_contacts
-from asperity.surfaces.synthesis import self_affine
 
 CASE = """
 kind = "ball-on-beam"
@@ -143,14 +142,6 @@ class TestWindow:
         assert quiet.attrs["verdict"].startswith("The ball never loses contact")
         held = float(re.search(r"Forces above ([\d.]+) N", entry["meaning"])[1])
         assert quiet["rolling/contact_force"].values.max() < held < quiet["contact/force"].values[-1]
-
-    def test_maps_that_are_too_small_for_it_are_told(self, runs, tmp_path):
-        waves = {"hurst": 0.8, "longest": 0.4e-3, "shortest": 60e-6}
-        surface = self_affine((70, 70), (10e-6, 10e-6), rms=0.3e-6, seed=2, **waves)
-        np.savez(tmp_path / "map.npz", map=surface.heights * 1e6)
-        keys = 'file = "map.npz"\narray = "map"\nheight_unit = "um"\npixel = "10 um"'
-        remedy = validity(runs(parse_case(text(keys, window=0.5), tmp_path / "case.toml")))[CUT_OFF]["remedy"]
-        assert "the maps are 0.69 mm wide: measure wider maps" in remedy
 
     def test_a_scan_names_its_window_and_that_of_smooth_bodies_is_a_tenth_wider_than_their_patch(self):
         x = 1e-5 * np.arange(-20, 21)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from asperity import Beam, Bodies, ModalStructure, Profile, Wheel, WheelOnRail, material
-from asperity.case.cases import parse_case, template
 from asperity.errors import (
     CaseError,
     EnergyWarning,
@@ -34,11 +33,6 @@ def case_of(body=(), **keys):
 
 def scene(*arguments, **keys):
     return scene_of(case_of(*arguments, **keys))
-
-
-def test_the_template_reads_as_the_default_case():
-    default = Bodies(duration=0.12, surface={"rms": "0.1 um"}, body={"load": 50})
-    assert parse_case(template("bodies")) == default
 
 
 # --- what rolls
@@ -73,15 +67,6 @@ def test_elements_of_a_carriage_press_it_up_by_hertz():
     hertz = case.smooth_contact
     expected = hertz.tangent_stiffness(hertz.approach(20.0 - 9.80665 * case.body.contact_mass))
     assert scene_of(case).rolling[0].stiffness[0, 0] == pytest.approx(expected)
-
-
-def test_the_path_reaches_to_the_foremost_contact():
-    near, far = (
-        textures_of(case_of(body, duration="50 ms", settling="10 ms"))
-        for body in ({}, {"positions": ["0 m", "0.1 m"]})
-    )
-    assert len(far.line) - len(near.line) == 5000
-    assert far.start == near.start
 
 
 def test_loads_and_textures_of_their_own_make_laws_of_their_own():

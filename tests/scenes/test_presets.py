@@ -79,12 +79,3 @@ def test_a_kind_in_one_file_is_written_checked_run_and_reported(kind, tmp_path, 
     page = Path("out/report.html").read_text(encoding="utf-8")
     assert all(f">{heading}</h2>" in page for heading in ("Texture", "Contact", "Contact force"))
     assert {"force_psd.csv", "force_bands.csv"} <= {path.name for path in Path("out").iterdir()}
-
-
-def test_a_kind_takes_one_file_and_one_line():
-    """The file above is all: no other file of the project or of the tests knows its name but this one."""
-    root = Path(__file__).parents[2]
-    files = [path for folder in ("src", "tests") for path in (root / folder).rglob("*.py")]
-    knowing = [p for p in files if "foundation" in p.name or "RollerOnFoundation" in p.read_text("utf-8")]
-    assert {path.name for path in knowing} == {FILE.name, Path(__file__).name}
-    assert sum(bool(line.strip()) for line in FILE.read_text().splitlines()) < 100

@@ -70,21 +70,15 @@ class Geometry:
         nx, ny = self.body.shape
         return HalfSpace((nx, ny), self.spacing, self.modulus, hardness)
 
-    def remedy_for_cut_off(self, highest: float, datum: float, widest: float) -> str:
+    def remedy_for_cut_off(self, highest: float, datum: float) -> str:
         """Name a window that holds the contacts of all states, also of those that this one keeps out.
 
-        Approach of the highest state, m; d0 of the states, m, minus the lowest first touch; widest window
-        that the samples allow, m. One sentence.
+        Approach of the highest state, m; d0 of the states, m, minus the lowest first touch. One sentence.
         """
         wanted = max(HIGHEST_FORCE * self.class_load, self.largest_force)
         kept_out = self.hertz.approach(wanted) - self.hertz.approach(self.largest_force)
         side = window_for(self.body, self.spacing, highest + kept_out + datum)
-        if side <= widest:
-            return f'contact.window = "{side * 1e3:.3g} mm" holds them.'
-        return (
-            f"It takes a window of {side * 1e3:.3g} mm, and the maps are {widest * 1e3:.3g} mm wide: measure "
-            "wider maps, remove the waviness by surface.longest, or end contact.approaches earlier."
-        )
+        return f'contact.window = "{side * 1e3:.3g} mm" holds them.'
 
     def within_window(self) -> "Geometry":
         """Bound the states by a contact that the window holds."""

@@ -31,7 +31,6 @@ class ReducedCase(PreparedCase):
     reduction: reducing.Reduction | None  # state functions; None where the case has no samples
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: Array | None
-    cache: Store  # for the scan of the path
     progress: Progress
 
     def of_contact(self, own: OtherContact) -> "ReducedCase":
@@ -118,8 +117,8 @@ class ReducedCase(PreparedCase):
             self._reduced.approaches, table_stride(self.shape), rtol_for(self.case.numerics.force_accuracy),
             self._scanned_planes, self.textures.before,
         )  # fmt: skip
-        how = {"cache": self.cache, "progress": self.progress, "message": "scanning the path"}
-        scanned = scan_forces(job, mapped=True, **how)
+        told = {"progress": self.progress, "message": "scanning the path"}
+        scanned = scan_forces(job, mapped=True, cache=Store(), **told)
         warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
         return scanned
 
@@ -150,13 +149,13 @@ class ReducedCase(PreparedCase):
         return ForceTable(self.path_scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
 
 
-def reduced_case(prepared: PreparedCase, cache: Store, progress: Progress) -> ReducedCase:
+def reduced_case(prepared: PreparedCase, progress: Progress) -> ReducedCase:
     """Reduce a case to what its laws are made of; one without samples has no state functions."""
     path, reduction = prepared.textures.path, None
     planes = None if path is None else reducing.patch_planes(path, prepared.shape)
     if prepared.textures.maps:
-        reduction = reducing.reduce(prepared, planes, cache, progress)
-    return ReducedCase(**vars(prepared), reduction=reduction, planes=planes, cache=cache, progress=progress)
+        reduction = reducing.reduce(prepared, planes, progress)
+    return ReducedCase(**vars(prepared), reduction=reduction, planes=planes, progress=progress)
 
 
 def table_stride(shape: Geometry) -> int:

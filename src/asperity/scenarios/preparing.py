@@ -123,7 +123,7 @@ def _problems(prepared: PreparedCase) -> Iterator[InputError]:
     if smallest < nx:
         allowed = f"at most the measured map, {smallest * contact.spacing * 1e6:.4g} um"
         received = written(contact.window, "m", "um")
-        yield InputError("contact.window", received, allowed, "Choose a smaller contact.window.")
+        yield InputError("contact.window", received, allowed, "Choose a smaller one, or measure wider maps.")
         return
     if textures.strips and any(strip.heights.any() for strip in textures.strips):
         rows, stride = min(strip.shape[0] for strip in textures.strips), reducing.filter_stride(shape)

@@ -104,9 +104,7 @@ def patch_planes(path: Strip, shape: Geometry) -> Array:
     return -texture.areal_texture(path, shape.spacing, [0.0], [shape.class_axes]).heights[0]
 
 
-def reduce(
-    prepared: PreparedCase, planes: Array | None, cache: Store | None, progress: Progress
-) -> Reduction:
+def reduce(prepared: PreparedCase, planes: Array | None, progress: Progress) -> Reduction:
     """Press and move the body on the samples, and reduce the forces to stiffness and filters.
 
     `planes` (rows,), m, are from `patch_planes` for the path, where it is areal. The cache keeps finished
@@ -130,8 +128,7 @@ def reduce(
     approaches = _approaches(prepared, along, samples)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
-    wide = textures.widest_window
-    remedy = shape.remedy_for_cut_off(float(approaches[-1]), -lowest["path"], wide)
+    remedy = shape.remedy_for_cut_off(float(approaches[-1]), -lowest["path"])
     ensemble = stiffness.stiffness_ensemble(
         samples, half_space, shape.body, approaches, 0.0, rtol=scan.rtol_for(numerics.force_accuracy),
         progress=progress, tolerance=SCAN_TOLERANCE, remedy=remedy,
@@ -144,7 +141,7 @@ def reduce(
     curve = ensemble.curve.first_touch
     datums = {name: -min(touch, curve, -LEAST_DATUM) for name, touch in lowest.items()}
     ensemble = replace(ensemble, datum=datums[contact.datum])
-    filters, counts = line_filters(prepared, ensemble, cache, progress)
+    filters, counts = line_filters(prepared, ensemble, progress)
     scan.warn_of_flaws(counts, "the filters", SCAN_TOLERANCE, remedy)
     axes = np.array([shape.axes(f) for f in mean])
     return Reduction(approaches, ensemble, datums, axes, filters, pressed, remedy, along, counts)
@@ -272,7 +269,7 @@ def filter_stride(shape: Geometry) -> int:
 
 
 def line_filters(
-    prepared: PreparedCase, ensemble: stiffness.StiffnessEnsemble, cache: Store | None, progress: Progress
+    prepared: PreparedCase, ensemble: stiffness.StiffnessEnsemble, progress: Progress
 ) -> tuple[LineFilters, scan.Counts]:
     """Scan the strips, and design a filter for every normalisation that a law needs, or that is shown.
 
@@ -299,7 +296,7 @@ def line_filters(
         scan.ScanJob(half_space, strip, shape.body, approaches, stride, rtol, device=device)
         for strip in textures.strips
     ]
-    scans = _scanned_strips(jobs, cache, progress)
+    scans = _scanned_strips(jobs, progress)
     half, beside, spectra = shape.body.shape[0] // 2, (axes[:, 1] / shape.spacing[1]).astype(int), []
     for strip, scanned in zip(textures.strips, scans, strict=True):
         rows = scanned.forces.shape[1] * stride
@@ -316,15 +313,13 @@ def line_filters(
     return filters, scan.total(each.counts for each in scans)
 
 
-def _scanned_strips(
-    jobs: Sequence[scan.ScanJob], cache: Store | None, progress: Progress
-) -> list[scan.ScannedForces]:
+def _scanned_strips(jobs: Sequence[scan.ScanJob], progress: Progress) -> list[scan.ScannedForces]:
     """Forces at constant approach along each strip."""
     workers = thread_count() if jobs[0].device is None else 1  # one block fills a device
 
     def scanned(job: scan.ScanJob) -> scan.ScannedForces:
         # one strip is a block or two: strips beside each other keep all processors busy
-        return scan.scan_forces(job, cache=cache, workers=math.ceil(workers / len(jobs)), beside=jobs)
+        return scan.scan_forces(job, cache=Store(), workers=math.ceil(workers / len(jobs)), beside=jobs)
 
     scans = in_order(scanned, jobs, workers)
     return list(counted(scans, len(jobs), "scanning for the contact filters", progress))

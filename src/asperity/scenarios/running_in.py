@@ -33,7 +33,7 @@ class RunInCase:
     values: Values  # each pass, and the surface before and after them
 
 
-def run_in_case(prepared: PreparedCase, cache: Store | None, progress: Progress) -> RunInCase:
+def run_in_case(prepared: PreparedCase, progress: Progress) -> RunInCase:
     """Run samples and path of a case in, each rolled over lengthwise under the working load.
 
     Samples are then cut from the strips, whose middles the body has passed. A path that is a line alone stays
@@ -45,7 +45,7 @@ def run_in_case(prepared: PreparedCase, cache: Store | None, progress: Progress)
         half_space, shape.body, shape.load, passes_of(case.contact.running_in),
         tolerance_of(half_space, shape.body, shape.load), table_stride(shape), case.numerics.rtol,
     )  # fmt: skip
-    roll = partial(run_in, job=job, cache=cache, progress=progress)
+    roll = partial(run_in, job=job, cache=Store(), progress=progress)
     strips = list(in_order(lambda strip: roll(strip.heights, workers=1), textures.strips, thread_count()))
     surfaces, line, path, parts = [*strips], textures.line, textures.path, textures.parts
     if textures.path is not None:

@@ -73,16 +73,6 @@ class Textures:
         return slice(self.before, len(self.line) - self.beyond)
 
     @property
-    def widest_window(self) -> float:
-        """Widest window that measured samples allow, m; synthesised ones are as wide as is asked for."""
-        if self.untouched is not None:
-            return self.untouched.widest_window
-        if self.maps is self.strips:
-            return math.inf
-        cells = min(min(sample.shape) for sample in self.maps)
-        return (cells - (cells + 1) % 2) * self.maps[0].spacing[0]  # windows have a middle cell
-
-    @property
     def followed(self) -> Array:
         """Line texture with the trajectory over defects, m, peaks positive, shape (rows,)."""
         return self.line if self.trajectory is None else self.line + self.trajectory

@@ -147,10 +147,10 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     which, others = other_contacts(case, scene.loads)
     duration = recorded_time(case, prepared.textures)
     if case.contact.running_in is not None:
-        ran = run_in_case(prepared, store, progress)
+        ran = run_in_case(prepared, progress)
         run_in = replace(prepared, textures=ran.textures)
         book("running in")
-    first = reduced_case(run_in, store, progress)
+    first = reduced_case(run_in, progress)
     book("reduction")
     every, unused = [first, *(first.of_contact(own) for own in others)], replace(first, seconds=seconds)
     runs: dict[str, RolledBodies] = {}

@@ -69,9 +69,9 @@ def choice_of(computed: Computed, *, brief: bool) -> LawChoice | None:
 
 def foreseen(prepared: PreparedCase, tried: ContactTrial, choice: LawChoice | None) -> list[Finding]:
     """What a run will find fault with, from contacts that were tried."""
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    case = prepared.case
     lowest, *_, highest = tried.approaches.tolist()
-    remedy = shape.remedy_for_cut_off(highest, -lowest, textures.widest_window)
+    remedy = prepared.shape.remedy_for_cut_off(highest, -lowest)
     found = (
         _area(case, tried.pressed.area_ratio, choice),
         _slope(prepared),
