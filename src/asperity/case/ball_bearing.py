@@ -21,27 +21,14 @@ from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.surface import INDEX
 from asperity.case.tables import Column, TableFile, TableSource, read_table
 from asperity.errors import InputError, PhysicsWarning
-from asperity.parameters import (
-    Choice,
-    File,
-    Flag,
-    Key,
-    ListOf,
-    Number,
-    Origin,
-    Quantity,
-    key,
-    keys_of,
-    optional,
-)
-from asperity.structures.ball_bearing import BEARINGS, PARTS, BallBearing
+from asperity.parameters import Choice, File, Flag, ListOf, Number, Origin, Quantity, key, keys_of, optional
+from asperity.structures.ball_bearing import BEARINGS, PARTS, BallBearing, Kinematics
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, closed_trace
 from asperity.units import written
 
 if TYPE_CHECKING:
     from asperity.contact.hertz import Hertz
-    from asperity.structures.ball_bearing import Kinematics
     from asperity.structures.bearing_statics import LoadedBearing
     from asperity.structures.modal import ModalStructure
     from asperity.structures.ring import Around
@@ -181,7 +168,7 @@ def read_roundness(table: TableSource) -> Array:
     return rows
 
 
-def _keys_of(model: Any) -> dict[str, Key]:
+def _keys_of(model: Any) -> dict[str, Any]:
     """Keys of what a dataclass declares: where the class has a default, it is their example."""
     fixed = {field.name for field in fields(model) if field.default not in (None, MISSING, ())}
     return {

@@ -14,7 +14,7 @@ from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, static_group, tones_group
 from asperity.scenes.figures.bearing import ball_contacts_table, envelope_spectrum, load_zone
 from asperity.schema import tree
-from asperity.structures.ball_bearing import PARTS, PRINTED_BY, BallBearing, Kinematics
+from asperity.structures.ball_bearing import PARTS, PRINTED_BY, Kinematics
 from asperity.studies.signals import read_signal
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
@@ -38,23 +38,20 @@ def show_bearing(
 ) -> dict[str, Any]:
     """Print what a bearing does under its load, or what its signal says, and draw it; return the numbers."""
     keys = read_bearing(source, options)
-    _say_geometry(keys.name or source, keys.bearing)
-    if keys.name:
-        say(f"Balls and diameters as printed by {PRINTED_BY}; grooves and clearance chosen here or given.")
-    told = _heard(keys, signal, picture, **hints) if signal else _carried(keys, picture)
-    if picture is not None:
-        say(f"Picture: {picture.resolve()}")
-        told["files"] = {"picture": picture}
-    return {"bearing": keys.name or source, **dict.fromkeys(TOLD), **told}
-
-
-def _say_geometry(name: str, of: BallBearing) -> None:
+    of, name = keys.bearing, keys.name or source
     say(
         f"{name}: {of.balls} balls of {of.ball_diameter * 1e3:.4g} mm, pitch diameter "
         f"{of.pitch_diameter * 1e3:.4g} mm, grooves of {of.inner_conformity:g} D (inner) and "
         f"{of.outer_conformity:g} D (outer), clearance {of.radial_clearance * 1e6:.3g} µm, free contact "
         f"angle {math.degrees(of.free_angle):.3g}°"
     )
+    if keys.name:
+        say(f"Balls and diameters as printed by {PRINTED_BY}; grooves and clearance chosen here or given.")
+    told = _heard(keys, signal, picture, **hints) if signal else _carried(keys, picture)
+    if picture is not None:
+        say(f"Picture: {picture.resolve()}")
+        told["files"] = {"picture": picture}
+    return {"bearing": name, **dict.fromkeys(TOLD), **told}
 
 
 # --- what it carries

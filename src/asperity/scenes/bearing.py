@@ -9,20 +9,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 import xarray
 
-from asperity import laws
+from asperity import diagnostics, laws
 from asperity.arguments import Array
 from asperity.case.ball_bearing import BallBearingCase
-from asperity.diagnostics import (
-    ISO_BANDS,
-    LineFamily,
-    Spectrum,
-    amplitude_spectrum,
-    band_velocities,
-    clear_families,
-    envelope_spectrum,
-    explained_lines,
-    impulsive_band,
-)
+from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
 from asperity.errors import Finding, Grade, PhysicsWarning, percent, warn_of_findings
 from asperity.progress import Progress
 from asperity.rolling.bearing import RolledBearing
@@ -155,16 +145,17 @@ def motion_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Value
 
 def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values:
     """Lay out velocities in bands at all sensors; spectrum, envelope and lines in it at the first one."""
-    rate, turning, signals = case.sampling_rate, case.kinematics, [run.acceleration for run in runs.values()]
-    highest = REACH * HARMONICS * max(tone for tone, _ in turning.families.values())
-    low, high = case.envelope_band or impulsive_band(signals[0][0], rate, highest)
-    lines = [amplitude_spectrum(law[0], rate) for law in signals]
+    rate, signals = case.sampling_rate, [run.acceleration for run in runs.values()]
+    families = case.kinematics.families
+    highest = REACH * HARMONICS * max(tone for tone, _ in families.values())
+    low, high = case.envelope_band or diagnostics.impulsive_band(signals[0][0], rate, highest)
+    lines = [diagnostics.amplitude_spectrum(law[0], rate) for law in signals]
     frequency = lines[0][0]
     kept = (frequency > 0.0) & (frequency <= case.highest_frequency)
-    struck = [envelope_spectrum(law[0], rate, (low, high)) for law in signals]
+    struck = [diagnostics.envelope_spectrum(law[0], rate, (low, high)) for law in signals]
     slip = max(case.cage_slip) + RESOLVED
-    found = [explained_lines(each, turning.families, slip=slip, harmonics=HARMONICS) for each in struck]
-    clear = [clear_families(each, SILENT) for each in found]
+    found = [diagnostics.explained_lines(each, families, slip=slip, harmonics=HARMONICS) for each in struck]
+    clear = [diagnostics.clear_families(each, SILENT) for each in found]
     judged = [[band_velocities(one, rate, quantity="acceleration") for one in law] for law in signals]
     return {
         spectra.LAW: list(runs),

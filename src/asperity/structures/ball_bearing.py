@@ -360,17 +360,17 @@ class Kinematics:
 
     def tone(self, part: str) -> float:
         """Frequency of a fault of a part: ``"outer"``, ``"inner"`` or ``"ball"``."""
-        passes = (self.ball_pass_outer, self.ball_pass_inner, self.ball_defect)
-        return passes[PARTS.index(one_of("part", part, PARTS))]
+        return self.families[one_of("part", part, PARTS)][0]
 
     def modulation(self, part: str) -> float:
         """Turns of a fault of a part past a load that stands still: distance of its side bands."""
-        return (self.outer, self.inner, self.cage)[PARTS.index(one_of("part", part, PARTS))]
+        return self.families[one_of("part", part, PARTS)][1]
 
     @property
     def families(self) -> dict[str, tuple[float, float]]:
         """Tone of each part and distance of its side bands, for `asperity.diagnostics.explained_lines`."""
-        return {part: (self.tone(part), self.modulation(part)) for part in PARTS}
+        tones = self.ball_pass_outer, self.ball_pass_inner, self.ball_defect
+        return dict(zip(PARTS, zip(tones, (self.outer, self.inner, self.cage), strict=True), strict=True))
 
     def waviness(self, part: str, order: int, lobes: int) -> tuple[float, ...]:
         """Tones that a small waviness of a part makes in an axially loaded bearing.
