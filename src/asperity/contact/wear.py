@@ -305,7 +305,7 @@ class _Wearing(NamedTuple):
         parameters = [list(space.spacing), space.modulus, space.hardness, bodies, self.bodies.coupled]
         with np.printoptions(threshold=sys.maxsize, floatmode="unique"):  # maps in full
             parameters += [repr(friction), repr(self.law), list(self.motion), *self[5:]]
-        return content_key("wear", heights, self.body, self.load, np.asarray(friction.static), parameters)
+        return content_key("worn", heights, self.body, self.load, np.asarray(friction.static), parameters)
 
 
 def worn(
@@ -409,10 +409,10 @@ def worn(
         step = min(step, ROUGHNESS_SHARE * float(heights.std()) or step)
     step = positive("step", step)
     job = _Wearing(rolling, law, shape_of, loads, motion, speed, passes, step, rtol)
-    state = _passed(heights, job, cache, progress)
-    counts, depth = Counts(*state["counts"].tolist()), state["depth"]
+    depth, solved = _passed(heights, job, cache, progress)
+    counts = Counts(*solved[:, 6:].sum(axis=0).astype(int).tolist())
     warn_of_flaws(counts, "wear", "rtol", "Enlarge the window.", "its wear too small")
-    deepest = float(state["deepest"].max())
+    deepest = float(solved[:, 1].max())
     if deepest > step:
         OutOfRangeWarning.warn(
             f"a single pass removes {1e9 * deepest:.3g} nm, more than the {1e9 * step:.3g} nm after which "
@@ -421,39 +421,31 @@ def worn(
         )
     origin = f"{surface.source}; " if isinstance(surface, HeightMap) and surface.source else ""
     left = HeightMap(heights - depth, space.spacing, f"{origin}worn by {passes} passes")
-    return WornSurface(left, depth, state["passes"], state["volume"], state["work"], counts)
+    return WornSurface(left, depth, solved[:, 0].astype(np.int64), solved[:, 2:5], solved[:, 5], counts)
 
 
 def _passed(
     heights: Array, job: _Wearing, cache: Store | None, progress: Progress | None
-) -> dict[str, NDArray[Any]]:
-    """Depth and sums after all passes; those that the cache knows are not rolled."""
+) -> tuple[Array, Array]:
+    """Depth after all passes, and a row (10,) of each that was solved; those the cache knows are not rolled.
+
+    How many it stands for, its largest depth, by all of these the volumes and the work, and its counts.
+    """
     key = "" if cache is None else job.key(heights)
-    state: dict[str, NDArray[Any]] = (cache.get(key) if cache is not None else None) or {
+    state = (cache.get(key) if cache is not None else None) or {
         "depth": np.zeros(heights.shape),
-        "passes": np.empty(0, dtype=np.int64),
-        "deepest": np.empty(0),
-        "volume": np.empty((0, len(REGIMES))),
-        "work": np.empty(0),
-        "counts": np.zeros(4, dtype=np.int64),
+        "solved": np.empty((0, 10)),
     }
-    while (done := int(state["passes"].sum())) < job.passes:
+    while (done := int(state["solved"][:, 0].sum())) < job.passes:
         message = f"wear, pass {done + 1} of {job.passes}"
         depth, volume, work, counts = _pass(heights - state["depth"], job, progress, message)
         deepest, left = max(float(depth.max()), np.finfo(float).tiny), job.passes - done
         alike = max(int(min(job.step / deepest, left)), 1)
-        state["depth"] = state["depth"] + alike * depth
-        state["counts"] = state["counts"] + counts
-        for name, value in (
-            ("passes", alike),
-            ("deepest", deepest),
-            ("volume", alike * volume),
-            ("work", alike * work),
-        ):
-            state[name] = np.concatenate([state[name], np.asarray([value], dtype=state[name].dtype)])
+        row = [alike, deepest, *(alike * volume), alike * work, *counts]
+        state = {"depth": state["depth"] + alike * depth, "solved": np.vstack([state["solved"], row])}
         if cache is not None:
             cache.put(key, state)
-    return state
+    return state["depth"], state["solved"]
 
 
 def _pass(
