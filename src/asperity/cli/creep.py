@@ -23,8 +23,6 @@ from asperity.scenes import creep
 from asperity.terminal import say, say_table
 
 NAMES = {"longitudinal": "creepage along", "lateral": "creepage across", "spin": "spin × √(ab)"}
-STIFFNESSES = ("normal stiffness", "stiffness along", "stiffness across", "real area")
-CREEPS = ("longitudinal creep", "lateral creep", "spin creep")
 MOST_POINTS = 1000
 Scattered = Mapping[str, tuple[Array, Array | None]]
 """Means over samples, and their standard deviations where there are several."""
@@ -110,8 +108,9 @@ def _told_states(states: TractionStates, source: str) -> Told:
         columns |= {f"rough {name} [{unit}]": rough, f"smooth {name} [{unit}]": smooth}
         columns |= {f"ratio of {name} [1]": change[name][0], f"scatter of {name} [1]": change[name][1]}
     axes = Axis("load / N", log=True), Axis("rough over smooth")
-    groups = ({name: change[name] for name in group} for group in (STIFFNESSES, CREEPS))
-    first, second = (_panel(*axes, load, drawn) for drawn in groups)
+    creeps = {name: each for name, each in change.items() if name.endswith("creep")}
+    stiffnesses = {name: each for name, each in change.items() if name not in creeps}
+    first, second = (_panel(*axes, load, drawn) for drawn in (stiffnesses, creeps))
     return title, columns, Chart((first, replace(second, beside=True)))
 
 

@@ -280,18 +280,14 @@ def creep_curve(
     )
     unit[2] /= ellipse.mean_axis
     axis = 0 if direction == "longitudinal" else 1
-
-    def against(force: tuple[float, float]) -> float:
-        return -force[axis]
-
-    stuck = against(ellipse.linear_force((unit[0], unit[1]), unit[2]))
+    stuck = -ellipse.linear_force((unit[0], unit[1]), unit[2])[axis]
     full = rolling.roll(smooth).limit
     if creepages is None:
         whole("points of the curve", count, "a whole number of at least 1", at_least=1)
         creepages = FULL_SLIP * full / stuck * (np.arange(1, count + 1) / count) ** 1.5
     xi = finite_array("creepages", creepages, "rising numbers above 0", shape=(None,), rising=True, above=0.0)
     points = [(at * unit[0], at * unit[1], at * unit[2]) for at in xi]
-    force, share = np.zeros((1 + len(samples), len(xi))), np.zeros((1 + len(samples), len(xi)))
+    force, share = np.zeros((2, 1 + len(samples), len(xi)))
 
     def rolled(sample: Array) -> Array:
         found = rolled_over(rolling, smooth, sample, points, speed)
@@ -302,11 +298,11 @@ def creep_curve(
         last: SlidingContact | None = None
         for j, motion in enumerate(points):
             last = rolling.roll(smooth, motion[:2], motion[2], start=last, speed=speed)
-            force[0, j], share[0, j] = against(last.force), last.slip_area / smooth.area
+            force[0, j], share[0, j] = -last.force[axis], last.slip_area / smooth.area
         found = counted(in_order(rolled, samples), len(samples), "creep forces of rough samples", progress)
         for i, (ratio, slips) in enumerate(found, 1):
             force[i], share[i] = ratio * force[0], slips
-    fast = [against(ellipse.fastsim_force(each[:2], each[2], full)) for each in points]
+    fast = [-ellipse.fastsim_force(each[:2], each[2], full)[axis] for each in points]
     return CreepCurve(direction, xi, full, force, share, stuck * xi, np.array(fast))
 
 
