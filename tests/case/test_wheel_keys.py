@@ -67,7 +67,7 @@ def test_modes_go_up_to_a_quarter_beyond_the_highest_frequency():
 
 
 def test_modes_that_nobody_hears_are_not_sought(monkeypatch):
-    monkeypatch.setattr("asperity.case.wheel.HIGHEST", 600.0)
+    monkeypatch.setattr("asperity.structures.wheel_modes.HIGHEST", 600.0)
     found = wheel_on_rail(section="curved-web").rolling.standing_modes(1e5)
     assert 300.0 < found.natural_frequencies.max() <= 600.0
 

@@ -12,14 +12,7 @@ from scipy.special import jv
 from asperity import Track, Wheel
 from asperity.radiation import track as sound
 from asperity.radiation import wheel as module
-from asperity.radiation.track import (
-    IMPEDANCE,
-    SPEED_OF_SOUND,
-    RailSection,
-    SideOfRail,
-    SleeperTop,
-    squared_lateral_mobility,
-)
+from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, RailSection, SideOfRail, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, axial_transition, radial_transition
 from asperity.scenarios.scene import force_transfer
 from asperity.spectra import band_energies, psd, third_octave_bands
@@ -196,7 +189,7 @@ def test_the_integral_along_the_rail_is_that_of_many_bays():
     for x0 in places:
         moved = np.array([np.einsum("abf,nb->anf", waves.receptance(x, x0), forces) for x in along])
         expected += np.einsum("xamf,ab,xbnf->mnf", moved.conj(), over_height, moved) * bay / cells / 4
-    found = squared_lateral_mobility(SIDEWAYS, frequency, places, place).mean(axis=0)
+    found = sound.squared_lateral_mobility(SIDEWAYS, frequency, places, place).mean(axis=0)
     assert_allclose(found, (2.0 * np.pi * frequency) ** 2 * expected, rtol=5e-4)
     assert_allclose(found, found.conj().swapaxes(0, 1), rtol=1e-9)
 

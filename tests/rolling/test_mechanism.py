@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from rolling_parts import rough, same
 
 from asperity.errors import ExtrapolationWarning
 from asperity.laws import HertzLaw, Linear
@@ -13,7 +12,7 @@ from asperity.rolling.mechanism import Edge, Mechanism, Side, roll_mechanism
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body, chain
 from asperity.structures.modal import ModalStructure
-from one_contact import Stepped
+from one_contact import Stepped, rough, same
 from refusals import refusals
 
 SPEED, STEP, TIME = 1.0, 1e-5, 0.02

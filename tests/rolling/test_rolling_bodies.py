@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from rolling_parts import rigid_bar, rough, same
 
 from asperity import Beam, ModalStructure, material
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body, chain
-from one_contact import Shelf, Stepped, first_contact
+from one_contact import Shelf, Stepped, first_contact, rigid_bar, rough, same
 
 STEEL = material("steel")
 BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)

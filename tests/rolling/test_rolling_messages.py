@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rolling_parts import rough
 
 from asperity import Beam, SupportedBeam, Track, errors, material
 from asperity.errors import ComputationError, Outcome
@@ -19,7 +18,7 @@ from asperity.rolling.roll import free_motion, refuse_missed_load, roll_bodies
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailBetween
-from one_contact import Stepped
+from one_contact import Stepped, rough
 from refusals import refusals
 
 BEAM = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=2e3)

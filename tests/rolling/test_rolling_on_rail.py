@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from rolling_parts import rigid_bar, rough, same
 
 from asperity.errors import ComputationError
 from asperity.laws import HertzLaw, Linear
@@ -15,7 +14,7 @@ from asperity.structures.body import Body, Wheel, carriage
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import Track
-from one_contact import Shelf, roll_wheel
+from one_contact import Shelf, rigid_bar, roll_wheel, rough, same
 
 TRACK = Track.named("nordborg", rail_loss_factor=0.03)
 SPEED, STEP, LOAD, MASS = 56.0, 50e-6, 65e3, 600.0

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from rolling_parts import rigid_bar, rough
 
 from asperity import Beam, HalfSpace, Track, material
 from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflectionWarning
@@ -19,7 +18,7 @@ from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import GRAVITY, Body, Wheel
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import RailBetween, rail_poles
-from one_contact import roll_ball, roll_wheel
+from one_contact import rigid_bar, roll_ball, roll_wheel, rough
 
 STEEL = material("steel")
 BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)

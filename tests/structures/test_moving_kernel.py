@@ -16,13 +16,7 @@ from asperity.structures import causal_track as module
 from asperity.structures import rail_poles as fitting
 from asperity.structures.causal_track import LEAST_STATIC, causal_track, least_static
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
-from asperity.structures.rail_poles import (
-    RailPoles,
-    over_the_period,
-    poles_or_kernel,
-    rail_between,
-    rail_poles,
-)
+from asperity.structures.rail_poles import RailPoles, poles_or_kernel, rail_between, rail_poles
 from refusals import refusals
 
 STEP = 50e-6
@@ -167,9 +161,11 @@ def test_kernels_and_fits_are_kept_by_their_content(tmp_path):
 
 
 def test_a_periodic_function_is_tabulated_over_the_bay():
-    fine = over_the_period(np.sin(2 * np.pi * np.arange(24) / 24), 1)
+    fine = fitting.over_the_period(np.sin(2 * np.pi * np.arange(24) / 24), 1)
     np.testing.assert_allclose(fine, np.sin(2 * np.pi * np.linspace(0, 1, len(fine))), atol=1e-4)
-    np.testing.assert_allclose(over_the_period(np.array([[2.0 + 1j, 3.0]]), 1), [[2.0 + 1j, 3.0]] * len(fine))
+    np.testing.assert_allclose(
+        fitting.over_the_period(np.array([[2.0 + 1j, 3.0]]), 1), [[2.0 + 1j, 3.0]] * len(fine)
+    )
 
 
 def test_crossing_kernels_are_fitted_within_half_a_percent_of_the_direct_one_and_kept(damped, tmp_path):

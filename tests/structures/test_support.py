@@ -4,18 +4,11 @@ import numpy as np
 import pytest
 
 from asperity import Track
+from asperity.structures import support
 from asperity.structures.causal_track import causal_track
 from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.mobility import dissipated_power
-from asperity.structures.support import (
-    BendingSleeper,
-    Chain,
-    ConstantLoss,
-    Relaxation,
-    RigidMass,
-    Spring,
-    measured_sleeper,
-)
+from asperity.structures.support import BendingSleeper, Chain, ConstantLoss, Relaxation, RigidMass, Spring
 from refusals import refusals
 
 OMEGA = 2.0 * np.pi * np.array([1.0, 30.0, 90.0, 276.0, 600.0, 1500.0, 4000.0])
@@ -108,7 +101,7 @@ def test_a_table_of_a_beam_is_the_track_on_such_beams(name, noise):
     """A per cent of noise on the table is less on the track."""
     draws = np.random.default_rng(3)
     around = 1.0 + noise * (draws.standard_normal(250) + 1j * draws.standard_normal(250))
-    sleeper = measured_sleeper(FREQUENCY, around * beam(BENDING * (1.0 + 1e-9j)), MASS)
+    sleeper = support.measured_sleeper(FREQUENCY, around * beam(BENDING * (1.0 + 1e-9j)), MASS)
     assert sleeper.fit_error < (0.1 if noise else 0.005)
     found = Track.named(name, measured_sleeper=sleeper, ballast_mass=300.0, subgrade_stiffness=9e7)
     bends = {"sleeper_bending_stiffness": BENDING, "sleeper_length": LENGTH, "seat_distance": SEATS}
@@ -124,7 +117,7 @@ def test_a_table_of_a_beam_is_the_track_on_such_beams(name, noise):
 
 def test_a_table_of_a_mass_is_a_mass():
     omega = 2.0 * np.pi * FREQUENCY
-    sleeper = measured_sleeper(FREQUENCY, -1.0 / (MASS * omega**2) + NOTHING, MASS)
+    sleeper = support.measured_sleeper(FREQUENCY, -1.0 / (MASS * omega**2) + NOTHING, MASS)
     below = 150e6 * (1.0 + 0.4j) + NOTHING
     np.testing.assert_allclose(sleeper.on(omega, below), RigidMass(MASS).on(omega, below), rtol=1e-12)
     assert sleeper.on(0.0, np.asarray(150e6 + 0j)) == pytest.approx(150e6, rel=1e-12)
@@ -137,7 +130,7 @@ def test_a_table_of_a_mass_is_a_mass():
 
 def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power():
     """Its receptance is analytic in the lower half-plane: the mean on a circle is the value in the middle."""
-    sleeper = measured_sleeper(FREQUENCY, beam(BENDING * (1.0 + 0.03j)), MASS)
+    sleeper = support.measured_sleeper(FREQUENCY, beam(BENDING * (1.0 + 0.03j)), MASS)
     ring = 4000.0 - 300.0j + 200.0 * np.exp(2j * np.pi * np.arange(64) / 64) * np.array([[1.0], [0.0]])
     around, middle = np.mean(1.0 / sleeper.on(ring, 150e6 + 5e4j * ring), axis=1)
     assert around == pytest.approx(middle, rel=1e-12, abs=0.0)
@@ -159,7 +152,7 @@ test_sleepers_that_cannot_be_are_refused = refusals(
     (beam(), "remove sleeper_bending_stiffness"),
     of=lambda receptance: Track.named(
         "uic60",
-        measured_sleeper=measured_sleeper(FREQUENCY, receptance + 0j, MASS),
+        measured_sleeper=support.measured_sleeper(FREQUENCY, receptance + 0j, MASS),
         sleeper_bending_stiffness=BENDING,
     ),
 )

@@ -16,15 +16,8 @@ from asperity.parameters import Either, ListOf, Number, key, keys_of, optional
 from asperity.reference.materials import Material
 from asperity.reference.railways import SECTIONS
 from asperity.store import Store
+from asperity.structures import wheel_modes as ringing
 from asperity.structures.outline import WheelSection, checked_outline, volume_of
-from asperity.structures.wheel_modes import (
-    BEYOND,
-    DAMPING,
-    HIGHEST,
-    WheelModes,
-    wheel_modes,
-    with_running_circle,
-)
 
 RIGID = "rigid"
 OTHERWISE = f'Give other dimensions, or section = "{RIGID}".'
@@ -68,7 +61,7 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
     )
     modal_damping: tuple[float, ...] = key(
         ListOf(_RATIO, least=1),
-        list(DAMPING),
+        list(ringing.DAMPING),
         "damping ratios of its modes with 0, 1 and so on nodal diameters, the last of all beyond",
         goes_with="section",
     )
@@ -113,21 +106,21 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
             return self.is_drawn and isinstance(self.section, str)
         return self.is_drawn if name in _OF_DRAWN else super().is_active(name)
 
-    def standing_modes(self, highest_frequency: float) -> WheelModes | None:
+    def standing_modes(self, highest_frequency: float) -> ringing.WheelModes | None:
         """Modes of the wheel at rest, for spectra up to a frequency, Hz; None without nodal diameters."""
         if self.modes is not None:
             table = tables.read_mode_table(self.modes)
-            return WheelModes.from_table(table) if table.shape[1] > len(tables.MODES) else None
+            return ringing.WheelModes.from_table(table) if table.shape[1] > len(tables.MODES) else None
         if not self.is_drawn:
             return None
         found = _computed(
             self.outline.tobytes(),
             self.material,
-            min(BEYOND * highest_frequency, HIGHEST),
+            min(ringing.BEYOND * highest_frequency, ringing.HIGHEST),
         )
         return found.damped(self.modal_damping, self.added_damping)
 
-    def turning_modes(self, highest_frequency: float, speed: float) -> WheelModes | None:
+    def turning_modes(self, highest_frequency: float, speed: float) -> ringing.WheelModes | None:
         """The same in the frame of a contact that moves along at a speed, m/s."""
         modes = self.standing_modes(highest_frequency)
         return None if modes is None else modes.turning(speed / self.radius)
@@ -168,7 +161,7 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
 
     def _problems_of_drawing(self) -> Iterator[InputError]:
         try:
-            outline, circle = with_running_circle(checked_outline(self.outline))
+            outline, circle = ringing.with_running_circle(checked_outline(self.outline))
         except InputError as error:
             yield InputError("section", error.received, error.allowed, error.remedy or OTHERWISE)
             return
@@ -179,5 +172,5 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
 
 
 @lru_cache(maxsize=8)
-def _computed(outline: bytes, material: Material, highest: float) -> WheelModes:
-    return wheel_modes(np.frombuffer(outline).reshape(-1, 2), material, highest, cache=Store())
+def _computed(outline: bytes, material: Material, highest: float) -> ringing.WheelModes:
+    return ringing.wheel_modes(np.frombuffer(outline).reshape(-1, 2), material, highest, cache=Store())

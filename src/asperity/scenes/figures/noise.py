@@ -182,7 +182,9 @@ def sound_power_table(tree: DataTree, main: bool = False) -> ReportTable:
             for (law, model), levels in rows.items()
         )
         columns[f"over {base}"] = number_cells(over, data.signed)
-    note = "dB(A) re 1 pW, over the bands that were computed; differences are those of the total."
+    note = "dB(A) re 1 pW, over the bands that were computed" + (
+        "." if main else "; differences of the total."
+    )
     note = " ".join(filter(None, [note, silence(tree), with_measured(tree), with_sideways(tree)]))
     return table("sound_power_of_main_law" if main else "sound_power", "Sound power by source", columns, note)
 
