@@ -5,13 +5,7 @@ from functools import partial
 import mpmath as mp
 from ledger import Check
 
-from asperity.radiation.track import (
-    RailSection,
-    baffled_piston,
-    cylinder,
-    squared_mobility,
-    squared_point_mobility,
-)
+from asperity.radiation import track
 from asperity.radiation.wheel import axial_transition
 from asperity.structures.track import Track
 
@@ -22,22 +16,24 @@ def elementary():
     for ka in ("0.3", "1", "4"):
         slope = mp.diff(lambda z: mp.hankel2(1, z), mp.mpf(ka))
         expected, source = 2 / (mp.pi * mp.mpf(ka) * abs(slope) ** 2), "2/(π ka abs(H₁'(ka))²), mpmath"
-        yield ratio(expected, cylinder(float(ka)), body=f"{cylinders} {ka}", source=source, tolerance=1e-9)
+        yield ratio(
+            expected, track.cylinder(float(ka)), body=f"{cylinders} {ka}", source=source, tolerance=1e-9
+        )
     for ka, expected, source in (
         (1e-3, mp.pi / 2 * mp.mpf("1e-3") ** 3, "line dipole, (π/2)(ka)³"),
         (1e3, 1.0, "plane wave"),
     ):
-        yield ratio(expected, cylinder(ka), body=f"{cylinders} {ka:g}", source=source, tolerance=1e-5)
+        yield ratio(expected, track.cylinder(ka), body=f"{cylinders} {ka:g}", source=source, tolerance=1e-5)
     for ka, expected, source, tolerance in (
         (2.0, 1 - mp.besselj(1, 4) / 2, "1 − J₁(2ka)/ka, mpmath", 1e-9),
         (1e-3, 5e-7, "(ka)²/2", 1e-5),
     ):
         body = f"piston in a plane, ka = {ka:g}"
-        yield ratio(expected, baffled_piston(ka), body=body, source=source, tolerance=tolerance)
+        yield ratio(expected, track.baffled_piston(ka), body=body, source=source, tolerance=tolerance)
     expected, found = (27 * mp.pi**2 / 8) ** mp.mpf("0.25"), axial_transition(0)
     what = "rigid disc in free air: ka at which its low-frequency power is that of a plane wave"
     yield Check(what, expected, found, source="Rayleigh, 8(ka)⁴/(27π²) = 1", tolerance=1e-9)
-    section = RailSection(0.150, 0.072, 0.00767)
+    section = track.RailSection(0.150, 0.072, 0.00767)
     dipole = mp.mpf("0.00767") + mp.pi / 4 * (mp.mpf("0.15") ** 2 + mp.mpf("0.072") ** 2)
     expected = (2 * mp.pi / mp.mpf("343.2")) ** 3 * dipole**2 / 8
     found = section.radiating_width * section.radiation_ratio(1.0)[0]
@@ -53,7 +49,7 @@ def along_the_track():
         shear_stiffness=2e7, rotary_inertia=1e-3,
     )  # fmt: skip
     decay = -mp.im(2 * mp.pi * 500 * mp.sqrt(60 / (mp.mpf("2e7") * mp.mpc(1, "0.05"))))
-    found = (squared_mobility(rail, 500.0) / squared_point_mobility(rail, 500.0))[0]
+    found = (track.squared_mobility(rail, 500.0) / track.squared_point_mobility(rail, 500.0))[0]
     source = "one wave, 1/−Im ω√(m'/S)"
     what = "rail that shears and hardly bends, 500 Hz: effective length"
     yield Check(what, 1 / decay, found, "m", source=source, tolerance=1e-3)

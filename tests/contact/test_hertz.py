@@ -9,14 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from asperity import HalfSpace, Hertz
-from asperity.contact.hertz import (
-    FORCE_LOST,
-    check_half_space,
-    groove_gap,
-    in_groove,
-    relative_radius,
-    stick_stiffness,
-)
+from asperity.contact import hertz
 from asperity.errors import HalfSpaceWarning, InputError
 from asperity.reference.materials import MATERIALS, Material
 
@@ -42,10 +35,10 @@ def test_near_circular_is_continuous(e):
 
 
 def test_signs_of_curvatures():
-    assert relative_radius(2.0) == relative_radius(2.0, math.inf) == 2.0
-    assert relative_radius(2.0, 2.0) == 1.0
-    assert relative_radius(2.0, -4.0) == pytest.approx(4.0)
-    flat, inner, outer = (in_groove(STEEL, RADIUS, GROOVE, r) for r in (math.inf, INNER, OUTER))
+    assert hertz.relative_radius(2.0) == hertz.relative_radius(2.0, math.inf) == 2.0
+    assert hertz.relative_radius(2.0, 2.0) == 1.0
+    assert hertz.relative_radius(2.0, -4.0) == pytest.approx(4.0)
+    flat, inner, outer = (hertz.in_groove(STEEL, RADIUS, GROOVE, r) for r in (math.inf, INNER, OUTER))
     assert 1.0 / inner.radius_x == pytest.approx(1.0 / RADIUS + 1.0 / INNER)
     assert 1.0 / outer.radius_x == pytest.approx(1.0 / RADIUS + 1.0 / OUTER)
     assert inner.radius_y == flat.radius_y == outer.radius_y
@@ -53,20 +46,22 @@ def test_signs_of_curvatures():
 
 
 def test_the_gap_of_circles_is_the_parabola_near_its_middle():
-    contact = in_groove(STEEL, RADIUS, GROOVE)
+    contact = hertz.in_groove(STEEL, RADIUS, GROOVE)
     for angle, share in ((0.1, 1e-3), (1.0 / 3.0, 1.1e-2), (0.6, 4e-2)):
         s = angle * GROOVE
-        assert groove_gap(s, RADIUS, GROOVE) == pytest.approx(s**2 / (2.0 * contact.radius_y), rel=share)
+        assert hertz.groove_gap(s, RADIUS, GROOVE) == pytest.approx(
+            s**2 / (2.0 * contact.radius_y), rel=share
+        )
     # from coordinates of the two circles: the ball touches the bottom, the normal of the groove at 40°
     normal, middle = np.array([np.sin(0.7), -np.cos(0.7)]), np.array([0.0, -(GROOVE - RADIUS)])
     t = normal @ middle + np.sqrt((normal @ middle) ** 2 - middle @ middle + RADIUS**2)
-    np.testing.assert_allclose(groove_gap([0.7 * GROOVE], RADIUS, GROOVE), GROOVE - t, rtol=1e-9)
+    np.testing.assert_allclose(hertz.groove_gap([0.7 * GROOVE], RADIUS, GROOVE), GROOVE - t, rtol=1e-9)
 
 
 @pytest.mark.parametrize("load", [500.0, 5000.0])
 def test_what_the_plane_adds_in_a_groove(load):
     """Overlap δ cos θ − gap and load p cos θ against the plane: the estimate that warnings state."""
-    contact = in_groove(STEEL, RADIUS, GROOVE, INNER)
+    contact = hertz.in_groove(STEEL, RADIUS, GROOVE, INNER)
     approach = contact.approach(load)
     along, across = contact.semi_axes(approach)
     spacing = along / 8
@@ -74,9 +69,9 @@ def test_what_the_plane_adds_in_a_groove(load):
     rolling, turned = x[:, None] ** 2 / (2.0 * contact.radius_x), np.cos(y / GROOVE)
     half_space = HalfSpace((len(x), len(y)), spacing, STEEL)
     flat = half_space.solve(rolling + y**2 / (2.0 * contact.radius_y), approach=approach).force
-    bent = rolling + groove_gap(y, RADIUS, GROOVE) + approach * (1.0 - turned)
+    bent = rolling + hertz.groove_gap(y, RADIUS, GROOVE) + approach * (1.0 - turned)
     carried = (half_space.solve(bent, approach=approach).pressure * turned).sum() * spacing**2
-    assert flat / carried - 1.0 == pytest.approx(FORCE_LOST * (across / GROOVE) ** 2, rel=0.1)
+    assert flat / carried - 1.0 == pytest.approx(hertz.FORCE_LOST * (across / GROOVE) ** 2, rel=0.1)
 
 
 GROOVED = {"groove_radius": GROOVE, "raceway_radius": INNER, "cause": "3 kN"}
@@ -102,10 +97,10 @@ def test_where_the_half_space_ends(along, across, keywords, kind, message):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         if kind is None:
-            check_half_space(axes, RADIUS, **keywords)
+            hertz.check_half_space(axes, RADIUS, **keywords)
         else:
             with pytest.raises(kind, match=message):
-                check_half_space(axes, RADIUS, **keywords)
+                hertz.check_half_space(axes, RADIUS, **keywords)
 
 
 BODY = MATERIALS["steel"]
@@ -119,7 +114,7 @@ def shear(material):
 def test_of_like_bodies_on_a_circle_it_is_mindlins_share_of_the_normal_stiffness(nu):
     body, a = Material("like", 200e9, nu, 7800.0, ""), 3e-3
     normal = 200e9 * a / (1.0 - nu**2)  # 2 E* a
-    share = stick_stiffness((a, a), (body, body)) / normal
+    share = hertz.stick_stiffness((a, a), (body, body)) / normal
     assert share == pytest.approx(2.0 * (1.0 - nu) / (2.0 - nu), rel=1e-12, abs=0.0)
 
 
@@ -141,15 +136,15 @@ def test_the_contact_moves_sideways_as_a_whole(axes, at):
         inside = np.sum(0.5 * weight * 2.0 * u * reach / np.sqrt(p + 2.0 * q * r - m * r**2))
         total += inside * ((1.0 - nu) + nu * s**2) * 2.0 * math.pi / 400
     compliance = total / (2.0 * math.pi * shear(BODY)) / (2.0 * math.pi * a * b)
-    assert stick_stiffness(axes, (BODY, BODY)) == pytest.approx(0.5 / compliance, rel=1e-6)
+    assert hertz.stick_stiffness(axes, (BODY, BODY)) == pytest.approx(0.5 / compliance, rel=1e-6)
 
 
 def test_the_softer_body_gives_way():
     rubber = Material("rubber", 1e7, 0.5, 1000.0, "")
     soft = 8.0 * shear(rubber) * 1e-3 / 1.5
-    assert stick_stiffness((1e-3, 1e-3), (BODY, rubber)) == pytest.approx(soft, rel=1e-3)
+    assert hertz.stick_stiffness((1e-3, 1e-3), (BODY, rubber)) == pytest.approx(soft, rel=1e-3)
 
 
 def test_an_ellipse_without_size_is_refused():
     with pytest.raises(InputError, match=r"semi-axis of the contact \(m\): received 0"):
-        stick_stiffness((0.0, 1e-3), (BODY, BODY))
+        hertz.stick_stiffness((0.0, 1e-3), (BODY, BODY))

@@ -7,16 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from asperity.errors import ComputationError
-from asperity.optimising.allocation import (
-    Limits,
-    Response,
-    Trial,
-    energy_of,
-    quietest,
-    rms_of,
-    roughest,
-    search,
-)
+from asperity.optimising import allocation
 
 BANDS = 8
 WEIGHT = 10.0 ** np.linspace(-2.0, 2.0, BANDS)
@@ -24,7 +15,9 @@ WEIGHT = 10.0 ** np.linspace(-2.0, 2.0, BANDS)
 
 def limits(n=BANDS, reach=30.0, price=1.0, **more):
     start = np.zeros(n)
-    return Limits(start, start - reach, start + reach, np.broadcast_to(price, n).astype(float), **more)
+    return allocation.Limits(
+        start, start - reach, start + reach, np.broadcast_to(price, n).astype(float), **more
+    )
 
 
 weights = st.lists(st.floats(-4.0, 4.0), min_size=3, max_size=12).map(lambda x: 10.0 ** np.array(x))
@@ -35,9 +28,9 @@ weights = st.lists(st.floats(-4.0, 4.0), min_size=3, max_size=12).map(lambda x: 
 def test_a_limit_gives_each_band_its_share_by_price(weight, seed):
     """Closed form of the inverse: weight 10^(L/10) = price (E − floor)/Σ price."""
     price = np.random.default_rng(seed).uniform(0.2, 5.0, len(weight))
-    response = Response(weight, floor=0.3)
+    response = allocation.Response(weight, floor=0.3)
     level = 10.0 * np.log10(0.3 + 7.0)
-    found = roughest(response, limits(len(weight), 100.0, price), level)
+    found = allocation.roughest(response, limits(len(weight), 100.0, price), level)
     np.testing.assert_allclose(response.energies(found), price / price.sum() * 7.0, rtol=2e-3)
     assert response.level(found) == pytest.approx(level, abs=1e-6)
 
@@ -47,8 +40,8 @@ def test_a_limit_gives_each_band_its_share_by_price(weight, seed):
 def test_a_budget_buys_silence_where_all_bands_are_heard_alike(weight):
     """Closed form: the geometric mean of all energies is fixed, the sum least where they are equal."""
     n = len(weight)
-    response = Response(weight, floor=0.0)
-    found = quietest(response, limits(n, 100.0, budget=6.0 * n))
+    response = allocation.Response(weight, floor=0.0)
+    found = allocation.quietest(response, limits(n, 100.0, budget=6.0 * n))
     alike = np.exp(np.mean(np.log(weight))) * 10.0**-0.6
     np.testing.assert_allclose(response.energies(found), alike, rtol=2e-3)
 
@@ -59,32 +52,32 @@ def test_a_least_rms_is_borne_where_it_is_heard_least(weight, share):
     """A linear programme in the energies: the solver of another library has the same level."""
     n = len(weight)
     bounds = limits(n, 10.0, rms_at_least=1e-6 * np.sqrt(share * n * 10.0))
-    response = Response(weight, floor=0.0)
-    found = quietest(response, bounds)
-    box = list(zip(energy_of(bounds.lowest), energy_of(bounds.highest), strict=True))
+    response = allocation.Response(weight, floor=0.0)
+    found = allocation.quietest(response, bounds)
+    box = list(zip(allocation.energy_of(bounds.lowest), allocation.energy_of(bounds.highest), strict=True))
     exact = linprog(weight, A_ub=[-np.ones(n)], b_ub=[-share * n * 10.0], bounds=box)
     assert exact.success
     assert response.level(found) == pytest.approx(10.0 * np.log10(exact.fun), abs=0.01)
-    assert rms_of(found) >= bounds.rms_at_least * (1 - 1e-6)
+    assert allocation.rms_of(found) >= bounds.rms_at_least * (1 - 1e-6)
 
 
 def test_a_band_at_its_bound_leaves_the_rest_to_the_others():
     bounds = limits(3, 100.0, rms_at_most=2e-6)
-    bounds = Limits(bounds.start, bounds.lowest, np.array([-10.0, 100.0, 100.0]), bounds.price)
-    response = Response(np.ones(3), floor=0.0)
-    found = roughest(response, bounds, 0.0)
+    bounds = allocation.Limits(bounds.start, bounds.lowest, np.array([-10.0, 100.0, 100.0]), bounds.price)
+    response = allocation.Response(np.ones(3), floor=0.0)
+    found = allocation.roughest(response, bounds, 0.0)
     np.testing.assert_allclose(response.energies(found), [0.1, 0.45, 0.45], rtol=1e-3)
 
 
 def test_an_rms_that_no_bounds_allow_is_told():
     with pytest.raises(ComputationError, match="no texture within the limits"):
-        quietest(Response(np.ones(4), 0.0), limits(4, 3.0, rms_at_least=1e-3))
+        allocation.quietest(allocation.Response(np.ones(4), 0.0), limits(4, 3.0, rms_at_least=1e-3))
 
 
 def test_the_largest_rms_is_kept():
-    response = Response(np.array([1.0, 1e-3, 1e-6]), floor=0.0)
-    found = roughest(response, limits(3, 30.0, rms_at_most=3e-6), 0.0)
-    assert rms_of(found) == pytest.approx(3e-6, rel=1e-6)
+    response = allocation.Response(np.array([1.0, 1e-3, 1e-6]), floor=0.0)
+    found = allocation.roughest(response, limits(3, 30.0, rms_at_most=3e-6), 0.0)
+    assert allocation.rms_of(found) == pytest.approx(3e-6, rel=1e-6)
 
 
 # --- the search, on responses that are known in closed form
@@ -95,16 +88,16 @@ def rolled(floor=0.0, coupling=0.0, power=1.0, best_lay=1.0):
     leak = np.eye(BANDS) + coupling * (np.eye(BANDS, k=1) + np.eye(BANDS, k=-1))
 
     def roll(levels, lateral):
-        energies = (leak @ (WEIGHT * energy_of(levels))) ** power
+        energies = (leak @ (WEIGHT * allocation.energy_of(levels))) ** power
         energies = energies * (1.0 + np.log(lateral / best_lay) ** 2)
-        return Trial(levels, lateral, energies + floor, 0.2)
+        return allocation.Trial(levels, lateral, energies + floor, 0.2)
 
     return roll
 
 
 def found(roll, bounds, limit=None, lay=None):
     told = []
-    trials, settled = search(roll, roll(np.zeros(BANDS), 1.0), bounds, limit, lay, told.append)
+    trials, settled = allocation.search(roll, roll(np.zeros(BANDS), 1.0), bounds, limit, lay, told.append)
     return trials, settled, told
 
 
@@ -136,10 +129,10 @@ def test_a_limit_is_met(limit, coupling):
 def test_the_least_rms_is_kept_while_the_level_falls():
     roll = rolled(coupling=0.3)
     start = roll(np.zeros(BANDS), 1.0)
-    trials, settled, _ = found(roll, limits(rms_at_least=rms_of(start.levels)))
+    trials, settled, _ = found(roll, limits(rms_at_least=allocation.rms_of(start.levels)))
     assert settled
     assert trials[-1].level < start.level - 3.0
-    assert rms_of(trials[-1].levels) >= rms_of(start.levels) * (1 - 1e-6)
+    assert allocation.rms_of(trials[-1].levels) >= allocation.rms_of(start.levels) * (1 - 1e-6)
 
 
 def test_the_lay_is_found_between_its_bounds():
@@ -154,7 +147,9 @@ def test_a_search_that_does_not_settle_says_so():
     random = np.random.default_rng(1)
 
     def erratic(levels, lateral):
-        return Trial(levels, lateral, WEIGHT * energy_of(levels) * 10.0 ** random.uniform(-0.5, 0.5), 0.0)
+        return allocation.Trial(
+            levels, lateral, WEIGHT * allocation.energy_of(levels) * 10.0 ** random.uniform(-0.5, 0.5), 0.0
+        )
 
     trials, settled, _ = found(erratic, limits(), limit=5.0)
     assert not settled

@@ -5,16 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from asperity import Beam, Bodies, ModalStructure, Profile, Wheel, WheelOnRail, material
-from asperity.errors import (
-    CaseError,
-    EnergyWarning,
-    Grade,
-    InputError,
-    PhysicsWarning,
-    ShortRecordWarning,
-    UnconvergedWarning,
-)
+from asperity import Beam, Bodies, ModalStructure, Profile, Wheel, WheelOnRail, errors, material
 from asperity.scenarios.scene import scene_of
 from asperity.scenarios.textures import other_contacts, textures_of
 from asperity.scenes.result import passing_frequencies
@@ -141,7 +132,7 @@ def test_modes_from_memory_are_rolled_over_where_they_are():
     assert case.rolled_range == pytest.approx((2.0, 2.8))
     assert case.structure.sensor_positions[2] == pytest.approx(2.5)
     assert case != case.with_(structure={"file": modes(2.0, 201.0)})
-    with pytest.raises(InputError, match="where a case shall be written"):
+    with pytest.raises(errors.InputError, match="where a case shall be written"):
         case.to_toml()
 
 
@@ -188,7 +179,7 @@ def test_receptances_are_fitted_by_modes():
 
 def doubts(case):
     with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", PhysicsWarning)
+        warnings.simplefilter("always", errors.PhysicsWarning)
         scene_of(case)
     return caught
 
@@ -196,10 +187,12 @@ def doubts(case):
 def test_doubts_are_those_of_the_run_not_of_reading():
     """Noise of a third of the receptance is told where the bodies are built, not where keys are read."""
     case = on_structure(receptances(np.arange(2.0, 400.0, 1.0), noise=0.3))
-    assert {EnergyWarning, UnconvergedWarning} <= {each.category for each in doubts(case)}
+    assert {errors.EnergyWarning, errors.UnconvergedWarning} <= {each.category for each in doubts(case)}
 
 
-@pytest.mark.parametrize(("end", "graded"), [(500.0, None), (375.0, Grade.WARNING), (200.0, Grade.OUT)])
+@pytest.mark.parametrize(
+    ("end", "graded"), [(500.0, None), (375.0, errors.Grade.WARNING), (200.0, errors.Grade.OUT)]
+)
 def test_receptances_that_end_below_twice_the_highest_frequency_are_warned_of(end, graded):
     """Of a structure, a body and a wheel."""
     frequency = np.arange(2.0, end + 1.0, 2.0)
@@ -207,11 +200,11 @@ def test_receptances_that_end_below_twice_the_highest_frequency_are_warned_of(en
     body = case_of(WHEEL | {"receptance": table}, over="plane", numerics=LOW)
     cases = {"structure": on_structure(receptances(frequency)), "body": body, "wheel": wheel_on_rail(table)}
     for what, case in cases.items():
-        told = [each.message for each in doubts(case) if each.category is ShortRecordWarning]
+        told = [each.message for each in doubts(case) if each.category is errors.ShortRecordWarning]
         assert [message.grade for message in told] == ([graded] if graded else [])
         ends = f"of the {what} end at 374 Hz, 1.5 times numerics.highest_frequency; 2 times it, 500 Hz, are"
         remedy = "Give them to 500 Hz, or lower numerics.highest_frequency to 188 Hz"
-        assert graded is not Grade.WARNING or (ends in str(told[0]) and remedy in str(told[0]))
+        assert graded is not errors.Grade.WARNING or (ends in str(told[0]) and remedy in str(told[0]))
 
 
 @pytest.mark.filterwarnings("ignore::asperity.errors.EnergyWarning")
@@ -256,7 +249,7 @@ def test_what_is_wrong_with_bodies_and_structures_is_told(tmp_path):
             r"noise\.wheel_width: received a key of a track; allowed: what a plane has",
         ),
     ):
-        with pytest.raises(CaseError, match=message):
+        with pytest.raises(errors.CaseError, match=message):
             Bodies(**{"surface": ROUGH, "contact": COARSE, "over": "structure"} | keys)
-    with pytest.raises(InputError, match=r"body.line: received 0.9 m; allowed: a full turn"):
+    with pytest.raises(errors.InputError, match=r"body.line: received 0.9 m; allowed: a full turn"):
         textures_of(case_of(BOGIE | {"radius": 0.46} | short, surface={"spectrum": "iso3095"}, **TURNING))

@@ -12,14 +12,8 @@ from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference.materials import MATERIALS
 from asperity.reporting.data import unless_missing
 from asperity.scenes import schema
+from asperity.scenes.figures import noise
 from asperity.scenes.figures.measured import limits_table
-from asperity.scenes.figures.noise import (
-    noise_answers,
-    pass_by_answers,
-    pass_by_level,
-    radiated_power_bands,
-    sound_power_table,
-)
 from asperity.scenes.figures.sideways import SIDEWAYS, sideways_table
 from asperity.scenes.noise import pass_by_group
 from asperity.spectra import HALF_BAND, band_energies, energy_sum
@@ -196,7 +190,7 @@ def test_power_and_pass_by_say_the_vertical_part_the_sideways_part_and_the_sum(p
         tree["sideways"]["lateral_power_level_a"].values[0],
         heard["transit_exposure_level"].values[0],
     )
-    said, beside = noise_answers(tree), pass_by_answers(tree)
+    said, beside = noise.noise_answers(tree), noise.pass_by_answers(tree)
     assert f"With motion sideways it is {side[2]:.1f} dB(A): rail sideways {side[0]:.1f}; wheel" in said.more
     for (card, *_), alone, whole in ((said.numbers, *sent[3:], side[2]), (beside.numbers, *level[[3, 6]])):
         assert card.value == f"{whole:.1f} dB(A)"
@@ -204,11 +198,11 @@ def test_power_and_pass_by_say_the_vertical_part_the_sideways_part_and_the_sum(p
     rail, sleepers, *_, lateral, wheel, whole = heard["normalised_level"].values[0].round(1)
     parts = f"rail {rail}, sleepers {sleepers}, rail sideways {lateral}, wheel {wheel}"
     assert limits_table(tree).rows[0][1].text == f"{whole} dB(A): {parts}"
-    table = sound_power_table(tree)
+    table = noise.sound_power_table(tree)
     row = {head: cell.text for head, cell in zip(table.head, table.rows[0], strict=True)}
     names = ("rail", "sleepers", "wheel", "total", *schema.SIDEWAYS_RADIATORS)
     assert [row[name] for name in names] == [f"{each:.1f}" for each in (*sent, *side)]
-    for figure in (radiated_power_bands, pass_by_level):
+    for figure in (noise.radiated_power_bands, noise.pass_by_level):
         assert "total with sideways" in str(figure.drawn(tree).chart)
 
 

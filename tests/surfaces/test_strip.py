@@ -9,19 +9,12 @@ import pytest
 from scipy.stats import kstest
 
 from asperity.spectra import psd
-from asperity.surfaces import statistics
+from asperity.surfaces import statistics, synthesis
 from asperity.surfaces import strip as module
 from asperity.surfaces.bands import strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.statistics import areal_statistics, survey_strip
 from asperity.surfaces.strip import Fields, LongStrip, Rows, raised, turning
-from asperity.surfaces.synthesis import (
-    from_map,
-    long_self_affine,
-    long_strip_from_bands,
-    long_strip_like,
-    self_affine,
-)
 from refusals import refusals
 
 DX = 10e-6
@@ -35,12 +28,12 @@ def _short_pieces(monkeypatch):
 
 
 def strip(rows=20000, ny=17):
-    return long_self_affine((rows, ny), (DX, DX), **TEXTURE, seed=3)
+    return synthesis.long_self_affine((rows, ny), (DX, DX), **TEXTURE, seed=3)
 
 
 def bands(rows, before=0, seed=3):
     levels = list(LEVELS), list(LEVELS.values())
-    return long_strip_from_bands((rows, 5), (2e-3, 2e-3), *levels, seed=seed, before=before)
+    return synthesis.long_strip_from_bands((rows, 5), (2e-3, 2e-3), *levels, seed=seed, before=before)
 
 
 def densities(heights, spacing, segment):
@@ -71,7 +64,7 @@ def test_variance_and_spectrum_are_those_of_one_large_surface_in_blends_too():
     assert made.blend < made.stride
     assert np.sqrt(np.mean(outside**2)) == pytest.approx(1e-6, rel=0.03)
     assert np.sqrt(np.mean(inside**2)) == pytest.approx(1e-6, rel=0.08)
-    one = self_affine((100000, 9), (DX, DX), **TEXTURE, seed=5).heights
+    one = synthesis.self_affine((100000, 9), (DX, DX), **TEXTURE, seed=5).heights
     (wavenumber, found), (_, wanted) = (densities(each, DX, 1024) for each in (heights, one))
     band = np.digitize(wavenumber, np.geomspace(300, 24e3, 20))
     for i in np.unique(band)[1:-1]:
@@ -90,10 +83,10 @@ def test_pieces_are_independent_and_join_without_a_step():
 
 
 def test_likeness_has_the_measured_distribution():
-    measured = self_affine((120, 120), (DX, DX), **TEXTURE, seed=1).heights
+    measured = synthesis.self_affine((120, 120), (DX, DX), **TEXTURE, seed=1).heights
     skewed = HeightMap(np.where(measured > 0, 0.3 * measured, measured), (DX, DX))
-    long = long_strip_like(skewed, (60000, 9), seed=2)
-    once = from_map(skewed, (20000, 9), seed=2).heights
+    long = synthesis.long_strip_like(skewed, (60000, 9), seed=2)
+    once = synthesis.from_map(skewed, (20000, 9), seed=2).heights
     heights = long.rows(0, 60000)
     assert kstest(heights[::40, 4], once[::40, 4]).pvalue > 1e-3
     blends = heights[long.stride : long.stride + long.blend]
@@ -138,7 +131,7 @@ def zeros(shape, stride=4, blend=2):
 
 
 test_what_is_wrong_is_said = refusals(
-    (lambda: long_self_affine((10, 3), (DX, DX), **TEXTURE | {"hurst": 2.0}, seed=1), "hurst"),
+    (lambda: synthesis.long_self_affine((10, 3), (DX, DX), **TEXTURE | {"hurst": 2.0}, seed=1), "hurst"),
     (lambda: survey_strip(zeros((1000, 3)), 500, 0, 100), "received 100 rows; allowed: at least 500 rows"),
 )
 
@@ -207,7 +200,9 @@ def test_threads_read_beside_each_other():
 
 @pytest.fixture(scope="module")
 def surface():
-    found = self_affine((4000, 41), (2e-6, 3e-6), rms=1e-6, hurst=0.8, longest=60e-6, shortest=12e-6, seed=3)
+    found = synthesis.self_affine(
+        (4000, 41), (2e-6, 3e-6), rms=1e-6, hurst=0.8, longest=60e-6, shortest=12e-6, seed=3
+    )
     return HeightMap(found.heights + 5e-6, (2e-6, 3e-6))
 
 
