@@ -9,7 +9,7 @@ import pytest
 import asperity
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError
-from asperity.scenarios.bearing import bearing_rings, expected, prepare_bearing
+from asperity.scenes.bearing import bearing_rings, expected, prepare_bearing
 from asperity.serving.worker import read_case_file
 from asperity.structures.modal import ModalStructure
 from asperity.structures.ring import Ring

@@ -12,8 +12,7 @@ from asperity.case.cases import as_case
 from asperity.errors import OutOfRangeWarning, percent
 from asperity.reference.materials import MATERIALS
 from asperity.scenarios import raceway_laws
-from asperity.scenarios.bearing import bearing_rings, cage_slip, prepare_bearing, thinned
-from asperity.scenes.bearing import heard_group
+from asperity.scenes.bearing import bearing_rings, cage_slip, heard_group, prepare_bearing, thinned
 from asperity.scenes.figures.bearing import load_zone
 from asperity.schema import bearing as schema
 from small_cases import BEARING
@@ -210,7 +209,7 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
         directions.append(forwards)
         return made(*given, forwards=forwards, **keys)
 
-    monkeypatch.setattr("asperity.scenarios.bearing.raceway_with_balls", seen)
+    monkeypatch.setattr("asperity.scenes.bearing.raceway_with_balls", seen)
     monkeypatch.setattr(raceway_laws, "CELLS", (3, 4))
     tree = asperity.run(case, brief=True)
     assert directions == [False, True]  # balls run forwards on the ring that stands still

@@ -245,7 +245,7 @@ class BallBearingCase(AnyCase):
 
     TITLE = "A ball bearing runs under a load."
     NEEDED = "a bearing and its load"
-    PREPARED_BY = "asperity.scenarios.bearing.prepare_bearing"
+    PREPARED_BY = "asperity.scenes.bearing.prepare_bearing"
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
     WRITTEN_OUT: ClassVar = {
         "bearing.name": '"6205"', "axial": '"100 N"', "inner_raceway.waviness": '"0.5 um"',

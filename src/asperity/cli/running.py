@@ -345,7 +345,7 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
             faults = [] if work.tried is None else foreseen(prepared, work.tried, choice)
         caught += [(each.grade, each.message) for each in faults if each.grade]
     else:
-        from asperity.scenarios.bearing import PreparedBearing, expected
+        from asperity.scenes.bearing import PreparedBearing, expected
 
         assert isinstance(prepared, PreparedBearing)
         rows, work = expected(prepared)
