@@ -1,9 +1,13 @@
 """Whatever is wrong with a case is said: what was received, what is allowed, and what to do."""
 
+import re
+
 import pytest
 from case_texts import case_text
 
+from asperity.case.any_case import entries
 from asperity.case.cases import load_case, parse_case
+from asperity.case.toml import toml_value
 from asperity.errors import CaseError, InputError
 
 KINDS = {"ball": "ball-on-beam", "wheel": "wheel-on-rail", "bodies": "bodies"}
@@ -54,21 +58,12 @@ ball: [surface] smooth = false → surface: received no texture; allowed: file, 
 ball: [surface] file = "map.npy" | rms = "1 um" → surface: received both file and rms; allowed: one of them
 ball: [surface] file = "absent.npy" → absent.npy
 ball: [surface] line = "line.csv" | spectrum = "iso3095" → surface: received both line and spectrum
-ball: [surface] rms = "1 um" | pixel = "1 um" → surface.pixel: received 1e-06; allowed: only together with
-ball: [surface] file = "map.npy" | hurst = 0.7 → surface.hurst: received 0.7; allowed: only together with rms
-wheel: [wheel] line_distance = "5 mm" → only together with line
-wheel: [surface] rms = "1 um" | lateral = 2 → only together with spectrum
-wheel: [surface] smooth = true | corrugation_wavelength = "40 mm" → only together with corrugation
-wheel: [surface] smooth = true | joint_length = "1 m" → only together with joint_depth
-bodies: [body] contacts = 6 → only together with type = "carriage"
-ball: [surface] rms = "1 um" | level = "+6 dB" → surface.level: received 6.0; allowed: only together with
 ball: [surface] file = "map.npy" | height_unit = "s" → a unit of length, as "um"
 ball: [surface] file = "map.npy" | fill = "yes" → true or false
 ball: [surface] file = "map.npy" | direction = 30 → Add unit and quotes: "30 rad" if it is in SI units (rad)
 ball: [surface] rms = "1 um" | direction = "90 deg" → surface.direction: received 1.5707963267948966;
 ball: [surface] rms = "1 um" | longest = "10 um" | shortest = "16 um" → surface.longest: received 10 um with
 ball: [surface] rms = "1 um" | shortest = "10 um" | [contact] spacing = "8 um" → shortest: received 10 um on
-ball: [surface] rms = "1 um" | continuation = "mirror" → only together with file or line
 ball: [surface] spectrum = "iso3095" | [contact] linearise = "rough" → contact.linearise: received "rough"
 ball: [surface] file = "map.npy" | recipe = "recipe.toml" | fill = true → surface.fill: received True;
 ball: [contact] window = "1e-7 mm" → contact.window: received 0.1 nm; allowed
@@ -78,7 +73,6 @@ wheel: [wheel] transverse_radius = "0 m" → a length greater than 0, or "inf", 
 wheel: [wheel] modes = "modes.csv" | receptance = "receptance.csv" → wheel: received both modes and receptance
 wheel: [wheel] profile = "tread.csv" | transverse_radius = "1 m" → both profile and transverse_radius
 wheel: [wheel] roughness = "disc" | line = "wheels.csv" → wheel: received both roughness and line
-wheel: [wheel] roughness_level = "+3 dB" → only together with roughness
 wheel: [wheel] flat_shape = "worn" → only together with flat_depth or flat_length
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → wheel.flat_length: received 60 mm beside a
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → A worn flat may be longer: flat_shape = "worn".
@@ -90,12 +84,8 @@ wheel: [wheel] load = "5 kN" → wheel.load: received 5 kN; allowed: at least 5.
 wheel: [track] pad_damping = "18 kN s/m" | pad_loss_factor = 0.2 → both pad_damping and pad_loss_factor
 wheel: [track] pad_table = "pad.csv" | pad_damping = "9 kN s/m" → both pad_table and pad_damping
 wheel: [track] pad_table = "pad.csv" | pad_preload = "30 kN" → 30 kN for a table that is at no preload
-wheel: [track] pad_preload = "30 kN" → only together with pad_table
-wheel: [track] under_sleeper_pad_damping = "9 kN s/m" → only together with under_sleeper_pad_stiffness
-wheel: [track] ballast_mass = "300 kg" → only together with subgrade_stiffness
 wheel: [track] subgrade_stiffness = "9 MN/m" | subgrade_damping = "9 kN s/m" | subgrade_loss_factor = 1 → both
 wheel: [track] rail_damper_mass = "15 kg" → no rail_damper_frequency
-wheel: [track] sleeper_length = "2.4 m" → only together with sleeper_bending_stiffness
 wheel: [track] sleeper_bending_stiffness = "6 MN m^2" | seat_distance = "2.6 m" → received seat_distance = 2.6
 wheel: [track] sleeper_table = "pad.csv" → the heading 'real (MN/m)'
 wheel: [track] shear_stiffness = "240 MN" → track: received no rotary_inertia
@@ -155,6 +145,22 @@ def test_what_is_wrong_is_said(refused, source):
     text, _, message = rest.partition(" → ")
     errors = errors_of(case_text(KINDS[kind], text), source)
     assert any(message in error for error in errors), errors
+
+
+def test_keys_that_go_with_others_are_refused_alone(source):
+    base = parse_case(case_text("bodies", "[surface] smooth = true"))
+    alone = [
+        entry
+        for entry in entries(type(base))
+        if entry.key.goes_with and not getattr(base, entry.section).is_active(entry.name)
+    ]
+    assert len(alone) > 50
+    for entry in alone:
+        keys = f"[surface] smooth = true | [{entry.section}] {entry.name} = "
+        keys = keys.replace("| [surface] ", "| ") + toml_value(entry.key.written_example)
+        companion = entry.key.goes_with.partition("=")[0]
+        told = re.compile(f"{entry.dotted}: received .*; allowed: only together with {companion}")
+        assert any(map(told.match, errors_of(case_text("bodies", keys), source))), entry.dotted
 
 
 def test_all_errors_are_reported_at_once():

@@ -1,6 +1,5 @@
 """The case of any kind: its keys in and out of TOML, other values for some; and what computes it."""
 
-import json
 import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol,
 
 from asperity.arguments import nearest
 from asperity.case.form import Section, content, described_value, holds_memory
-from asperity.case.toml import toml_text
+from asperity.case.toml import toml_text, toml_value
 from asperity.errors import InputError
 from asperity.parameters import GIVEN, Key, Number, Origin, Problems, Quantity, Text, key, name_of_numbers
 from asperity.reference.materials import MATERIALS, Material
@@ -166,13 +165,13 @@ def _commented_line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
     key, value = entry.key, written_out.get(entry.dotted)
     default = f"default: {key.otherwise}" if key.otherwise else "no default"
     if key.default is not None:
-        usual = _as_toml(key.default)
+        usual = toml_value(key.default)
         default = "default" if value in (None, usual) else f"default: {usual}"
         value = usual if value is None else value
     lonely = key.goes_with and f"{entry.section}.{key.goes_with}" not in written_out
     if key.goes_with:
         default += f"; goes with {key.goes_with}"
-    code = f"{entry.name} = {_as_toml(key.example) if value is None else value}"
+    code = f"{entry.name} = {toml_value(key.example) if value is None else value}"
     if value is None or lonely:
         code = f"# {code}"
     return f"{code:{_COLUMN - 2}}  # {key.meaning} ({allowed_in(key)}; {default})"
@@ -181,10 +180,6 @@ def _commented_line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
 def allowed_in(key: Key) -> str:
     """What may stand behind a key, in words, without an example."""
     return key.kind.allowed.split(", with its unit")[0]
-
-
-def _as_toml(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False)
 
 
 class AnyCase(Section):

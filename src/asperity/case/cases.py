@@ -1,7 +1,6 @@
 """Cases of any kind: from files, texts and mappings; and as a commented text."""
 
 import importlib
-import json
 import os
 from collections.abc import Mapping, Sequence
 from importlib import resources
@@ -159,7 +158,7 @@ def template(kind: str, laws: Sequence[str] = ()) -> str:
     """
     model = case_class(kind)
     chosen = [spec_of(law).name for law in laws]
-    own = {"laws": json.dumps(chosen)} if chosen else {}
+    own = {"laws": toml.toml_value(chosen)} if chosen else {}
     rolled = {family_of(law) for law in chosen or model.keys["laws"].default}
     shown_keys = {**dict.fromkeys(law_keys().keys() - rolled, ()), **model.SHOWN}
     return _HEAD.format(title=model.TITLE, needed=model.NEEDED) + commented(

@@ -17,7 +17,7 @@ from asperity import files
 from asperity.arguments import no_file
 from asperity.case.any_case import AnyCase, ReadyCase
 from asperity.case.cases import of_bodies
-from asperity.case.form import content, file_digest
+from asperity.case.form import case_key, file_digest
 from asperity.cli.commands import taken_folder
 from asperity.errors import Grade, InputError
 from asperity.progress import COMPILATION, duration, progress_bar
@@ -261,8 +261,7 @@ def name_of_run(case: AnyCase) -> str:
         return file_digest(path)
 
     try:
-        told = json.dumps(content(case, digest), sort_keys=True)
-        return content_key("run", case.text, told, program(), os.environ.get("ASPERITY_DEVICE", ""))
+        return case_key("run", 1, case, program(), os.environ.get("ASPERITY_DEVICE", ""), of_file=digest)
     except (InputError, OSError):  # the run will say what is wrong
         return ""
 
