@@ -60,7 +60,7 @@ def test_shakedown_leaves_a_surface_whose_next_pass_is_elastic():
 
 
 def test_each_pass_lowers_less_and_the_yielded_share_is_of_what_was_touched():
-    job = RunningIn(half_space(), ball(), LOAD, 4, 0.3e-9)
+    job = RunningIn(half_space(), ball(), LOAD, 4)
     found = run_in(rough(100), job)
     assert (np.diff(found.largest) < 0).all()
     assert found.largest[1] < 0.2 * found.largest[0]
@@ -79,7 +79,7 @@ def test_a_load_that_yields_nothing_changes_nothing():
 
 def test_threads_change_no_digit(monkeypatch):
     monkeypatch.setattr("asperity.contact.running_in.PIECE", 64)
-    job = RunningIn(half_space(), ball(), LOAD, 1, 0.3e-9)
+    job = RunningIn(half_space(), ball(), LOAD, 1)
     one, three = (run_in(rough(41 + 200), job, workers=n) for n in (1, 3))
     assert np.array_equal(one.heights, three.heights)
     assert one.counts == three.counts

@@ -424,8 +424,7 @@ class HalfSpace:
         load, most = self.checked_load(load), max(self.shape[0] - 1, 1)
         allowed = f"a whole number from 1 to {most}"
         step = arguments.whole("stride of running-in", stride, allowed, at_least=1, at_most=most)
-        tolerance = running_in.tolerance_of(self, shape, load)
-        job = running_in.RunningIn(self, shape, load, arguments.passes_of(passes), tolerance, step)
+        job = running_in.RunningIn(self, shape, load, arguments.passes_of(passes), step)
         found = running_in.run_in(heights, job, cache=cache, workers=workers, progress=progress)
         running_in.warn_of_running_in(found, job, "rtol", "Enlarge the window.")
         number = f"{len(found.largest)} pass" + ("es" if len(found.largest) > 1 else "")

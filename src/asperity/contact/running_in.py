@@ -1,7 +1,7 @@
 """Running-in: a body rolled over a surface whose asperities flow, which lowers them for good."""
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -29,9 +29,14 @@ class RunningIn:
     body: Array  # (nx, ny), shape of the smooth body, m, zero at its lowest point
     load: float  # N
     passes: int | None  # None for as many as it takes to shakedown
-    tolerance: float  # lowering that counts as none, m
     stride: int = 1  # rows between positions
     rtol: float = 1e-6  # tolerance of each solution, as in `HalfSpace.solve`
+
+    @cached_property
+    def tolerance(self) -> float:
+        """Lowering that counts as none, m: `SETTLED_SHARE` of the approach of the smooth, elastic bodies."""
+        elastic = HalfSpace(self.half_space.shape, self.half_space.spacing, self.half_space.modulus)
+        return SETTLED_SHARE * elastic.at_load(self.body, self.load, None, 1e-4).approach
 
     def key(self, heights: Array) -> str:
         """Name in the store of what these heights become."""
@@ -129,12 +134,6 @@ def _piece(heights: Array, state: dict[str, NDArray[Any]], job: RunningIn, posit
         cut_off = contact.edge_share > TRUNCATED
         counts.append(Counts(1, contact.iterations, int(not contact.converged), int(cut_off)))
     return total(counts)
-
-
-def tolerance_of(half_space: HalfSpace, body: Array, load: float) -> float:
-    """Lowering that counts as none, m: `SETTLED_SHARE` of the approach of the smooth, elastic bodies."""
-    elastic = HalfSpace(half_space.shape, half_space.spacing, half_space.modulus)
-    return SETTLED_SHARE * elastic.at_load(body, load, None, 1e-4).approach
 
 
 def warn_of_running_in(found: RunInHeights, job: RunningIn, tolerance: str, remedy: str) -> None:

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from asperity.arguments import Array, passes_of
-from asperity.contact.running_in import RunInHeights, RunningIn, run_in, tolerance_of, warn_of_running_in
+from asperity.contact.running_in import RunInHeights, RunningIn, run_in, warn_of_running_in
 from asperity.contact.scan import total
 from asperity.progress import Progress
 from asperity.scenarios.geometry import Geometry
@@ -42,8 +42,8 @@ def run_in_case(prepared: PreparedCase, progress: Progress) -> RunInCase:
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     half_space = shape.half_space(case.contact.hardness)
     job = RunningIn(
-        half_space, shape.body, shape.load, passes_of(case.contact.running_in),
-        tolerance_of(half_space, shape.body, shape.load), table_stride(shape), case.numerics.rtol,
+        half_space, shape.body, shape.load, passes_of(case.contact.running_in), table_stride(shape),
+        case.numerics.rtol,
     )  # fmt: skip
     roll = partial(run_in, job=job, cache=Store(), progress=progress)
     strips = list(in_order(lambda strip: roll(strip.heights, workers=1), textures.strips, thread_count()))
