@@ -46,7 +46,10 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     )
     require(compression == 0, source, "compressed data", "Compression = 0", "Export it uncompressed.")
     kind, shape = DATA_TYPES[int(code)], (int(profiles), int(points))
-    raw = (_binary_heights if binary else _ascii_heights)(body, shape, kind, source)
+    least = np.dtype(kind).itemsize if binary else 2  # a digit and a separator
+    count = guards.check_claim(source, shape, least, len(body) + (not binary))
+    stored = np.frombuffer(body, kind, count) if binary else _ascii_heights(body, count, source)
+    raw = stored.reshape(shape)
     heights = guards.scaled(raw, unit, source)
     if kind in MISSING:
         heights[raw == MISSING[kind]] = np.nan
@@ -68,14 +71,8 @@ def _ascii_header(data: bytes) -> tuple[dict[str, str], bytes]:
     return {"compression": "0"} | header, rest.partition(b"*")[0]  # a trailer may follow
 
 
-def _binary_heights(body: bytes, shape: tuple[int, int], kind: str, source: str) -> NDArray[Any]:
-    points = guards.check_claim(source, shape, np.dtype(kind).itemsize, len(body))
-    return np.frombuffer(body, kind, points).reshape(shape)
-
-
-def _ascii_heights(body: bytes, shape: tuple[int, int], kind: str, source: str) -> NDArray[Any]:
-    points = guards.check_claim(source, shape, 2, len(body) + 1)  # a digit and a separator
+def _ascii_heights(body: bytes, points: int, source: str) -> NDArray[Any]:
     words = re.sub(rb"(?i)\bBAD\b", b"nan", body).replace(b",", b" ").split()
     received, allowed = f"{len(words)} heights", f"the {points} that its header claims"
     require(len(words) == points, source, received, allowed, guards.EXPORT)
-    return np.array([number_in(word) for word in words]).reshape(shape)
+    return np.array([number_in(word) for word in words])
