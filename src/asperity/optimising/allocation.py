@@ -4,6 +4,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -207,26 +208,21 @@ def search(
     best levels for it. Where a limit is kept, the proportions follow those of each trial; where the response
     is made small, they are the slopes between the last two. A response that is such a sum takes two rounds.
     """
-    trials, settled = _rounds(roll, [start], limits, limit, told)
+    find = _quieter if limit is None else partial(_up_to, limit=limit)
+
+    def at(lateral: float | None) -> Callable[[Array], Trial]:
+        def rolled(levels: Array) -> Trial:
+            trial = roll(levels, lateral)
+            told(f"{trial.level:.2f} dB, rms {1e6 * rms_of(levels):.3g} µm")
+            return trial
+
+        return rolled
+
+    trials, settled = find(at(start.lateral), [start], limits)
     if lay is not None:
         trials.append(_best_lay(roll, trials[-1], lay, told))
-        trials, settled = _rounds(roll, trials, limits, limit, told)
+        trials, settled = find(at(trials[-1].lateral), trials, limits)
     return trials, settled
-
-
-def _rounds(
-    roll: Roll, trials: list[Trial], limits: Limits, limit: float | None, told: Callable[[str], None]
-) -> tuple[list[Trial], bool]:
-    """Search at the lay of the last trial."""
-
-    def rolled(levels: Array) -> Trial:
-        trial = roll(levels, trials[-1].lateral)
-        told(f"{trial.level:.2f} dB, rms {1e6 * rms_of(levels):.3g} µm")
-        return trial
-
-    if limit is None:
-        return _quieter(rolled, trials, limits)
-    return _up_to(rolled, trials, limits, limit)
 
 
 def _up_to(
