@@ -186,7 +186,8 @@ def sound_power_table(tree: DataTree, main: bool = False) -> ReportTable:
         "." if main else "; differences of the total."
     )
     note = " ".join(filter(None, [note, silence(tree), with_measured(tree), with_sideways(tree)]))
-    return table("sound_power_of_main_law" if main else "sound_power", "Sound power by source", columns, note)
+    title = f"Sound power by source{f', {laws[0]}' if main else ''}"
+    return table("sound_power_of_main_law" if main else "sound_power", title, columns, note)
 
 
 # --- the pass-by: level over time beside the track, and its single numbers
