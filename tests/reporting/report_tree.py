@@ -16,10 +16,8 @@ LAWS = BALL["laws"]
 REFERENCE = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE.name
 
 
-def figures_by_name(kind="ball-on-beam"):
-    """All figures that a result may have, of two of one name that of a kind of case."""
-    figures = [figure for chapter in CHAPTERS for figure in chapter.figures]
-    return {figure.name: figure for figure in (figures if kind == "wheel-on-rail" else figures[::-1])}
+PARTS = {figure.name: figure for chapter in CHAPTERS for figure in chapter.figures}
+"""All figures that a result may have, by name."""
 
 
 def dumped(keys, *rows):

@@ -12,11 +12,9 @@ from asperity.reporting.chart import (
     BLUE,
     COLOURS,
     GREEN,
-    GRID,
     INK,
     TIME,
     VERMILLION,
-    Area,
     Axis,
     Boxes,
     Chart,
@@ -25,7 +23,6 @@ from asperity.reporting.chart import (
     Note,
     Panel,
     Rules,
-    Second,
     Shape,
 )  # fmt: skip
 from asperity.reporting.figure import PageFigure
@@ -66,7 +63,7 @@ def spectrum_chart():
 def bands_chart():
     """Lines with markers in bands, and hatched bars below zero."""
     level, axis = 30 + np.sin(np.arange(BANDS.size)), panels.band_axis(BANDS)
-    bars = Boxes(BANDS / 1.1, BANDS * 1.1, -level, 0 * level, "rail", GREEN, hatch="/", edge=INK)
+    bars = Boxes(BANDS / 1.1, BANDS * 1.1, -level, 0 * level, HOSTILE, GREEN, hatch="/", edge=INK)
     above = Line(BANDS, level, marker="o", **AREAL), Line(BANDS, level + 2, marker="s", **LINEAR)
     return Chart((Panel(axis, Axis("level / dB"), above), Panel(axis, Axis("less / dB"), (bars,), height=2)))
 
@@ -83,17 +80,6 @@ def map_chart():
     return Chart((whole, Panel(*axes, (gap,), "gap", beside=True)))
 
 
-def axes_chart():
-    """Second axes, turned axes, logarithmic ones, areas."""
-    wave, psd = np.geomspace(10, 2e4, 50), Axis("one-sided PSD / m³", log=True)
-    depth = Axis("depth / µm", 10, 0, second=Second("share / %", scale=10.0))
-    turned = Axis("hardness / GPa", 5, 0, second=Second("strength / kPa", scale=0.3, offset=1.0))
-    spread = Area(wave, 0.5e-9 / wave**2, 2e-9 / wave**2, "scatter", BLUE)
-    profile = Line(np.linspace(0, 10, 30), np.linspace(4, 1, 30), marker="^", width=0)
-    left = Panel(panels.wavenumber_axis(10, 2e4), psd, (spread, Line(wave, 1e-9 / wave**2, HOSTILE, GREEN)))
-    return Chart((left, Panel(depth, turned, (profile,), beside=True)))
-
-
 def words_chart():
     """Bars that stand and bars that lie, by words."""
     words = ("rail", "sleepers", "wheel with its axle", "sum")
@@ -104,16 +90,7 @@ def words_chart():
     return Chart((stood, Panel(Axis("share / %", 0, 100), axis, (flat,), beside=True)))
 
 
-def scene_chart():
-    """A drawing: a body and words, one axis with a name and one without."""
-    body = Shape(np.array([0.0, 4.0, 4.0, 0.0]), np.array([0.0, 0.0, 1.0, 1.0]), fill=BLUE)
-    notes = [Note(words, 1.0, 0.5) for words in ("1 m/s", "R = 2 m")]
-    foot = Boxes(*(np.array([at]) for at in (0.0, 0.5, -0.5, 0.0)), colour=GRID, hatch="/", edge=INK)
-    side, up = Axis("x / m", -1.0, 5.0), Axis("", -1.0, 2.0)
-    return Chart((Panel(side, up, (body, foot, *notes), equal=True, plain=True, height=5),))
-
-
-MAKERS = (run_chart, spectrum_chart, bands_chart, map_chart, axes_chart, words_chart, scene_chart)
+MAKERS = (run_chart, spectrum_chart, bands_chart, map_chart, words_chart)
 CHARTS = {make.__name__.removesuffix("_chart"): make() for make in MAKERS}
 NUMBERS = {"x [m]": np.array([4711.0])}
 
@@ -137,7 +114,7 @@ DRAWN = [
     ("run", 0, BLUE), ("run", 0, VERMILLION), ("run", 1, BLUE), ("spectrum", 0, BLUE),
     ("spectrum", 0, VERMILLION), ("bands", 0, BLUE), ("bands", 1, GREEN), ("bands", 1, INK),
     ("map", 0, "#fcffa4"), ("map", 0, INK), ("map", 1, "#00224e"), ("map", 1, "#fee838"),
-    ("axes", 0, GREEN), ("axes", 1, INK), ("words", 0, BLUE), ("words", 1, GREEN), ("scene", 0, BLUE),
+    ("words", 0, BLUE), ("words", 1, GREEN),
 ]  # fmt: skip
 
 

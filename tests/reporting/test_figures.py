@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
-from report_tree import LAWS, figures_by_name, laws_in, report_tree, uncertain, with_force
+from report_tree import LAWS, PARTS, laws_in, report_tree, uncertain, with_force
 
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules
@@ -13,7 +13,6 @@ from asperity.reporting.data import law_entries, missing
 from asperity.scenes.figures.force import TO_REFERENCE
 from asperity.schema import contact
 
-PARTS = figures_by_name()
 SPECTRA = ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws")
 OF_LAWS = ("force_psd", "force_bands", "acceleration_laws", "force_peak", "force_envelope")
 WAVE = np.sin(np.arange(1000) * 0.1)

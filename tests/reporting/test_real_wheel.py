@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from report_reading import read_csv
-from report_tree import figures_by_name
+from report_tree import PARTS
 
 from asperity.cli.studying import print_table
 from asperity.reporting.chart import Boxes, Line, Note, Rules
@@ -14,8 +14,6 @@ from asperity.scenes.figures.noise import sound_power_table
 from asperity.scenes.report import figures_of
 from asperity.studies.member import kept, names_kept
 from asperity.studies.table import USUAL, USUAL_IN_FIGURES, chosen, columns_of
-
-PARTS = figures_by_name("wheel-on-rail")
 
 
 @pytest.fixture
@@ -160,42 +158,22 @@ def test_piece_around_the_peak_holds_it_and_stays_inside(other, end):
     assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].drawn(other).caption
 
 
-@pytest.mark.parametrize("flat", [True, False])
-def test_bars_of_lost_contact_are_drawn_where_it_is_lost(other, flat):
-    rolling = other["rolling"].to_dataset()
-    force = rolling["contact_force"].sel(law="areal", contact=1)
-    peak = int(np.argmax(force.values))
-    if flat:  # in flight before the wheel strikes
-        force[max(peak - 40, 0) : peak - 5] = 0.0
-    rolling["contact_loss_share"][0] = 0.02 * flat
-    other["rolling"] = rolling
-    assert len(panels_of(other, "force_peak")) == 1 + flat
-
-
 def test_passed_points_are_named_by_their_place_in_the_bay(other):
     rolling = other["rolling"].to_dataset().drop_dims("point")
     other["rolling"] = rolling.assign_coords({"point": [1.2, 1.5, 1.65]})
     assert point_labels(other) == ["x = 1.2 m, over a sleeper", "x = 1.5 m, mid-span", "x = 1.65 m"]
 
 
-@pytest.mark.parametrize(("name", "variable"), [
-    ("force_bands", "band_time_product"),
-    ("rail_velocity_psd", "band_time_product"),
-    ("roughness", "surface_band_length_product"),
-])  # fmt: skip
-def test_bands_that_say_little_are_shaded_and_in_the_csv_file(other, name, variable):
-    product, part = other[f"spectra/{variable}"].values, PARTS[name]
+def test_wavelengths_that_say_little_are_shaded_and_in_the_csv_file(other):
+    product = other["spectra/surface_band_length_product"].values
     product[:] = 100.0
-    assert not marks_of(other, name, Boxes)
+    assert not marks_of(other, "roughness", Boxes)
     product[:4] = 9.9
-    for n in range(len(panels_of(other, name))):
-        (box,) = marks_of(other, name, Boxes, n)
-    assert "Shaded" in part.drawn(other).caption
-    columns = part.drawn(other).columns
-    if "psd" not in name:
-        centres = part.collect(other).at[:4]
-        assert box.left < centres.min() < centres.max() < box.right
-        assert columns["level says something [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
+    (box,) = marks_of(other, "roughness", Boxes)
+    drawn, lines = PARTS["roughness"].drawn(other), PARTS["roughness"].collect(other)
+    assert "Shaded" in drawn.caption
+    assert box.left < lines.at[:4].min() < lines.at[:4].max() < box.right
+    assert drawn.columns["level says something [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
 
 
 def test_the_passage_follows_from_the_sound_power(tree):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from report_reading import HOSTILE, Reader, own_scripts
-from report_tree import LAWS, figures_by_name, report_tree, with_force
+from report_tree import LAWS, PARTS, report_tree, with_force
 
 from asperity.convergence import sentence
 from asperity.errors import ComputationError, InputError
@@ -21,8 +21,6 @@ from asperity.reporting.tables import uncertainty_table
 from asperity.scenes.figures.motion import acceleration_answers
 from asperity.scenes.report import page_of, report
 from asperity.spectra import a_weighting, nominal_frequency
-
-PARTS = figures_by_name()
 
 
 @pytest.fixture(scope="module")
