@@ -133,7 +133,10 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
 
     kind: str = key(Choice(("wheel-on-rail",)), "wheel-on-rail", "what rolls")
     surface: Surface = section(
-        RailSurface, "texture of the rail, with defects on top", lateral=1.0, continuation="refuse"
+        RailSurface,
+        "texture of the rail: measured or synthesised, with defects on top",
+        lateral=1.0,
+        continuation="refuse",
     )
     wheel: Rolling = section(
         Rolling,

@@ -178,7 +178,10 @@ class Rolling(Ringing, FlatOnTread):
         "10 um to 1 km: raceways lie between",
     )
     raceway: str = key(
-        Choice(("inner", "outer")), "inner", "rolling around it, or inside it", goes_with="raceway_radius"
+        Choice(("inner", "outer")),
+        "inner",
+        "whether it rolls around the raceway, or inside it",
+        goes_with="raceway_radius",
     )
     material: Material = key(MaterialOrName(), "steel", "material")
     mass: float | None = optional(

@@ -165,7 +165,10 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "and imaginary part (m/N), or magnitude (m/N) and phase (deg); modes on sleeper_mass are fitted",
     )
     bays: int | None = optional(
-        Number(at_least=2, at_most=MOST_BAYS, whole=True), 20, "bays that differ, then they repeat", "alike"
+        Number(at_least=2, at_most=MOST_BAYS, whole=True),
+        20,
+        "number of bays that differ, after which the track repeats",
+        "all bays are alike",
     )
     spacing_scatter: float = _scatter("distances of sleepers", 0.3)
     pad_scatter: float = _scatter("stiffnesses of pads", 1)
@@ -355,10 +358,16 @@ class StructureKeys(RolledOver):
     along: str | None = of_file(_AXIS, "x", f"direction of the path in {_UFF}", "the file is none")
     force: str | None = of_file(_AXIS, "z", f"direction of the contact force in {_UFF}", "the file is none")
     damping_ratio: float | None = of_file(
-        Number(at_least=0, at_most=0.99), 0.01, f"damping ratio of modes of {_UFF}", "from the file"
+        Number(at_least=0, at_most=0.99),
+        0.01,
+        f"damping ratio of all modes of {_UFF} that states none",
+        "from the file",
     )
     nodes: tuple[int, ...] | None = of_file(
-        ListOf(INDEX), [1, 2, 3], f"nodes along the path in {_UFF}, by number", "all that have mode shapes"
+        ListOf(INDEX),
+        [1, 2, 3],
+        f"numbers of the nodes along the path in {_UFF}",
+        "all that have mode shapes",
     )
     receptances: Path | Array | None = optional(
         File(columns=(5,)),

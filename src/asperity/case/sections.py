@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
-from asperity.case import body, form, measured, tables
+from asperity.case import body, form, measured, surface, tables
 from asperity.case.rolled_over import FREQUENCY
-from asperity.case.surface import LENGTH, POSITION
 from asperity.errors import InputError
 from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
 from asperity.reference import cnossos, railways
@@ -27,24 +26,26 @@ class ContactKeys(form.Section):
     """How the rough contact is solved and reduced."""
 
     spacing: float = optional(
-        LENGTH,
+        surface.LENGTH,
         "8 um",
         "grid spacing of the contact solution",
         "a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
         "1 nm to 10 mm: an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
     )
     window: float = optional(
-        LENGTH,
+        surface.LENGTH,
         "0.5 mm",
         "side of the square window in which contact is solved; wider than the contact",
         "that of the smooth contact under three times the load, wider by roughness and by a flat",
         "10 nm to 1 m: contacts lie between atoms and bodies",
     )
     samples: int = key(
-        Number(at_least=1, at_most=10_000, whole=True), 8, "samples of the surface for stiffness and filters"
+        Number(at_least=1, at_most=10_000, whole=True),
+        8,
+        "number of surface samples for the stiffness and the filters",
     )
     sample_length: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "2 mm",
         "length of the strips from which filters are estimated",
         "16 windows, or the length of the map",
@@ -58,10 +59,17 @@ class ContactKeys(form.Section):
         "-10 mm to 10 mm: contacts are closer than that",
     )
     damping: float = key(
-        body.DAMPING, "0 N s/m", "damping of the contact", "1e-9 N s/m to 1e9 N s/m: less is none, more rigid"
+        body.DAMPING,
+        "0 N s/m",
+        "damping of the contact",
+        "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid",
     )
     hardness: float | None = optional(
-        Quantity("Pa", above=0), "3 GPa", "largest pressure", "elastic", "1 kPa to 1 TPa: solids lie between"
+        Quantity("Pa", above=0),
+        "3 GPa",
+        "largest pressure",
+        "elastic contact",
+        "1 kPa to 1 TPa: no solid is as soft, or as hard",
     )
     running_in: int | str | None = optional(
         Either((SHAKEDOWN,), Number(at_least=1, at_most=MOST_PASSES, whole=True)),
@@ -150,7 +158,9 @@ class NumericsKeys(form.Section):
         "1e-07 to 0.01: the tables that are interpolated carry no more digits",
     )
     kernel: str = key(
-        Choice(("poles", "scatter")), "poles", "how a track answers in time: fitted poles or its whole past"
+        Choice(("poles", "scatter")),
+        "poles",
+        "how a track's response is carried on in time: by fitted poles, or by its whole past",
     )
     poles: int | None = optional(
         Number(at_least=10, at_most=1000, whole=True),
@@ -179,37 +189,43 @@ class NoiseKeys(form.Section):
         "that of a section with the widths of foot and head",
     )
     sleeper_length: float = key(
-        LENGTH, "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
+        surface.LENGTH, "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
     )
     sleeper_width: float = key(
-        LENGTH, "0.25 m", "width of its top with its sloping sides", "10 mm to 10 m: sleepers lie between"
+        surface.LENGTH,
+        "0.25 m",
+        "width of a sleeper that radiates: of its top, with its sloping sides",
+        "10 mm to 10 m: sleepers lie between",
     )
     wheel_width: float = key(
-        LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
+        surface.LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
     )
     axle_positions: tuple[float, ...] | None = optional(
-        ListOf(POSITION, least=1, rising=True),
+        ListOf(surface.POSITION, least=1, rising=True),
         ["0 m", "2.5 m", "19 m", "21.5 m"],
         "axles of the vehicle that passes, behind its first; each has two wheels, on two rails",
         "the contacts that roll",
         "0 m to 1 km: trains are shorter",
     )
     wheelbase: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "2.5 m",
         "distance of the two axles of a bogie that passes, instead of axle_positions",
         "the contacts that roll",
         "0.1 m to 100 m: axles are as far apart",
     )
     vehicle_length: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "26.4 m",
         "length of the vehicle over its buffers, from which the pass-by time follows",
         "half a mean distance of the axles beyond the outer ones",
         "0.1 m to 1 km: vehicles lie between",
     )
     vehicles: int = key(
-        Number(at_least=1, at_most=100, whole=True), 1, "number of such vehicles", goes_with="vehicle_length"
+        Number(at_least=1, at_most=100, whole=True),
+        1,
+        "number of such vehicles, one behind the other",
+        goes_with="vehicle_length",
     )
     vehicle: str | None = optional(
         Choice(tuple(railways.LIMITS)),
@@ -219,10 +235,16 @@ class NoiseKeys(form.Section):
         goes_with="vehicle_length",
     )
     receiver_distance: float = key(
-        LENGTH, "7.5 m", "receiver's distance from the track's middle", "1 m to 1 km: beyond weather decides"
+        surface.LENGTH,
+        "7.5 m",
+        "distance of the receiver from the middle of the track",
+        "1 m to 1 km: farther away air and weather decide",
     )
     receiver_height: float = key(
-        POSITION, "1.2 m", "receiver's height above the rail head", "1 mm to 100 m: sound comes over ground"
+        surface.POSITION,
+        "1.2 m",
+        "height of the receiver above the rail head",
+        "1 mm to 100 m: sound comes over ground",
     )
     ground: str | None = optional(
         Choice((railways.HARD, *railways.GROUNDS)),
@@ -238,7 +260,7 @@ class NoiseKeys(form.Section):
         "1 kPa s/m^2 to 1 GPa s/m^2: snow is no softer, and rock no harder",
     )
     ground_depth: float = key(
-        POSITION,
+        surface.POSITION,
         "0.5 m",
         "depth of that ground below the rail head",
         "1 mm to 20 m: embankments lie between",
@@ -250,7 +272,7 @@ class NoiseKeys(form.Section):
         "how rail, sleepers and wheel radiate: evenly, or by CNOSSOS-EU with the same power",
     )
     rail_distance: float | None = optional(
-        LENGTH,
+        surface.LENGTH,
         "1.5 m",
         "distance of both rails, each with half of the power",
         "both in the middle of the track",
