@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import least_squares
 
-from asperity import BallBearing
+from asperity import BallBearing, ModalStructure
 from asperity.errors import HalfSpaceWarning, InputError, OutOfRangeWarning
-from asperity.structures.ring import Ring
+from asperity.structures.ring import Around, Ring
 from refusals import refusals
 
 B6205 = BallBearing.named("6205")
@@ -304,6 +304,21 @@ def test_a_rigid_ring_moves_as_a_mass_on_its_springs():
     assert ring.pressed(3.0, 5.0) * np.sqrt(2.0) == pytest.approx([3.0, 0.0, 5.0])
 
 
+def around(angles, shapes):
+    return Around(ModalStructure(angles, np.full(shapes.shape[1], 900.0), 0.01, shapes), 0.3)
+
+
+def test_modes_around_a_circle_from_a_table_are_those_of_the_ring():
+    ring = Ring.bending(MASS, RADIUS, STIFFNESS, 0.3, most_lobes=2, damping_ratio=0.01)
+    table = np.linspace(0.0, 2 * np.pi, 181)
+    read = around(table, ring.shapes(table)[0] / np.cos(0.3))
+    at = np.array([-1.0, 0.1, 7.0])
+    for found, expected in zip(read.shapes(at), ring.shapes(at), strict=True):
+        assert found == pytest.approx(expected, abs=1e-6)
+    assert read.towards(0.7) == pytest.approx(ring.towards(0.7), rel=1e-6)
+    assert not read.towards(0.7, "axial").any()
+
+
 test_what_is_no_ring_is_refused = refusals(
     (lambda: Ring.rigid(0.0), "mass of a ring"),
     (lambda: Ring.rigid(1.0, radial_stiffness=-1.0), "radial stiffness of a ring"),
@@ -311,4 +326,9 @@ test_what_is_no_ring_is_refused = refusals(
     (lambda: Ring.bending(1.0, 0.1, 0.0, most_lobes=2, damping_ratio=0.1), "bending stiffness of a ring"),
     (lambda: Ring.bending(1.0, 0.1, 1.0, most_lobes=1, damping_ratio=0.1), "lobes.*2 or more"),
     (lambda: Ring.rigid(1.0).pressed(0.0, 1.0), "axial load"),
+    (lambda: around([0.0, 1.0, 2.0, 3.0], np.ones((4, 1))), "angles of modes.*0 to 3.*a whole turn"),
+    (
+        lambda: around(np.linspace(0.0, 2 * np.pi, 9), np.linspace(1.0, 1.2, 9)[:, None]),
+        "modes around a circle.*apart.*Repeat the first row",
+    ),
 )

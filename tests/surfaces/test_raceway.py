@@ -127,14 +127,23 @@ def test_maps_come_from_files(tmp_path):
         made(AroundTexture(map=tmp_path / "line.csv"))
 
 
+def pit(length, **where):
+    return lambda: made(AroundTexture(), Fault("pit", length=length, depth=UM, **where))
+
+
 test_what_is_wrong_is_said = refusals(
+    (pit(MM, offset=2 * MM), "less than 0.91 mm"),
+    (pit(3 * MM, count=9), "a circumference of 20"),
     (lambda: Fault("pit", length=MM), "depth of a fault, a pit: received nothing"),
     (lambda: Fault("map"), "map of a fault, a map: received nothing"),
     (lambda: Fault("hole", length=MM, depth=UM), 'shape of the fault: received .hole.; allowed: "pit"'),
-    (lambda: Fault("pit", length=-MM, depth=UM), "length of the fault"),
+    (pit(-MM), "length of the fault"),
+    (lambda: AroundTexture(waves=(3, 4), amplitudes=(UM,)), "2 waves and 1 amplitudes"),
     (lambda: AroundTexture(waves=(0,), amplitudes=(UM,)), r"waves of the around texture"),
     (lambda: AroundTexture(first_order=9, last_order=3), "9 to 3"),
     (lambda: AroundTexture(roughness=UM, map=HeightMap(np.eye(9), CELLS)), "a number and a map"),
+    (lambda: AroundTexture(trace=trace(TURN, lambda a: UM * a)), "ends that differ by 6.27 um; .* drifted"),
+    (lambda: AroundTexture(trace=trace(TURN[:300])), "received 299 deg"),
     (lambda: AroundTexture(trace=trace(TURN[::-1])), "falling angles"),
     (lambda: AroundTexture(trace=trace(TURN, lambda a: a * np.nan)), "finite angles"),
     (lambda: made(AroundTexture(waves=(1000,), amplitudes=(UM,))), "at most 999"),
