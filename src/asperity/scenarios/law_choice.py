@@ -17,7 +17,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scene import PreparedCase
 from asperity.spectra import psd
 from asperity.structures.track import Track
-from asperity.surfaces.spectra import CORRELATION_THRESHOLD
+from asperity.surfaces.spectra import CORRELATION_THRESHOLD, lag_products
 from asperity.surfaces.strip import Strip
 from asperity.threads import thread_count
 
@@ -93,17 +93,10 @@ def correlation_lengths(heights: Array, spacing: tuple[float, float]) -> tuple[f
 
     The threshold is that of ISO 25178-2 for Sal. Where it is not reached: half the length, or half the width.
     """
-    rows, columns = heights.shape
-    furthest = rows // 2
-    period = fft.next_fast_len(rows + furthest, real=True)
-    spectra = fft.rfft(heights, period, axis=0, workers=thread_count())
-    power = np.sum(spectra.real**2 + spectra.imag**2, axis=1)
-    along = fft.irfft(power, period)[: furthest + 1] / (columns * (rows - np.arange(furthest + 1)))
-    across = [
-        np.einsum("xy,xy->", heights[:, : columns - lag], heights[:, lag:]) / (rows * (columns - lag))
-        for lag in range(columns // 2 + 1)
-    ]
-    return _fallen(along, spacing[0]), _fallen(np.array(across), spacing[1])
+    furthest, beside = (size // 2 for size in heights.shape)
+    products, pairs = lag_products(heights, furthest)
+    mean = products / pairs
+    return _fallen(mean[furthest:, beside], spacing[0]), _fallen(mean[furthest, beside:], spacing[1])
 
 
 def _fallen(products: Array, step: float) -> float:
@@ -162,9 +155,8 @@ class LawChoice:
     """What the map says of a case."""
 
     place: Place
-    # of the laws of the case, and of those that may be taken; the best first
-    expected: tuple[ExpectedError, ...]
-    loss: float  # expected share of the time out of contact
+    # of the laws of the case, and of those that may be taken, by law; the best first
+    expected: dict[str, ExpectedError]
     distance: float  # to the nearest point, in half decades
     nearest: MappedPoint
     reach: tuple[float, float]  # least and greatest k a of the highest band among the points of the bodies
@@ -182,12 +174,12 @@ class LawChoice:
 
     def trusts(self, law: str) -> bool:
         """Whether a law is expected to be as near as is wanted."""
-        return not self.off_map and any(e.law == law and e.high <= WANTED for e in self.expected)
+        return not self.off_map and law in self.expected and self.expected[law].high <= WANTED
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """Say which law to take, the errors to expect, and where the case lies: names and values."""
         yield "law to take", self._advice()
-        yield "expected errors, dB", f"{', '.join(map(str, self.expected))}; {MEANING}"
+        yield "expected errors, dB", f"{', '.join(map(str, self.expected.values()))}; {MEANING}"
         place, near = self.place, self.nearest
         off = ": off the map, so that the expected errors are guesses" if self.off_map else ""
         yield (
@@ -202,7 +194,7 @@ class LawChoice:
     def entries(self) -> dict[str, Any]:
         """Lay it out for a result file."""
         return {
-            "errors": [asdict(found) for found in self.expected],
+            "errors": [asdict(found) for found in self.expected.values()],
             "taken": self.taken,
             "off_map": self.off_map,
             "wanted": WANTED,
@@ -210,8 +202,7 @@ class LawChoice:
 
     def sentence(self, law: str) -> str | None:
         """Say in a sentence how far a law is expected from `direct`; nothing of a law that was not mapped."""
-        found = next((expected for expected in self.expected if expected.law == law), None)
-        if found is None:
+        if (found := self.expected.get(law)) is None:
             return None
         instead = "" if law == self.taken or self.trusts(law) else f"; take {self.taken}"
         guess = "A guess, off the map of law errors" if self.off_map else "By the map of law errors"
@@ -221,7 +212,7 @@ class LawChoice:
         )
 
     def _advice(self) -> str:
-        cheap = next(found for found in self.expected if found.law == CHEAP[0])
+        cheap = self.expected[CHEAP[0]]
         if self.taken == cheap.law:
             text = f"{cheap.law}: expected within {WANTED:g} dB of direct, without a scan of the path"
         elif self.off_map:
@@ -229,8 +220,9 @@ class LawChoice:
         else:
             leaves = "leaves its range" if cheap.error > WANTED else "may leave its range"
             text = f"{self.taken}: {cheap.law} {leaves} ({_db(cheap.error)} dB, up to {_db(cheap.high)})"
-        if self.loss > LOST:
-            text += f"; with contact lost {percent(self.loss)} of the time, levels of short records scatter"
+        if self.nearest.loss > LOST:
+            lost = percent(self.nearest.loss)
+            text += f"; with contact lost {lost} of the time, levels of short records scatter"
         return text
 
 
@@ -250,21 +242,13 @@ def law_choice(prepared: PreparedCase) -> LawChoice | None:
 
 def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawChoice:
     """Expect the errors of laws at a place on a map, and say which law to take."""
-    expected = {
-        law: expected_error(mapped, kind, place, law) for law in (*CHEAP, *laws) if law in mapped.spread
-    }
+    known = [law for law in dict.fromkeys((*CHEAP, *laws)) if law in mapped.spread]
+    expected = sorted((expected_error(mapped, kind, place, law) for law in known), key=lambda e: e.error)
     here = _coordinates(mapped, kind, place)
     distances = [float(np.linalg.norm(_coordinates(mapped, p.kind, p.place) - here)) for p in mapped.points]
-    nearest = int(np.argmin(distances))
     reached = [p.place.highest_wavenumber for p in mapped.points if p.kind == kind]
-    return LawChoice(
-        place,
-        tuple(sorted(expected.values(), key=lambda found: found.error)),
-        mapped.points[nearest].loss,
-        distances[nearest],
-        mapped.points[nearest],
-        (min(reached) / MARGIN, max(reached) * MARGIN),
-    )
+    reach, nearest = (min(reached) / MARGIN, max(reached) * MARGIN), mapped.points[int(np.argmin(distances))]
+    return LawChoice(place, {found.law: found for found in expected}, min(distances), nearest, reach)
 
 
 def expected_error(mapped: LawMap, kind: str, place: Place, law: str) -> ExpectedError:
