@@ -10,6 +10,7 @@ import numpy as np
 from asperity.arguments import Array, NDArray
 from asperity.errors import Finding, InhomogeneousWarning, ShortRecordWarning
 from asperity.reduction.filter import punch_filter, punch_taps, response
+from asperity.reporting import data
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.reducing import Reduction
 from asperity.scenarios.textures import Textures
@@ -136,18 +137,12 @@ def _rows(found: list[statistics.Statistic], where: str) -> list[dict[str, Any]]
             "symbol": s.symbol,
             "value": s.value if np.isfinite(s.value) else None,
             "unit": s.unit,
-            "bandwidth": f"{_length(s.bandwidth[0])} … {_length(s.bandwidth[1])}",
+            "bandwidth": " … ".join(data.engineering(length, "m") for length in s.bandwidth),
             "surface": where,
             "meaning": s.meaning,
         }
         for s in found
     ]
-
-
-def _length(metres: float) -> str:
-    if metres >= 1.0:
-        return f"{metres:.3g} m"
-    return f"{metres * 1e3:.3g} mm" if metres >= 1e-3 else f"{metres * 1e6:.3g} µm"
 
 
 SMOOTH = "smooth bodies have one filter, that of the working load"

@@ -11,9 +11,10 @@ from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
 from asperity.laws import Role, in_role
 from asperity.reduction.texture import along_path
 from asperity.reference.railways import iso_3095_decay_rate
+from asperity.reporting import data
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.scene import PreparedCase, Receptance, Scene, mean_square_transfer
-from asperity.scenes import compute, measured, noise, schema, validity
+from asperity.scenes import compute, measured, noise, schema
 from asperity.schema import Values
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
@@ -246,7 +247,7 @@ def findings_of_losses(losses: Values) -> list[Finding]:
     return [
         Finding(
             "error of the contact force for constant loss factors, at most",
-            f"{validity.signed_level(level)} dB ({spectra.nominal_frequency(frequency)})",
+            f"{data.signed(level)} dB ({spectra.nominal_frequency(frequency)})",
             f"up to {DOUBTFUL:g} dB",
             Grade.WARNING if off else None,
             f"{meaning}.",
@@ -261,7 +262,7 @@ def described_losses(losses: Values) -> Iterator[tuple[str, str]]:
     if not losses:
         return
     off = [
-        f"{spectra.nominal_frequency(band)} {validity.signed_level(level)}"
+        f"{spectra.nominal_frequency(band)} {data.signed(level)}"
         for band, level in zip(*losses.values(), strict=True)
         if abs(level) >= LEAST_SHOWN
     ]

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import xarray
 
-from asperity.arguments import Array
 from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
+from asperity.reporting import data
 from asperity.rolling.roll import RolledBodies
 from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice, written_force
 from asperity.scenarios.preparing import ContactTrial
@@ -257,26 +257,16 @@ def _compared(bands: xarray.Dataset, main: str, others: dict[str, str]) -> Itera
     """Distance of the main law to the linear laws, the one of practice first, and to the reference."""
     for law, name in others.items():
         ends = (bands[name][end] for end in (bands[name].values.argmin(), bands[name].values.argmax()))
-        told = (f"{signed_level(end)} dB ({nominal_frequency(float(end.band))})" for end in ends)
+        told = (f"{data.signed(float(end))} dB ({nominal_frequency(float(end.band))})" for end in ends)
         yield f"{' to '.join(told)} over {law}"
     to_reference = bands.get(spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE.name)
     if to_reference is not None and to_reference.attrs["reference"] != main:
         yield f"at most {float(abs(to_reference).max()):.1f} dB from {to_reference.attrs['reference']}"
 
 
-def signed_level(difference: float | xarray.DataArray) -> str:
-    """Write a difference of levels, dB, with its sign."""
-    rounded = round(float(difference), 1)
-    return f"{rounded:+.1f}".replace("-", "−") if rounded else "0.0"
-
-
-def rms_about_mean(force: Array) -> float:
-    """Rms of contact forces (c, n), N, each about its own mean."""
-    return float(np.sqrt(np.mean(np.var(force, axis=-1))))
-
-
 def _varies(run: RolledBodies) -> str:
-    return written_force(rms_about_mean(run.contact_force))
+    """Rms of the contact forces, each about its own mean."""
+    return written_force(float(np.sqrt(np.mean(np.var(run.contact_force, axis=-1)))))
 
 
 def _contact(run: RolledBodies, body: str) -> str:
