@@ -7,7 +7,7 @@ import pytest
 
 from asperity import Beam, Bodies, ModalStructure, Profile, Wheel, WheelOnRail, errors, material
 from asperity.scenarios.scene import scene_of
-from asperity.scenarios.textures import other_contacts, textures_of
+from asperity.scenarios.textures import other_contacts, textures_of, textures_under
 from asperity.scenes.result import passing_frequencies
 
 ROUGH = {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"}
@@ -64,7 +64,7 @@ def test_loads_and_textures_of_their_own_make_laws_of_their_own():
     smooth = case_of({"positions": ["0 m", "0.1 m", "0.3 m"]})
     assert other_contacts(smooth, np.full(3, 5.0)) == ([0, 0, 0], [])
     which, others = other_contacts(case_of(), np.array([5.0, 7.0, 5.0, 7.0]))
-    assert (which, [other.load for other in others]) == ([0, 1, 0, 1], [7.0])
+    assert (which, others) == ([0, 1, 0, 1], [(0, 7.0)])
 
 
 TURNING = {
@@ -79,7 +79,7 @@ def both(body, **keys):
     which, others = other_contacts(case, np.full(2, 5.0))
     first = textures_of(case)
     assert which == [0, 1]
-    return first, others[0].textures(first), round(2 * np.pi * 0.46 / 1e-3)
+    return first, textures_under(case, others[0][0], first), round(2 * np.pi * 0.46 / 1e-3)
 
 
 def test_each_contact_bears_a_roughness_of_its_own():

@@ -20,7 +20,7 @@ from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scene import PreparedCase
-from asperity.scenarios.textures import OtherContact
+from asperity.scenarios.textures import textures_under
 from asperity.store import Store
 
 
@@ -33,9 +33,10 @@ class ReducedCase(PreparedCase):
     planes: Array | None
     progress: Progress
 
-    def of_contact(self, own: OtherContact) -> "ReducedCase":
-        """Those of another contact of the same bodies."""
-        textures, shape = own.textures(self.textures), replace(self.shape, load=own.load)
+    def of_contact(self, contact: int, load: float) -> "ReducedCase":
+        """Those of another contact of the same bodies, by whose texture it bears and its load, N."""
+        textures = textures_under(self.case, contact, self.textures)
+        shape = replace(self.shape, load=load)
         planes = None if textures.path is None else reducing.patch_planes(textures.path, self.shape)
         return replace(self, textures=textures, shape=shape, planes=planes)
 

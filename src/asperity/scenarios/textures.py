@@ -1,10 +1,9 @@
 """The textures of a case: samples that are reduced, and the path that is rolled over, under each contact."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -84,13 +83,6 @@ class Textures:
         return self.path if self.defects is None else raised(self.path, self.defects)
 
 
-class OtherContact(NamedTuple):
-    """A contact that differs from the first."""
-
-    textures: Callable[[Textures], Textures]  # its own, from those of the first
-    load: float  # N
-
-
 def textures_of(case: Case) -> Textures:
     """Read or synthesise the textures of a case: what is rolled over, and the first body on it.
 
@@ -141,26 +133,24 @@ def textures_of(case: Case) -> Textures:
     return replace(textures, **_defects(case, 0, textures))
 
 
-def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[OtherContact]]:
+def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[tuple[int, float]]]:
     """Which of the contacts differ from the first: for each, which one it equals; and those that differ.
 
-    Loads (c,), N. Zero stands for the first contact, k for the k-th of the others.
+    Loads (c,), N. Zero stands for the first contact, k for the k-th of the others: whose texture it bears,
+    see `textures_under`, and its load, N.
     """
-    rolling, which = case.rolling, list[int]()
-    others, known = list[OtherContact](), [(0, float(loads[0]))]
-    flat = rolling.flat is not None
+    rolling, which, known = case.rolling, list[int](), [(0, float(loads[0]))]
     for contact, load in enumerate(loads):
-        flats = flat and {contact + 1, 1} & set(rolling.flat_contacts)
+        flats = rolling.flat is not None and {contact + 1, 1} & set(rolling.flat_contacts)
         texture = contact if rolling.has_own_texture or flats else 0
         alike = (bearing == texture and math.isclose(at, load, rel_tol=EQUAL) for bearing, at in known)
         which.append(next((k for k, same in enumerate(alike) if same), len(known)))
         if which[-1] == len(known):
             known.append((texture, float(load)))
-            others.append(OtherContact(partial(_under, case, texture), float(load)))
-    return which, others
+    return which, known[1:]
 
 
-def _under(case: Case, contact: int, first: Textures) -> Textures:
+def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     """Textures under a contact, from those under the first: the turn of its own body is there."""
     rows, before = len(first.line), first.before
     if contact == 0 or not case.rolling.has_own_texture:

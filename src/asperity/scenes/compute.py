@@ -152,7 +152,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         book("running in")
     first = reduced_case(run_in, progress)
     book("reduction")
-    every, unused = [first, *(first.of_contact(own) for own in others)], replace(first, seconds=seconds)
+    every, unused = [first, *(first.of_contact(*own) for own in others)], replace(first, seconds=seconds)
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:
         laws = [materials.build(name) for materials in every]
