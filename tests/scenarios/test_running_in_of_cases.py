@@ -50,7 +50,7 @@ def ball(**contact):
 
 def run_in_of(case):
     prepared = prepare_case(as_case(case))
-    return prepared, run_in_case(prepared, lambda *_: None)
+    return prepared, *run_in_case(prepared, lambda *_: None)
 
 
 @pytest.fixture
@@ -114,19 +114,19 @@ def test_a_study_keeps_what_running_in_changed(untouched, run_in):
 def test_measured_maps_are_run_in_along_their_strips():
     band = {"longest": 0.3e-3, "shortest": 60e-6}
     surface = self_affine((160, 60), (15e-6, 15e-6), rms=0.2e-6, hurst=0.8, seed=3, **band)
-    prepared, found = run_in_of(ball(running_in=1) | {"surface": {"file": surface}})
-    assert all(map_.shape[1] == prepared.shape.body.shape[1] for map_ in found.textures.maps)
-    assert found.values[contact.RUNNING_IN_LOWERING][0] > 5e-9
+    prepared, found, values = run_in_of(ball(running_in=1) | {"surface": {"file": surface}})
+    assert all(map_.shape[1] == prepared.shape.body.shape[1] for map_ in found.maps)
+    assert values[contact.RUNNING_IN_LOWERING][0] > 5e-9
 
 
 def test_a_line_of_the_path_stays_as_it_is():
     keys = ball(running_in=1) | {"laws": ["shifted"]}
-    prepared, found = run_in_of(
+    prepared, found, _ = run_in_of(
         keys | {"surface": BALL["surface"] | {"spectrum": "iso3095", "level": "-40 dB"}}
     )
     told = "samples run in by 1 pass under 20 N, line of the path as given"
-    assert found.textures.origin.endswith(told)
-    np.testing.assert_array_equal(found.textures.line, prepared.textures.line)
+    assert found.origin.endswith(told)
+    np.testing.assert_array_equal(found.line, prepared.textures.line)
 
 
 def test_the_rail_takes_the_lowering_and_what_still_yields_is_said(runs):
@@ -136,8 +136,8 @@ def test_the_rail_takes_the_lowering_and_what_still_yields_is_said(runs):
     assert lowering.max() > 50e-9
     assert (tree["contact"].sizes["running_in_pass"], tree["contact"].attrs["shaken_down"]) == (1, 0)
     assert "still lowered places" in condition_table(tree).note
-    prepared, found = run_in_of(RAIL)
-    parts, line = found.textures.parts, found.textures.line
+    prepared, found, _ = run_in_of(RAIL)
+    parts, line = found.parts, found.line
     np.testing.assert_allclose(parts["rail"] + parts["wheel"], line, atol=1e-15)
     np.testing.assert_array_equal(parts["wheel"], prepared.textures.parts["wheel"])
 

@@ -1,7 +1,7 @@
 """Running-in of a case: its textures after passes in which asperities have yielded."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -25,19 +25,11 @@ EXPECTED_PASSES = 10
 """Passes to shakedown, for the plan: four to twenty."""
 
 
-@dataclass(frozen=True, eq=False)
-class RunInCase:
-    """Textures of a case after running-in, and what the passes did to samples and path together."""
-
-    textures: Textures
-    values: Values  # each pass, and the surface before and after them
-
-
-def run_in_case(prepared: PreparedCase, progress: Progress) -> RunInCase:
+def run_in_case(prepared: PreparedCase, progress: Progress) -> tuple[Textures, Values]:
     """Run samples and path of a case in, each rolled over lengthwise under the working load.
 
     Samples are then cut from the strips, whose middles the body has passed. A path that is a line alone stays
-    as it is. The cache keeps what was rolled.
+    as it is. The cache keeps what was rolled. Returned are textures after running-in, and what it did.
     """
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     half_space = shape.half_space(case.contact.hardness)
@@ -69,7 +61,7 @@ def run_in_case(prepared: PreparedCase, progress: Progress) -> RunInCase:
     )
     before = replace(textures, maps=textures.strips)
     conditions = np.array([_condition(prepared, each) for each in (before, after)])
-    return RunInCase(after, _passes(surfaces, conditions))
+    return after, _passes(surfaces, conditions)
 
 
 def _passes(surfaces: Sequence[RunInHeights], conditions: Array) -> Values:

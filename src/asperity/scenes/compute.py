@@ -18,9 +18,10 @@ from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies
 from asperity.scenarios import compiling
 from asperity.scenarios.laws import ReducedCase, reduced_case, working_point
-from asperity.scenarios.running_in import RunInCase, run_in_case
+from asperity.scenarios.running_in import run_in_case
 from asperity.scenarios.scene import PreparedCase, Scene
 from asperity.scenarios.textures import other_contacts, recorded_time
+from asperity.schema import Values
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
@@ -41,7 +42,7 @@ class Computed(ReducedCase):
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
     runs: dict[str, RolledBodies]  # time histories, by law
     scan: ScannedForces | None  # of the path
-    running_in: RunInCase | None  # what passes before did to the textures; None where there were none
+    running_in: Values  # what passes before did to the textures
     # (laws, points, n), displacement, m, and velocity, m/s, of the rail at the points that are passed
     points: tuple[Array, ...] = ()
 
@@ -131,7 +132,7 @@ def spectrum_segment(samples: int, step: float) -> int:
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
-    case, scene, run_in, ran = prepared.case, prepared.scene, prepared, None
+    case, scene, run_in, ran = prepared.case, prepared.scene, prepared, Values()
     store, seconds, last = Store(), dict(prepared.seconds), time.perf_counter()
 
     def book(part: str) -> None:
@@ -147,8 +148,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     which, others = other_contacts(case, scene.loads)
     duration = recorded_time(case, prepared.textures)
     if case.contact.running_in is not None:
-        ran = run_in_case(prepared, progress)
-        run_in = replace(prepared, textures=ran.textures)
+        textures, ran = run_in_case(prepared, progress)
+        run_in = replace(prepared, textures=textures)
         book("running in")
     first = reduced_case(run_in, progress)
     book("reduction")

@@ -182,7 +182,6 @@ def _reduced(computed: Computed, reduction: Reduction) -> Values:
     states, touching = (np.where(r > 0.0, r, np.inf) for r in (ensemble.states, approach))
     hertz = np.array([shape.hertz.force(s) for s in approach])
     px, py = ((np.arange(n) - n // 2) * d for n, d in zip(shape.body.shape, shape.spacing, strict=True))
-    run_in: Values = {} if computed.running_in is None else computed.running_in.values
     return {
         contact.APPROACH: approach,
         contact.FORCE: ensemble.mean_force,
@@ -207,7 +206,7 @@ def _reduced(computed: Computed, reduction: Reduction) -> Values:
         contact.ISOLATED_SHARE: reduction.pressed.isolated_share,
         contact.RMS_SLOPE: computed.textures.rms_slope,
         contact.SAMPLES: len(ensemble.forces),
-        **run_in,
+        **computed.running_in,
         **_filters(reduction),
     }
 
