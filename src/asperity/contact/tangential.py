@@ -127,7 +127,7 @@ class FrictionalHalfSpace:
         along, across, _ = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
         own = along[0, 0]
         self._taps = inverse_stencil(0.5 * (along + across) / own)
-        self._kernels: dict[tuple[float, bool], Array] = {}
+        self._influences: dict[tuple[float, bool], tuple[Array, Complex, float]] = {}
         self._prepared: dict[tuple[int, int, float, bool, bool], kernel.TractionConvolution] = {}
 
     def shift(
@@ -235,40 +235,35 @@ class FrictionalHalfSpace:
         _cells(box.traction, box)[:] = traction
         kernel.convolve_traction(convolution, box.traction, nx, ny, box.pitch, box.work, box.response)
         found = _cells(box.response, box)
-        return np.asarray(found + self._of_pressure(pressure, ahead)) if self._couples else found
+        if self._couples:
+            found = found - _convolved(self._influence(ahead, False)[1], pressure)
+        return np.asarray(found)
 
-    def _separations(self, ahead: float) -> tuple[Array, Array]:
-        (nx, ny), (dx, dy) = self.half_space.shape, self.half_space.spacing
-        return dx * np.arange(1.0 - nx, nx)[:, None] + ahead, dy * np.arange(1.0 - ny, ny)[None, :]
+    def _influence(self, ahead: float, steady: bool) -> tuple[Array, Complex, float]:
+        """Of a cell on those around it, up to the width of the grid, so far ahead, m.
 
-    def _of_traction(self, ahead: float, steady: bool) -> Array:
-        """Kernels of displacement on the whole grid so far ahead, m/Pa; in steady rolling here, less that."""
-        if (ahead, steady) not in self._kernels:
-            at, cell = self._separations(ahead), self.half_space.spacing
-            found = kernel.traction_displacement(*at, *cell, self.poisson_ratio)
-            kernels = np.stack(found) / (math.pi * self.shear_modulus)
-            self._kernels[ahead, steady] = self._of_traction(0.0, False) - kernels if steady else kernels
-        return self._kernels[ahead, steady]
-
-    def _own(self, ahead: float, steady: bool) -> float:
-        """Displacement of a cell by its own traction, m/Pa."""
-        nx, ny = self.half_space.shape
-        return float(self._of_traction(ahead, steady)[:2, nx - 1, ny - 1].mean())
-
-    def _unlike(self, ahead: float = 0.0) -> Complex:
-        """Gap by a traction of unlike bodies, x + iy, on the whole grid, m/Pa; likewise −u by a pressure."""
-        spread = kernel.pressure_displacement(*self._separations(ahead), *self.half_space.spacing)
-        return np.asarray(self.unlikeness / math.pi * spread)
+        In steady rolling that here, less that ahead. By traction: displacement along x by x, y by y and x by
+        y (3, 2 nx - 1, 2 ny - 1), m/Pa. Of unlike bodies that are coupled: by pressure, displacement x + iy
+        against it, which is the gap by a traction (2 nx - 1, 2 ny - 1). And its own by traction.
+        """
+        if (ahead, steady) not in self._influences:
+            (nx, ny), (dx, dy) = self.half_space.shape, self.half_space.spacing
+            x, y = dx * np.arange(1.0 - nx, nx)[:, None] + ahead, dy * np.arange(1.0 - ny, ny)[None, :]
+            found = kernel.traction_displacement(x, y, dx, dy, self.poisson_ratio)
+            traction, spread = np.stack(found) / (math.pi * self.shear_modulus), np.zeros((1, 1), complex)
+            if self._couples:
+                spread = self.unlikeness / math.pi * kernel.pressure_displacement(x, y, dx, dy)
+            if steady:
+                here, spread_here, _ = self._influence(0.0, False)
+                traction, spread = here - traction, spread_here - spread
+            own = float(traction[:2, nx - 1, ny - 1].mean())
+            self._influences[ahead, steady] = traction, spread, own
+        return self._influences[ahead, steady]
 
     @property
     def _couples(self) -> bool:
         """Whether pressure and traction act on each other."""
         return self.coupled and self.unlikeness != 0.0
-
-    def _of_pressure(self, pressure: Array, ahead: float, steady: bool = False) -> Complex:
-        """Displacement of unlike bodies by a pressure, m; in steady rolling less that ahead."""
-        spread = self._unlike() - self._unlike(ahead) if steady else self._unlike(ahead)
-        return -_convolved(spread, pressure)
 
     def _convolution(
         self, nx: int, ny: int, ahead: float, steady: bool, single: bool = False
@@ -280,9 +275,9 @@ class FrictionalHalfSpace:
         nx, ny = (min(smooth_length(m), n) for m, n in zip((nx, ny), self.half_space.shape, strict=True))
         key = (nx, ny, ahead, steady, single)
         if key not in self._prepared:
-            middle, unit = self.half_space.shape, self._own(ahead, steady) if single else 1.0
+            middle, (traction, _, own) = self.half_space.shape, self._influence(ahead, steady)
             inside = (slice(m - n, m + n - 1) for m, n in zip(middle, (nx, ny), strict=True))
-            kernels = self._of_traction(ahead, steady)[:, *inside] / unit
+            kernels = traction[:, *inside] / (own if single else 1.0)
             dtype = np.float32 if single else np.float64
             self._prepared[key] = kernel.traction_convolution(kernels, nx, ny, dtype)
         return self._prepared[key]
@@ -361,7 +356,7 @@ class FrictionalHalfSpace:
             return np.asarray(force * (-math.log1p(-share) / share if share else 1.0))
 
         motion = np.array(found.creepage)
-        softness = self._own(*manner.kernel) / (manner.step * normal.area)
+        softness = self._influence(*manner.kernel)[2] / (manner.step * normal.area)
         jacobian_inverse, low, high, longest = -softness * np.eye(len(index)), -math.inf, math.inf, math.inf
         missing = stretched(np.array(found.force)[index]) - stretched(target)
         for _ in range(MAX_ROUNDS):
@@ -406,7 +401,7 @@ class FrictionalHalfSpace:
             slipped |= slipping
             if self._couples:
                 traction = found.traction[0] - 1j * found.traction[1]
-                gap = normal.undeformed_gap + _convolved(self._unlike(), traction).real
+                gap = normal.undeformed_gap + _convolved(self._influence(0.0, False)[1], traction).real
                 loaded = space.at_load(gap, normal.force, loaded.pressure, 1e-8)
             last, bound = bound, self.friction.coefficient(velocity, slipped) * loaded.pressure
             if np.abs(bound - last).max() <= ROUNDS_AGREE * last.max():
@@ -421,11 +416,11 @@ class FrictionalHalfSpace:
     ) -> SlidingContact:
         """Solve at a bound, on the box of the contact."""
         (x, y), (xi, eta, spin), (ahead, steady) = cell_places(self.half_space), motion, manner.kernel
-        rigid = manner.step * complex(xi, eta) - past
+        (_, spread, own), rigid = self._influence(ahead, steady), manner.step * complex(xi, eta) - past
         if spin:
             rigid += manner.step * spin * (1j * (x + SPIN_AHEAD * manner.ahead) - y)
         if self._couples:
-            rigid += self._of_pressure(normal.pressure, ahead, steady)
+            rigid -= _convolved(spread, normal.pressure)
         contact = normal.pressure > 0.0
         box_of = contact if contact.any() else np.ones_like(contact)
         rows, columns = (np.flatnonzero(box_of.any(axis=axis)) for axis in (1, 0))
@@ -439,7 +434,6 @@ class FrictionalHalfSpace:
         if manner.start is not None:
             start = manner.start.traction[:, *inside]
             _cells(box.traction, box)[:] = start[0] + 1j * start[1]
-        own = self._own(ahead, steady)
         task = kernel.TractionTask(own, carried, not steady, manner.rtol, MAX_ITERATIONS)
         iterations, convolutions, worst = kernel.solve_traction(box, linear, task)
         outcome = Outcome.CONVERGED if worst <= manner.rtol else Outcome.ITERATION_LIMIT
