@@ -70,8 +70,8 @@ def own_cache(tmp_path, monkeypatch):
 def cache_of_module(tmp_path_factory):
     """What the tests of one module compute, they find again; others do not."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
+        patch.setenv("ASPERITY_CACHE", cache := str(tmp_path_factory.mktemp("cache")))
+        yield cache
 
 
 @pytest.fixture(scope="session")

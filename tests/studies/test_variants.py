@@ -138,25 +138,23 @@ test_what_is_wrong_with_a_variant_is_explained = refusals(
 # --- what it does
 
 
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return str(tmp_path_factory.mktemp("cache"))
+@pytest.fixture
+def cache(cache_of_module, own_folder, monkeypatch):
+    """What other tests here have computed is found."""
+    monkeypatch.setenv("ASPERITY_CACHE", cache_of_module)
 
 
 @pytest.fixture(scope="module")
-def table(cache):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ASPERITY_CACHE", cache)
-        return asperity.study(RAIL, {"seed": [1, 2, 3], "variant": VARIANTS}, executor=Here())
+def table(cache_of_module):
+    return asperity.study(RAIL, {"seed": [1, 2, 3], "variant": VARIANTS}, executor=Here())
 
 
-def test_five_decibels_of_roughness_are_five_decibels_of_force(table, cache, monkeypatch):
+def test_five_decibels_of_roughness_are_five_decibels_of_force(table, cache):
     """The linear law is linear: what roughness makes falls by 5.0 dB, what the load alone makes stays.
 
     Amplitudes of both add in one way or the other: with a share ε of the load in the amplitude, the level
     falls by 5 dB and at most 20 lg((1 + 1.78 ε)/(1 − ε)) more or less, 1.78 = 10^(5/20).
     """
-    monkeypatch.setenv("ASPERITY_CACHE", cache)
     bare = {"surface.level": "minus 60 dB", "wheel.roughness_level": "minus 60 dB"}
     load = asperity.study(RAIL, {"seed": [1], "variant": {"bare": bare}}, executor=Here())
     load = load["force_level"].sel(law="linear", seed=1, variant="bare")
@@ -196,9 +194,8 @@ def test_soft_pads_free_the_rail_and_calm_the_sleepers(table):
 
 
 @pytest.mark.long
-def test_dampers_calm_what_they_sit_on(cache, monkeypatch):
+def test_dampers_calm_what_they_sit_on(cache):
     """Thompson: rail dampers raise the decay rate and calm the rail; a wheel with damped modes rings less."""
-    monkeypatch.setenv("ASPERITY_CACHE", cache)
     drawn = RAIL.with_(wheel={"section": "curved-web"}, numerics={"highest_frequency": "4 kHz"})
     listed = what_helps(drawn).sweep["variant"]
     dampers = {name: listed[name] for name in ("rail dampers", "wheel dampers")}
@@ -275,9 +272,8 @@ def test_other_tables_have_no_effects(table):
         effects(table, "loudness")
 
 
-def test_more_variants_go_on_where_fewer_were(table, cache, monkeypatch):
+def test_more_variants_go_on_where_fewer_were(table, cache):
     """The case as it is, and what was changed before, are found; only the new one is computed."""
-    monkeypatch.setenv("ASPERITY_CACHE", cache)
     again = Here()
     more = {"seed": [1], "variant": {**VARIANTS, "fast": {"speed": "times 1.1"}}}
     assert asperity.study(RAIL, more, executor=again)["completed"].values.tolist() == [[1, 1, 1, 0, 1, 1]]
@@ -302,7 +298,6 @@ def test_the_ready_list_suits_cases_over_a_track():
 
 def test_what_helps_stands_in_the_result_of_a_run(table, cache, monkeypatch):
     """As its schema says, with a chapter of the report."""
-    monkeypatch.setenv("ASPERITY_CACHE", cache)
     plan = study_of(RAIL, {"seed": [1, 2, 3], "variant": VARIANTS})
     monkeypatch.setattr("asperity.studies.effects.what_helps", lambda case: plan)
     tree = with_effects(RAIL, asperity.run(RAIL, brief=True))

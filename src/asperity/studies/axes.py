@@ -159,12 +159,6 @@ class VariantAxis(SweptAxis):
 
     changes: Mapping[str, tuple[Change, ...]]  # by name
 
-    @classmethod
-    def of(cls, changes: Mapping[str, tuple[Change, ...]]) -> "VariantAxis":
-        """Name the axis and its places."""
-        entry = CaseKey(VARIANT, key(Text(), None, "what is changed of the case"))
-        return cls(entry, tuple(changes), tuple(changes), changes)
-
     @property
     def told(self) -> dict[str, dict[str, Any]]:
         """The changes by name, as they stand in TOML."""
@@ -214,7 +208,8 @@ def variant_axis(model: type[Section], given: object, origin: Origin) -> tuple[V
             except InputError as error:
                 errors.append(error.about(f"{what}.{error.what}"))
         found[name] = tuple(changes.values())
-    return VariantAxis.of(found), errors
+    entry = CaseKey(VARIANT, key(Text(), None, "what is changed of the case"))
+    return VariantAxis(entry, tuple(found), tuple(found), found), errors
 
 
 def flat(keys: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]]:
