@@ -230,9 +230,7 @@ class Section:
 
     def _state(self) -> dict[str, Any]:
         """All that it holds, sections as dicts: their classes may have no name to be found by."""
-        return {
-            name: each._state() if isinstance(each, Section) else each for name, each in self.__dict__.items()
-        }
+        return {n: each._state() if isinstance(each, Section) else each for n, each in vars(self).items()}
 
     def __repr__(self) -> str:
         from asperity.case.any_case import in_toml
