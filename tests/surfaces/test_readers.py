@@ -91,7 +91,7 @@ HOLED = {
 def _read_here(monkeypatch):
     """What is read in a process of its own elsewhere is read in this one."""
     at_once = lambda function, arguments, *_: function(*arguments)  # noqa: E731
-    monkeypatch.setattr("asperity.surfaces.readers.instruments.sandboxed", at_once)
+    monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", at_once)
 
 
 @pytest.fixture

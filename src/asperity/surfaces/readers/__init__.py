@@ -12,7 +12,7 @@ from asperity.errors import MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards, sdf, text, x3p
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
-from asperity.surfaces.readers.instruments import read_apart
+from asperity.surfaces.readers.libraries import read_apart
 
 __all__ = ["read_all", "read_surface"]
 
@@ -22,12 +22,12 @@ READ_AS_TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
 OWN: dict[str, tuple[str, Reader]] = {
     ".npy": ("npy", arrays.read_npy),
     ".npz": ("npz", arrays.read_npz),
-    ".nc": ("netCDF-4", read_apart("netcdf", "netCDF-4")),
+    ".nc": ("netCDF-4", read_apart("read_netcdf", "netCDF-4")),
     ".sdf": ("SDF", sdf.read),
     ".x3p": ("X3P", x3p.read),
 }
 TEXT: tuple[str, Reader] = "text", text.read
-OTHER: tuple[str, Reader] = "known instrument", read_apart("instruments", "known instrument")
+OTHER: tuple[str, Reader] = "known instrument", read_apart("read_instrument", "known instrument")
 
 
 def read_surface(

@@ -1,0 +1,159 @@
+"""Formats that libraries parse, netCDF and those of instruments, in a sandbox: see `asperity.sandbox`."""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array, listed, require, shown
+from asperity.errors import InputError
+from asperity.sandbox import Answer, sandboxed
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers import arrays, guards
+from asperity.surfaces.readers.hints import SPELLING, Hints, Spelling, spelled
+from asperity.units import factor
+
+
+def read_apart(reader: str, kind: str) -> Callable[[Path, Hints], list[guards.Surface]]:
+    """Make a reader of a format that calls a function of this module by its name in a process of its own."""
+
+    def read(path: Path, hints: Hints) -> list[guards.Surface]:
+        request = [reader, str(path.absolute()), asdict(hints), asdict(SPELLING.get())]
+        described, found = sandboxed(surfaces_in, request, path.name, path.stat().st_size, kind)
+        return [
+            (HeightMap if heights.ndim == 2 else Profile)(heights, spacing, source)
+            for (spacing, source), heights in zip(described, found, strict=True)
+        ]
+
+    return read
+
+
+def surfaces_in(reader: str, path: str, hints: dict[str, Any], spelling: dict[str, Any]) -> Answer:
+    """Read a file as `read_apart` asks: spacings and sources of surfaces, and their heights."""
+    read = {"read_netcdf": read_netcdf, "read_instrument": read_instrument}[reader]
+    with spelled(Spelling(**spelling)):
+        surfaces = read(Path(path), Hints(**hints))
+    return [(each.spacing, each.source) for each in surfaces], [each.heights for each in surfaces]
+
+
+def read_instrument(path: Path, hints: Hints) -> list[guards.Surface]:
+    """Read the channel of an instrument's file that the hints name, or the reader's default one.
+
+    The other hints stand for a unit or a size that the file does not state. SurfaceTopography gives maps with
+    the file's x as the first axis, which is kept.
+    """
+    # remarks of the package about itself
+    with warnings.catch_warnings(action="ignore"), _opener(path)(path) as reader:
+        channels = {channel.name: channel for channel in reader.channels}
+        name = reader.default_channel.name if hints.array is None else hints.array
+        allowed = f"one of: {listed(list(channels))}"
+        require(name in channels, f"array in {path.name}", shown(name), allowed, "Choose a channel.")
+        points, sized = channels[name].nb_grid_pts, channels[name].physical_sizes is not None
+        few, allowed = (
+            np.prod(points, dtype=float) <= guards.MAX_POINTS,
+            f"at most {guards.MAX_POINTS} points",
+        )
+        require(few, path.name, f"{points} points", allowed, "Crop or split the measurement.")
+        sizes = {} if sized or hints.pixel is None else {"physical_sizes": (1.0,) * len(points)}
+        return _surfaces(channels[name].topography(**sizes), hints, f"{path.name}:{name}")
+
+
+def _opener(path: Path) -> Any:
+    try:
+        from SurfaceTopography import open_topography
+    except ImportError:
+        received = f"a {path.suffix or 'nameless'} file, which asperity does not read itself"
+        allowed = "text, CSV, npy, npz, netCDF, SDF, X3P; instrument files with SurfaceTopography"
+        remedy = 'Install it: pip install "asperity[readers]".'
+        raise InputError(path.name, received, allowed, remedy) from None
+    return open_topography
+
+
+def _surfaces(measured: Any, hints: Hints, source: str) -> list[guards.Surface]:
+    received, allowed = "points at no uniform spacing", "a uniform line or map"
+    require(measured.is_uniform, source, received, allowed, "Resample it at a uniform spacing first.")
+    unit = None if measured.unit is None else factor(measured.unit, "m")
+    heights = np.ma.filled(np.ma.asarray(measured.heights(), dtype=np.float64), np.nan)
+    heights = heights * hints.heights_in(source, unit)
+    lateral = hints.pixel_unit or unit
+    dx, dy = np.broadcast_to(measured.pixel_size, 2)
+    stated = None if lateral is None else (float(dx) * lateral, float(dy) * lateral)
+    return guards.surfaces_of(heights, hints.spacing_in(source, stated), source)
+
+
+# --- netCDF-4 through h5netcdf
+
+MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written
+
+
+def read_netcdf(path: Path, hints: Hints) -> list[guards.Surface]:
+    """Read the variable of a netCDF-4 file that the hints name (``group/variable`` in a group).
+
+    Without a name it is ``heights`` or the only variable with dimensions that is no coordinate. The dimension
+    called ``x`` becomes the first axis of the map, whatever their order in the file; without that name,
+    dimensions are taken as (x, y), or (sample, x, y). Spacing is taken from coordinate variables, units from
+    the ``units`` attributes; points are put in the order of rising coordinates. The other hints stand for
+    what is not stated.
+    """
+    import h5netcdf
+
+    with h5netcdf.File(path, "r") as opened:
+        variable = _chosen(opened, hints.array, path.name)
+        source, item_bytes = f"{path.name}:{variable.name.lstrip('/')}", variable.dtype.itemsize
+        guards.check_claim(source, variable.shape, item_bytes / MAX_COMPRESSION, path.stat().st_size)
+        heights = _decoded(variable, hints.heights_in(source, _unit(variable)), source)
+        names = [name.rpartition("/")[2] for name in variable.dimensions]
+        within = variable.name.strip("/").rpartition("/")[0]
+        group, steps = opened[within] if within else opened, []
+        for axis, name in enumerate(names[-2:], -len(names[-2:])):
+            if hints.pixel is None and name in group.variables:
+                index, step = _placed(group.variables[name], hints, source, name)
+                heights = np.take(heights, np.argsort(index), axis)
+                steps.append(step)
+        if len(names) > 1 and names[-1].lower() == "x":
+            heights, steps = np.swapaxes(heights, -1, -2), steps[::-1]
+        spacing = (steps[0], steps[-1]) if len(steps) == len(names[-2:]) else None
+        return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
+
+
+def _chosen(opened: Any, name: str | None, source: str) -> Any:
+    candidates = [n for n, v in opened.variables.items() if v.ndim and n not in opened.dimensions]
+    if name is None:
+        name = "heights" if "heights" in candidates else arrays.only_one(candidates, source)
+    try:
+        variable = opened[name]
+    except KeyError:
+        variable = None
+    is_variable = hasattr(variable, "dimensions") and hasattr(variable, "dtype")
+    allowed = f"one of: {listed(candidates)}, or group/variable"
+    require(is_variable, f"array in {source}", shown(name), allowed, "Choose one.")
+    return variable
+
+
+def _unit(variable: Any) -> float | None:
+    unit = variable.attrs.get("units")
+    return factor(unit, "m") if isinstance(unit, str) else None
+
+
+def _decoded(variable: Any, unit: float, source: str) -> Array:
+    """Apply the conventional attributes for missing values, scale and offset."""
+    raw, attributes = np.asarray(variable[...]), variable.attrs
+    heights = guards.scaled(raw, 1.0, source)
+    for name in ("_FillValue", "missing_value"):
+        if name in attributes:
+            heights[np.isin(raw, attributes[name])] = np.nan
+    scale, offset = attributes.get("scale_factor", 1.0), attributes.get("add_offset", 0.0)
+    return (heights * float(np.ravel(scale)[0]) + float(np.ravel(offset)[0])) * unit
+
+
+def _placed(coordinate: Any, hints: Hints, source: str, name: str) -> tuple[arrays.Index, float]:
+    """Places of points along one axis, none left out, and their distance, m."""
+    what = f"{name} of {source}"
+    unit = hints.lateral_in(what, _unit(coordinate), "um", "Give it, as in", "Add the units attribute.")
+    values = np.asarray(coordinate[...], dtype=np.float64)
+    index, step = arrays.places(values, what, np.diff(np.sort(values)))
+    require(len(values) == index.max() + 1, what, arrays.UNEVEN, "a point at each place", arrays.RESAMPLE)
+    return index, step * unit
