@@ -23,9 +23,6 @@ def wavenumber(frequency: Array) -> Array:
     return 2.0 * np.pi * frequency / SPEED_OF_SOUND
 
 
-_SMALL = 1e-2  # from here down a piston follows its series
-
-
 def cylinder(ka: ArrayLike) -> Array:
     """Radiation ratio of a cylinder of infinite length that oscillates as a rigid body (line dipole).
 
@@ -56,8 +53,7 @@ def baffled_piston(ka: ArrayLike) -> Array:
     1 − J₁(2ka)/ka (Rayleigh 1896): (ka)²/2 at low ka, 1 at high ka.
     """
     ka = np.asarray(ka, dtype=float)
-    series = 0.5 * ka**2 * (1.0 - ka**2 / 6.0)
-    return np.where(ka < _SMALL, series, 1.0 - j1(2.0 * ka) / ka)
+    return np.asarray(1.0 - j1(2.0 * ka) / ka)
 
 
 def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:

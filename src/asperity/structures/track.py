@@ -256,10 +256,6 @@ class Track(track_parameters.TrackParameters):
 
     def sleeper_near(self, x: float) -> tuple[float, float]:
         """Places of the sleeper nearest to one, m, and of the middle of the bay behind it."""
-        spacing = self.sleeper_spacing
-        if not self.bays:
-            sleeper = spacing * round(x / spacing)
-            return sleeper, sleeper + spacing / 2
         cells = np.floor(x / self.period) + np.arange(-1, 2)[:, None]
         sleepers, middles = ((each + self.period * cells).ravel() for each in (self.sleepers, self.mid_spans))
         nearest = np.argmin(np.abs(sleepers - x))
