@@ -67,14 +67,5 @@ def _chart(outline: Array) -> Chart:
     radius, place = 1e3 * np.vstack([outline, outline[:1]]).T
     shape = Shape(place, radius, BLUE, opacity=0.35)
     across = Axis("axial place from the running circle / mm", place.min() - 20.0, place.max() + 20.0)
-    return Chart(
-        (
-            Panel(
-                across,
-                Axis("radius / mm", radius.min() - 20.0, radius.max() + 20.0),
-                (shape,),
-                height=7.0,
-                equal=True,
-            ),
-        )
-    )
+    outwards = Axis("radius / mm", radius.min() - 20.0, radius.max() + 20.0)
+    return Chart((Panel(across, outwards, (shape,), height=7.0, equal=True),))

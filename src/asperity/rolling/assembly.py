@@ -14,39 +14,12 @@ from asperity.kernels.rail import preload_channels
 from asperity.kernels.stepping import POWERS, Motion, System
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.rolling import steps
-from asperity.rolling.ground import Ground, Path, ground_of
-from asperity.rolling.stepper import OnPaths, Stepper
+from asperity.rolling.ground import Ground
 from asperity.structures.body import Body
-from asperity.structures.modal import Modal
-from asperity.structures.rail_poles import RailBetween
 
 NONE = np.zeros(0)
 RUNAWAY = 1e4
 """Times the load, or the largest force that the law was made for, that no contact force reaches."""
-
-
-def assemble(
-    over: Modal | RailBetween | None,
-    bodies: Sequence[Body],
-    laws: Sequence[Law],
-    whole: Path,
-    positions: Array,
-    sensors: Array,
-    highest_frequency: float | None,
-) -> tuple[Stepper, Path]:
-    """Set bodies at `positions` ahead of a path, m, at rest on what they roll over; see `roll_bodies`.
-
-    And the paths of all contacts.
-    """
-    path = whole.ahead(_offsets(bodies, laws, positions))
-    ground = ground_of(over, path, sensors)
-    system = system_of(ground, bodies, body_loads(bodies), path.time_step, path.speed)
-    prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
-    damping = np.array([law.damping for law in laws])
-    given = ground, bodies, system, prepared
-    system, motion, largest = softened(start_at_rest, *given, damping, highest_frequency)
-    course = OnPaths(over, path, prepared)
-    return Stepper(course, bodies, laws, prepared, system, motion, largest, ground.softest), path
 
 
 def softened(
@@ -75,7 +48,7 @@ def softened(
     return system, motion, RUNAWAY * max(*system.loads, *forces)
 
 
-def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
+def offsets_of(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
     """Where the contacts are ahead of the path (n,), m."""
     if not len(bodies):
         raise InputError("bodies", "none", "one or more")

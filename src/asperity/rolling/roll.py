@@ -16,7 +16,7 @@ from asperity.kernels import pointforce, stepping
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
 from asperity.rolling import assembly, ground
-from asperity.rolling.stepper import Stepper
+from asperity.rolling.stepper import OnPaths, Stepper
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
@@ -146,7 +146,13 @@ def roll_bodies(
     """
     whole = ground.Path.laid(start, speed, time_step, duration, settling)
     ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
-    stepper, path = assembly.assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
+    path = whole.ahead(assembly.offsets_of(bodies, laws, ahead))
+    under = ground.ground_of(over, path, seen)
+    system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step, speed)
+    prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
+    given, damping = (under, bodies, system, prepared), np.array([law.damping for law in laws])
+    started = assembly.softened(assembly.start_at_rest, *given, damping, highest_frequency)
+    stepper = Stepper(OnPaths(over, path, prepared), bodies, laws, prepared, *started, under.softest)
     energies = stepper.energies()
     try:
         stepper.run(progress, checkpoint)
@@ -161,7 +167,13 @@ def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, f
     kept, softened = slice(path.settled, None), system.softening[:, None] * record.contact_force
     seen = record.relative_displacement - softened
     apart = np.array(list(map(flying, stepper.prepared, record.contact_force, seen)))
-    warn_of_steps([law.name for law in stepper.laws], stepper.prepared, counts, seen)
+    beyond = [
+        int(pointforce.evaluate_all(law, at, 0)[2]) if isinstance(law, pointforce.Prepared) else 0
+        for law, at in zip(stepper.prepared, seen, strict=True)
+    ]
+    for law in stepper.stepped.values():
+        law.warn_of_flaws()
+    warn_of_counts([law.name for law in stepper.laws], counts, beyond, seen.shape[1])
     _refuse_missed_loads(stepper, path, apart)
     apart = apart[:, kept]
     records = {name: value[..., kept] for name, value in record._asdict().items() if name != "displacement"}
@@ -284,27 +296,6 @@ def refuse_missed_load(
             "what a warning asks for, if there is one; else look for what gives off energy or is not held: "
             'masses, springs and damping; for a track also numerics.kernel = "scatter"',
         )
-
-
-def warn_of_steps(
-    names: Sequence[str],
-    prepared: Sequence[pointforce.Prepared | SteppedLaw],
-    counts: NDArray[np.int64],
-    approach: Array,
-) -> None:
-    """Warn of forces that missed the tolerance, and of laws that were continued beyond their data.
-
-    Laws by their names; counts are of steps done, not converged, and evaluations; the approach (n, steps), m,
-    is that which the laws saw. Contacts under laws of one name count together.
-    """
-    beyond = [
-        int(pointforce.evaluate_all(law, seen, 0)[2]) if isinstance(law, pointforce.Prepared) else 0
-        for law, seen in zip(prepared, approach, strict=True)
-    ]
-    for law in prepared:
-        if not isinstance(law, pointforce.Prepared):
-            law.warn_of_flaws()
-    warn_of_counts(names, counts, beyond, approach.shape[1])
 
 
 def warn_of_counts(

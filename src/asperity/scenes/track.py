@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from asperity import spectra
-from asperity.arguments import Array, ArrayLike
+from asperity.arguments import Array
 from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
 from asperity.laws import Role, in_role
 from asperity.reduction.texture import along_path
@@ -64,7 +64,7 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
 
     texture = passed(textures.followed)
     force, above = np.zeros_like(texture), frequency > 0.0
-    lines, speed, stiffness = frequency[above], case.speed, computed.stiffness
+    lines, stiffness = frequency[above], computed.stiffness
     if len(scene.offsets) == 1:
         square = mean_square_transfer(lines, scene.first, track, stiffness, track.places(PLACES))
         force[above] = square * texture[above]
@@ -73,7 +73,8 @@ def linear_reference(computed: compute.Computed) -> tuple[Array, Array]:
     path, own = passed(textures.followed - turning), passed(turning)
     count = min(PLACES * track.cell_bays, MOST_PLACES)
     places = track.period * (np.arange(count) + 0.5) / count
-    force[above] = coupled_force_psd(lines, path[above], own[above], speed, scene, stiffness, places)
+    along, each = _coupled(scene, stiffness, case.speed, places, lines)
+    force[above] = along * path[above] + each * own[above]
     return force, texture
 
 
@@ -81,32 +82,23 @@ MOST_COUPLED = 8
 """Contacts that the linear reference takes as coupled: the work grows with their square."""
 
 
-def coupled_force_psd(
-    frequency: Array,
-    path_psd: Array,
-    own_psd: Array,
-    speed: float,
-    scene: Scene,
-    stiffness: float,
-    places: ArrayLike,
-) -> Array:
-    """One-sided PSD of the force of several linear contacts, mean of them, (f,), N²/Hz.
+def _coupled(scene: Scene, stiffness: float, speed: float, places: Array, frequency: Array) -> Array:
+    """Mean squares of the force of several linear contacts per height, mean of them (2, f), (N/m)².
 
-    The contacts pass the same path one after the other, and each has a texture of its own: of these are the
-    PSDs (f,), m²/Hz. With T_ij = F_i/z_j that of a contact i is |Σ T_ij exp(iω d_j/v)|² S_path
-    + Σ |T_ij|² S_own, sums over j, d_j ahead of the first, as a mean over the places (p,) of the run, m.
-    Frequencies (f,), Hz, above zero; speed, m/s. Of the contacts those
-    `MOST_COUPLED` that are numbered first.
+    Of what all pass one after the other, and of what each has by itself. With T_ij = F_i/z_j that of a
+    contact i is |Σ T_ij exp(iω d_j/v)|² S_path + Σ |T_ij|² S_own, sums over j, d_j ahead of the first, as a
+    mean over the places (p,) of the run, m. Frequencies (f,), Hz, above zero; speed, m/s. Of the contacts
+    those `MOST_COUPLED` that are numbered first.
     """
     count = min(len(scene.offsets), MOST_COUPLED)
     ahead = np.array(scene.offsets[:count]) - scene.offsets[0]
     delay = np.exp(2j * np.pi * np.outer(ahead, frequency) / speed)
-    density, at = np.zeros(len(frequency)), np.atleast_1d(np.asarray(places, dtype=float))
-    for place in at:
+    squares = np.zeros((2, len(frequency)))
+    for place in places:
         transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)
-        density += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0) * path_psd
-        density += np.mean(np.sum(np.abs(transfer) ** 2, axis=1), axis=0) * own_psd
-    return np.asarray(density / at.size)
+        squares[0] += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0)
+        squares[1] += np.mean(np.sum(np.abs(transfer) ** 2, axis=1), axis=0)
+    return np.asarray(squares / len(places))
 
 
 def _roughness(computed: compute.Computed) -> Values:

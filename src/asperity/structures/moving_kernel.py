@@ -238,11 +238,5 @@ def _over_waves(amplitude: Complex, shapes: Complex) -> Complex:
 def lagrange_weights(share: Array) -> Array:
     """Weights (4, ...) of the nodes −1, 0, 1, 2 for places (...) between 0 and 1, of a cubic."""
     before, after, beyond = share + 1.0, share - 1.0, share - 2.0
-    return np.stack(
-        [
-            -share * after * beyond / 6.0,
-            before * after * beyond / 2.0,
-            -before * share * beyond / 2.0,
-            before * share * after / 6.0,
-        ]
-    )
+    first, last = -share * after * beyond / 6.0, before * share * after / 6.0
+    return np.stack([first, before * after * beyond / 2.0, -before * share * beyond / 2.0, last])

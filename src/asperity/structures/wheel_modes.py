@@ -376,15 +376,8 @@ def _found(mesh: Mesh, radius: float, material: Material, highest: float) -> dic
         around = 1.0 if n == 0 else np.sqrt(0.5)
         disc = around * np.sqrt(_over_disc(mesh, shape[..., 2])) / radius
         rolled = around * np.sqrt(_mean_square(mesh, edges, shape[..., 0]))
-        parts.append(
-            (
-                frequency,
-                np.full(len(frequency), float(n)),
-                disc,
-                rolled,
-                *np.moveaxis(shape[:, tread, ::2], -1, 0),
-            )
-        )
+        radial, axial = np.moveaxis(shape[:, tread, ::2], -1, 0)
+        parts.append((frequency, np.full(len(frequency), float(n)), disc, rolled, radial, axial))
     columns = [np.concatenate(each) for each in zip(*parts, strict=True)]
     names = ("frequency", "n", "disc", "tread", "radial", "axial")
     return dict(zip(names, columns, strict=True)) | {"places": mesh.nodes[tread, 1]}
