@@ -1,8 +1,9 @@
-"""A real browser for tests: Chromium without a window, driven by Playwright."""
+"""A real browser for tests, Chromium without a window, driven by Playwright; and what it draws on a page."""
 
 import importlib.util
 import os
 import shutil
+from contextlib import contextmanager
 
 import pytest
 
@@ -26,3 +27,135 @@ def chromium():
         started = playwright.chromium.launch(executable_path=program, args=flags)
         yield started
         started.close()
+
+
+# --- what is drawn: colours, and texts with their places
+
+RECORDER = """(() => {  // every text that is drawn, where it stands in its picture
+  const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    const size = this.measureText(text), place = this.getTransform();
+    const corners = [-size.actualBoundingBoxLeft, size.actualBoundingBoxRight].flatMap((across) =>
+      [-size.actualBoundingBoxAscent, size.actualBoundingBoxDescent].map((down) =>
+        place.transformPoint({ x: x + across, y: y + down })));
+    const [xs, ys] = [corners.map((c) => c.x), corners.map((c) => c.y)];
+    if (text) (this.canvas.texts ??= []).push({ text, left: Math.min(...xs), right: Math.max(...xs),
+      top: Math.min(...ys), bottom: Math.max(...ys) });
+    return fillText.call(this, text, x, y);
+  };
+  CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+    this.canvas.texts = [];
+    return clearRect.apply(this, box);
+  };
+})()"""
+
+PIXELS = """(canvas, colours) => {  // how many have each of the colours, and how many are not empty
+  const { width, height } = canvas, count = colours.map(() => 0);
+  const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+  copy.drawImage(canvas, 0, 0);
+  const { data } = copy.getImageData(0, 0, width, height);
+  for (let i = 0; i < data.length; i += 4) {
+    if (data[i + 3] < 200) continue;
+    const has = (colour) => colour.reduce((off, part, k) => off + Math.abs(data[i + k] - part), 0) < 12;
+    colours.forEach((colour, n) => { if (has(colour)) count[n]++; });
+  }
+  return count;
+}"""
+
+OVERLAPS = """() => {  // texts that stand over others, or are cut off
+  const meet = (a, b) =>
+    a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+  const found = [];
+  const look = (boxes, where) => boxes.forEach((a, n) => boxes.slice(n + 1).forEach((b) => {
+    if (meet(a, b)) found.push(`${where}: ${a.text} over ${b.text}`);
+  }));
+  for (const canvas of document.querySelectorAll(".uplot canvas")) {
+    const texts = canvas.texts ?? [], { id } = canvas.closest("figure");
+    look(texts, id);
+    for (const { text, left, right, top, bottom } of texts) {
+      const inside = left >= -1 && top >= -1 && right <= canvas.width + 1 && bottom <= canvas.height + 1;
+      if (!inside) found.push(`${id}: ${text} is cut off`);
+    }
+  }
+  for (const figure of document.querySelectorAll("figure.chart")) {
+    const labels = figure.querySelectorAll("h3, label, button, strong, .names span, .along, .uplot, summary");
+    const boxes = [...labels].map((label) => ({ text: label.textContent || label.className,
+      ...label.getBoundingClientRect().toJSON() }));
+    look(boxes.filter((box) => box.width && box.height), figure.id);
+  }
+  return found;
+}"""
+
+EMPTY = """() => {  // panels without words, or with nothing but words and grid
+  const root = getComputedStyle(document.documentElement);
+  const grid = [0, 2, 4].map((n) => parseInt(root.getPropertyValue("--c2").trim().slice(n + 1, n + 3), 16));
+  return [...document.querySelectorAll(".uplot canvas")].filter((canvas) => {
+    const { left, top, width, height } = canvas.parentElement.querySelector(".u-over").style;
+    const [x, y, across, down] = [left, top, width, height].map(parseFloat);
+    const copy = new OffscreenCanvas(across, down).getContext("2d", { willReadFrequently: true });
+    copy.drawImage(canvas, -x, -y);
+    const { data } = copy.getImageData(0, 0, across, down);
+    let drawn = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      const off = grid.reduce((sum, part, k) => sum + Math.abs(data[i + k] - part), 0);
+      if (data[i + 3] > 200 && off > 60) drawn++;
+    }
+    return drawn < 100 || (canvas.texts ?? []).length < 3;
+  }).map((canvas) => canvas.closest("figure").id);
+}"""
+
+
+def settled(page):
+    """Wait until what was asked for is drawn."""
+    page.evaluate("new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
+
+
+def pixels(page, name, colour, panel=0):
+    """Pixels of a colour in a panel of a figure."""
+    settled(page)
+    canvas = page.locator(f"#{name} .uplot canvas").nth(panel)
+    return canvas.evaluate(PIXELS, [[int(colour[n : n + 2], 16) for n in (1, 3, 5)]])[0]
+
+
+@contextmanager
+def pages_of(browser, address):
+    """Opens a page at any width, with all drawn as before it is printed; nothing is loaded, nothing fails."""
+    pages, told = [], []
+
+    def open_page(width=1280, scheme="light"):
+        page = browser.new_page(viewport={"width": width, "height": 1000}, color_scheme=scheme)
+        pages.append(page)
+        page.add_init_script(RECORDER)
+        page.on("console", lambda message: told.append(message.text))
+        page.on("pageerror", lambda error: told.append(str(error)))
+        page.on("request", lambda request: None if request.url == address else told.append(request.url))
+        page.goto(address)
+        page.locator("figure.chart.ready").last.wait_for(state="attached")
+        page.evaluate("for (const name of ['beforeprint', 'afterprint']) dispatchEvent(new Event(name))")
+        for figure in page.locator("figure.chart").all():
+            figure.locator(".uplot canvas").last.wait_for(state="attached")
+        settled(page)
+        return page
+
+    yield open_page
+    for page in pages:
+        page.close()
+    assert not told
+
+
+def assert_readable(page, width):
+    """Nothing is empty, wider than the page, or stands over another."""
+    settled(page)
+    assert page.evaluate(EMPTY) == []
+    assert page.evaluate(OVERLAPS) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def assert_accessible(page):
+    """No finding of axe, with all that is folded open."""
+    name, reason = "axe_playwright_python.sync_playwright", "pip install axe-playwright-python"
+    axe = pytest.importorskip(name, reason=reason)
+    page.evaluate("document.querySelectorAll('details').forEach((folded) => { folded.open = true; })")
+    found = axe.Axe().run(page).response["violations"]
+    told = [(each["id"], [node["html"][:120] for node in each["nodes"][:3]]) for each in found]
+    assert told == [], told

@@ -1,10 +1,9 @@
-"""Charts as the script draws them: on screens and paper, for eyes and ears, by mouse and keys."""
+"""Charts, and reports of all kinds, as browsers draw them: on screens and paper, by mouse and keys."""
 
 import re
 
 import numpy as np
 import pytest
-from drawn import OVERLAPS, assert_accessible, pages_of, pixels
 from report_reading import HOSTILE
 
 from asperity.reporting import panels
@@ -27,6 +26,8 @@ from asperity.reporting.chart import (
 )  # fmt: skip
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.page import figures_page
+from browser import OVERLAPS, assert_accessible, assert_readable, pages_of, pixels
+from small_cases import CASES
 
 AREAL = {"label": "areal", "law": "areal", "colour": BLUE, "width": 2.2}
 LINEAR = {"label": "linear", "law": "linear", "colour": VERMILLION, "dashes": (3.0, 1.5)}
@@ -226,3 +227,28 @@ def test_figures_far_below_are_drawn_when_they_are_near(browser, address):
     page.locator("#words").scroll_into_view_if_needed()
     page.wait_for_selector("#words .uplot canvas")
     page.close()
+
+
+# --- reports of all kinds
+
+WIDEST = "wheel-on-rail"
+"""Its report has figures of all sorts; those of the others are looked at by --long."""
+
+
+@pytest.fixture(params=[pytest.param(kind, marks=[pytest.mark.long] * (kind != WIDEST)) for kind in CASES])
+def report_address(request, reports):
+    """A report of each kind."""
+    return (reports[request.param] / "report.html").as_uri()
+
+
+def test_every_figure_is_drawn_and_readable_on_screens_and_paper(browser, report_address):
+    with pages_of(browser, report_address) as opened:
+        assert_readable(opened(390, "dark"), 390)
+        page = opened(1280, "dark")
+        assert_readable(page, 1280)
+        page.emulate_media(media="print")
+        page.set_viewport_size({"width": 688, "height": 1000})  # of A4 between its margins
+        assert_readable(page, 688)
+        assert not page.locator("figure.chart details").first.is_visible()
+        page.emulate_media(media="screen")
+        assert_accessible(page)
