@@ -7,7 +7,7 @@ from report_tree import PARTS
 
 from asperity.cli.studying import print_table
 from asperity.reporting.chart import Boxes, Line, Note, Rules
-from asperity.reporting.study_figures import key_chart
+from asperity.reporting.study_figures import key_figure
 from asperity.scenes.figures.force import AROUND_PEAK, around_peak
 from asperity.scenes.figures.motion import point_labels
 from asperity.scenes.figures.noise import sound_power_table
@@ -224,8 +224,8 @@ def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(tree
 
 def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(study):
     assert not study["contact_loss_share"].values.any()
-    chart = key_chart(study, None, "speed", {}, USUAL_IN_FIGURES)
-    panels = {panel.title: panel for panel in chart.panels}
+    *shown, _ = key_figure(study, None, "speed", {}, USUAL_IN_FIGURES)
+    panels = {panel.title: panel for panel in shown}
     assert panels["L_pAFmax"].y.label == "dB(A) re 20 µPa"
     assert not any("without contact" in title for title in panels)
     sound = panels["sound power level from the vibration itself, areal"]

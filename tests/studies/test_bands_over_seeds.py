@@ -8,7 +8,7 @@ from executors import Here
 import asperity
 from asperity.errors import InputError
 from asperity.reporting.chart import INK, Area, Line
-from asperity.reporting.study_figures import ensemble_chart
+from asperity.reporting.study_figures import ensemble_figure
 from small_cases import COARSE
 
 CASE = COARSE | {
@@ -91,11 +91,11 @@ def test_the_band_of_a_study_covers_fresh_seeds_as_often_as_it_claims():
 def test_the_figure_shows_mean_and_band():
     levels = np.random.default_rng(2).normal(60.0, 3.0, (5, 2, 3))
     found = asperity.prediction_band(table(levels, law=["hertz", "linear"], band=[100.0, 125.0, 160.0]))
-    (panel,) = ensemble_chart(found, {"hertz": {"colour": "#0067a5", "law": "hertz"}}).panels
+    panel, meaning = ensemble_figure(found, {"hertz": {"colour": "#0067a5", "law": "hertz"}})
     lines = {mark.label: mark for mark in panel.marks if isinstance(mark, Line)}
     np.testing.assert_allclose(lines["linear"].y, found["force_level"].sel(law="linear"))
     areas = [mark for mark in panel.marks if isinstance(mark, Area)]
     assert [(area.colour, area.law) for area in areas] == [(INK, ""), ("#0067a5", "hertz")]  # main on top
     np.testing.assert_allclose(areas[1].high, found["force_level_high"].sel(law="hertz"))
-    assert "mean over 5 values of seed" in found.attrs["meaning"]
-    assert "it holds the value of one more seed with a probability of 80 %" in found.attrs["meaning"]
+    assert "mean over 5 values of seed" in meaning
+    assert "it holds the value of one more seed with a probability of 80 %" in meaning

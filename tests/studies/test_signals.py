@@ -14,7 +14,7 @@ from scipy.io import wavfile
 import asperity
 from asperity.case.cases import as_case, parse_case
 from asperity.case.toml import toml_text
-from asperity.reporting.study_figures import key_chart
+from asperity.reporting.study_figures import key_figure
 from asperity.studies.axes import AS_IT_IS
 from asperity.studies.signals import SignalSet, through_path, with_noise
 from command_line import call
@@ -155,7 +155,7 @@ def test_labels_tell_every_fault_and_none_where_there_is_none():
 def test_a_figure_of_several_keys_says_which_part_it_shows_the_largest():
     table = written()[0].expand_dims(speed=[25.0, 30.0]).assign_attrs(sweep='{"speed": 0, "variant": 0}')
     table["speed"].attrs |= {"units": "Hz", "long_name": "speed"}
-    (panel,) = key_chart(table, None, "variant", {}, ["line_amplitude"]).panels
+    panel, _ = key_figure(table, None, "variant", {}, ["line_amplitude"])
     largest = table["line_amplitude"].max(["speed", "variant", "law"]).idxmax("part")
     assert panel.title.endswith(f", {largest.item()}")
     shown = table["line_amplitude"].sel(part=largest, speed=30.0, law="hertz")

@@ -123,10 +123,8 @@ def _columns(found: Optimised) -> dict[str, Array]:
 def _page(found: Optimised, columns: dict[str, Array], *, report: bool) -> str:
     laws = data.read_entries(spec_of(law).entry() for law in found.changes)
     colours = {name: law.colour for name, law in laws.items()}
-    chart = study_figures.optimised_chart(columns, found.measure.meaning, found.measure.units, colours)
-    caption = "Above, the texture before and after, and what is allowed; below, what is heard of it."
-    name = "Texture and response in bands"
-    figure = PageFigure("bands", name, caption, chart, FILES["table"], columns)
+    parts = study_figures.optimised_figure(columns, found.measure.meaning, found.measure.units, colours)
+    figure = PageFigure.of("bands", "Texture and response in bands", parts, FILES["table"], columns)
     offered = {"texture (CSV)": "texture", "case": "case"}
     links = {words: FILES[what] for words, what in offered.items()}
     if report:

@@ -218,13 +218,11 @@ def _figures(
     figures = []
     for key in json.loads(mean.attrs["sweep"]):
         if mean.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(mean)):
-            chart = study_figures.key_chart(mean, scatter, key, looks, names)
-            caption = study_figures.key_caption(mean, scatter, key)
-            figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart))
+            parts = study_figures.key_figure(mean, scatter, key, looks, names)
+            figures.append(PageFigure.of(f"key-{key}", f"Over {key}", parts))
     if band is not None and VARIANT not in band.dims:
-        chart = study_figures.ensemble_chart(band, looks)
-        words = "Contact force over the seeds", str(band.attrs["meaning"])
-        figures.append(PageFigure("ensemble", *words, chart, BAND))
+        parts = study_figures.ensemble_figure(band, looks)
+        figures.append(PageFigure.of("ensemble", "Contact force over the seeds", parts, BAND))
     return figures
 
 

@@ -1,13 +1,12 @@
 """The page of a comparison: its tables, its figures, and what it says in short."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 import xarray
 
 from asperity.reporting import chart, data, headline, page, panels, tables
-from asperity.reporting.chart import INK, MUTED, Axis, Chart, Flags, Line, Numbers, Panel
+from asperity.reporting.chart import INK, MUTED, Axis, Flags, Line, Numbers, Panel
 from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, ComparedRuns
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
@@ -116,7 +115,7 @@ def _of_run(of: ComparedRuns, number: int, x: Numbers, y: Numbers, marker: str =
     return Line(x, y, of.names[number], RUN_COLOURS[number], dashes, 1.6, marker)
 
 
-def _levels_chart(of: ComparedRuns, name: str) -> Chart:
+def _level(of: ComparedRuns, name: str) -> Iterator[Panel | str]:
     """A level of all runs by their first law, and the differences to the first run.
 
     Of two runs the differences of all laws are drawn, in their looks; of more runs those of the first law.
@@ -124,8 +123,19 @@ def _levels_chart(of: ComparedRuns, name: str) -> Chart:
     level, difference = of.table[name].values, of.table[f"{name}_difference"].values
     band, runs, (main, *_) = of.table["band"].values, range(len(of.runs)), of.laws
     above = tuple(_of_run(of, r, band, level[r, 0]) for r in runs)
+    bands = panels.band_axis(band[np.isfinite(level).any(axis=(0, 1))])
+    label = f"level of {main} / {data.written_units(of.table[name].attrs['units'])}"
+    yield Panel(bands, panels.levels_axis(label, [level[:, 0]]), above, height=3.2)
     below: list[chart.Mark] = [panels.zero(colour=INK, width=0.8)]
-    if len(runs) == 2:
+    (first, second, *others), told, shaded = of.names, f"of {main} to {of.names[0]}", ""
+    if others:
+        below += [_of_run(of, r, band, difference[r, 0]) for r in runs[1:]]
+    else:
+        told = f"of all laws, {second} less {first}"
+        shaded = (
+            "Shaded: what two records differ by through chance alone, one standard deviation of the "
+            "difference; runs over the same texture differ by less."
+        )
         known = np.isfinite(by := _chance(of.table, 1))
         if known.any():
             edges = band[known] / panels.EDGE, band[known] * panels.EDGE, -by[known], by[known]
@@ -134,51 +144,40 @@ def _levels_chart(of: ComparedRuns, name: str) -> Chart:
         for law, change in zip(of.laws, difference[1], strict=True):
             if np.isfinite(change).any():
                 below.append(Line(band, change, law, **looks.get(law, {"colour": MUTED})))
-    else:
-        below += [_of_run(of, r, band, difference[r, 0]) for r in runs[1:]]
-    bands = panels.band_axis(band[np.isfinite(level).any(axis=(0, 1))])
-    label = f"level of {main} / {data.written_units(of.table[name].attrs['units'])}"
-    over = Axis(f"over {of.names[0]} / dB")
-    heights = panels.levels_axis(label, [level[:, 0]])
-    return Chart((Panel(bands, heights, above, height=3.2), Panel(bands, over, tuple(below), height=2.8)))
+    yield Panel(bands, Axis(f"over {first} / dB"), tuple(below), height=2.8)
+    yield f"Above, {of.table[name].attrs['long_name']}, of {main} in all runs; below, the differences {told}."
+    yield shaded
 
 
-def _levels_caption(of: ComparedRuns, name: str) -> str:
-    law, (first, *others) = of.laws[0], of.names
-    below, shaded = f"the differences of {law} to {first}", ""
-    if len(others) == 1:
-        below = f"the differences of all laws, {others[0]} less {first}"
-        shaded = (
-            " Shaded: what two records differ by through chance alone, one standard deviation of the "
-            "difference; runs over the same texture differ by less."
-        )
-    return f"Above, {of.table[name].attrs['long_name']}, of {law} in all runs; below, {below}.{shaded}"
-
-
-def _stiffness(of: ComparedRuns) -> Panel:
-    """Stiffness of all runs over the approach."""
-    approach, stiffness = of.table["approach"].values * 1e6, of.table["stiffness"].values
-    unit, symbol = (1e9, "GN/m") if np.nanmax(stiffness) > 2e9 else (1e6, "MN/m")
-    working = of.table[contact.WORKING_APPROACH.name].values * 1e6
-    lines = []
-    for r, found in enumerate(stiffness):
-        kept = np.isfinite(found)
-        if kept.any():
-            line, at = _of_run(of, r, approach[kept], found[kept] / unit, marker=""), working[r : r + 1]
-            point = Line(at, np.interp(at, line.x, line.y), colour=line.colour, width=0, marker="o")
-            lines += [line, point]
-    up = Axis(f"contact stiffness k_c / ({symbol})", low=0.0)
-    return Panel(Axis("approach / µm"), up, tuple(lines), height=3.9)
-
-
-def _filters(of: ComparedRuns) -> Panel:
-    """Filters of all runs at the working approach."""
-    wavenumber, level = of.table["wavenumber"].values, of.table["filter"].values
-    known = np.isfinite(level)
-    lines = [_of_run(of, r, wavenumber, each, "") for r, each in enumerate(level) if known[r].any()]
-    kept = wavenumber[known.any(axis=0)]
-    up = Axis("contact filter |H| / dB", max(float(np.nanmin(level)) - 2.0, -40.0), 3.0)
-    return Panel(panels.wavenumber_axis(kept[0], kept[-1]), up, tuple(lines), height=3.9)
+def _contacts(of: ComparedRuns) -> Iterator[Panel | str]:
+    """Stiffness of all runs over the approach, and their filters at the working approach."""
+    table, lines = of.table, list[Line]()
+    if "stiffness" in table:
+        approach, stiffness = table["approach"].values * 1e6, table["stiffness"].values
+        unit, symbol = (1e9, "GN/m") if np.nanmax(stiffness) > 2e9 else (1e6, "MN/m")
+        working = table[contact.WORKING_APPROACH.name].values * 1e6
+        for r, found in enumerate(stiffness):
+            kept = np.isfinite(found)
+            if kept.any():
+                line, at = _of_run(of, r, approach[kept], found[kept] / unit, marker=""), working[r : r + 1]
+                point = Line(at, np.interp(at, line.x, line.y), colour=line.colour, width=0, marker="o")
+                lines += [line, point]
+        up = Axis(f"contact stiffness k_c / ({symbol})", low=0.0)
+        yield Panel(Axis("approach / µm"), up, tuple(lines), height=3.9)
+    if "filter" in table:
+        wavenumber, level = table["wavenumber"].values, table["filter"].values
+        known = np.isfinite(level)
+        filters = [_of_run(of, r, wavenumber, each, "") for r, each in enumerate(level) if known[r].any()]
+        kept = wavenumber[known.any(axis=0)]
+        up = Axis("contact filter |H| / dB", max(float(np.nanmin(level)) - 2.0, -40.0), 3.0)
+        along = panels.wavenumber_axis(kept[0], kept[-1])
+        beside = bool(lines)
+        yield Panel(along, up, tuple(filters), height=3.9, beside=beside, share=1.15 if beside else 1.0)
+    yield (
+        "Contact stiffness k_c = F/r over the approach of the surfaces, mean of the samples, a ring at "
+        "the working approach; magnitude of the contact filter at the working approach of each run, as "
+        "fitted."
+    )
 
 
 # --- the page
@@ -196,17 +195,9 @@ def compared_blocks(of: ComparedRuns) -> list[page.Block]:
     """What the page shows: cases, what each run says, force, each level, contact."""
     found: list[page.Block] = [_runs_table(of), _case_table(of), _numbers_table(of.table)]
     for name, title in of.levels.items():
-        told = _levels_caption(of, name), _levels_chart(of, name)
-        found += [PageFigure(name, title.capitalize(), *told), _difference_table(of, name)]
-    held = (("stiffness", _stiffness), ("filter", _filters))
-    if shown := [draw(of) for name, draw in held if name in of.table]:
-        caption = (
-            "Contact stiffness k_c = F/r over the approach of the surfaces, mean of the samples, a ring at "
-            "the working approach; magnitude of the contact filter at the working approach of each run, as "
-            "fitted."
-        )
-        drawn = Chart((*shown[:1], *(replace(panel, beside=True, share=1.15) for panel in shown[1:])))
-        found.append(PageFigure("stiffness_and_filter", "Stiffness and filter", caption, drawn))
+        found += [PageFigure.of(name, title.capitalize(), _level(of, name)), _difference_table(of, name)]
+    if {"stiffness", "filter"} & set(of.table):
+        found.append(PageFigure.of("stiffness_and_filter", "Stiffness and filter", _contacts(of)))
     return [*found, _contact_table(of.table)]
 
 

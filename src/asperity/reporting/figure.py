@@ -148,6 +148,14 @@ class PageFigure:
     file: str = ""  # with its numbers, beside the page
     columns: Mapping[str, Numbers] = dataclasses.field(default_factory=dict)  # of that file
 
+    @classmethod
+    def of(cls, name: str, title: str, parts: Iterable[Panel | str], *file: Any) -> "PageFigure":
+        """Panels together, and sentences as a caption; `file` and `columns` follow where there are any."""
+        found = list(parts)
+        caption = " ".join(filter(None, (each.strip() for each in found if isinstance(each, str))))
+        chart = Chart(tuple(each for each in found if isinstance(each, Panel)))
+        return cls(name, title, caption, chart, *file)
+
     @property
     def numbers(self) -> list[ReportTable]:
         """Tables that are shown where no script runs."""
@@ -185,14 +193,11 @@ class Figure:
     def drawn(self, tree: DataTree) -> PageFigure:
         """The figure of a result; `data.Missing` where this lacks what it takes, or has nothing to show."""
         lines = self.collect(tree)
-        found = list(self.draw(tree, lines))
-        panels = tuple(each for each in found if isinstance(each, Panel))
-        if not panels:
+        parts = [*self.draw(tree, lines), data.missing(tree, *self.needs)]
+        if not any(isinstance(each, Panel) for each in parts):
             raise data.Missing(self.name)
-        said = [each.strip() for each in found if isinstance(each, str)]
-        caption = " ".join(filter(None, [*said, data.missing(tree, *self.needs)]))
-        file, columns = f"{self.name}.csv", lines.columns(self.stretches)
-        return PageFigure(self.name, self.title, caption, Chart(panels), file, columns)
+        file = f"{self.name}.csv", lines.columns(self.stretches)
+        return PageFigure.of(self.name, self.title, parts, *file)
 
 
 def figure(title: str, over: Columns | None, *columns: Columns, **how: Any) -> Callable[[Draw], Figure]:

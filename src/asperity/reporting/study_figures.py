@@ -11,7 +11,7 @@ import numpy as np
 import xarray
 
 from asperity.reporting import chart, data, panels
-from asperity.reporting.chart import INK, Axis, Boxes, Chart, Line, Mark, Numbers, Panel, sequence_styles
+from asperity.reporting.chart import INK, Axis, Boxes, Line, Mark, Numbers, Panel, sequence_styles
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import nominal_length, say_little
 
@@ -38,20 +38,13 @@ def _shades(table: xarray.Dataset) -> list[Mark]:
     return panels.doubtful_boxes(table[BAND.name].values, little.any(others).values)
 
 
-def _others_of(found: xarray.DataArray, *known: str) -> tuple[list[str], list[tuple[int, ...]]]:
-    """Dimensions of a quantity beside those known, and its places along them."""
-    others = [str(dim) for dim in found.dims if dim not in known]
-    return others, list(product(*(range(found.sizes[dim]) for dim in others)))
-
-
-def ensemble_chart(bands: xarray.Dataset, looks: Looks) -> Chart:
+def ensemble_figure(bands: xarray.Dataset, looks: Looks) -> Iterator[Panel | str]:
     """Force level of each law, mean and band, a panel for each value of the other keys.
 
     The dataset is from `asperity.prediction_band`, whose ``meaning`` is the caption; looks of lines by law.
     """
-    others, places = _others_of(bands[FORCE_LEVEL.name], LAW.name, BAND.name)
-    drawn = []
-    for place in places[:MOST_PANELS]:
+    others = [dim for dim in bands[FORCE_LEVEL.name].dims if dim not in (LAW.name, BAND.name)]
+    for place in list(product(*(range(bands.sizes[dim]) for dim in others)))[:MOST_PANELS]:
         here = bands.isel(dict(zip(others, place, strict=True)))
         band, marks, ends = here[BAND.name].values, _shades(here), []
         for law in _laws(here):
@@ -66,16 +59,16 @@ def ensemble_chart(bands: xarray.Dataset, looks: Looks) -> Chart:
             ends += [low, high]
         axis = panels.levels_axis("contact force level / dB re 1 N", ends, span=100.0)
         title = ", ".join(f"{key} = {data.typed_words(here[key].expand_dims('place'))[0]}" for key in others)
-        drawn.append(Panel(panels.band_axis(band), axis, tuple(marks), title, height=3.2))
-    return Chart(tuple(drawn))
+        yield Panel(panels.band_axis(band), axis, tuple(marks), title, height=3.2)
+    yield str(bands.attrs["meaning"])
 
 
 # --- an optimised texture
 
 
-def optimised_chart(
+def optimised_figure(
     columns: Mapping[str, Numbers], heard: str, units: str, colours: Mapping[str, str]
-) -> Chart:
+) -> Iterator[Panel | str]:
     """The texture above, and below what is heard of it in each band, of each law that has a colour.
 
     Columns by their titles, each by one-third octave of wavelength (b,), begin with these, the frequencies
@@ -100,10 +93,10 @@ def optimised_chart(
     along = panels.band_axis(np.sort(wavelength), "one-third octave of wavelength", nominal_length)
     speed = float(np.median(wavelength * frequency))
     along = panels.long_waves_left(along, "frequency at which it is passed", speed, "wavelength")
-    above = panels.levels_axis("roughness level / dB re 1 µm", levels)
+    yield Panel(along, panels.levels_axis("roughness level / dB re 1 µm", levels), tuple(texture), height=3.2)
     below = Axis(f"in the band / {data.written_units(units)}")
-    upper = Panel(along, above, tuple(texture), height=3.2)
-    return Chart((upper, Panel(along, below, tuple(response), heard, height=3.2)))
+    yield Panel(along, below, tuple(response), heard, height=3.2)
+    yield "Above, the texture before and after, and what it was allowed to be; below, what is heard of it."
 
 
 # --- what a swept key does
@@ -114,9 +107,9 @@ SPREAD = 20.0
 """Ratio of the largest value to the smallest from which the axis is logarithmic."""
 
 
-def key_chart(
+def key_figure(
     mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str, looks: Looks, names: Sequence[str]
-) -> Chart:
+) -> Iterator[Panel | str]:
     """What a swept key does: quantities over it, and the force level in bands for each value.
 
     `mean` and `scatter` are tables of a study without its seeds, if it swept any: `scatter` holds standard
@@ -125,19 +118,16 @@ def key_chart(
     the first law for their values.
     """
     drawn = [name for name in names if name in mean and _says_something(mean[name])][:MOST_PANELS]
-    shown = [_panel(mean, scatter, name, key, looks) for name in drawn]
-    rows = [replace(panel, beside=n % 2 == 1) for n, panel in enumerate(shown)]
-    return Chart((*rows, *([_bands(mean, key)] if FORCE_LEVEL.name in mean else [])))
-
-
-def key_caption(mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str) -> str:
-    """Say what the figure of a key shows."""
+    for n, name in enumerate(drawn):
+        yield replace(_panel(mean, scatter, name, key, looks), beside=n % 2 == 1)
+    if FORCE_LEVEL.name in mean:
+        yield _bands(mean, key)
     told, others = [str(mean[key].attrs["long_name"])], _others(mean, key)
     if scatter is not None:
         told.append("mean ± standard deviation over the seeds")
     if others:
         told.append(f"{_main(mean)} alone, a line for each {' and '.join(others)}")
-    return f"{key}: {', '.join(told)}."
+    yield f"{key}: {', '.join(told)}."
 
 
 def _says_something(found: xarray.DataArray) -> bool:
