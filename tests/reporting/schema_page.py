@@ -13,10 +13,9 @@ from asperity.schema import (
     provenance,
     rolling,
     spectra,
-    surface,
 )
 
-SHARED = (provenance, surface, contact, rolling, spectra, convergence)
+SHARED = (provenance, contact, rolling, spectra, convergence)
 
 PAGE = Path(__file__).parents[2] / "docs" / "result_file.md"
 HEAD = f"""# What `run.nc` holds

@@ -10,7 +10,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting import chart, data
-from asperity.schema import Attribute, Entry, contact, convergence, provenance, rolling, spectra, surface
+from asperity.schema import Attribute, Entry, contact, convergence, provenance, rolling, spectra
 from asperity.spectra import say_little
 
 
@@ -147,13 +147,13 @@ def statistics_table(tree: DataTree) -> ReportTable | None:
     columns: dict[str, Any] = {name: name for name in ("symbol", "meaning")}
     columns |= {"of": "surface", "value": value, "bandwidth": "bandwidth"}
     note = "A statistic of a texture holds for its bandwidth of wavelengths only."
-    return listed_table(tree, surface.STATISTICS, ("statistics", "Statistics of the texture"), columns, note)
+    return listed_table(tree, contact.STATISTICS, ("statistics", "Statistics of the texture"), columns, note)
 
 
 def homogeneity_table(tree: DataTree) -> ReportTable:
     """Whether the measured maps are the same everywhere."""
-    shown = (surface.TILE_VARIATION, surface.TILE_VARIATION_EXPECTED, surface.HOMOGENEITY_P)
-    significance = float(data.variable_of(tree, surface.HOMOGENEITY_P).attrs["significance"])
+    shown = (contact.TILE_VARIATION, contact.TILE_VARIATION_EXPECTED, contact.HOMOGENEITY_P)
+    significance = float(data.variable_of(tree, contact.HOMOGENEITY_P).attrs["significance"])
     variation, expected, p = (data.values(tree, entry) for entry in shown)
     looks = ["number" if same else "number off" for same in p > significance]
     columns = {

@@ -11,7 +11,7 @@ from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import BLUE, INK, MUTED, VERMILLION, Axis, Chart, Line, Mark, Numbers, Panel
 from asperity.reporting.data import length_unit
 from asperity.reporting.figure import Lines, Of, field, figure
-from asperity.schema import contact, surface
+from asperity.schema import contact
 from asperity.spectra import nominal
 from asperity.surfaces.measured_lines import ThirdOctaves
 from asperity.surfaces.statistics import material_ratio_curve
@@ -121,13 +121,13 @@ def psd_line(wavenumber: Numbers, density: Numbers, label: str, *look: Any) -> L
 
 def _between(tree: DataTree) -> str:
     """What to add to the title of a map that lines were laid out as."""
-    return ", as laid out between lines" if data.stated(tree, surface.ACROSS) == "lines" else ""
+    return ", as laid out between lines" if data.stated(tree, contact.ACROSS) == "lines" else ""
 
 
-@figure("Texture of the samples", Of(surface.X, "x"), field(surface.SAMPLE_HEIGHTS, surface.Y, "z"))
+@figure("Texture of the samples", Of(contact.MAP_X, "x"), field(contact.SAMPLE_HEIGHTS, contact.MAP_Y, "z"))
 def texture_sample(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Map of the first sample, and how its heights are distributed."""
-    x, y, heights = lines.at, data.values(tree, surface.Y), data.values(tree, surface.SAMPLE_HEIGHTS)
+    x, y, heights = lines.at, data.values(tree, contact.MAP_Y), data.values(tree, contact.SAMPLE_HEIGHTS)
     if not np.nanmax(np.abs(heights)) > 0:
         return
     slender = bool(np.ptp(x) > SLENDER * np.ptp(y))  # then the heights stand below the map
@@ -137,20 +137,20 @@ def texture_sample(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     yield height_histogram(
         named, height_scale(heights)[:2], title="heights", height=below, beside=not slender
     )
-    missing = data.number(tree, surface.MISSING_SHARE)
+    missing = data.number(tree, contact.MISSING_SHARE)
     gaps = f"; {100 * missing:.3g} % of its points had no height" if missing else ""
     yield (
-        f"Source: {data.stated(tree, surface.SOURCE) or 'not stated'}{gaps}. Heights are positive out of the "
+        f"Source: {data.stated(tree, contact.SOURCE) or 'not stated'}{gaps}. Heights are positive out of the "
         "material; the colours leave out 0.1 % of the points at either end."
     )
 
 
-@figure("Texture of the path", Of(surface.DISTANCE, "x"), Of(surface.LINE, "z"), stretches=STRETCHES)
+@figure("Texture of the path", Of(contact.DISTANCE, "x"), Of(contact.LINE, "z"), stretches=STRETCHES)
 def texture_path(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Strip of the path, and its middle line, every point; a path given as a line has the line alone."""
     above = ""
-    if data.present(tree, surface.PATH_HEIGHTS):
-        strip = (data.values(tree, entry) for entry in (surface.PATH_X, surface.PATH_Y, surface.PATH_HEIGHTS))
+    if data.present(tree, contact.PATH_HEIGHTS):
+        strip = (data.values(tree, entry) for entry in (contact.PATH_X, contact.PATH_Y, contact.PATH_HEIGHTS))
         title = f"a piece of the path, seen from above (y stretched){_between(tree)}"
         yield height_map(*strip, title=title, equal=False, height=1.9)
         above = ", and the piece seen from above"
@@ -169,9 +169,9 @@ def texture_path(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 
 @figure(
     "Texture against wavenumber",
-    Of(surface.SURFACE_WAVENUMBER, "wavenumber"),
-    Of(surface.PSD_SAMPLE, "PSD of samples, mean", "samples, mean", LOOKS[0], optional=True),
-    Of(surface.PSD_PATH, "PSD of path", "path", LOOKS[1], optional=True),
+    Of(contact.SURFACE_WAVENUMBER, "wavenumber"),
+    Of(contact.PSD_SAMPLE, "PSD of samples, mean", "samples, mean", LOOKS[0], optional=True),
+    Of(contact.PSD_PATH, "PSD of path", "path", LOOKS[1], optional=True),
 )
 def texture_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Spectra of samples and path in the rolling direction, and the length of the contact."""
@@ -202,9 +202,9 @@ STRETCH = 10.0
 
 @figure(
     "Surface before and after running-in",
-    Of(surface.DISTANCE),
-    Of(surface.LINE_UNTOUCHED, "before running-in"),
-    Of(surface.LINE, "after running-in"),
+    Of(contact.DISTANCE),
+    Of(contact.LINE_UNTOUCHED, "before running-in"),
+    Of(contact.LINE, "after running-in"),
 )
 def running_in(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """The line before and after running-in, around its deepest mark."""

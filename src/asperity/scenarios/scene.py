@@ -1,4 +1,4 @@
-"""The scene of a case: what rolls, what it is rolled over, where both are looked at; and its linear force."""
+"""The scene of a case: what rolls and what it is rolled over; its linear force; and a case laid ready."""
 
 import warnings
 from collections.abc import Callable, Mapping

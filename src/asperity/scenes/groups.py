@@ -15,7 +15,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.reducing import Reduction
 from asperity.scenarios.textures import Textures
 from asperity.scenes.compute import Computed
-from asperity.schema import Values, contact, surface
+from asperity.schema import Values, contact
 from asperity.spectra import psd
 from asperity.surfaces import statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -37,23 +37,23 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
     rows: list[dict[str, Any]] = []
     if textures.maps:
         first = textures.maps[0]
-        laid_out[surface.X], laid_out[surface.Y] = (np.arange(n) * dx for n in first.shape)
-        laid_out[surface.SAMPLE_HEIGHTS] = first.heights
+        laid_out[contact.MAP_X], laid_out[contact.MAP_Y] = (np.arange(n) * dx for n in first.shape)
+        laid_out[contact.SAMPLE_HEIGHTS] = first.heights
         if textures.areal and not brief and np.ptp(first.heights):
             with ShortRecordWarning.caught() as caught:
                 sample = statistics.areal_statistics(first)
             rows += _rows(_without_bounds(sample, caught), "first sample")
     if textures.path is not None:
         piece = textures.surface.rows(recorded.start, min(recorded.stop, recorded.start + PATH_ROWS))
-        laid_out[surface.PATH_X], laid_out[surface.PATH_Y] = (np.arange(n) * dx for n in piece.shape)
-        laid_out[surface.PATH_HEIGHTS] = piece
+        laid_out[contact.PATH_X], laid_out[contact.PATH_Y] = (np.arange(n) * dx for n in piece.shape)
+        laid_out[contact.PATH_HEIGHTS] = piece
     measured = textures.untouched or textures
     if computed.case.surface.file is not None and measured.maps is not measured.strips:
         laid_out |= _homogeneity(measured.maps)
     line = textures.followed[recorded]
-    laid_out |= {surface.DISTANCE: np.arange(len(line)) * dx, surface.LINE: line}
+    laid_out |= {contact.DISTANCE: np.arange(len(line)) * dx, contact.LINE: line}
     if textures.untouched is not None:
-        laid_out[surface.LINE_UNTOUCHED] = textures.untouched.followed[recorded]
+        laid_out[contact.LINE_UNTOUCHED] = textures.untouched.followed[recorded]
     if not brief:
         path = _survey(textures, dx)
         laid_out |= _spectra(textures, path)
@@ -64,10 +64,10 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
                 means = [mean for mean, _, _ in statistics.line_statistics(lines)]
                 rows += _rows(means, f"{len(lines)} lines of the {body}, mean")
     return laid_out | {
-        surface.STATISTICS: rows,
-        surface.SOURCE: textures.origin,
-        surface.MISSING_SHARE: textures.missing_share,
-        surface.ACROSS: "areal" if textures.areal else "lines",
+        contact.STATISTICS: rows,
+        contact.SOURCE: textures.origin,
+        contact.MISSING_SHARE: textures.missing_share,
+        contact.ACROSS: "areal" if textures.areal else "lines",
     }
 
 
@@ -114,9 +114,9 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> Values:
             "or remove form and waviness."
         )
     return {
-        surface.HOMOGENEITY_P: surface.HOMOGENEITY_P.variable(p_values, significance=statistics.SIGNIFICANCE),
-        surface.TILE_VARIATION: [f.variation for f in found],
-        surface.TILE_VARIATION_EXPECTED: [f.expected for f in found],
+        contact.HOMOGENEITY_P: contact.HOMOGENEITY_P.variable(p_values, significance=statistics.SIGNIFICANCE),
+        contact.TILE_VARIATION: [f.variation for f in found],
+        contact.TILE_VARIATION_EXPECTED: [f.expected for f in found],
     }
 
 
@@ -126,9 +126,9 @@ def _spectra(textures: Textures, path: statistics.StripSurvey) -> Values:
     if textures.maps:
         spectra = [psd_1d(m)[1] for m in textures.maps]
         wavenumber, first = psd_1d(textures.maps[0])[0], spectra[0]
-        laid_out[surface.PSD_SAMPLE] = np.mean([s[1:] for s in spectra if s.shape == first.shape], axis=0)
+        laid_out[contact.PSD_SAMPLE] = np.mean([s[1:] for s in spectra if s.shape == first.shape], axis=0)
     along = np.interp(wavenumber[1:], path.wavenumber[1:], path.spectrum[1:], left=np.nan)
-    return laid_out | {surface.PSD_PATH: along, surface.SURFACE_WAVENUMBER: wavenumber[1:]}
+    return laid_out | {contact.PSD_PATH: along, contact.SURFACE_WAVENUMBER: wavenumber[1:]}
 
 
 def _rows(found: list[statistics.Statistic], where: str) -> list[dict[str, Any]]:

@@ -1,10 +1,58 @@
-"""The reduced contact: force and stiffness of its states, filters, pressure at the working load."""
+"""Textures with their statistics and spectra; the reduced contact: states, filters, pressure at the load."""
 
 from functools import partial
 
 from asperity.schema import Attribute, Entry
 
 SAMPLED = "where there are samples"
+RUN_IN = "where the surface was run in"
+
+# --- what is rolled over
+
+_surface, _of_surface = partial(Entry, "surface"), partial(Attribute, "surface")
+_mapped = partial(_surface, condition=SAMPLED)
+_beside = partial(_surface, condition="where texture lies beside the line")
+_measured = partial(_surface, condition="where maps were measured, large enough to be told apart")
+
+MAP_X = _mapped("x", "m", "rolling direction")
+MAP_Y = _mapped("y", "m", "across")
+SAMPLE_HEIGHTS = _mapped("sample_heights(x, y)", "m", "height of the first sample")
+PATH_X = _beside("path_x", "m", "rolling direction")
+PATH_Y = _beside("path_y", "m", "across")
+PATH_HEIGHTS = _beside("path_heights(path_x, path_y)", "m", "height of the path")
+DISTANCE = _surface("distance", "m", "distance along the path")
+_LINE = "height along the middle of the path"
+LINE = _surface("line(distance)", "m", _LINE)
+LINE_UNTOUCHED = _surface("line_untouched(distance)", "m", f"{_LINE} before running-in", RUN_IN)
+SURFACE_WAVENUMBER = _surface("surface_wavenumber", "1/m", "wavenumber, cycles per metre")
+PSD_SAMPLE = _mapped("psd_sample(surface_wavenumber)", "m3", "PSD of the samples along the path, one-sided")
+PSD_PATH = _surface(
+    "psd_path(surface_wavenumber)",
+    "m3",
+    "PSD of the path along it, one-sided",
+    missing="the path is shorter than these waves",
+)
+HOMOGENEITY_P = _measured(
+    "homogeneity_p(sample)",
+    "1",
+    "share of stationary textures whose tiles vary as much as those of a map",
+    attributes=("significance",),
+)
+TILE_VARIATION = _measured(
+    "tile_variation(sample)", "1", "coefficient of variation of the tiles' mean squares"
+)
+_STATIONARY = "the same of stationary textures, median"
+TILE_VARIATION_EXPECTED = _measured("tile_variation_expected(sample)", "1", _STATIONARY)
+
+_STATISTICS = "statistics of the texture: symbol, value, unit, bandwidth, …"
+STATISTICS = _of_surface("statistics", "JSON", _STATISTICS)
+SOURCE = _of_surface("source", "text", "where the texture comes from")
+MISSING_SHARE = _of_surface("missing_share", "1", "share of the measured points that had no height")
+_ACROSS = "areal: texture of its own beside the line; lines: laid out between them"
+ACROSS = _of_surface("across", "text", _ACROSS)
+
+# --- the reduced contact
+
 _NO_FILTER = "the samples do not touch in these states, or have no waves of these lengths"
 _entry, _attribute = partial(Entry, "contact"), partial(Attribute, "contact")
 _sampled = partial(_entry, condition=SAMPLED)
@@ -58,7 +106,6 @@ PRINTED_FILTERS = _magnitudes(
 )
 PRINTED_FILTER, PRINTED_FILTER_RAW, PRINTED_FILTER_APPLIED, PRINTED_FILTER_STD = PRINTED_FILTERS
 
-RUN_IN = "where the surface was run in"
 _passed = partial(_entry, condition=RUN_IN)
 _PASS, _CONDITION = "(running_in_pass)", "(condition)"
 RUNNING_IN_PASS = _passed("running_in_pass", "1", "pass of running-in")

@@ -16,7 +16,7 @@ from asperity.reporting.figure import PageFigure
 from asperity.results import read_result
 from asperity.scenes.figures.force import force_bands, force_envelope
 from asperity.scenes.report import comparison_of, report
-from asperity.schema import contact, provenance, surface
+from asperity.schema import contact, provenance
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.serving.stored_runs import SOUNDS
 
@@ -72,7 +72,7 @@ def _force(tree: DataTree) -> dict[str, Any] | None:
 
 def _watched(tree: DataTree) -> float:
     """Length of the texture that is kept, m; of a line, of its first points."""
-    along = surface.PATH_X if data.present(tree, surface.PATH_HEIGHTS) else surface.DISTANCE
+    along = contact.PATH_X if data.present(tree, contact.PATH_HEIGHTS) else contact.DISTANCE
     if not data.present(tree, along):
         return np.inf
     return float(data.values(tree, along)[:LINE_POINTS][-1])
@@ -80,12 +80,12 @@ def _watched(tree: DataTree) -> float:
 
 def _texture(tree: DataTree) -> dict[str, Any] | None:
     """Heights that are rolled over, seen from above; where there is only a line, that."""
-    if data.present(tree, surface.PATH_HEIGHTS):
-        heights = _about_long_waves(data.values(tree, surface.PATH_HEIGHTS))
-        dx, dy = (_spacing(data.values(tree, entry)) for entry in (surface.PATH_X, surface.PATH_Y))
-    elif data.present(tree, surface.LINE):
-        heights = data.values(tree, surface.LINE)[:LINE_POINTS, None]
-        dx, dy = _spacing(data.values(tree, surface.DISTANCE)), 0.0
+    if data.present(tree, contact.PATH_HEIGHTS):
+        heights = _about_long_waves(data.values(tree, contact.PATH_HEIGHTS))
+        dx, dy = (_spacing(data.values(tree, entry)) for entry in (contact.PATH_X, contact.PATH_Y))
+    elif data.present(tree, contact.LINE):
+        heights = data.values(tree, contact.LINE)[:LINE_POINTS, None]
+        dx, dy = _spacing(data.values(tree, contact.DISTANCE)), 0.0
     else:
         return None
     return {"shape": list(heights.shape), "dx": dx, "dy": dy, "heights": heights - heights.mean()}
