@@ -9,7 +9,6 @@ from asperity import BallBearing, HalfSpace
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.laws.layout import force
 from asperity.scenarios.raceway_laws import FOLLOWED, OnRaceway, ball_heights, raceway_laws, raceway_on
-from asperity.scenarios.raceway_laws import raceway_with_balls as with_balls
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture
 
@@ -161,7 +160,8 @@ def test_direct_sees_the_pits_of_ball_and_raceway_where_they_are(forwards):
     surface, away, radius, beta = raceway_on(CONTACT, LOAD, 1.0 * MM, faults=(PIT,)), 0.05 * MM, 0.7 * MM, 5.0
     pit = Fault("pit", angle=beta, length=0.18 * MM, depth=0.28 * MM)
     ball = raceway_on(CONTACT, 0.8 * LOAD, radius, faults=(pit,))
-    (law,) = with_balls(CONTACT, surface, [ball], LOAD, forwards=forwards)
+    keys = {"balls": [ball], "forwards": forwards}
+    (law,) = raceway_laws(["direct"], CONTACT, surface, LOAD, **keys)["direct"]
     ahead = np.array([away, -away]) / (radius if forwards else -radius)
     on = law.prepare(np.column_stack([[np.pi * MM - away] * 2, beta - ahead + 2 * np.pi * np.array([0, 7])]))
     for step, places in enumerate(([away, away], [away, -away])):

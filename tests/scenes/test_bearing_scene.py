@@ -203,13 +203,13 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
          "laws": ["areal", "direct"], "duration": "2.1 ms", "settling": "0 s", "time_step": "3 us",
          "centrifugal": False, "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
     )  # fmt: skip
-    directions, made = [], raceway_laws.raceway_with_balls
+    directions, made = [], raceway_laws.raceway_laws
 
     def seen(*given, forwards, **keys):
         directions.append(forwards)
         return made(*given, forwards=forwards, **keys)
 
-    monkeypatch.setattr("asperity.scenes.bearing.raceway_with_balls", seen)
+    monkeypatch.setattr("asperity.scenes.bearing.raceway_laws", seen)
     monkeypatch.setattr(raceway_laws, "CELLS", (3, 4))
     tree = asperity.run(case, brief=True)
     assert directions == [False, True]  # balls run forwards on the ring that stands still

@@ -432,8 +432,15 @@ class OnRaceway:
 
 
 def raceway_laws(
-    names: Iterable[str], contact: Hertz, surface: Raceway, load: float, **of_contact: Any
-) -> dict[str, Law]:
+    names: Iterable[str],
+    contact: Hertz,
+    surface: Raceway,
+    load: float,
+    *,
+    balls: Sequence[Raceway] = (),
+    forwards: bool = True,
+    **of_contact: Any,
+) -> dict[str, Any]:
     """Laws of a ball on a raceway, on positions along it of any number of turns, m.
 
     Parameters
@@ -447,13 +454,19 @@ def raceway_laws(
     load : float
         Largest static load of a ball, N. States go up to eight times as much where the raceway is sound;
         beyond the last state F^(2/3) of `table` goes on with its end slope, the curve of `areal` with its.
+    balls : sequence of Raceway, optional
+        Surfaces of the balls, on any cells; `direct` lays each on those of the raceway.
+    forwards : bool
+        Whether these balls roll towards higher positions on the raceway.
     **of_contact
         Damping, hardness, accuracy, cache and progress, as of `OnRaceway`.
 
     Returns
     -------
     dict of str to Law
-        By name. An approach δ of ring and ball sees a surface that is higher by h as δ + h.
+        By name. An approach δ of ring and ball sees a surface that is higher by h as δ + h. With balls
+        `direct` is a list of laws, one for each, as `asperity.rolling.bearing.roll_bearing` takes it: on
+        positions (n, 2), on the raceway, m, and the angle of the spot of the ball that touches, rad.
 
     Notes
     -----
@@ -465,36 +478,11 @@ def raceway_laws(
     chosen = [one_of("law of a raceway", name, LAWS) for name in names]
     if surface.faults.any() and set(chosen) & {"areal", "hertz"}:
         on.warn_of_faults()
-    return {name: on.law(name) for name in chosen}
-
-
-def raceway_with_balls(
-    contact: Hertz,
-    surface: Raceway,
-    balls: Sequence[Raceway],
-    load: float,
-    *,
-    forwards: bool,
-    **of_contact: Any,
-) -> list[Law]:
-    """`direct` of each ball with a surface of its own, as `asperity.rolling.bearing.roll_bearing` takes it.
-
-    Parameters
-    ----------
-    contact, surface, load, **of_contact
-        As in `raceway_laws`.
-    balls : sequence of Raceway
-        Surface of each ball, on any cells; it is laid on those of the raceway.
-    forwards : bool
-        Whether the balls roll towards higher positions on the raceway.
-
-    Returns
-    -------
-    list of Law
-        On positions (n, 2): on the raceway, m, and the angle of the spot of the ball that touches, rad.
-    """
-    on = OnRaceway(contact, surface, load, balls=balls, **of_contact)
-    return [on.with_ball(ball, forwards=forwards) for ball in balls]
+    laws: dict[str, Any] = {name: on.law(name) for name in chosen}
+    if balls and "direct" in laws:
+        on = replace(on, balls=balls)
+        laws["direct"] = [on.with_ball(ball, forwards=forwards) for ball in balls]
+    return laws
 
 
 def ball_heights(contact: Hertz, surface: Raceway, load: float) -> Array:

@@ -16,11 +16,11 @@ from asperity.arguments import Array
 from asperity.case.ball_bearing import BallBearingCase
 from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
 from asperity.errors import Finding, Grade, InputError, PhysicsWarning, percent, warn_of_findings
-from asperity.laws import Law, Need, spec_of
+from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios import preparing, reducing
-from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on, raceway_with_balls
+from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
@@ -163,28 +163,22 @@ def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:
 
 def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBearing]:
     """Run the bearing by each law, at the sampling rate of the case."""
-    case, store = prepared.case, Store()
-    keys: dict[str, Any] = {"damping": case.contact_damping, "hardness": case.bearing.bearing.hardness}
-    contacts = list(zip(RINGS, case.contacts, prepared.raceways, strict=True))
-    laws_of = [
-        raceway_laws(case.laws, smooth, surface, load, cache=store, progress=progress, **keys)
-        for _, (smooth, load), surface in contacts
+    case, of = prepared.case, prepared.case.bearing.bearing
+    keys: dict[str, Any] = {"damping": case.contact_damping, "hardness": of.hardness, "balls": prepared.balls}
+    keys |= {"cache": Store(), "progress": progress}
+    laws_of = [  # balls run forwards on the ring that stands still
+        raceway_laws(case.laws, smooth, surface, load, forwards=ring != of.turning, **keys)
+        for ring, (smooth, load), surface in zip(RINGS, case.contacts, prepared.raceways, strict=True)
     ]
     smooth, load = case.contacts[1]
     averaged = [ball_heights(smooth, surface, load) for surface in prepared.balls]
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
     found = {}
     for name in case.laws:
-        laws: list[Law | list[Law]] = [built[name] for built in laws_of]
-        heights = averaged
-        if prepared.balls and spec_of(name).solved_every_step:
-            turning, heights = case.bearing.bearing.turning, []
-            laws = [
-                raceway_with_balls(smooth, surface, prepared.balls, load, forwards=ring != turning, **keys)
-                for ring, (smooth, load), surface in contacts
-            ]
+        inner, outer = (built[name] for built in laws_of)
+        heights = [] if isinstance(inner, list) else averaged
         run = roll_bearing(
-            case.bearing.bearing, bearing_rings(case), *laws,
+            of, bearing_rings(case), inner, outer,
             speed=case.speed, radial=case.radial, axial=case.axial, duration=case.duration,
             time_step=case.step, settling=case.settling, slip=cage_slip(case), ball_heights=heights,
             centrifugal=case.centrifugal, sensors=sensors, highest_frequency=case.highest_frequency,
