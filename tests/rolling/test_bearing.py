@@ -136,6 +136,18 @@ def test_perfect_surfaces_sound_at_the_passing_of_balls_alone():
     assert np.delete(tones, np.arange(0, 200, 5)).max() < 1e-3 * tones.max()
 
 
+def test_springs_of_the_shaft_are_free_of_force_on_average_over_the_places_of_the_cage():
+    """At one place alone three balls on three waves would carry 2 % and more beside the load."""
+    few = BallBearing(3, 8e-3, 40e-3, clearance=0.0)
+    laws = hertz(few, 100.0, (None, waves(few.raceway_radii[1], 3, 5e-7)))
+    rings = BearingRings(Ring.rigid(0.5, radial_stiffness=1e6, damping_ratio=0.3), HOUSING)
+    passing = 1.0 / (3.0 * few.kinematics(10.0).cage)
+    path = {"speed": 10.0, "duration": 2.0 * passing, "settling": 2.0 * passing, "time_step": 3.2e-6}
+    run = roll_bearing(few, rings, *laws, radial=20.0, centrifugal=False, **path)
+    around = run.cage + 2 * np.pi * np.arange(3)[:, None] / 3
+    assert (run.inner_force * np.cos(around)).sum(axis=0).mean() == pytest.approx(20.0, rel=0.01)
+
+
 def test_a_run_that_is_stopped_goes_on_to_the_same_bits():
     textures = [waves(radius, 31, 1e-7) for radius in B6205.raceway_radii]
     ball = [1e-8 * np.cos(2 * np.pi * (3 + j) * np.arange(60) / 60) for j in range(9)]
