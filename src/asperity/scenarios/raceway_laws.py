@@ -479,9 +479,9 @@ def raceway_laws(
     if surface.faults.any() and set(chosen) & {"areal", "hertz"}:
         on.warn_of_faults()
     laws: dict[str, Any] = {name: on.law(name) for name in chosen}
-    if balls and "direct" in laws:
-        on = replace(on, balls=balls)
-        laws["direct"] = [on.with_ball(ball, forwards=forwards) for ball in balls]
+    on = replace(on, balls=balls)
+    for name in (name for name in chosen if balls and spec_of(name).solved_every_step):
+        laws[name] = [on.with_ball(ball, forwards=forwards) for ball in balls]
     return laws
 
 
