@@ -22,7 +22,13 @@ _APART = re.compile(r",\s")
 
 
 def read_text(
-    path: Path, source: str, allowed: str, *, largest: int, remedy: str = "", latin: bool = False
+    path: Path,
+    source: str,
+    allowed: str,
+    *,
+    largest: int,
+    remedy: str = "",
+    latin: bool = False,
 ) -> str:
     """Read a text file that a person has written, without a mark of its encoding.
 

@@ -77,7 +77,7 @@ wheel: [wheel] flat_shape = "worn" → only together with flat_depth or flat_len
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → wheel.flat_length: received 60 mm beside a
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "60 mm" → A worn flat may be longer: flat_shape = "worn".
 wheel: [wheel] flat_depth = "0.4 mm" | flat_length = "30 mm" | flat_shape = "worn" → sqrt(8 radius
-wheel: [wheel] flat_length = "0.2 m" → received 200 mm; allowed: at most 0.01 of the radius, 4.6 mm
+wheel: [wheel] flat_length = "0.2 m" → received 200 mm; allowed: at most 0.01 of the radius deep
 wheel: [wheel] flat_depth = "5 mm" → 4.6 mm, a chord of 130.1 mm
 wheel: [wheel] flat_depth = "1 mm" | flat_position = "3 m" → received 3 m; allowed: less than the
 wheel: [wheel] load = "5 kN" → wheel.load: received 5 kN; allowed: at least 5.88399 kN, the weight of 600 kg

@@ -178,8 +178,10 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
             remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
             yield InputError("wheel.load", received, allowed, remedy)
         length, contact = self.speed * self.rolled_time, self.contact
-        low = max(contact.window, (contact.filter_taps or 0) * contact.spacing)
-        if length < low:
+        least = max(contact.window, (contact.filter_taps or 0) * contact.spacing)
+        if length < least:
             received = f"{self.rolled_time:g} s, in which {length * 1e3:.4g} mm are rolled"
-            allowed = f"at least contact.window, and contact.filter_taps spacings, {written(low, 'm', 'mm')}"
+            allowed = (
+                f"at least contact.window, and contact.filter_taps spacings, {written(least, 'm', 'mm')}"
+            )
             yield InputError("duration", received, allowed, "A path must be longer than window and filters.")

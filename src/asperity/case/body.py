@@ -109,7 +109,9 @@ class FlatOnTread(MeasuredLine):
         if self.flat[0] > deepest:
             name = "flat_length" if self.flat_depth is None else "flat_depth"
             chord = f"{math.sqrt(8.0 * self.radius * deepest) * 1e3:.4g} mm"
-            allowed = f"at most {DEEPEST_FLAT:g} of the radius, {deepest * 1e3:.4g} mm, a chord of {chord}"
+            allowed = (
+                f"at most {DEEPEST_FLAT:g} of the radius deep, {deepest * 1e3:.4g} mm, a chord of {chord}"
+            )
             yield InputError(name, written(getattr(self, name), "m", "mm"), allowed)
         elif self.flat_depth is not None and self.flat_length is not None:
             yield from self._problem_of_both(self.flat_depth, self.flat_length)

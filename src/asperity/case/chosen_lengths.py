@@ -21,7 +21,12 @@ LONGEST = 20.0
 """Longest wave of a texture that is synthesised, in larger semi-axes: the contact follows it as a whole."""
 _STEPS = (1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.3, 8.0)
 
-_FIT = {"contact.spacing": min, "contact.window": max, "surface.shortest": min, "surface.longest": max}
+_FIT_FOR_ALL = {
+    "contact.spacing": min,
+    "contact.window": max,
+    "surface.shortest": min,
+    "surface.longest": max,
+}
 """Which of several chosen lengths suits all cases."""
 
 
@@ -75,7 +80,7 @@ def with_chosen(case: "Case", chosen: Mapping[str, Mapping[str, float]]) -> "Cas
 def shared_lengths(cases: "Sequence[Case]") -> dict[str, float]:
     """Lengths that were chosen otherwise for some of these cases than for others, fit for all of them, m."""
     shared = {}
-    for key, fit in _FIT.items():
+    for key, fit in _FIT_FOR_ALL.items():
         title, _, name = key.partition(".")
         sections = [getattr(case, title) for case in cases]
         chosen = {getattr(each, name) for each in sections if name not in each.given_names} - {None}

@@ -230,7 +230,9 @@ class Section:
 
     def _state(self) -> dict[str, Any]:
         """All that it holds, sections as dicts: their classes may have no name to be found by."""
-        return {n: each._state() if isinstance(each, Section) else each for n, each in vars(self).items()}
+        return {
+            name: each._state() if isinstance(each, Section) else each for name, each in self.__dict__.items()
+        }
 
     def __repr__(self) -> str:
         from asperity.case.any_case import in_toml

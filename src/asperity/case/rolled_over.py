@@ -447,7 +447,11 @@ class StructureKeys(RolledOver):
             from asperity.structures.modal_files import read_modal_structure
 
             modes = read_modal_structure(
-                modes, along=self.along, force=self.force, damping=self.damping_ratio, nodes=self.nodes
+                modes,
+                along=self.along,
+                force=self.force,
+                damping=self.damping_ratio,
+                nodes=self.nodes,
             )
         return modes if self.mass is None else modes.with_rigid_body(self.mass, inertia=self.inertia)
 

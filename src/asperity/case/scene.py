@@ -358,9 +358,13 @@ class Case(AnyCase):
         surface, spacing = self.surface, self.contact.spacing
         rolling = self.rolling.has_own_texture or self.rolling.flat is not None
         if not (surface.has_texture or rolling or surface.smooth):
-            other = f"roughness, line or a flat in [{self.ROLLING}]"
-            allowed = f"file, rms, line, spectrum or a defect in [surface]; {other}"
-            remedy = 'Name a map (file = "…"), synthesise one (rms = "0.5 um"), or set smooth = true.'
+            allowed = (
+                f"file, rms, line, spectrum or a defect in [surface]; roughness, line or a flat in "
+                f"[{self.ROLLING}]"
+            )
+            remedy = (
+                'Name a measured map (file = "…"), synthesise one (rms = "0.5 um"), or set smooth = true.'
+            )
             yield InputError("surface", "no texture", allowed, remedy)
         for name, unit in (("shortest", "um"), ("corrugation_wavelength", "mm")):
             wave = getattr(surface, name)

@@ -95,14 +95,18 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
     order = np.argsort(-wavelength)
     wavelength, level = wavelength[order], level[order]
     if wavelength[-1] <= 0:
-        raise InputError(name_of(table), f"a wavelength of {wavelength[-1]:g} m", "wavelengths above 0")
+        raise InputError(
+            name_of(table), f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0"
+        )
     for longer, shorter in pairwise(wavelength):
         step = math.log10(longer / shorter)
         if abs(step - _BAND) > _BAND / 5:
             kind = "a gap in the bands" if step > _BAND else "bands closer than one-third octaves"
             received = f"{kind} between {longer * 1e3:.4g} mm and {shorter * 1e3:.4g} mm"
             remedy = "Complete the table; nothing is filled in silently."
-            raise InputError(name_of(table), received, "every one-third octave, each once", remedy)
+            raise InputError(
+                name_of(table), received, "every one-third octave of wavelength, each once", remedy
+            )
     if abs(level.max()) > LARGEST_LEVEL:
         received = f"levels up to {level.max():.3g} dB re 1 um"
         allowed = f"a highest level between -{LARGEST_LEVEL:g} and {LARGEST_LEVEL:g} dB re 1 um"
@@ -135,10 +139,12 @@ def read_mode_table(table: TableSource) -> Array:
     return rows
 
 
-def refuse_where(table: TableSource, values: Array, wrong: NDArray[np.bool_], what: str, right: str) -> None:
+def refuse_where(
+    table: TableSource, values: Array, wrong: NDArray[np.bool_], what: str, allowed: str
+) -> None:
     """Refuse the first of the values of a table that are wrong, if there is one."""
     if wrong.any():
-        raise InputError(name_of(table), f"{what} of {values[wrong][0]:g}", right)
+        raise InputError(name_of(table), f"{what} of {values[wrong][0]:g}", allowed)
 
 
 def read_outline(table: TableSource) -> Array:
@@ -208,8 +214,10 @@ def read_bays(table: TableSource) -> Array:
             "They repeat by themselves.",
         )
     for column, values in zip(BAYS, rows.T, strict=True):
-        if (bad := values <= 0.0).any():
-            received = f"a {column.name} of {values[bad][0]:g} {column.dimension} in bay {bad.argmax() + 1}"
+        if (wrong := values <= 0.0).any():
+            received = (
+                f"a {column.name} of {values[wrong][0]:g} {column.dimension} in bay {wrong.argmax() + 1}"
+            )
             remedy = "Give a sleeper that hangs very soft ballast, as 1 kN/m." if column is BAYS[2] else ""
             raise InputError(name_of(table), received, "greater than 0", remedy)
     return rows
@@ -357,9 +365,11 @@ def heading_of(lines: Sequence[list[str]], dimensions: Sequence[str]) -> list[st
     *above, last = fitting
     if any(unit_of(*each) for each in zip(last, dimensions, strict=True)):
         bare = all(cell[:1] in "([" for cell in last)
-        if bare and above:
-            return [f"{title} {unit}" for title, unit in zip(above[-1], last, strict=True)]
-        return last
+        return (
+            [f"{title} {unit}" for title, unit in zip(above[-1], last, strict=True)]
+            if bare and above
+            else last
+        )
     if above and all(map(_is_unit, last, dimensions)):
         return [f"{title} ({unit})" for title, unit in zip(above[-1], last, strict=True)]
     return last

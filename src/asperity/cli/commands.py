@@ -164,8 +164,10 @@ def _failed(error: BaseException, command: str, *, debug: bool = False) -> int:
     return code
 
 
-def _say_document(command: str, code: int, told: Mapping[str, Any]) -> None:
-    say_document({"format": FORMAT, "asperity": __version__, "command": command, "exit_code": code, **told})
+def _say_document(command: str, code: int, content: Mapping[str, Any]) -> None:
+    say_document(
+        {"format": FORMAT, "asperity": __version__, "command": command, "exit_code": code, **content}
+    )
 
 
 @contextmanager

@@ -87,7 +87,9 @@ def show_cache(*, clear: bool = False) -> dict[str, Any]:
         kernels = [file for place in versions for file in place.iterdir() if not file.name.startswith(".")]
         left[folder] = [part for place in versions for part in left_overs(place)]
         kept += [("compiled functions", folder, sorted(kernels))] if kernels else []
-    kept += [("files left by interrupted runs", at, sorted(found)) for at, found in left.items() if found]
+    kept += [
+        ("files left by interrupted runs", folder, sorted(parts)) for folder, parts in left.items() if parts
+    ]
     told = []
     for what, folder, files in kept:
         size = 0
