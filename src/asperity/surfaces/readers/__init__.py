@@ -10,7 +10,7 @@ import numpy as np
 from asperity.arguments import require, shown, whole
 from asperity.errors import MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import arrays, guards, sdf, text, x3p
+from asperity.surfaces.readers import arrays, guards, iso_25178, text
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.libraries import read_apart
 
@@ -23,8 +23,8 @@ OWN: dict[str, tuple[str, Reader]] = {
     ".npy": ("npy", arrays.read_npy),
     ".npz": ("npz", arrays.read_npz),
     ".nc": ("netCDF-4", read_apart("read_netcdf", "netCDF-4")),
-    ".sdf": ("SDF", sdf.read),
-    ".x3p": ("X3P", x3p.read),
+    ".sdf": ("SDF", iso_25178.read_sdf),
+    ".x3p": ("X3P", iso_25178.read_x3p),
 }
 TEXT: tuple[str, Reader] = "text", text.read
 OTHER: tuple[str, Reader] = "known instrument", read_apart("read_instrument", "known instrument")
