@@ -5,16 +5,18 @@ import numpy as np
 from asperity.case.cases import as_case
 from asperity.schema import UNKNOWN
 
-BALL = {
-    "kind": "ball-on-beam",
-    "laws": ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
-    "start": "0.45 m",
+ON_BEAM = {
     "duration": "20 ms",
     "settling": "0 s",
     "surface": {"rms": "0.04 um", "longest": "0.4 mm", "shortest": "60 um"},
     "contact": {"spacing": "20 um", "window": "0.66 mm", "samples": 2, "sample_length": "1.4 mm"},
-    "ball": {"load": "30 N"},
     "numerics": {"highest_frequency": "2 kHz"},
+}
+BALL = ON_BEAM | {
+    "kind": "ball-on-beam",
+    "laws": ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
+    "start": "0.45 m",
+    "ball": {"load": "30 N"},
 }
 WHEEL = {
     "kind": "wheel-on-rail",
@@ -38,15 +40,11 @@ HEARD = {
     "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
 }
 """Keys of a wheel on a rail whose sound is looked at."""
-BODIES = {
+BODIES = ON_BEAM | {
     "kind": "bodies",
     "over": "beam",
     "laws": ["areal", "printed", "linear-filtered", "linear"],
     "start": "0.4 m",
-    "duration": "20 ms",
-    "settling": "0 s",
-    "surface": {"rms": "0.04 um", "longest": "0.4 mm", "shortest": "60 um"},
-    "contact": {"spacing": "20 um", "window": "0.66 mm", "samples": 2, "sample_length": "1.4 mm"},
     "body": {
         "type": "bogie",
         "load": "30 N",
@@ -55,7 +53,6 @@ BODIES = {
         "springs": ["20 kN/m"],
         "dampers": ["5 N s/m"],
     },
-    "numerics": {"highest_frequency": "2 kHz"},
 }
 CASES = {case["kind"]: case for case in (BALL, WHEEL, BODIES)}
 
