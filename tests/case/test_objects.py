@@ -129,9 +129,7 @@ class TestInMemory:
     def test_a_map_gives_what_its_file_gives(self, tmp_path):
         np.save(tmp_path / "map.npy", MAP.heights)
         on_disk = {"file": tmp_path / "map.npy", "pixel": "8 um", "height_unit": "m"}
-        (found,), (held,) = (
-            read_maps(BallOnBeam(surface=surface).surface) for surface in (on_disk, {"file": MAP})
-        )
+        (found,), (held,) = (read_maps(BallOnBeam(surface=s).surface) for s in (on_disk, {"file": MAP}))
         np.testing.assert_array_equal(found.heights, held.heights)
         assert found.spacing == held.spacing
 
