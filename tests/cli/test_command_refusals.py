@@ -205,8 +205,7 @@ REFUSED = [
     ("run|study small.toml --what-helps", "what helps: received a ball-on-beam case; allowed: a case over a"),
     # runs
     ("listen {run} --what drums", "received 'drums'; allowed: acceleration"),
-    ("figures {run} scene force_band -o new", 'Nearest: "force_bands" (Contact force levels in one-third '
-     "octaves)"),
+    ("figures {run} scene force_band -o new", 'Did you mean "force_bands"?'),
     ("compare {run} absent", "absent: received no such file; allowed: a result file that a run has written"),
 ]  # fmt: skip
 

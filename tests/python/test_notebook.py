@@ -44,7 +44,7 @@ def test_a_result_draws_its_figures_by_name(result):
     for drawn, line in zip(by_title.axes[0].lines, bands.axes[0].lines, strict=True):
         np.testing.assert_array_equal(drawn.get_xydata(), line.get_xydata())
     with pytest.raises(
-        InputError, match=r"received 'force_band'; allowed: .*force_bands.* Nearest: .force_bands"
+        InputError, match=r"received 'force_band'; allowed: .*force_bands.* Did you mean .force_bands"
     ):
         result.plot("force_band")
     with pytest.raises(InputError, match="it has none"):

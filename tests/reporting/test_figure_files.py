@@ -153,8 +153,8 @@ def test_figures_are_found_by_name_and_title(names, found):
 
 
 test_a_wrong_name_is_told_with_the_nearest = refusals(
-    (PARTS, "force_band", r"'force_band'.* scene\. Nearest: \"force_bands\" \(Contact force levels"),
-    (PARTS, "contact force", r"Nearest: \"force_bands\" .*, \"force_psd\""),  # both begin so
+    (PARTS, "force_band", r"'force_band'.* scene\. Did you mean \"force_bands\"\?"),
+    (PARTS, "contact force", r"Say which: force_bands, force_psd\."),  # both begin so
     (PARTS, "xyz", r"a figure of this result, by name or title: force_bands, force_psd, scene\.$"),
     (PARTS, None, "received None"),
     ([], "force", "it has none"),

@@ -1,7 +1,6 @@
 """A figure of the report, declared: which numbers of a result, how they are drawn, what is said of them."""
 
 import dataclasses
-import difflib
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 from xarray import DataTree
 
-from asperity.arguments import shown
+from asperity.arguments import nearest, shown
 from asperity.errors import InputError
 from asperity.files import atomic_write, write_bytes
 from asperity.reporting import data
@@ -244,8 +243,6 @@ def write_columns(columns: Mapping[str, Numbers], path: Path) -> Path:
 
 
 FORMATS = ("svg", "pdf", "png")
-NEAREST = 3
-"""Names that a message about a wrong one tells."""
 
 
 def figure_format(what: str, format: object) -> str:
@@ -267,11 +264,9 @@ def _chosen(figures: Sequence[PageFigure], name: object) -> PageFigure:
     if asked in known or len(begun) == 1:
         return known.get(asked) or begun[0]
     held = ", ".join(figure.name for figure in figures) or "it has none"
-    alike = difflib.get_close_matches(asked[:100], known, n=len(known) or 1, cutoff=0.5)
-    nearest = begun or list(dict.fromkeys(known[word] for word in alike))
-    near = ", ".join(f'"{figure.name}" ({figure.title})' for figure in nearest[:NEAREST])
     allowed = f"a figure of this result, by name or title: {held}"
-    raise InputError("name of a figure", shown(name), allowed, f"Nearest: {near}." if near else "")
+    several = f"Say which: {', '.join(figure.name for figure in begun)}." if begun else ""
+    raise InputError("name of a figure", shown(name), allowed, several or nearest(asked, list(known)))
 
 
 def write_figures(figures: Sequence[PageFigure], folder: Path, format: str) -> list[Path]:
