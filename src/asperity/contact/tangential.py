@@ -339,14 +339,8 @@ class FrictionalHalfSpace:
     ) -> SlidingContact:
         """Find a motion by Broyden's iteration on −ln(1 − |F|/limit), which is about linear in creepage."""
         size = float(np.linalg.norm(target))
-        remedy = "Press more, or ask for less."
-        require(
-            size < found.limit or size == 0.0,
-            "force",
-            f"{size:.6g} N",
-            f"less than {found.limit:.6g} N of friction",
-            remedy,
-        )
+        allowed, remedy = f"less than {found.limit:.6g} N of friction", "Press more, or ask for less."
+        require(size < found.limit or size == 0.0, "force", f"{size:.6g} N", allowed, remedy)
 
         if not found.limit:
             return found

@@ -199,10 +199,7 @@ def squeal(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     growth, growing = data.values(tree, GROWTH), _growing(tree)
     reach = 1.2 * max(float(growth[growing].max(initial=0.0)), 5.0)
     looks = ((np.flatnonzero(growth <= 0.0), "decays", MUTED, "o"), (growing, "grows", VERMILLION, "^"))
-    points = [
-        Line(lines.at[kept], growth[kept], name, colour, width=0.0, marker=marker)
-        for kept, name, colour, marker in looks
-    ]
+    points = [Line(lines.at[n], growth[n], name, colour, (), 0.0, mark) for n, name, colour, mark in looks]
     named = {float(data.values(tree, schema.SQUEAL_DIAMETERS)[n]): n for n in reversed(growing)}
     notes = [Note(f" {count:.0f}", lines.at[n], growth[n]) for count, n in named.items()]
     along = panels.frequency_axis(float(np.nanmin(lines.at)) / 1.1, float(np.nanmax(lines.at)) * 1.1)
