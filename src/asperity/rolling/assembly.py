@@ -1,6 +1,6 @@
 """Bodies set on what they roll over: at rest, with contacts soft enough for the time step."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -37,8 +37,18 @@ def softened(
     """
     (stiffness, motion), own = start(ground, bodies, system, prepared), alternating(system)
     least, thrown = ground.alternating + own, ground.thrown + own
-    limits = limits_of(ground, system, bodies, least, stiffness, highest_frequency)
-    steps.warn_if_coarse(system.time_step, limits)
+    if ground.bay:
+        on_bay = np.sqrt(float(stiffness.max()) / ground.bay) / (2.0 * np.pi)
+        resonance = "the contact resonance on a bay of rail", on_bay, 5.0
+    else:
+        direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
+        resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)
+        resonance = "the contact resonance", float(resonances.max()), 10.0
+    natural = np.concatenate([body.natural_frequencies for body in bodies])
+    asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
+    own_mode = "the highest mode of a body", float(asked.max(initial=0.0)), 4.0
+    highest = "the highest frequency asked for", highest_frequency or 0.0, 5.0 if ground.bay else 10.0
+    steps.warn_if_coarse(system.time_step, (resonance, ground.limit, own_mode, highest))
     values = [steps.largest_values(*each) for each in zip(prepared, stiffness.tolist(), strict=True)]
     stiffest, impacts, forces = np.array(values).T
     softer = steps.softening(least, thrown, stiffest, impacts, damping, stiffness, system.time_step)
@@ -71,18 +81,13 @@ def body_loads(bodies: Sequence[Body]) -> Array:
 
 
 def system_of(
-    ground: Ground,
-    bodies: Sequence[Body],
-    loads: Array,
-    time_step: float,
-    speed: float,
-    constant: Array = NONE,
+    ground: Ground, bodies: Sequence[Body], loads: Array, h: float, speed: float, constant: Array = NONE
 ) -> System:
     """Constants for the kernels, with contacts as they are.
 
-    Scales of the contact forces (n,), N, time step, s, speed, m/s, and constant forces on the structure (s,).
+    Scales of the contact forces (n,), N, time step, s, speed, m/s, constant forces on the structure (s,).
     """
-    b, n, h, channels = len(bodies), len(loads), time_step, ground.channels
+    b, n, channels = len(bodies), len(loads), ground.channels
     of = np.repeat(np.arange(b), [len(body.places) for body in bodies])
     frequencies = steps.padded([2.0 * np.pi * body.natural_frequencies for body in bodies])
     natural = np.concatenate([ground.natural, frequencies.ravel()])
@@ -132,32 +137,6 @@ def alternating(system: System) -> Array:
         matrix = system.core_shapes[at] @ core + (shapes * modes[b * f : (b + 1) * f]) @ shapes.T
         found[at] = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min())
     return found
-
-
-def limits_of(
-    ground: Ground,
-    system: System,
-    bodies: Sequence[Body],
-    least: Array,
-    stiffness: Array,
-    highest_frequency: float | None,
-) -> Iterator[steps.Limit]:
-    """What the time step must resolve, with the least alternating compliances at the contacts, m/N.
-
-    And the stiffnesses of the contacts at rest, N/m.
-    """
-    if ground.bay:
-        on_bay = np.sqrt(float(stiffness.max()) / ground.bay) / (2.0 * np.pi)
-        yield "the contact resonance on a bay of rail", on_bay, 5.0
-    else:
-        direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
-        resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)
-        yield "the contact resonance", float(resonances.max()), 10.0
-    yield ground.limit
-    natural = np.concatenate([body.natural_frequencies for body in bodies])
-    asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
-    yield "the highest mode of a body", float(asked.max(initial=0.0)), 4.0
-    yield "the highest frequency asked for", highest_frequency or 0.0, 5.0 if ground.bay else 10.0
 
 
 Evaluation = Callable[[float], tuple[float, float]]

@@ -261,8 +261,11 @@ def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, loa
     mass, unit = np.asarray(masses, dtype=float), np.eye(np.size(masses))
     pressing = GRAVITY * mass
     pressing[-1] += load
-    springs, dampers = (np.asarray(each, dtype=float) for each in (stiffnesses, dampings))
-    return _on_springs(np.zeros(1), unit[:1], mass, pressing, np.diff(unit, axis=0), springs, dampers)
+    stretch = np.diff(unit, axis=0)
+    damping, stiffness = (
+        stretch.T * np.asarray(each, dtype=float) @ stretch for each in (dampings, stiffnesses)
+    )
+    return _pressed(Body(np.diag(mass), damping, stiffness, unit[:1], pressing, np.zeros(1)))
 
 
 def carriage(
@@ -312,25 +315,14 @@ def carriage(
     pressing, unit = GRAVITY * masses, np.eye(masses.size)
     pressing[-2], pressing[-1] = pressing[-2] + load, 0.0
     stretch = lever @ unit[-2:] - unit[: at.size]
-    springs, dampers = np.full(at.size, upper_stiffness), np.full(at.size, upper_damping)
-    return _on_springs(at, unit[: at.size], masses, pressing, stretch, springs, dampers)
+    damping, stiffness = (
+        stretch.T * np.full(at.size, each) @ stretch for each in (upper_damping, upper_stiffness)
+    )
+    return _pressed(Body(np.diag(masses), damping, stiffness, unit[: at.size], pressing, at))
 
 
-def _on_springs(
-    places: Array,
-    contacts: Array,
-    masses: Array,
-    pressing: Array,
-    stretch: Array,
-    springs: Array,
-    dampers: Array,
-) -> Body:
-    """Body that presses on each of its contacts, of masses (d,) on springs and dampers (k,) between them.
-
-    Each is stretched by the degrees of freedom as a row of `stretch` (k, d) says.
-    """
-    stiffness, damping = (stretch.T * each @ stretch for each in (springs, dampers))
-    body = Body(np.diag(masses), damping, stiffness, contacts, pressing, places)
+def _pressed(body: Body) -> Body:
+    """The body, if it presses on each of its contacts."""
     least = float(body.static_loads.min())
     if not least > 0.0:
         received, allowed = f"a contact under {least:.4g} N", "contacts that are pressed at rest"

@@ -258,29 +258,20 @@ class WheelModes:
         split = self.nodal_diameters > 0
         part = np.repeat(np.arange(len(split)), np.where(split, 2, 1))
         sign = np.concatenate([[-1.0, 1.0] if two else [0.0] for two in split] or [[]])
-        of = {
-            name: getattr(self, name)[part]
-            for name in ("nodal_diameters", "radial", "axial", "disc", "tread")
-        }
+        diameters = self.nodal_diameters[part]
         natural, ratio = 2.0 * np.pi * self.natural_frequencies[part], self.damping_ratios[part]
         decay, damped = ratio * natural, natural * np.sqrt(1.0 - ratio**2)
-        moved = damped + sign * of["nodal_diameters"] * angular_speed
+        moved = damped + sign * diameters * angular_speed
         if (slow := moved <= 0.0).any():
-            received = f"faster than a wave of a mode of {of['nodal_diameters'][slow][0]} nodal diameters"
+            received = f"faster than a wave of a mode of {diameters[slow][0]} nodal diameters"
             raise InputError("turning of the wheel", received, "slower ones", "Roll more slowly.")
         undamped = np.hypot(moved, decay)
         scale = np.where(sign == 0.0, 1.0, np.sqrt(0.5 * moved / damped))
-        wave = np.where(sign == 0.0, 1.0, np.sqrt(2.0))
-        return WheelModes(
-            undamped / (2.0 * np.pi),
-            decay / undamped,
-            of["nodal_diameters"],
-            self.places,
-            scale[:, None] * of["radial"],
-            scale[:, None] * of["axial"],
-            wave * scale * of["disc"],
-            wave * scale * of["tread"],
-        )
+        wave = np.where(sign == 0.0, 1.0, np.sqrt(2.0)) * scale
+        radial, axial = (scale[:, None] * each[part] for each in (self.radial, self.axial))
+        disc, tread = (wave * each[part] for each in (self.disc, self.tread))
+        natural = undamped / (2.0 * np.pi)
+        return WheelModes(natural, decay / undamped, diameters, self.places, radial, axial, disc, tread)
 
 
 def wheel_modes(
