@@ -94,9 +94,7 @@ CHAPTERS = (
         (tables.population_table, tables.condition_table),
     ),
     Chapter(
-        "laws",
-        "How the contact laws work",
-        (contact_figures.contact_force, contact_figures.contact_filter),
+        "laws", "How the contact laws work", (contact_figures.contact_force, contact_figures.contact_filter)
     ),
     Chapter(
         "uncertainty",
