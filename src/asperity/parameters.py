@@ -1,10 +1,9 @@
 """A parameter, declared once: kind of value, default, meaning, limits; cases and forms follow from it."""
 
-import dataclasses
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import MISSING, asdict, dataclass, field, fields, replace
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -544,7 +543,7 @@ def parameter(
     meaning: str,
     within: str = "",
     *,
-    default: Any = dataclasses.MISSING,
+    default: Any = MISSING,
     otherwise: str = "",
     goes_with: str = "",
 ) -> Any:
@@ -553,7 +552,7 @@ def parameter(
     `default` is that of the class, in SI; the rest is as in `optional`.
     """
     declared = Key(kind, None, meaning, within, otherwise, example, goes_with)
-    return dataclasses.field(default=default, metadata={"key": declared})
+    return field(default=default, metadata={"key": declared})
 
 
 def keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
@@ -566,12 +565,8 @@ def keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
 
 @cache
 def _keys_of(model: Any, otherwise: str) -> Mapping[str, Key]:
-    declared = {field.name: field.metadata.get("key") for field in dataclasses.fields(model)}
-    return {
-        name: dataclasses.replace(key, otherwise=key.otherwise or otherwise)
-        for name, key in declared.items()
-        if key
-    }
+    declared = {each.name: each.metadata["key"] for each in fields(model) if "key" in each.metadata}
+    return {name: replace(key, otherwise=key.otherwise or otherwise) for name, key in declared.items()}
 
 
 def checked_parameters(model: Any) -> None:

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array
-from asperity.case import body, form, measured, surface, tables
+from asperity.case import body, form, measured, tables
 from asperity.case.rolled_over import FREQUENCY
+from asperity.case.surface import LENGTH, LEVEL, POSITION
 from asperity.errors import InputError
 from asperity.parameters import Choice, Either, ListOf, Number, Quantity, key, optional
 from asperity.reference import cnossos, railways
@@ -26,14 +27,14 @@ class ContactKeys(form.Section):
     """How the rough contact is solved and reduced."""
 
     spacing: float = optional(
-        surface.LENGTH,
+        LENGTH,
         "8 um",
         "grid spacing of the contact solution",
         "a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
         "1 nm to 10 mm: an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
     )
     window: float = optional(
-        surface.LENGTH,
+        LENGTH,
         "0.5 mm",
         "side of the square window in which contact is solved; wider than the contact",
         "that of the smooth contact under three times the load, wider by roughness and by a flat",
@@ -45,7 +46,7 @@ class ContactKeys(form.Section):
         "number of surface samples for the stiffness and the filters",
     )
     sample_length: float | None = optional(
-        surface.LENGTH,
+        LENGTH,
         "2 mm",
         "length of the strips from which filters are estimated",
         "16 windows, or the length of the map",
@@ -189,33 +190,33 @@ class NoiseKeys(form.Section):
         "that of a section with the widths of foot and head",
     )
     sleeper_length: float = key(
-        surface.LENGTH, "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
+        LENGTH, "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
     )
     sleeper_width: float = key(
-        surface.LENGTH,
+        LENGTH,
         "0.25 m",
         "width of a sleeper that radiates: of its top, with its sloping sides",
         "10 mm to 10 m: sleepers lie between",
     )
     wheel_width: float = key(
-        surface.LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
+        LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
     )
     axle_positions: tuple[float, ...] | None = optional(
-        ListOf(surface.POSITION, least=1, rising=True),
+        ListOf(POSITION, least=1, rising=True),
         ["0 m", "2.5 m", "19 m", "21.5 m"],
         "axles of the vehicle that passes, behind its first; each has two wheels, on two rails",
         "the contacts that roll",
         "0 m to 1 km: trains are shorter",
     )
     wheelbase: float | None = optional(
-        surface.LENGTH,
+        LENGTH,
         "2.5 m",
         "distance of the two axles of a bogie that passes, instead of axle_positions",
         "the contacts that roll",
         "0.1 m to 100 m: axles are as far apart",
     )
     vehicle_length: float | None = optional(
-        surface.LENGTH,
+        LENGTH,
         "26.4 m",
         "length of the vehicle over its buffers, from which the pass-by time follows",
         "half a mean distance of the axles beyond the outer ones",
@@ -235,13 +236,13 @@ class NoiseKeys(form.Section):
         goes_with="vehicle_length",
     )
     receiver_distance: float = key(
-        surface.LENGTH,
+        LENGTH,
         "7.5 m",
         "distance of the receiver from the middle of the track",
         "1 m to 1 km: farther away air and weather decide",
     )
     receiver_height: float = key(
-        surface.POSITION,
+        POSITION,
         "1.2 m",
         "height of the receiver above the rail head",
         "1 mm to 100 m: sound comes over ground",
@@ -260,7 +261,7 @@ class NoiseKeys(form.Section):
         "1 kPa s/m^2 to 1 GPa s/m^2: snow is no softer, and rock no harder",
     )
     ground_depth: float = key(
-        surface.POSITION,
+        POSITION,
         "0.5 m",
         "depth of that ground below the rail head",
         "1 mm to 20 m: embankments lie between",
@@ -272,7 +273,7 @@ class NoiseKeys(form.Section):
         "how rail, sleepers and wheel radiate: evenly, or by CNOSSOS-EU with the same power",
     )
     rail_distance: float | None = optional(
-        surface.LENGTH,
+        LENGTH,
         "1.5 m",
         "distance of both rails, each with half of the power",
         "both in the middle of the track",
@@ -285,15 +286,9 @@ class NoiseKeys(form.Section):
         "one-third octave (Hz), level (dB, or in a file dB(A))",
         _NOTHING,
     )
-    measured_maximum_level: float | None = optional(
-        Quantity("dB"), "87 dB", "measured L_pAFmax", _NOTHING, _HEARD
-    )
-    measured_equivalent_level: float | None = optional(
-        Quantity("dB"), "85 dB", "measured L_pAeq,Tp", _NOTHING, _HEARD
-    )
-    measured_exposure_level: float | None = optional(
-        Quantity("dB"), "86 dB", "measured TEL", _NOTHING, _HEARD
-    )
+    measured_maximum_level: float | None = optional(LEVEL, "87 dB", "measured L_pAFmax", _NOTHING, _HEARD)
+    measured_equivalent_level: float | None = optional(LEVEL, "85 dB", "measured L_pAeq,Tp", _NOTHING, _HEARD)
+    measured_exposure_level: float | None = optional(LEVEL, "86 dB", "measured TEL", _NOTHING, _HEARD)
 
     def axles_behind(self, contacts: tuple[float, ...]) -> tuple[float, ...]:
         """Axles of one vehicle behind its first, m: as given, else the contacts, which are so far behind."""

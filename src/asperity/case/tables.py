@@ -365,11 +365,9 @@ def heading_of(lines: Sequence[list[str]], dimensions: Sequence[str]) -> list[st
     *above, last = fitting
     if any(unit_of(*each) for each in zip(last, dimensions, strict=True)):
         bare = all(cell[:1] in "([" for cell in last)
-        return (
-            [f"{title} {unit}" for title, unit in zip(above[-1], last, strict=True)]
-            if bare and above
-            else last
-        )
+        if bare and above:
+            return [f"{title} {unit}" for title, unit in zip(above[-1], last, strict=True)]
+        return last
     if above and all(map(_is_unit, last, dimensions)):
         return [f"{title} ({unit})" for title, unit in zip(above[-1], last, strict=True)]
     return last
