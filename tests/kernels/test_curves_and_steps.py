@@ -6,10 +6,9 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.linalg import expm
 
-from asperity.kernels.along import splines_along
+from asperity.kernels.curves import shape_preserving, splines_along
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
 from asperity.kernels.lanes import width
-from asperity.kernels.piecewise import shape_preserving
 from asperity.kernels.scanning import continue_pressure, correct_start, misfits
 from asperity.kernels.stepping import refine
 from asperity.rolling.steps import modal_coefficients

@@ -3,7 +3,7 @@
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike
-from asperity.kernels.piecewise import monotone_slopes
+from asperity.kernels.curves import monotone_slopes
 from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.spec import Law
 from asperity.reduction.stiffness import PIECE, ForceCurve, ForceTable

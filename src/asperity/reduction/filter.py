@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg import cho_factor, cho_solve
 
 from asperity.arguments import Array, ArrayLike, NDArray, require
-from asperity.kernels.piecewise import shape_preserving
+from asperity.kernels.curves import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
 from asperity.spectra import hann_window
 from asperity.threads import one_thread_in_linear_algebra

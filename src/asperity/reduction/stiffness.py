@@ -8,8 +8,13 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
-from asperity.kernels.along import OVERLAP, splines_along
-from asperity.kernels.piecewise import continued_to_touch, cubic_coefficients, monotone_slopes
+from asperity.kernels.curves import (
+    OVERLAP,
+    continued_to_touch,
+    cubic_coefficients,
+    monotone_slopes,
+    splines_along,
+)
 from asperity.progress import Progress, counted
 from asperity.reduction.texture import grid_index
 from asperity.threads import in_order

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
 from asperity.arguments import Array, ArrayLike, require
-from asperity.kernels.along import splines_along
+from asperity.kernels.curves import splines_along
 from asperity.surfaces.strip import Rows, Strip
 
 

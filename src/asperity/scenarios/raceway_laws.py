@@ -15,7 +15,7 @@ from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz
 from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
 from asperity.errors import Grade, OutOfRangeWarning
-from asperity.kernels.along import OVERLAP
+from asperity.kernels.curves import OVERLAP
 from asperity.kernels.pointforce import Prepared
 from asperity.laws import Law, Need, spec_of
 from asperity.laws.areal import Areal

@@ -13,7 +13,7 @@ from numpy.polynomial.legendre import leggauss
 
 from asperity.arguments import Array, ArrayLike, one_of, positive, real, require
 from asperity.errors import InputError
-from asperity.kernels.along import STRIDE, add_near_fields, turn_on
+from asperity.kernels.curves import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
 from asperity.structures.modal import Modal, Pieces, modal_receptance, pieces_of, shapes_at
 

@@ -11,7 +11,7 @@ import scipy
 
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real, real_array, require
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.kernels.piecewise import evaluate_pieces
+from asperity.kernels.curves import evaluate_pieces
 
 
 class Modal(Protocol):
