@@ -16,13 +16,7 @@ from asperity.reporting.chart import Line
 from asperity.reporting.data import unless_missing
 from asperity.running import prepare_case
 from asperity.scenes import noise
-from asperity.scenes.figures.noise import (
-    noise_answers,
-    pass_by_level,
-    pass_by_table,
-    radiated_power_bands,
-    sound_power_table,
-)
+from asperity.scenes.figures import noise as figures
 from asperity.scenes.noise import RADIATORS, pass_by_group, rail_section, rolling_sound_power, silent_wheel
 from asperity.scenes.track import planned_track
 from asperity.schema import group
@@ -194,25 +188,25 @@ def test_a_flat_on_a_smooth_rail_without_a_linear_law_has_a_sound_power(runs):
 
 def test_the_report_shows_it_beside_cnossos(run, ringing):
     _, tree = run
-    lines, spectra = radiated_power_bands.collect(tree), tree["spectra"]
+    lines, spectra = figures.radiated_power_bands.collect(tree), tree["spectra"]
     found = lines.columns()["track by CNOSSOS-EU, linear [dB re 1 pW]"]
     known = np.isfinite(found)
     np.testing.assert_allclose(found[known], spectra["sound_power_level"].values[0, 0])
     assert lines.at[known] == pytest.approx(spectra["noise_band"].values)
     labels, own = (
         [mark.label for mark in chart.panels[0].marks if isinstance(mark, Line)]
-        for chart in (radiated_power_bands.drawn(found).chart for found in (tree, ringing))
+        for chart in (figures.radiated_power_bands.drawn(found).chart for found in (tree, ringing))
     )
     assert labels[:3] == ["rail", "sleepers", "total"]
     assert "wheel" in own
-    table, level = sound_power_table(tree), levels(tree, "radiated_power_level_a")
+    table, level = figures.sound_power_table(tree), levels(tree, "radiated_power_level_a")
     rail, sleepers, total = (f"{level[name]:.1f}" for name in ("rail", "sleepers", "total"))
     known = {"rail": rail, "sleepers": sleepers, "rail and sleepers": total, "wheel": "–", "total": total}
     assert dict(zip(table.head, (cell.text for cell in table.rows[0]), strict=True)).items() >= known.items()
     missing = "The wheel's part is missing, and the total is that of rail and sleepers: of this wheel it"
     assert missing in table.note
-    assert "missing" not in sound_power_table(ringing).note
-    answers = noise_answers(tree)
+    assert "missing" not in figures.sound_power_table(ringing).note
+    answers = figures.noise_answers(tree)
     assert answers.numbers[0].value == f"{total} dB(A)"
     assert "without the wheel" in answers.numbers[0].note
     assert answers.lead.startswith(f"By vibration the rail decides: {rail} of {total} dB(A)")
@@ -316,10 +310,10 @@ def test_ground_directivity_and_rails_are_those_of_the_case():
 
 def test_what_is_said_of_ground_and_directivity():
     by = passed(ground="asphalt", directivity="cnossos")
-    said = pass_by_level.drawn(xarray.DataTree.from_dict({"/pass_by": by})).caption
+    said = figures.pass_by_level.drawn(xarray.DataTree.from_dict({"/pass_by": by})).caption
     assert "ground: asphalt" in said
     assert "directivity: cnossos" in said
-    plain = pass_by_level.drawn(xarray.DataTree.from_dict({"/pass_by": passed()})).caption
+    plain = figures.pass_by_level.drawn(xarray.DataTree.from_dict({"/pass_by": passed()})).caption
     assert "ground: hard" in plain
     assert "directivity: even" in plain
 
@@ -350,9 +344,12 @@ def test_figure_and_table_say_what_passes():
     assert_allclose(by["axle_time"], [0.0, 0.05])
     assert_allclose(by.attrs["rear_time"] - by.attrs["front_time"], 5.0 / 50.0)
     tree = xarray.DataTree.from_dict({"/pass_by": by})
-    assert "2 axles pass (ticks), two wheels on each, 7.5 m" in pass_by_level.drawn(tree).caption
-    table = pass_by_table(tree)
+    assert "2 axles pass (ticks), two wheels on each, 7.5 m" in figures.pass_by_level.drawn(tree).caption
+    table = figures.pass_by_table(tree)
     assert [row[1].text for row in table.rows] == ["total", "rail", "sleepers"]
     assert table.head[2:] == ["L_pAFmax / dB(A)", "L_pAeq,Tp / dB(A)", "TEL / dB(A)", "SEL / dB(A)"]
-    assert len(pass_by_level.drawn(tree).columns) == 4  # time, rail, sleepers, total
-    assert unless_missing(pass_by_table, xarray.DataTree.from_dict({"/pass_by": xarray.Dataset()})) is None
+    assert len(figures.pass_by_level.drawn(tree).columns) == 4  # time, rail, sleepers, total
+    assert (
+        unless_missing(figures.pass_by_table, xarray.DataTree.from_dict({"/pass_by": xarray.Dataset()}))
+        is None
+    )
