@@ -10,8 +10,15 @@ from asperity import Track, Wheel
 from asperity.scenes.track import loss_factor_error
 from asperity.structures.causal_track import causal_track
 from asperity.structures.mobility import dissipated_power
-from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
-from asperity.structures.support import BendingSleeper, RigidMass, Spring, tuned_damper
+from asperity.structures.support import (
+    BendingSleeper,
+    RigidMass,
+    Spring,
+    StiffnessTable,
+    preloads_of,
+    stiffness_at_preload,
+    tuned_damper,
+)
 from asperity.structures.track_parameters import Bays
 from refusals import refusals
 from superposed import free_rail, superposed

@@ -30,8 +30,13 @@ from asperity.parameters import (
 )
 from asperity.reference.materials import Material
 from asperity.reference.railways import TRACKS
-from asperity.structures.stiffness_table import StiffnessTable, preloads_of, stiffness_at_preload
-from asperity.structures.support import MeasuredSleeper, measured_sleeper
+from asperity.structures.support import (
+    MeasuredSleeper,
+    StiffnessTable,
+    measured_sleeper,
+    preloads_of,
+    stiffness_at_preload,
+)
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import LAYERS, MOST_BAYS, Bays
 from asperity.surfaces.heightmap import Profile

@@ -18,7 +18,7 @@ from asperity.case.form import name_of
 from asperity.errors import InputError
 from asperity.parameters import FROM_PYTHON, File, Origin, Problems
 from asperity.spectra import energy_sum
-from asperity.structures import stiffness_table, support, track_parameters
+from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
@@ -196,8 +196,8 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
         real = rows[:, 1] / np.hypot(1.0, rows[:, 2])
         rows = np.column_stack([rows[:, 0], real, real * rows[:, 2], rows[:, 3:]])
     try:
-        for preload in stiffness_table.preloads_of(rows):
-            stiffness_table.stiffness_at_preload(rows, preload)
+        for preload in support.preloads_of(rows):
+            support.stiffness_at_preload(rows, preload)
     except InputError as error:
         raise error.about(name_of(table), f"{error.received} ({error.what})") from None
     return rows

@@ -18,8 +18,7 @@ from scipy.linalg import block_diag
 from asperity.arguments import Array, Complex, NDArray
 from asperity.spectra import third_octave_bands
 from asperity.store import Store, content_key, made
-from asperity.structures.stiffness_table import StiffnessTable
-from asperity.structures.support import ConstantLoss, Losses, Relaxation, relaxing
+from asperity.structures.support import ConstantLoss, Losses, Relaxation, StiffnessTable, relaxing
 from asperity.structures.track import Track
 from asperity.structures.track_parameters import Relaxations
 

@@ -10,7 +10,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, shown
 from asperity.errors import InputError
 from asperity.reference.railways import named_track
-from asperity.structures import periodic_rail, stiffness_table, track_parameters
+from asperity.structures import periodic_rail, track_parameters
 from asperity.structures import support as chains
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
 
@@ -197,7 +197,7 @@ class Track(track_parameters.TrackParameters):
         return {
             part: losses
             for part, losses in parts.items()
-            if isinstance(losses, stiffness_table.StiffnessTable)
+            if isinstance(losses, chains.StiffnessTable)
             or (isinstance(losses, chains.ConstantLoss) and losses.factor)
         }
 

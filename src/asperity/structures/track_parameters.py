@@ -8,8 +8,7 @@ import numpy as np
 from asperity.arguments import Array, not_negative, require, shown, whole
 from asperity.errors import InputError
 from asperity.parameters import Flag, Number, Quantity, checked_parameters, keys_of, parameter
-from asperity.structures.stiffness_table import StiffnessTable
-from asperity.structures.support import MeasuredSleeper, Relaxation
+from asperity.structures.support import MeasuredSleeper, Relaxation, StiffnessTable
 
 MOST_BAYS = 100
 """Of a cell: waves are kept of each of them, some ten megabytes."""
