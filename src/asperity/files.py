@@ -42,29 +42,36 @@ def atomic_write(
     """
     path = Path(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        if path.parent not in _swept:  # what an earlier process left there
-            _swept.add(path.parent)
-            remove_left_overs(path.parent)
-        file = _new_part(path)
-        part = Path(file.name)
-        try:
-            with file:
-                write(file)
-                if sealed:
-                    file.write(_seal_of(file, file.seek(0, os.SEEK_END)))
-                file.flush()
-                if lasting:
-                    os.fsync(file.fileno())
-                if fcntl is not None:  # while it is locked nobody takes it for a left-over
-                    os.replace(part, path)
-            if fcntl is None:
-                os.replace(part, path)
-        finally:
-            with suppress(OSError):
-                part.unlink()
+        return replace(path, write, sealed=sealed, lasting=lasting)
     except OSError as error:
         raise _not_written(path, error) from error
+
+
+def replace(
+    path: Path, write: Callable[[BinaryIO], object], *, sealed: bool = False, lasting: bool = True
+) -> Path:
+    """Write a file as `atomic_write` does, for those who go on without it: failures are OSErrors."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.parent not in _swept:  # what an earlier process left there
+        _swept.add(path.parent)
+        remove_left_overs(path.parent)
+    file = _new_part(path)
+    part = Path(file.name)
+    try:
+        with file:
+            write(file)
+            if sealed:
+                file.write(_seal_of(file, file.seek(0, os.SEEK_END)))
+            file.flush()
+            if lasting:
+                os.fsync(file.fileno())
+            if fcntl is not None:  # while it is locked nobody takes it for a left-over
+                os.replace(part, path)
+        if fcntl is None:
+            os.replace(part, path)
+    finally:
+        with suppress(OSError):
+            part.unlink()
     return path
 
 

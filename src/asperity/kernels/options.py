@@ -30,7 +30,7 @@ from typing import Any
 
 from numba import njit
 
-from asperity.files import atomic_write, is_sealed
+from asperity.files import is_sealed, replace
 from asperity.progress import COMPILATION
 from asperity.store import KERNELS, is_private, kernel_folders
 
@@ -173,8 +173,8 @@ def _written(folder: Path, name: str, payload: bytes) -> bool:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if not is_private(folder):
             return False
-        atomic_write(folder / name, lambda file: file.write(payload), sealed=True, lasting=False)
-    except Exception:  # a disk that is full, or read only
+        replace(folder / name, lambda file: file.write(payload), sealed=True, lasting=False)
+    except OSError:
         return False
     return True
 
