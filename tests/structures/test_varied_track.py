@@ -51,6 +51,9 @@ def test_a_stretch_of_it_answers_like_one_bay():
         seen = np.sum(there.outgoing(x) * carried * here.coefficients * here.incoming(x0), axis=0)
         exact = cell.receptance(9 * length + x, length + x0)
         assert seen == pytest.approx(exact, rel=1e-10, abs=1e-60)
+    nodes = np.linspace(0.0, length, 5)
+    for of_nodes, of_places in zip(here.shapes_at_nodes(4), here.symmetric_shapes(nodes), strict=True):
+        assert of_nodes == pytest.approx(of_places, rel=1e-12)
     assert cell.carried(-9, -6) == pytest.approx(cell.carried(1, 4), rel=1e-12)
     assert cell.carried(9, 1) == pytest.approx(
         np.prod([cell.bay(n).multipliers for n in range(1, 9)], axis=0), rel=1e-6, abs=0.0

@@ -133,7 +133,7 @@ def test_missing_points_are_left_out():
 @pytest.mark.parametrize("columns", [1, 8, 9])
 def test_products_at_lags_are_those_of_direct_sums(columns):
     z, side = np.random.default_rng(5).standard_normal((11, columns)), columns // 2
-    sums, pairs = spectra.lag_products(z, 4)
+    sums, pairs = spectra.lag_products(z, 4), spectra.lag_pairs(*z.shape, 4)
     assert sums.shape == pairs.shape == (9, 2 * side + 1)
     for along in range(5):
         for across in range(-side, side + 1):

@@ -88,9 +88,7 @@ class _Waves:
         """Waves at the nodes of a bay near a point, by side (NODES + 1, 2, all f)."""
         bay %= self.track.cell_bays
         if bay not in self._near:
-            nodes = np.linspace(0.0, self.track.sleeper_spacing, NODES + 1)
-            shapes = self.grid.waves.bay(bay).symmetric_shapes(nodes)
-            self._near[bay] = dict(zip((1, -1), shapes, strict=True))
+            self._near[bay] = dict(zip((1, -1), self.grid.waves.bay(bay).shapes_at_nodes(NODES), strict=True))
         return self._near[bay]
 
     def shares(self, places: Array) -> Array:

@@ -17,7 +17,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.scene import PreparedCase
 from asperity.spectra import psd
 from asperity.structures.track import Track
-from asperity.surfaces.spectra import CORRELATION_THRESHOLD, lag_products
+from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
 from asperity.threads import thread_count
 
@@ -93,10 +93,17 @@ def correlation_lengths(heights: Array, spacing: tuple[float, float]) -> tuple[f
 
     The threshold is that of ISO 25178-2 for Sal. Where it is not reached: half the length, or half the width.
     """
-    furthest, beside = (size // 2 for size in heights.shape)
-    products, pairs = lag_products(heights, furthest)
-    mean = products / pairs
-    return _fallen(mean[furthest:, beside], spacing[0]), _fallen(mean[furthest, beside:], spacing[1])
+    rows, columns = heights.shape
+    furthest = rows // 2
+    period = fft.next_fast_len(rows + furthest, real=True)
+    spectra = fft.rfft(heights, period, axis=0, workers=thread_count())
+    power = np.sum(spectra.real**2 + spectra.imag**2, axis=1)
+    along = fft.irfft(power, period)[: furthest + 1] / (columns * (rows - np.arange(furthest + 1)))
+    across = [
+        np.einsum("xy,xy->", heights[:, : columns - lag], heights[:, lag:]) / (rows * (columns - lag))
+        for lag in range(columns // 2 + 1)
+    ]
+    return _fallen(along, spacing[0]), _fallen(np.array(across), spacing[1])
 
 
 def _fallen(products: Array, step: float) -> float:

@@ -83,6 +83,10 @@ class CellWaves:
         at = [float(x) for x in places]
         return np.array([self.outgoing(x) for x in at]), np.array([self.incoming(x) for x in at])
 
+    def shapes_at_nodes(self, count: int) -> tuple[Complex, Complex]:
+        """As `symmetric_shapes`, at the ends of so many equal parts of the stretch."""
+        return self.symmetric_shapes(np.linspace(0.0, self.spacing, count + 1))
+
     def receptance(self, x: float, x0: float) -> Complex:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from the first support, m."""
         whole = replace(self, start=0.0)

@@ -156,7 +156,19 @@ class PeriodicWaves:
 
         The first decay towards growing x, the second grow: `outgoing` and `incoming` for less work.
         """
-        sines = np.sin(self.wavenumbers * places[:, None, None])
+        return self._of_sines(np.sin(self.wavenumbers * places[:, None, None]))
+
+    def shapes_at_nodes(self, count: int) -> tuple[Complex, Complex]:
+        """As `symmetric_shapes`, at the ends of so many equal parts of the bay; sines follow one another."""
+        step = self.wavenumbers * (self.spacing / count)
+        sines = np.zeros((count + 1, *step.shape), complex)
+        sines[1], twice = np.sin(step), 2.0 * np.cos(step)
+        for node in range(2, count + 1):
+            np.multiply(twice, sines[node - 1], out=sines[node])
+            sines[node] -= sines[node - 2]
+        return self._of_sines(sines)
+
+    def _of_sines(self, sines: Complex) -> tuple[Complex, Complex]:
         near = np.einsum("ijf,pif->pjf", self.weights, sines)
         return near[::-1] + self.multipliers * near, near[::-1] + near / self.multipliers
 

@@ -96,26 +96,31 @@ def autocorrelation(surface: HeightMap) -> Array:
     """
     z = _complete(surface)
     require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
-    products, pairs = lag_products(z, len(z) // 2)
-    mean = products / pairs
+    mean = lag_products(z, len(z) // 2) / lag_pairs(*z.shape, len(z) // 2)
     return np.asarray(mean / mean[len(z) // 2, z.shape[1] // 2])
 
 
-def lag_products(heights: Array, reach: int) -> tuple[Array, Array]:
+def lag_pairs(rows: int, columns: int, reach: int, pieces: int = 1) -> Array:
+    """Numbers of pairs of points at the lags of `lag_products`, of so many rows in all, cut into pieces."""
+    along, across = (np.abs(np.arange(-n, n + 1)) for n in (reach, columns // 2))
+    return np.outer(rows - pieces * along, columns - across)
+
+
+def lag_products(heights: Array, reach: int) -> Array:
     """Sums of products of heights about the mean, m², at lags up to `reach` along x and half of all across.
 
-    And the numbers of pairs: both (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle.
+    Of shape (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle.
     """
     (rows, columns), workers = heights.shape, thread_count()
     side, length = columns // 2, fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags
+    width = fft.next_fast_len(columns + side)
     spectrum = fft.rfft(heights, length, axis=0, workers=workers)
-    spectrum = fft.fft(spectrum, fft.next_fast_len(columns + side), axis=1, overwrite_x=True, workers=workers)
-    across = fft.ifft(spectrum.real**2 + spectrum.imag**2, axis=1, overwrite_x=True, workers=workers)
-    half = fft.irfft(across[:, : side + 1], length, axis=0, overwrite_x=True, workers=workers)
+    spectrum = fft.fft(spectrum, width, axis=1, overwrite_x=True, workers=workers)
+    power = spectrum.real**2 + spectrum.imag**2
+    across = np.conj(fft.rfft(power, axis=1, workers=workers)[:, : side + 1]) / width
+    half = fft.irfft(across, length, axis=0, overwrite_x=True, workers=workers)
     half = np.concatenate([half[length - reach :], half[: reach + 1]])
-    lags = (np.abs(np.arange(-n, n + 1)) for n in (reach, side))
-    pairs = np.outer(*(n - lag for n, lag in zip((rows, columns), lags, strict=True)))
-    return np.hstack([half[::-1, :0:-1], half]), pairs  # the same at a lag and its opposite
+    return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
 
 
 def autocorrelation_lengths(surface: HeightMap) -> tuple[float, float]:

@@ -10,9 +10,8 @@ import scipy
 
 from asperity.arguments import Array, require
 from asperity.spectra import psd
-from asperity.surfaces import cleaning, levelling, synthesis
+from asperity.surfaces import cleaning, levelling, spectra, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.spectra import autocorrelation_lengths, lag_products, lengths_of, texture_direction
 from asperity.surfaces.strip import Strip
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
@@ -84,8 +83,8 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     slopes = {"dq": np.sqrt(np.nanmean(square)), "dr": np.nanmean(np.sqrt(1.0 + square)) - 1.0}
     whole, texture = cleaning.nearly_complete(surface), dict.fromkeys(("al", "tr", "td"), np.nan)
     if whole is not None:
-        shortest, longest = autocorrelation_lengths(whole)
-        texture = {"al": shortest, "tr": shortest / longest, "td": texture_direction(whole)}
+        shortest, longest = spectra.autocorrelation_lengths(whole)
+        texture = {"al": shortest, "tr": shortest / longest, "td": spectra.texture_direction(whole)}
     values = _amplitudes(*_powers(surface.heights)) | slopes | texture | stratified(surface.heights)
     return _statistics("S", values, bandwidth or (2.0 * min(surface.spacing), max(surface.size)))
 
@@ -236,20 +235,21 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     def sums(start: int, end: int) -> tuple[Array, ...]:
         before, beyond = max(first, start - MARGIN), min(stop, end + MARGIN)
         rows, inner = strip.rows(before, beyond) - mean, slice(start - before, end - before)
-        return *_sums(rows, inner, strip.spacing, segment), *lag_products(rows[inner], reach)
+        return *_sums(rows, inner, strip.spacing, segment), spectra.lag_products(rows[inner], reach)
 
     added = reduce(lambda these, those: tuple(map(np.add, these, those)), starmap(sums, bounds))
-    powers, slopes, spectra, segments, products, pairs = added
+    powers, slopes, densities, segments, products = added
     statistics = []
     if high > low:
         sides = (stop - first) * strip.spacing[0], strip.shape[1] * strip.spacing[1]
         values = _amplitudes(powers / points, high - low)
         values |= {"dq": np.sqrt(slopes[0] / slopes[2]), "dr": slopes[1] / slopes[2]}
-        shortest, longest = lengths_of(products / pairs, strip.spacing)
+        pairs = spectra.lag_pairs(stop - first, strip.shape[1], reach, len(bounds))
+        shortest, longest = spectra.lengths_of(products / pairs, strip.spacing)
         values |= {"al": shortest, "tr": shortest / longest}
         statistics = _statistics("S", values, (2.0 * min(strip.spacing), max(sides)))
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
-    return StripSurvey(statistics, wavenumber, np.asarray(spectra / segments))
+    return StripSurvey(statistics, wavenumber, np.asarray(densities / segments))
 
 
 def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int, int]]:
