@@ -220,9 +220,17 @@ def over_the_period(values: NDArray[Any], bays: int) -> NDArray[Any]:
     At equal places, `CELLS` to a bay and both ends of the period, by a periodic cubic spline.
     """
     count = len(values)
-    around = np.concatenate([values, values[:1]])
-    spline = scipy.interpolate.CubicSpline(np.arange(count + 1), around, bc_type="periodic")
-    return np.asarray(spline(np.linspace(0.0, count, CELLS * bays + 1)))
+    coefficients = scipy.ndimage.spline_filter1d(values, axis=0, output=values.dtype, mode="grid-wrap")
+    place, share = np.divmod(np.linspace(0.0, count, CELLS * bays + 1), 1.0)
+    nearest = (place[:, None].astype(int) + np.arange(-1, 3)) % count
+    return np.einsum("pk,pk...->p...", cubic_weights(share), coefficients[nearest])
+
+
+def cubic_weights(share: Array) -> Array:
+    """Weights (p, 4) of the coefficients of a cubic B-spline at shares (p,) of the way between two knots."""
+    rest = 1.0 - share
+    inner = [3.0 * x**3 - 6.0 * x**2 + 4.0 for x in (share, rest)]
+    return np.stack([rest**3, *inner, share**3], axis=1) / 6.0
 
 
 NEGLIGIBLE = 0.01
