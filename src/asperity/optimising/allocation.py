@@ -1,24 +1,20 @@
 """How much roughness each band of wavelengths may bear: by what each adds to the response, and by trials."""
 
-import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
-from scipy.optimize import Bounds, minimize, minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
-from asperity.threads import one_thread_in_linear_algebra
 
-DECIBELS = 10.0 / math.log(10.0)
-"""Of a ratio of energies whose logarithm is one."""
 SLACK = 1e-6
 """By which a solution may miss a limit, dB or price."""
-PRECISION = {"ftol": 1e-12, "maxiter": 500}
+FREE, UNHEARD = 1e-6, 1e-12
+"""Of the highest price, and of the largest weight, what a band without any has: its share is a number."""
 _NOTHING = "no texture within the limits was found"
 _WIDER = "wider bounds of the levels, of the rms height or of the price"
 
@@ -77,18 +73,13 @@ def rms_of(levels: Array) -> float:
     return float(1e-6 * np.sqrt(energy_of(levels).sum()))
 
 
-Valued = Callable[[Array], tuple[float, Array]]
-"""A function of levels (b,), dB, with its derivatives (b,), 1/dB."""
-
-
 def quietest(response: Response, limits: Limits) -> Array:
     """Find the levels (b,), dB, with the least response within limits.
 
     What is found is the best there is: the problem is convex in the bands' energies. Raises
     `ComputationError` where nothing lies within the limits.
     """
-    heard = _log_of_sum(response.weights, response.floor)
-    return _best(limits, heard, (-1.0, _cost(limits), limits.budget))
+    return _balanced(response, limits, lambda levels: limits.budget - limits.cost(levels), cheap=False)
 
 
 def roughest(response: Response, limits: Limits, level: float) -> Array:
@@ -97,49 +88,82 @@ def roughest(response: Response, limits: Limits, level: float) -> Array:
     Where nothing else binds, each band adds to the response in proportion to its price:
     weight 10^(L/10) = price (10^(level/10) − floor)/Σ price. Convex, as `quietest`; raises the same.
     """
-    heard = _log_of_sum(response.weights, response.floor)
-    found = _best(limits, _cost(limits), (-1.0, heard, level / DECIBELS))
+    found = _balanced(response, limits, lambda levels: level - response.level(levels), cheap=True)
     if limits.cost(found) > limits.budget + SLACK:
         raise ComputationError(f"{_NOTHING} (its price is {limits.cost(found):.3g})", _WIDER)
     return found
 
 
-def _cost(limits: Limits) -> Valued:
-    return lambda levels: (limits.cost(levels), -limits.price)
+def _balanced(response: Response, limits: Limits, left: Callable[[Array], float], *, cheap: bool) -> Array:
+    """Levels that leave nothing of a limit; where those leave some, the cheapest, or the quietest of all."""
+
+    def of(silence: float) -> float:
+        return left(_shared(response, limits, silence))
+
+    cheapest, softest = _shared(response, limits, 0.0), _least_heard(response, limits)
+    if max(left(cheapest), left(softest)) < -SLACK:
+        raise ComputationError(f"{_NOTHING} (a limit excludes the others)", _WIDER)
+    best, below = cheapest if cheap else softest, 0.0
+    if left(best) >= 0.0:
+        return best
+    low, high, *_ = _energies(limits)
+    shares = _at_least(limits.price, FREE) / _at_least(response.weights, UNHEARD)
+    for silence in 10.0 ** np.arange(np.log10((shares / high).min()), np.log10((shares / low).max()) + 1.0):
+        if of(silence) * left(cheapest) <= 0.0:
+            return _shared(response, limits, _root(of, below, silence))
+        below = silence
+    return softest
 
 
-def _log_of_sum(weights: Array, floor: float = 0.0) -> Valued:
-    """Logarithm of a floor and what each band adds to it."""
-
-    def of(levels: Array) -> tuple[float, Array]:
-        each = weights * energy_of(levels)
-        total = floor + each.sum()
-        return float(np.log(total)), each / total / DECIBELS
-
-    return of
+def _root(of: Callable[[float], float], low: float, high: float) -> float:
+    return float(brentq(of, low, high, xtol=1e-300, rtol=1e-15))
 
 
-def _best(limits: Limits, least: Valued, *kept: tuple[float, Valued, float]) -> Array:
-    """Levels within limits at which one function is least, others above (1.0) or below (−1.0) bounds."""
-    rms = zip((1.0, -1.0), (limits.rms_at_least, limits.rms_at_most), strict=True)
-    rough = _log_of_sum(np.ones_like(limits.start))
-    every = [*kept, *((sign, rough, 2.0 * math.log(1e6 * bound)) for sign, bound in rms if bound)]
-    constraints: list[Any] = [
-        {
-            "type": "ineq",
-            "fun": lambda x, sign=sign, of=of, bound=bound: sign * (of(x)[0] - bound),
-            "jac": lambda x, sign=sign, of=of: sign * of(x)[1],
-        }
-        for sign, of, bound in every
-        if math.isfinite(bound)
-    ]
-    start, box = np.clip(limits.start, limits.lowest, limits.highest), Bounds(limits.lowest, limits.highest)
-    how: Any = {"jac": True, "bounds": box, "constraints": constraints, "options": PRECISION}
-    with one_thread_in_linear_algebra():  # more take many times as long for so few numbers
-        levels = minimize(least, start, method="SLSQP", **how).x
-    if any(each["fun"](levels) < -SLACK for each in constraints):
-        raise ComputationError(f"{_NOTHING} (limits exclude each other)", _WIDER)
-    return np.clip(levels, limits.lowest, limits.highest)
+def _least_heard(response: Response, limits: Limits) -> Array:
+    """Levels whatever they cost: as low as they may be, and the least rms height where it is heard least."""
+    low, high, least, _ = _energies(limits)
+    order = np.argsort(response.weights)
+    room = (high - low)[order]
+    low[order] += np.clip(least - low.sum() - (np.cumsum(room) - room), 0.0, room)
+    return _levels(low, limits)
+
+
+def _energies(limits: Limits) -> tuple[Array, Array, float, float]:
+    """Bounds of the energies of each band (b,), and of all together, µm²."""
+    low, high = energy_of(limits.lowest), energy_of(limits.highest)
+    least, most = ((1e6 * rms) ** 2 for rms in (limits.rms_at_least, limits.rms_at_most))
+    if least > high.sum() * (1.0 + SLACK) or most < low.sum() * (1.0 - SLACK):
+        raise ComputationError(f"{_NOTHING} (bounds of levels and rms height exclude each other)", _WIDER)
+    return low, high, least, most
+
+
+def _levels(energies: Array, limits: Limits) -> Array:
+    return np.clip(10.0 * np.log10(energies), limits.lowest, limits.highest)
+
+
+def _at_least(values: Array, share: float) -> Array:
+    return np.maximum(values, share * (values.max() or 1.0))
+
+
+def _shared(response: Response, limits: Limits, silence: float) -> Array:
+    """Levels of which each band's energy is price/(silence weight − relief), between its bounds.
+
+    They are the best at that weight of silence over price: by its energy e the price of a band falls as
+    price/e, and the response grows as its weight. The relief is that of the limits of the rms height.
+    """
+    (low, high, least, most), price = _energies(limits), _at_least(limits.price, FREE)
+    heard = silence * _at_least(response.weights, UNHEARD)
+
+    def energies(relief: float) -> Array:
+        below = heard - relief
+        return np.clip(np.divide(price, below, out=np.full_like(low, np.inf), where=below > 0.0), low, high)
+
+    found = energies(0.0)
+    wanted = float(np.clip(found.sum(), max(least, low.sum()), min(most, high.sum())))
+    if wanted != found.sum():
+        ends = heard.min() - (price / low).max(), heard.max()
+        found = energies(_root(lambda relief: energies(relief).sum() - wanted, *ends))
+    return _levels(found, limits)
 
 
 MOST_ROUNDS = 12

@@ -96,7 +96,7 @@ def autocorrelation(surface: HeightMap) -> Array:
     """
     z = _complete(surface)
     require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
-    mean = lag_products(z, len(z) // 2) / lag_pairs(*z.shape, len(z) // 2)
+    mean = lag_products(z, len(z) // 2) / lag_pairs(len(z), z.shape[1], len(z) // 2)
     return np.asarray(mean / mean[len(z) // 2, z.shape[1] // 2])
 
 
