@@ -151,7 +151,7 @@ def test_exposure_does_not_depend_on_the_spread(length):
     half = 4000.0  # m: arctan leaves 2/π d/half beyond it
     time = np.linspace(-half, half, 400_001) / 20.0
     integral = np.trapezoid(plain().squared_pressure(source, Passage([0.0], 20.0), time)[0], time)
-    assert_allclose(integral, closed * (1.0 - 2.0 / np.pi * D / half), rtol=5e-5)
+    assert_allclose(integral, closed * (1.0 - 2.0 / np.pi * D / half), rtol=2e-5)
 
 
 def test_axles_pass_one_after_the_other_the_same_before_and_after():

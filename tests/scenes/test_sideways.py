@@ -180,7 +180,7 @@ def test_with_the_same_power_and_decay_the_rail_is_heard_as_up_and_down(passing,
     edge = math.sqrt(up["band"][0] * up["band"][1]) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
     beside |= {schema.SIDEWAYS_FREQUENCY: edge, schema.LATERAL_DECAY_RATE: np.minimum(rate, [least, rate])}
     level = pass_by_group(case, up, beside)[schema.PASS_BY_LEVEL][0]
-    np.testing.assert_allclose(level[[4, 5]], level[[0, 2]], rtol=1e-9)  # on grids of their own
+    np.testing.assert_allclose(level[[4, 5]], level[[0, 2]], rtol=1e-12)
 
 
 def test_power_and_pass_by_say_the_vertical_part_the_sideways_part_and_the_sum(passing):
