@@ -49,11 +49,13 @@ def test_sizes_and_states_are_those_of_the_run(spacing):
     sizes = scan_sizes(prepared)
     expected = sizes["path"]
     tried = try_contacts(prepared, quiet)
+    compute(prepared_of(spacing=spacing, duration="2 ms", laws=["areal"]), quiet)
+    of_filters = Store().size()
     computed = compute(prepared, quiet)
     scanned, reduction = computed.scan, computed.reduction
     assert scanned.forces.shape == (expected.states, expected.positions)
-    planned, kept = sum(each.bytes for each in sizes.values()), Store().size()  # of the filters, too
-    assert 0.94 * planned < kept <= planned
+    assert Store().size() - of_filters == pytest.approx(expected.bytes, rel=0.05)
+    assert 0.93 * sizes["filters"].bytes < of_filters <= sizes["filters"].bytes
     assert 0 < scanned.counts.solved <= expected.solutions
     reach = np.ptp(reduction.approaches)
     np.testing.assert_allclose(tried.approaches, reduction.approaches, atol=0.1 * reach)
