@@ -62,7 +62,7 @@ def through(executor: futures.Executor, members: Sequence[Member]) -> Outcomes:
                     outcome = Failure.of(error)
                 else:
                     heart.finished += 1
-                yield given[future], outcome
+                yield given.pop(future), outcome
     except RuntimeError as error:  # broken, or shut down
         what = f"the executor takes no more members ({error})"
         raise ComputationError(what, "the same study again: it goes on where it was") from error
