@@ -209,11 +209,13 @@ def test_what_follows_the_load_is_steady_rolling_under_it():
 
 
 def test_what_drives_is_the_heat():
-    """That of the slip in each cell comes to it as cells shrink; in full slip it is µ N V |ξ|."""
+    """Of a contact as of forces; traction times slip comes to it as cells shrink. In full slip µ N V |ξ|."""
     missing = []
     for bodies in (creeping((1.7e-3, -3.3e-3, 1.7), cells=cells) for cells in (25, 49)):
         found = bodies.at(LOAD)
-        missing.append(1.0 - found.dissipated_power / bodies.power(forces_of(found)))
+        power = bodies.power(forces_of(found))
+        assert found.dissipated_power == pytest.approx(power, rel=1e-12)
+        missing.append(1.0 - found.work_of_slip * SPEED / power)
     assert 0.0 < 1.8 * missing[1] < missing[0] < 0.11
     sliding = creeping((0.02, 0.02, 0.0))
     heat = 0.3 * LOAD * SPEED * math.hypot(0.02, 0.02)

@@ -375,7 +375,7 @@ class CreepingBodies:
     def power(self, forces: Array) -> Array:
         """What forces and moment (3, ...) of steady rolling turn into heat, W: −V (F·ξ + M φ).
 
-        On a grid nearer than `SlidingContact.dissipated_power`, whose error is of first order.
+        That of `SlidingContact.dissipated_power`, of like bodies; unlike ones slip by their pressure, too.
         """
         return np.asarray(-self.speed * np.tensordot(self.creepage, forces, axes=1))
 

@@ -86,12 +86,26 @@ class SlidingContact:
         ξ, η (a shift: m) and spin φ, 1/m (a shift: rad).
     speed : float
         Rolling speed, m/s; zero for a shift.
+    work : float
+        What friction turns into heat over a rolled distance, J/m; of a shift J. Taken from forces and
+        creepages: see the notes.
+    elastic_energy : float
+        What the tractions store in both bodies, ½ ∫ traction · displacement, J.
     iterations, convolutions : int
         Of Newton's method, all solutions together.
     residual : float
         Largest slip against Coulomb's law, over the largest rigid slip.
     outcome : Outcome
         How the solution ended.
+
+    Notes
+    -----
+    `work` in steady rolling is what drives it, −(F_x ξ + F_y η + M φ), since what it stores stays the same;
+    in a step of a transient it is the mean of that before and after, less the growth of the elastic energy
+    over the distance, which may be below zero in a single step where the slip turns back; in a shift, each
+    cell slips under the mean of its bounds before and after. Where pressures stay as they are and slip goes
+    one way that is ∫ F · d(shift) less the growth of the elastic energy, however long the shift. In
+    rolling of unlike bodies the displacement by their pressure is counted, too: they need no force to slip.
 
     Examples
     --------
@@ -113,6 +127,8 @@ class SlidingContact:
     bound: Array = field(repr=False)
     creepage: tuple[float, float, float]
     speed: float
+    work: float
+    elastic_energy: float
     iterations: int
     convolutions: int
     residual: float
@@ -152,18 +168,20 @@ class SlidingContact:
         return self.normal.area - self.stick_area
 
     @property
-    def work(self) -> float:
-        """What friction turns into heat over a rolled distance, J/m; of a shift J. At least zero.
+    def dissipated_power(self) -> float:
+        """What friction turns into heat at the rolling speed, W: `work` times it.
 
-        Traction after a step times slip in it, as the program CONTACT counts. With smaller cells it rises, of
-        first order, to what is put in: in steady rolling −(F_x ξ + F_y η + M φ), from `force` and `moment`.
+        In steady rolling exactly −V (F_x ξ + F_y η + M φ), from `force`, `creepage` and `moment`.
         """
-        return -float((self.traction * self.slip).sum()) * self.normal.half_space.cell_area
+        return self.work * self.speed
 
     @property
-    def dissipated_power(self) -> float:
-        """What friction turns into heat at the rolling speed, W."""
-        return self.work * self.speed
+    def work_of_slip(self) -> float:
+        """Traction after a step times slip in it, as the program CONTACT counts work, J/m; of a shift J.
+
+        In rolling it misses a part of `work`, of first order in the cells: most where little slips.
+        """
+        return -float((self.traction * self.slip).sum()) * self.normal.half_space.cell_area
 
 
 def cell_places(space: HalfSpace) -> tuple[Array, Array]:

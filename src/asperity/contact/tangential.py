@@ -12,6 +12,7 @@ import numpy as np
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, real, require
 from asperity.contact.friction import Friction, SlidingContact, cell_places
+from asperity.contact.friction_work import with_work
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
@@ -305,7 +306,7 @@ class FrictionalHalfSpace:
             words = f"friction at {found.creepage} did not converge: {why}"
             warnings.warn(words, UnconvergedWarning, stacklevel=3)
         self._doubt(found, manner)
-        return found
+        return with_work(found, manner.before, manner.ahead, self.displacement, self._couples)
 
     def _doubt(self, found: SlidingContact, manner: _Manner) -> None:
         """Warn of what is outside the range of the theory."""
@@ -437,7 +438,7 @@ class FrictionalHalfSpace:
         sticks = (fields[4] > 0.0) & (bound > 0.0)
         return SlidingContact(
             normal, fields[:2], fields[2:4] * contact, sticks, bound, (xi, eta, spin), manner.speed,
-            iterations, convolutions, worst, outcome,
+            math.nan, math.nan, iterations, convolutions, worst, outcome,
         )  # fmt: skip
 
 

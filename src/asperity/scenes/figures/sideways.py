@@ -232,5 +232,8 @@ def friction_table(tree: DataTree) -> ReportTable:
         "spin moment": number_cells([*moment, *none], "N m"),
         "heat": number_cells([*heat, *mean_heat], "W"),
     }
-    note = "Friction on the wheel: under the working load, and mean over time, forces at the first contact."
+    note = (
+        "Friction on the wheel: under the working load, and mean over time, forces at the first contact. "
+        "Heat is what drives the creepages, −V (F·ξ + M φ)."
+    )
     return table("friction_table", "Friction", columns, note)
