@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from asperity import Profile, WheelOnRail
-from asperity.errors import CaseError, InputError
+from asperity.case import across
+from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.scenarios.geometry import geometry_of
 from refusals import refusals
 from small_cases import HEARD
@@ -87,3 +88,86 @@ test_sections_that_cannot_touch_are_refused = refusals(
     of=lambda wheel, rail: case_of(wheel, rail, rail_inclination="1:40"),
     error=(CaseError, InputError),
 )
+
+
+# --- sections as tables have them: wheel and rail with one z, upwards or downwards, and mirrored
+
+FLANGED = section(
+    lambda y: -y / 20.0 + 28e-3 * np.sin(np.clip((-38e-3 - y) / 14e-3, 0.0, 1.0) * np.pi / 2.0),
+    first=-60e-3,
+    last=60e-3,
+    points=481,
+)
+"""A cone of 1:20 with a flange 28 mm high."""
+HEAD = section(
+    lambda y: np.sqrt(0.3**2 - y**2) - 0.3 - np.maximum(np.abs(y) - 26e-3, 0.0),
+    first=-36e-3,
+    last=36e-3,
+    points=289,
+)
+
+
+def turned(line):
+    return Profile(-line.heights, line.spacing, "", line.start)
+
+
+def mirrored(line):
+    return Profile(
+        line.heights[::-1], line.spacing, "", -(line.start + (len(line.heights) - 1) * line.spacing)
+    )
+
+
+@pytest.mark.parametrize("inclination", ["0", "1:40", None])
+@pytest.mark.parametrize("head", [HEAD, turned(HEAD), mirrored(HEAD)], ids=["out", "into", "mirrored"])
+@pytest.mark.parametrize("tread", [FLANGED, turned(FLANGED)], ids=["out", "into"])
+def test_sections_each_way_up_touch_in_one_place(tread, head, inclination):
+    """R sin(angle between cone and rail) off the middle; in it where levelled, the flange left out."""
+    case = case_of(tread, head, rail_inclination=inclination)
+    steep = math.atan(1 / 20) - math.atan({"0": 0.0, "1:40": 1 / 40, None: 1 / 20}[inclination])
+    met = across.meeting_of(case)
+    assert met.places[1] == pytest.approx(-0.3 * math.sin(steep), rel=0.0, abs=2e-7)
+    into = int(tread is not FLANGED) + int(head.heights[0] > 0.0)
+    with PhysicsWarning.caught() as caught:
+        shape = geometry_of(case)
+    notes = [str(each.message) for each in caught if "turned upside down" in str(each.message)]
+    assert len(notes) == into
+    slope = math.cos(math.atan(1 / 20)) if inclination else 1.0  # y'' of a circle is 1/(R cos^3)
+    assert shape.hertz.radius_y == pytest.approx(0.3 * slope**3, rel=5e-4)
+    assert shape.semi_axes == pytest.approx((6.20e-3, 4.67e-3), rel=3e-3)
+
+
+@pytest.mark.parametrize("tread", [mirrored(FLANGED), mirrored(turned(FLANGED))], ids=["out", "into"])
+def test_a_flange_on_the_field_side_is_told(tread):
+    with pytest.raises((CaseError, InputError), match=r"flange at 60 mm, on the field side.*Change the sign"):
+        case_of(tread, HEAD)
+
+
+def test_what_has_no_flange_is_left_as_it_is():
+    """Treads without one, tilted by 3 degrees and with a chamfer of 5 mm; a crowned body; a grooved rail."""
+    y = np.linspace(-30e-3, 60e-3, 361)
+    tilted = 0.05 * y - np.maximum(y - 55e-3, 0.0)
+    assert across.flange_of(y, tilted) == (0, 0)
+    assert across.flange_of(y, -(y**2) / 0.1) == (0, 0)
+    both = np.maximum(np.abs(y - 15e-3) - 35e-3, 0.0) * 3.0
+    assert across.flange_of(y, both) == (1, 0)
+    grooved = section(lambda y: -47e-3 * ((y > -70e-3) & (y < -28e-3)), first=-90e-3, last=28e-3, points=237)
+    for rail, down in ((grooved, False), (turned(grooved), True)):
+        assert across._is_head_down(across._places_of(rail), rail.heights) is down
+
+
+def test_a_flanged_line_without_places_has_its_middle_in_that_of_its_tread():
+    bare = Profile(FLANGED.heights, FLANGED.spacing)
+    places = across.meeting_of(case_of(bare, HEAD, rail_inclination=None)).places
+    assert places == pytest.approx((0.0, 0.0), abs=1e-6)
+
+
+def test_the_window_that_is_chosen_holds_the_contact_of_measured_sections():
+    """Hollow by 353 mm on a head of 300 mm: 2 m across, wider than the head alone asks for."""
+    hollow = section(lambda y: 0.353 - np.sqrt(0.353**2 - y**2), first=-60e-3, last=60e-3, points=481)
+    keys = {"wheel": HEARD["wheel"] | {"profile": hollow}, "track": HEARD["track"] | {"rail_profile": HEAD}}
+    case = WheelOnRail(**HEARD | keys | {"contact": {}})
+    shape = geometry_of(case)
+    assert shape.hertz.radius_y == pytest.approx(1.0 / (1.0 / 0.3 - 1.0 / 0.353), rel=5e-3)
+    assert 2.2 * max(shape.semi_axes) < case.contact.window <= 72e-3
+    sharp = WheelOnRail(**HEARD | {"track": HEARD["track"] | {"rail_profile": circle(0.08)}, "contact": {}})
+    assert sharp.contact.spacing <= min(geometry_of(sharp).semi_axes) / 8.0

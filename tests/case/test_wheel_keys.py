@@ -5,9 +5,10 @@ import pytest
 
 from asperity.case.bodies import WheelOnRail
 from asperity.case.cases import as_case, load_case
-from asperity.errors import CaseError
+from asperity.errors import CaseError, OutOfRangeWarning
 from asperity.reference.railways import SECTIONS
-from asperity.structures.outline import WheelSection
+from asperity.scenarios.geometry import geometry_of
+from asperity.structures.outline import WheelSection, checked_outline, doubts_of
 from refusals import refusals
 
 TEXTURE = {"spectrum": "iso3095"}
@@ -92,6 +93,9 @@ def rectangle(radius):
     return np.array([[0.1, -0.05], [radius, -0.05], [radius, 0.05], [0.1, 0.05]])
 
 
+MIRRORED = WheelSection.named("curved-web").outline(0.46) * [1.0, -1.0]
+
+
 test_what_does_not_fit_is_refused = refusals(
     ({"section": "curved-web", "modes": MODES}, "both section and modes"),
     ({"section": "curved"}, 'Did you mean "curved-web"?'),
@@ -100,6 +104,12 @@ test_what_does_not_fit_is_refused = refusals(
     ({"section": "curved-web", "radius": "0.15 m"}, "allowed: bore, hub and rim one outside"),
     ({"section": "curved-web", "mass": "200 kg"}, "that of the drawn wheel"),
     ({"section": rectangle(0.3)}, "a running circle of 300 mm"),
+    ({"section": rectangle(0.92)}, "Are the radii of the section diameters? Then halve them."),
+    (
+        {"section": rectangle(0.42), "radius": "0.84 m"},
+        'Then write radius = "420 mm".',
+    ),
+    ({"section": MIRRORED}, "a flange at an axial place of 47.6 mm.*Change their sign"),
     ({"section": rectangle(0.46), "web_bend": "1 mm"}, "only together with"),
     ({"section": rectangle(0.46)[[0, 2, 1, 3]]}, "that touch"),
     of=lambda wheel: wheel_on_rail(**wheel),
@@ -119,3 +129,25 @@ test_files_in_other_units_or_orders_are_refused = refusals(
     of=drawn_in,
     error=CaseError,
 )
+
+
+def with_web(depth):
+    """An outline of hub, web and rim whose web of 30 mm goes to and fro by a depth, m."""
+    r = np.arange(0.2, 0.401, 0.02)
+    middle = depth * np.resize([1.0, -1.0], len(r))
+    outer, inner = (np.stack([r, middle + side], axis=1) for side in (0.015, -0.015))
+    rim = [(0.4, 0.06), (0.46, 0.06), (0.46, -0.06), (0.4, -0.06)]
+    hub = [(0.2, -0.06), (0.1, -0.06), (0.1, 0.06), (0.2, 0.06)]
+    return np.vstack([outer, rim, inner[::-1], hub])
+
+
+def test_a_web_that_zigzags_and_a_diameter_for_a_radius_are_told_and_no_named_section_is():
+    for name in SECTIONS:
+        assert not list(doubts_of(checked_outline(WheelSection.named(name).outline(0.46)), 0.46))
+    assert not list(doubts_of(checked_outline(with_web(0.0)), 0.46))
+    assert "turns to and fro" in "".join(doubts_of(checked_outline(with_web(8e-3)), 0.46))
+    large = 2.0 * WheelSection.named("straight-web").outline(0.46)
+    assert any("Is it the diameter" in told for told in doubts_of(checked_outline(large), 0.92))
+    for section in ("rigid", "straight-web"):
+        with pytest.warns(OutOfRangeWarning, match=r"radius.*920 mm.*Is it the diameter"):
+            geometry_of(wheel_on_rail(section=section, radius="0.92 m", mass="3 t"))

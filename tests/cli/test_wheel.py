@@ -46,3 +46,12 @@ def test_a_case_brings_dimensions_and_damping():
     call("wheel", "case.toml", *LOW, "-o", "modes.csv")
     expected = modes_of(section="straight-web", web_thickness=0.04, added_damping=0.02)
     assert (read_mode_table(Path("modes.csv")) == expected).all()
+
+
+def test_an_outline_of_diameters_or_with_its_flange_on_the_field_side_is_told():
+    outline(Path("diameters.csv"), scale=2e3)
+    assert "Is it the diameter" in call("wheel", "diameters.csv", *LOW).stderr
+    rows = 1e3 * WheelSection.named("bent-web").outline(0.42) * [1.0, -1.0]
+    np.savetxt("mirrored.csv", rows, delimiter=",", header="radius (mm), axial place (mm)", comments="")
+    refused = call("wheel", "mirrored.csv", *LOW, code=2)
+    assert "allowed: places positive away from the flange. Change their sign" in refused.stderr

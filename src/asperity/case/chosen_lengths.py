@@ -2,10 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
+
+from asperity.errors import InputError
 
 if TYPE_CHECKING:
     from asperity.case.scene import Case
+    from asperity.contact.hertz import Hertz
 
 CELLS = 9.0
 """Cells in the smaller semi-axis of the smooth contact, at least."""
@@ -13,6 +17,8 @@ CELLS_PER_WAVE = 4.0
 """Cells that the shortest wave has, so that single cells carry little of the load."""
 SIDE = 3.2
 """Side of the window in larger semi-axes of the smooth contact: that under three loads, and a tenth more."""
+NARROWEST = 2.5
+"""And at least, where no more was measured across the path."""
 FINEST = 1e-7
 """Least spacing that is chosen, m: heights are not known closer than light shows them."""
 PEAKS, MOST_PEAKS = 3.0, 30.0
@@ -36,7 +42,7 @@ def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
     The contact of smooth bodies under the working load is taken for the circle of mean relative radius, drawn
     out: within a tenth where radii differ by up to five.
     """
-    hertz = case.smooth_contact
+    hertz, held = _contact_across(case)
     radius = math.sqrt(hertz.radius_x * hertz.radius_y)
     stretch = (hertz.radius_x / hertz.radius_y) ** (1.0 / 3.0)
     circle = (0.75 * case.rolling.contact_load * radius / hertz.modulus) ** (1.0 / 3.0)
@@ -58,8 +64,27 @@ def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
         surface = {"shortest": shortest, "longest": longest}
         roughness = rms * min(SIDE * large / longest, 1.0) ** case.surface.hurst
     peaks = min(PEAKS * roughness / (circle**2 / radius), MOST_PEAKS)
-    window = rounded(max(SIDE * large * math.sqrt(1.0 + peaks), SIDE * large + case.defect_length), up=True)
+    wanted = max(SIDE * large * math.sqrt(1.0 + peaks), SIDE * large + case.defect_length)
+    window = rounded(wanted, up=True)
+    if window > held >= NARROWEST * large:
+        window = rounded(held)
     return {"surface": surface, "contact": {"spacing": spacing, "window": window}}
+
+
+def _contact_across(case: "Case") -> "tuple[Hertz, float]":
+    """Contact of the smooth bodies, by their measured sections, and how wide a window these hold, m."""
+    hertz = case.smooth_contact
+    if case.rolling.groove_radius is not None or (
+        case.rolling.profile is None and case.rolled_over.profile is None
+    ):
+        return hertz, math.inf
+    from asperity.case.across import meeting_of
+
+    with suppress(InputError):  # sections that cannot touch: said where they are laid out
+        met = meeting_of(case, clear=0.0)
+        if (found := met.osculating(hertz, case.rolling.contact_load)) is not None:
+            return found, 2.0 * met.inside
+    return hertz, math.inf
 
 
 def rounded(length: float, *, up: bool = False) -> float:

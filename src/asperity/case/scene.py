@@ -21,7 +21,8 @@ from asperity.reference.materials import contact_modulus
 from asperity.units import written
 
 if TYPE_CHECKING:
-    from asperity.case.sideways import CreepKeys, Meeting, SidewaysKeys
+    from asperity.case.across import Meeting
+    from asperity.case.sideways import CreepKeys, SidewaysKeys
     from asperity.radiation.pass_by import Passage
 
 MOST_STEPS = 10**8
@@ -197,7 +198,7 @@ class Case(AnyCase):
         """Where the sections of wheel and rail touch as they lie; None where the case does not say how."""
         if "sideways" not in self.inner or self.sideways.rail_inclination is None:
             return None
-        from asperity.case.sideways import meeting_of
+        from asperity.case.across import meeting_of
 
         return meeting_of(self)
 

@@ -168,7 +168,12 @@ class Ringing(form.Section, parameters=_DIMENSIONS):
         drawn = outline[circle, 0]
         if abs(drawn / self.radius - 1.0) > CLOSE_RADIUS:
             allowed = f"within {CLOSE_RADIUS:.0%} of the rolling radius, {self.radius * 1e3:.4g} mm"
-            yield InputError("section", f"a running circle of {drawn * 1e3:.4g} mm", allowed)
+            ratio, remedy = drawn / self.radius, ""
+            if abs(ratio / 2.0 - 1.0) <= CLOSE_RADIUS:
+                remedy = "Are the radii of the section diameters? Then halve them."
+            elif abs(2.0 * ratio - 1.0) <= CLOSE_RADIUS:
+                remedy = f'Is radius the diameter? Then write radius = "{drawn * 1e3:.4g} mm".'
+            yield InputError("section", f"a running circle of {drawn * 1e3:.4g} mm", allowed, remedy)
 
 
 @lru_cache(maxsize=8)

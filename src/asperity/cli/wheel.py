@@ -8,10 +8,13 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.case import cases, tables
 from asperity.case.bodies import WheelOnRail
-from asperity.errors import InputError
+from asperity.errors import InputError, OutOfRangeWarning
+from asperity.reference.materials import material
 from asperity.reference.railways import SECTIONS
 from asperity.reporting.chart import BLUE, Axis, Chart, Panel, Shape
 from asperity.reporting.figure import write_chart
+from asperity.structures.body import GRAVITY
+from asperity.structures.outline import checked_outline, doubts_of, volume_of
 from asperity.structures.wheel_modes import with_running_circle
 from asperity.terminal import say
 
@@ -30,6 +33,8 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
     wheel = case.rolling
     if not wheel.is_drawn:
         raise InputError("wheel.section", "a wheel that is not drawn", "a section, which has modes")
+    for doubt in doubts_of(checked_outline(wheel.outline), wheel.radius):
+        OutOfRangeWarning.warn(doubt)
     modes = wheel.standing_modes(case.numerics.highest_frequency)
     rows = modes.table()
     say(f"{section}: {wheel.drawn_mass:.4g} kg without its axle, held at a radius of "
@@ -59,7 +64,9 @@ def _case_of(section: str) -> Any:
         allowed = f"{', '.join(SECTIONS)}, or the path of an outline or of a case"
         raise InputError("section", f"'{section}'", allowed)
     outline, circle = with_running_circle(tables.read_outline(path))
-    return WheelOnRail(surface=smooth, wheel={"section": path, "radius": float(outline[circle, 0])})
+    heavy = 2.0 * material("steel").density * volume_of(outline)  # with its axle: modes do not ask for it
+    wheel = {"section": path, "radius": float(outline[circle, 0]), "mass": heavy, "load": GRAVITY * heavy}
+    return WheelOnRail(surface=smooth, wheel=wheel)
 
 
 def _chart(outline: Array) -> Chart:

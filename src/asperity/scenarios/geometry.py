@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from asperity.arguments import Array, require
-from asperity.case import scene, sections, sideways
+from asperity.case import across, scene, sections
+from asperity.case.rolled_over import TrackKeys
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
-from asperity.errors import CoarseSamplingWarning
+from asperity.errors import CoarseSamplingWarning, Grade, OutOfRangeWarning
+from asperity.structures.outline import LARGEST_WHEEL, checked_outline, doubts_of
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in loads of the class of the working load."""
@@ -128,6 +130,7 @@ def geometry_of(case: scene.Case) -> Geometry:
     of_class = HIGHEST_FORCE * shape.class_load
     shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)
     _check_half_space(case, hertz, load)
+    _doubt_wheel(case)
     width = 2.0 * max(shape.semi_axes)
     for side, size in over.sides.items():
         allowed = f"at least {width * 1e6:.3g} um, the width of the smooth contact under {load:.3g} N"
@@ -156,6 +159,19 @@ def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
             )  # fmt: skip
 
 
+def _doubt_wheel(case: scene.Case) -> None:
+    """Warn of a wheel on a rail that is hardly meant as it was given."""
+    wheel, name = case.rolling, case.ROLLING
+    if not isinstance(case.rolled_over, TrackKeys):
+        return
+    if wheel.is_drawn:
+        for doubt in doubts_of(checked_outline(wheel.outline), wheel.radius):
+            OutOfRangeWarning.warn(f"{name}: {doubt}")
+    elif wheel.radius > LARGEST_WHEEL:
+        radius = f"{name}.radius = {wheel.radius * 1e3:.4g} mm"
+        OutOfRangeWarning.warn(f"{radius}: wheels of trains have 170 mm to 625 mm. Is it the diameter?")
+
+
 def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
     """Hold the grid to the smooth contact under the load, N: the window holds it, cells are finer than it."""
     wide, small = 2.2e6 * max(axes), min(axes)
@@ -175,8 +191,11 @@ def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: flo
 
 def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, Hertz]:
     """Gap of measured sections across the window, (n,), m, and the contact of its osculating parabola."""
-    y, both = across_window(case.contact), " and ".join(sideways.section_keys(case))
-    gap = (case.meeting or sideways.meeting_of(case)).gap(y)
+    y, both = across_window(case.contact), " and ".join(across.section_keys(case))
+    met = case.meeting or across.meeting_of(case)
+    for sentence in across.turned_sections(case, met):
+        OutOfRangeWarning.warn(sentence, Grade.NOTE)
+    gap = met.gap(y)
     allowed = "sections that touch in one place, convex against each other"
     require(gap.min() >= -1e-9, both, "bodies that touch outside the window's middle", allowed)
     gap = np.maximum(gap, 0.0)

@@ -10,7 +10,7 @@ import numpy as np
 
 from asperity.arguments import Array, require
 from asperity.case import body, form
-from asperity.case.sideways import complete
+from asperity.case.across import complete
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning

@@ -1,5 +1,6 @@
 """Outline of the section of a solid of revolution: a closed polygon beside the axis, and a mesh inside it."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -19,6 +20,14 @@ MOST_CELLS = 2e7
 """Most triangles that fit beside the section, times pieces around it: real wheels have some 10⁵."""
 MOST_SPLITS = 12
 """Times that edges of an outline are halved until triangles meet them."""
+LARGEST_WHEEL = 0.7
+"""Largest radius of the wheels that run today, with some room, m: locomotives have 0.625 m."""
+TO_AND_FRO = 5
+"""Turns one after the other, each the other way, that no section has: steps of a hub are fewer."""
+SHARP = np.radians(20.0)
+"""Angle from which a turn counts as one."""
+SMOOTHED = 0.5e-3
+"""By which an outline is straightened before its turns are counted, m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +68,38 @@ def checked_outline(points: ArrayLike, what: str = "outline of the section") -> 
 def _doubled_area(outline: Array) -> float:
     (r, z), (r2, z2) = outline.T, np.roll(outline, -1, axis=0).T
     return float(np.sum(r * z2 - r2 * z))
+
+
+def doubts_of(outline: Array, radius: float) -> Iterator[str]:
+    """Say what is hardly meant of a checked outline of a wheel, m, with a radius at its running circle, m.
+
+    One or two sentences each: a diameter for a radius, edges that go to and fro.
+    """
+    if radius > LARGEST_WHEEL:
+        yield (
+            f"a wheel with a radius of {radius * 1e3:.4g} mm: wheels of trains have 170 mm to 625 mm. Is it "
+            "the diameter, or are the radii of its section diameters? Then halve them."
+        )
+    turns, (r, z) = _turns_to_and_fro(outline)
+    if turns >= TO_AND_FRO:
+        r, z = 1e3 * r, 1e3 * z
+        yield (
+            f"an outline that turns to and fro {turns} times in a row, up to ({r:.4g} mm, {z:.4g} mm): a "
+            "web that zigzags is none of a wheel. List its points in order, and smooth what was digitised."
+        )
+
+
+def _turns_to_and_fro(outline: Array) -> tuple[int, Array]:
+    """Most sharp turns in a row, each the other way than the last, and the point of that (2,), m."""
+    points = _straightened(outline, SMOOTHED, np.zeros(0, dtype=np.int64))
+    edges = np.roll(points, -1, axis=0) - points
+    heading = np.arctan2(edges[:, 1], edges[:, 0])
+    turns = (heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi
+    ways = np.where(np.abs(turns) > SHARP, np.sign(turns), 0.0)
+    in_a_row = np.zeros(len(points), dtype=np.int64)
+    for n in range(1, len(points)):
+        in_a_row[n] = in_a_row[n - 1] + 1 if ways[n] * ways[n - 1] < 0.0 else 0
+    return int(in_a_row.max()) + 1, points[np.argmax(in_a_row)]
 
 
 def volume_of(outline: Array) -> float:

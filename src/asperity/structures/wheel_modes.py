@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real
+from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive, real, require
 from asperity.errors import InputError
 from asperity.reference.materials import Material
 from asperity.store import Store, content_key, made
@@ -344,6 +344,13 @@ def with_running_circle(outline: Array) -> tuple[Array, int]:
         raise InputError("outline of the section", received, allowed, "Count them from there.")
     radius = r[over] - z[over] * (r2 - r)[over] / (z2 - z)[over]
     edge, largest = int(over[np.argmax(radius)]), float(radius.max())
+    top = int(np.argmax(r))
+    if r[top] > largest + TREAD_DEPTH:
+        inside = r[z < 0.0].max(initial=0.0)
+        received = f"a flange at an axial place of {z[top] * 1e3:.4g} mm, up to {r[top] * 1e3:.4g} mm"
+        allowed = "places positive away from the flange"
+        both = inside > largest + TREAD_DEPTH
+        require(z[top] < 0.0 or both, "outline of the section", received, allowed, "Change their sign.")
     for number in (edge, (edge + 1) % len(outline)):
         if abs(outline[number, 1]) < 1e-6:
             return outline, number

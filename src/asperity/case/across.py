@@ -1,0 +1,294 @@
+"""Where the sections of what rolls and of what is rolled over touch, across the path."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy
+
+from asperity.arguments import Array, ArrayLike, NDArray, require
+from asperity.case.sideways import INCLINATIONS
+from asperity.errors import InputError
+from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.levelling import level
+from asperity.surfaces.readers import hints, read_surface
+
+if TYPE_CHECKING:
+    from asperity.case.scene import Case
+    from asperity.contact.hertz import Hertz
+
+REACH = 0.1
+"""Farthest place of a section that is not measured, but a circle, m."""
+SHARE = 0.9
+"""And farthest over its radius."""
+FEWEST = 4
+"""Points of a section."""
+POINTS = 2001
+"""Of a circle, and of the gap, among which the lowest is looked for."""
+FLANGE = 10e-3
+"""Least height over the rest of a tread that is a flange's, m: they are 25 mm high, chamfers 5 mm."""
+TREAD = 25e-3
+"""Half the width of a tread about its running circle, m, which no flange reaches."""
+HOLLOW = 2e-3
+"""By how much more a rail lies above its middle than below it, m, where it is upside down."""
+COMPARED = 200
+"""Points of a section whose slopes are compared pair by pair."""
+SETTLED = 10
+"""Times that the parabola of a gap is fitted to the width of the contact that follows."""
+
+
+def read_section(measured: Path | Profile, key: str) -> Profile:
+    """Read a measured section of a body across the path.
+
+    Parameters
+    ----------
+    measured : Path or Profile
+        Its file, or itself.
+    key : str
+        The key that names it, for messages.
+
+    Returns
+    -------
+    Profile
+        Heights, complete.
+
+    Raises
+    ------
+    InputError
+        If the file does not hold one complete line.
+    """
+    with hints.spelled(hints.in_case(key.partition(".")[0], {})):
+        section = read_surface(measured) if isinstance(measured, Path) else measured
+    if not isinstance(section, Profile):
+        raise InputError(key, "a map of heights", "one line across the path")
+    count = len(section.heights)
+    require(count >= FEWEST, key, f"{count} points", f"at least {FEWEST}", "Measure more of them.")
+    return complete(section, key)
+
+
+def complete(line: Profile, key: str) -> Profile:
+    """The line that a key names, refused where a point has no height."""
+    remedy = "Interpolate them in the file."
+    require(line.missing_share == 0.0, key, "points without a height", "a complete line", remedy)
+    return line
+
+
+# --- which way up, and which way round
+
+
+def _away_from_rest(y: Array, z: Array) -> Array:
+    """Heights (n,), m, from the line that half of a section may leave (repeated medians, Siegel 1982)."""
+    some = np.unique(np.linspace(0, len(y) - 1, min(len(y), COMPARED)).astype(int))
+    across, up = np.subtract.outer(y[some], y[some]), np.subtract.outer(z[some], z[some])
+    np.fill_diagonal(across, np.nan)
+    slope = float(np.median(np.nanmedian(up / across, axis=1)))
+    return np.asarray(z - slope * y - np.median(z[some] - slope * y[some]))
+
+
+def flange_of(y: Array, z: Array) -> tuple[int, int]:
+    """Which way a flange stands out of a section, 1 or -1, and on which side, -1, 1, or 0 on both; else 0, 0.
+
+    By places (n,) and heights (n,), m. Bodies that fall on both sides have none.
+    """
+    away = _away_from_rest(y, z)
+    farthest = int(np.argmax(np.abs(away)))
+    if abs(away[farthest]) < FLANGE:
+        return 0, 0
+    way = 1 if away[farthest] > 0.0 else -1
+    side = 1 if y[farthest] > 0.5 * (y[0] + y[-1]) else -1
+    other = side * (y - 0.5 * (y[0] + y[-1])) < 0.0
+    alike = float((way * away[other]).max()) > 0.5 * abs(away[farthest])
+    if alike:
+        return (1, 0) if way > 0 else (0, 0)
+    return way, side
+
+
+def _is_head_down(y: Array, z: Array) -> bool:
+    """Whether a rail's section lies above its middle, or above that of what was measured, not below."""
+    away = _away_from_rest(y, z)
+    middle = 0.0 if y[0] < 0.0 < y[-1] else 0.5 * (y[0] + y[-1])
+    at_middle = float(np.interp(middle, y, away))
+    return bool((away.max() - at_middle) - (at_middle - away.min()) > HOLLOW)
+
+
+def _refuse_mirrored(key: str, y: Array, z: Array, side: int) -> None:
+    """Refuse a tread whose flange is on the field side."""
+    top = float(y[np.argmax(z)])
+    received = f"a flange at {1e3 * top:.3g} mm, on the field side"
+    allowed = "places positive to the field side: a flange is on the side of negative ones"
+    remedy = "Change the sign of its places, and of those of the rail if both count the same way."
+    require(side <= 0, key, received, allowed, remedy)
+
+
+# --- the contact
+
+
+@dataclass(frozen=True, eq=False)
+class Lying:
+    """The section of a body as it lies."""
+
+    # spline: places across (n,), m, towards the field side from the middle of the rail head -> depth below
+    # that middle, m, and place on the section itself, m
+    section: Any
+    turned: bool = False  # whether its heights came into the material
+
+
+@dataclass(frozen=True, eq=False)
+class Meeting:
+    """Where a tread touches a rail head across the path, both as they lie."""
+
+    tread: Lying
+    head: Lying
+    at: float  # place of the contact, m
+    inside: float = 0.0  # how far that is from the edges of what is known of both, m
+
+    @property
+    def places(self) -> tuple[float, float]:
+        """On tread and rail head, m from their middle, positive towards the field side."""
+        on_tread, on_head = (float(each.section(self.at)[1]) for each in (self.tread, self.head))
+        return on_tread, on_head
+
+    def gap(self, across: Array) -> Array:
+        """Gap (n,), m, at places across (n,), m from the contact."""
+        gaps = self._gap(self.at + np.append(across, 0.0))
+        return gaps[:-1] - gaps[-1]
+
+    def _gap(self, y: ArrayLike) -> Array:
+        return np.asarray(self.tread.section(y)[..., 0] + self.head.section(y)[..., 0])
+
+    def osculating(self, hertz: Hertz, load: float) -> Hertz | None:
+        """Contact of the parabola through the gap over its own width, under a load, N; None where it is none.
+
+        `hertz` has the radius along the path.
+        """
+        if not self.inside > 0.0:
+            return None
+        half = min(hertz.semi_axes(hertz.approach(load))[1], self.inside)
+        for _ in range(SETTLED):
+            y = half * np.linspace(-1.0, 1.0, 201)
+            curvature = float(np.polynomial.polynomial.polyfit(y, self.gap(y), 2)[2])
+            if not curvature > 0.0:
+                return None
+            hertz = replace(hertz, radius_y=0.5 / curvature)
+            half = min(hertz.semi_axes(hertz.approach(load))[1], self.inside)
+        return hertz
+
+    @classmethod
+    def of(cls, tread: Lying, head: Lying, keys: str, clear: float) -> Meeting:
+        """Find the lowest gap, at least `clear` m inside of what is known; messages tell of `keys`."""
+        ends = [each.section.t[[0, -1]] for each in (tread, head)]
+        low, high = max(each[0] for each in ends), min(each[1] for each in ends)
+        places, anywhere = np.linspace(low, max(low, high), POINTS), cls(tread, head, 0.0)
+        n = int(np.argmin(anywhere._gap(places)))
+        around = places[max(n - 1, 0)], places[min(n + 1, POINTS - 1)]
+        found = scipy.optimize.minimize_scalar(
+            lambda at: float(anywhere._gap(at)), bounds=around, method="bounded", options={"xatol": 1e-9}
+        ).x
+        inside = max(min(found - low, high - found), 0.0)
+        received = f"sections that meet {1e3 * inside:.1f} mm from an edge of what is known of them"
+        allowed = f"a contact at least {1e3 * clear:.3g} mm inside, half of contact.window"
+        remedy = "Measure more of them, shift them less, or shrink contact.window."
+        require(inside >= clear, keys, received, allowed, remedy)
+        return cls(tread, head, float(found), float(inside))
+
+
+def _circle(radius: float) -> tuple[Array, Array]:
+    """Section of a circle, m: places and heights from its highest point."""
+    y: Any = min(REACH, SHARE * radius) * np.linspace(-1.0, 1.0, POINTS)
+    return y, -(y**2) / (radius + np.sqrt(radius**2 - y**2))
+
+
+def _places_of(section: Profile) -> Array:
+    """Places (n,), m, across: as the file has them, else from the middle."""
+    count = len(section.heights)
+    first = -0.5 * (count - 1) * section.spacing if section.start is None else section.start
+    return np.asarray(first + section.spacing * np.arange(count), dtype=np.float64)
+
+
+def _levelled(section: Profile, y: Array, flanged: bool) -> tuple[Array, Array]:
+    """Places from the middle and heights of a levelled section, (n,) each, m.
+
+    Of a tread with a flange the tread is levelled about the running circle, where the file counts from it,
+    else about the middle of what is no flange; of anything else all, about the middle of what was measured.
+    """
+    z = section.heights
+    if not flanged:
+        return _places_of(replace(section, start=None)), np.asarray(level(section).heights)
+    if section.start is None:
+        rest = y[np.abs(_away_from_rest(y, z)) < FLANGE]
+        y = y - 0.5 * (rest[0] + rest[-1])
+    tread: NDArray[np.bool_] = np.abs(y) <= TREAD
+    if tread.sum() > 1:
+        offset, slope = np.polynomial.polynomial.polyfit(y[tread], z[tread], 1)
+        z = z - (offset + slope * y)
+    return y, z
+
+
+def _lying(
+    measured: Path | Profile | None, radius: float, key: str, angle: float | None, shift: float, *, head: bool
+) -> Lying:
+    """Section of a body, measured or a circle, turned about its middle and shifted, see `Lying`.
+
+    Turned by an angle, rad, that lifts the field side of a rail; shifted towards that side, m. Without an
+    angle it is levelled, and its middle is that of what was measured. The heights of tables that have one z
+    for wheel and rail come into the material of one of them: they are turned where its shape shows that, the
+    flange of a tread or the corners of a head.
+    """
+    turned = False
+    if measured is None:
+        y, z = _circle(radius)
+    else:
+        section = read_section(measured, key)
+        y = _places_of(section)
+        way, side = (0, 0) if head else flange_of(y, section.heights)
+        turned = _is_head_down(y, section.heights) if head else way < 0
+        section = replace(section, heights=-section.heights) if turned else section
+        _refuse_mirrored(key, y, section.heights, side)
+        y, z = (y, section.heights) if angle is not None else _levelled(section, y, way != 0)
+        z = z - np.interp(0.0, y, z)
+    angle = angle or 0.0
+    across = y * math.cos(angle) - z * math.sin(angle) + shift
+    depth = -(y * math.sin(angle) + z * math.cos(angle))
+    allowed = f"heights over places that rise, turned by {1e3 * angle:.3g} mrad, too"
+    remedy = "Leave flanks out that are as steep, and check the units."
+    require((np.diff(across) > 0.0).all(), key, "a section that overhangs", allowed, remedy)
+    return Lying(scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3), turned)
+
+
+def meeting_of(case: Case, clear: float | None = None) -> Meeting:
+    """Lay the sections of what rolls, and of what is rolled over, together: levelled, or as they lie.
+
+    As they lie, where the inclination of a rail towards the middle of the track is given. They meet at least
+    `clear` m, by default half of the window, inside of what is known of them.
+    """
+    body, over, (tread, head) = case.rolling, case.rolled_over, section_keys(case)
+    inclination, shift = None, 0.0
+    if "sideways" in case.inner and case.sideways.rail_inclination is not None:
+        inclination = math.atan(INCLINATIONS[case.sideways.rail_inclination])
+        shift = case.sideways.wheel_shift
+    level_or_upright = None if inclination is None else 0.0
+    upper = _lying(body.profile, body.across, tread, level_or_upright, shift, head=False)
+    lower = _lying(over.profile, over.radius_across, head, inclination, 0.0, head=True)
+    clear = 0.5 * case.contact.window if clear is None else clear
+    return Meeting.of(upper, lower, f"{tread} and {head}", clear)
+
+
+def section_keys(case: Case) -> tuple[str, str]:
+    """Keys of the sections of what rolls and of what is rolled over, across the path."""
+    return f"{case.ROLLING}.profile", f"{case.over_name}.rail_profile"
+
+
+def turned_sections(case: Case, met: Meeting) -> list[str]:
+    """Say which sections were turned, in a sentence each."""
+    lowest = ("its flange was the lowest", "its corners were the highest")
+    told = zip(section_keys(case), (met.tread, met.head), lowest, strict=True)
+    return [
+        f"{key}: turned upside down, as {why}: heights are positive out of the material, and tables with one "
+        "z for wheel and rail have them into one of both."
+        for key, each, why in told
+        if each.turned
+    ]
