@@ -132,6 +132,8 @@ DAMPING = (1e-3, 1e-2, 1e-4)
 MOST_DIAMETERS = 40
 TREAD_DEPTH = 0.010
 """By which the radius of the tread may differ from that at the running circle, m: not the flange."""
+HIGHEST_FLANGE = 0.060
+"""By which a flange stands out of the tread at most, m: they have 25 mm to 40 mm."""
 SEAT = 1e-3
 """By which radii of the seat on the axle may differ, m."""
 SILENT = 1e-4
@@ -345,7 +347,7 @@ def with_running_circle(outline: Array) -> tuple[Array, int]:
     radius = r[over] - z[over] * (r2 - r)[over] / (z2 - z)[over]
     edge, largest = int(over[np.argmax(radius)]), float(radius.max())
     top = int(np.argmax(r))
-    if r[top] > largest + TREAD_DEPTH:
+    if largest + TREAD_DEPTH < r[top] < largest + HIGHEST_FLANGE:
         inside = r[z < 0.0].max(initial=0.0)
         received = f"a flange at an axial place of {z[top] * 1e3:.4g} mm, up to {r[top] * 1e3:.4g} mm"
         allowed = "places positive away from the flange"
