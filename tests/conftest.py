@@ -47,14 +47,15 @@ def files_opened_here(monkeypatch):
     `test_results.py` and `faults` open all results in one.
     """
 
-    def opened(function, arguments, *of_file):
+    def opened(function, path, arguments, **of_file):
         try:
-            sandbox.send(function(*arguments), answer := io.BytesIO())
+            sandbox.send(function(str(path.absolute()), *arguments), answer := io.BytesIO())
         except InputError:
             raise
         except Exception:
-            return sandbox.sandboxed(function, arguments, *of_file)
-        return sandbox.received(answer.getvalue())
+            return sandbox.sandboxed(function, path, arguments, **of_file)
+        answer.seek(0)
+        return sandbox.received(answer)
 
     for module in ("results", "structures.modal_files"):
         monkeypatch.setattr(f"asperity.{module}.sandboxed", opened)

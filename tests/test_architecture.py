@@ -90,6 +90,16 @@ def test_nothing_is_pickled_and_no_text_is_evaluated():
             assert not names & banned, f"{module}: {names & banned}"
 
 
+def test_hdf5_is_opened_at_one_place():
+    """Where it is looked for data that lie in other files."""
+    for module in MODULES:
+        for node in ast.walk(parsed(module)[1]):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            opens = {name.partition(".")[0] for name in names} & {"h5py", "h5netcdf", "netCDF4"}
+            assert not opens or module.name == "hdf5.py", module
+
+
 def has_its_own_name(module, name):
     """Whether a name is not one of those that several modules have to share."""
     inside = module.relative_to(SOURCE).parts

@@ -3,6 +3,7 @@
 import os
 
 import h5netcdf
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -91,6 +92,21 @@ def filled(path):
         file.create_variable("/rolling/zeros", ("many",), "f8", chunks=(2**20,))
 
 
+def filled_with_wide_items(path):
+    """Few of them, each of many bytes, packed to nearly nothing."""
+    with h5py.File(path, "a") as file:
+        scale = file["rolling"].create_dataset("place", data=np.zeros(100_000, "S1000"), compression="gzip")
+        scale.make_scale("place")
+
+
+def filled_with_words(path):
+    """One long word, at the length of which all others are sent."""
+    words = np.array(["a" * 2000, *[""] * 10_000], dtype=object)
+    with h5py.File(path, "a") as file:
+        scale = file["rolling"].create_dataset("place", data=words, dtype=h5py.string_dtype())
+        scale.make_scale("place")
+
+
 def piped(path):
     path.unlink()
     os.mkfifo(path)
@@ -104,6 +120,7 @@ def of_version(**stated):
 
 
 AGAIN = r"Run its case again, or read it with asperity '0\.0\.9'\."
+TOO_MUCH = "more than 100 times its size in numbers"
 NO_PIPES = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no such pipes")
 SPOILT = [
     (os.unlink, r"run\.nc: received no such file", True),
@@ -112,7 +129,7 @@ SPOILT = [
     (flipped, "its digest does not fit its contents", True),
     (lambda path: path.write_bytes(b"\x89HDF\r\n\x1a\n and no more"), "a damaged file", True),
     (emptied, "of another kind", False),
-    (filled, "more than 100 times its size in numbers", False),
+    *((fill, TOO_MUCH, False) for fill in (filled, filled_with_wide_items, filled_with_words)),
     pytest.param(piped, "a pipe or a device, which may never end", True, marks=NO_PIPES),
     (of_version(schema_version=VERSION + 1), f"allowed: schema version {VERSION}.*Update asperity\\.", False),
     (of_version(schema_version=VERSION - 1), AGAIN, False),

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import io
-import math
 import os
 from collections.abc import Sequence
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from asperity.arguments import ArrayLike, NDArray, file_path, no_file, shown
 from asperity.errors import InputError, reason
 from asperity.files import is_sealed, write_bytes
+from asperity.hdf5 import MOST_UNPACKED, SIGNATURE, most_unpacked, opened_netcdf, size_unpacked
 from asperity.sandbox import Answer, sandboxed
 from asperity.schema import VERSION, provenance
 
@@ -23,8 +25,6 @@ GROUPS = ("scenario", "contact", "rolling", "spectra")
 PACKED = {"fletcher32": True, "zlib": True, "complevel": 1, "shuffle": True}
 """How numbers are written: with a checksum, and compressed."""
 LARGEST_FILE = 16 * 2**30  # bytes
-MOST_UNPACKED = 100  # times its size that the numbers of a file may take, in memory
-SMALL = 2**26  # bytes that any file may take
 _ALLOWED = "a result file that a run has written (run.nc)"
 _AGAIN = "Run its case again."
 
@@ -110,13 +110,14 @@ def _opened_apart(path: Path, *, whole: bool = True) -> xarray.DataTree:
         raise InputError(str(path), f"{size / 2**30:.0f} GiB", f"{_ALLOWED} of at most 16 GiB")
     with open(path, "rb") as file:
         signature, intact = file.read(8), is_sealed(file)
-    if signature != b"\x89HDF\r\n\x1a\n":
+    if signature != SIGNATURE:
         raise InputError(str(path), "a file that is not netCDF-4", _ALLOWED)
     if intact is False:
         received = "a damaged file: its digest does not fit its contents"
         raise InputError(str(path), received, _ALLOWED, _AGAIN)
-    arguments = [str(path.absolute()), whole]
-    groups, arrays = sandboxed(groups_of_netcdf, arguments, str(path), size, "netCDF-4")
+    groups, arrays = sandboxed(
+        groups_of_netcdf, path, [whole], source=str(path), kind="netCDF-4", packages=["h5netcdf"]
+    )
     numbers, found = iter(arrays), {}
     for name, attributes, variables in groups:
         held = {each: xarray.Variable(dims, next(numbers), told) for each, dims, told in variables}
@@ -149,9 +150,7 @@ def _check_version(path: Path, tree: xarray.DataTree) -> None:
 
 def groups_of_netcdf(path: str, whole: bool) -> Answer:
     """Read all that is in a file, or its attributes alone: groups, what their variables are, and these."""
-    import h5netcdf
-
-    left = max(SMALL, MOST_UNPACKED * os.path.getsize(path))
+    left = most_unpacked(path)
     groups: list[Any] = []
     arrays: list[NDArray[Any]] = []
 
@@ -159,18 +158,27 @@ def groups_of_netcdf(path: str, whole: bool) -> Answer:
         nonlocal left
         variables = group.variables if whole else {}
         for each in variables.values():
-            left -= math.prod(each.shape) * 8
-            if left < 0:
-                raise ValueError(f"more than {MOST_UNPACKED} times its size in numbers")
-            arrays.append(each[...])
+            left -= size_unpacked(each.shape, np.dtype(each.dtype).itemsize)
+            require_left()
+            values = each[...]
+            if values.dtype == object:  # words, which are sent at the length of the longest
+                left -= 4 * values.size * max(map(len, values.flat), default=0)
+                require_left()
+            arrays.append(values)
         told = [(name, each.dimensions, dict(each.attrs)) for name, each in variables.items()]
         groups.append((group.name, dict(group.attrs), told))
         for inner in group.groups.values() if whole else ():
             take(inner)
 
+    def require_left() -> None:
+        if left < 0:
+            raise ValueError(f"more than {MOST_UNPACKED} times its size in numbers")
+
     try:
-        with h5netcdf.File(path, "r", decode_vlen_strings=True) as file:
+        with opened_netcdf(path, path, decode_vlen_strings=True) as file:
             take(file)
+    except InputError:
+        raise
     except Exception as error:  # h5py raises errors of many kinds on damaged files
         raise InputError(path, f"a damaged file ({reason(error)})", _ALLOWED, _AGAIN) from error
     return groups, arrays

@@ -1,4 +1,4 @@
-"""Foreign files are opened in a sandbox: a process with limits of time and memory, which may hang or end."""
+"""Foreign files are opened in a sandbox: a process with limits, which reads one file and may hang or end."""
 
 import importlib
 import json
@@ -6,14 +6,16 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
-from threading import Thread
-from typing import Any, BinaryIO
+from pathlib import Path
+from threading import Event, Thread, Timer
+from typing import IO, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.confinement import confine
 from asperity.errors import InputError, reason
 from asperity.files import amount
 
@@ -32,53 +34,101 @@ _FAILED = 3
 _OUT_OF_TIME = -getattr(signal, "SIGXCPU", 24)
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 _START = (
-    "import sys, json; sys.path[:] = json.loads(sys.argv[1]); import asperity.sandbox as box; box.answer()"
+    "import sys, json; installed = sys.path[:]; sys.path[:] = json.loads(sys.argv[1]); "
+    "import asperity.sandbox as box; box.answer(installed)"
 )
 
 
 def sandboxed(
-    function: Callable[..., Answer], arguments: list[Any], source: str, size: int, kind: str
+    function: Callable[..., Answer],
+    path: Path,
+    arguments: list[Any],
+    *,
+    source: str,
+    kind: str,
+    packages: Sequence[str] = (),
 ) -> Answer:
-    """Call a function of a module in a process of its own, and return what it returns.
+    """Call a function of a module with the path of a file, in a process that can open no other file.
 
-    Its arguments are what JSON can hold. `source`, `size` and `kind` are name, bytes and format, as
-    ``"netCDF-4"``, of the file that it opens, for messages. An `InputError` is what the function raised; or
-    says that it took more time or memory than it may, or that its process ended.
+    What it returns is returned. Its other arguments are what JSON can hold; `source` and `kind` are name and
+    format of the file, as ``"netCDF-4"``, for messages. `packages` are those that the function needs: they
+    are loaded before the process is confined (see `asperity.confinement`), and may be missing. An
+    `InputError` is what the function raised; or says that it took more time or memory than it may, or that
+    its process ended.
     """
+    file, size = str(path.absolute()), path.stat().st_size
     seconds = SECONDS + size / BYTES_PER_SECOND
-    command = [sys.executable, "-c", _START, json.dumps(sys.path)]
-    request = [function.__module__, function.__name__, arguments, max(MEMORY, 4 * size), int(seconds) + 1]
-    pipe, environment = subprocess.PIPE, os.environ | _ONE_THREAD
-    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as process:
-        try:
-            told, words = process.communicate(json.dumps(request).encode(), PATIENCE * seconds)
-            code = process.returncode
-        except subprocess.TimeoutExpired:
-            code, told, words = _OUT_OF_TIME, b"", b""
-        finally:  # an interrupt, too, leaves nothing behind
-            process.kill()
-            process.wait()
-    if code == 0:
-        return received(told)
+    limits = [max(MEMORY, 4 * size), int(seconds) + 1]
+    request = [function.__module__, function.__name__, file, arguments, list(packages), *limits]
+    code, found, words = _asked(json.dumps(request).encode(), PATIENCE * seconds)
+    if code == 0 and found is not None:
+        return found
     message = words.decode(errors="replace").strip().rpartition("\n")[2]
     if code == _REFUSED:
         raise InputError(*json.loads(message))
     if code == _FAILED:
-        found = f"{json.loads(message)} while it was opened"
+        found_there = f"{json.loads(message)} while it was opened"
     elif code == _OUT_OF_TIME:
-        found = f"a file that takes more than {seconds:.0f} s to open"
+        found_there = f"a file that takes more than {seconds:.0f} s to open"
     else:
-        found = f"a file that ends the program that opens it (code {code})"
+        found_there = f"a file that ends the program that opens it (code {code})"
     remedy = "It is damaged, or not of this format; export it again."
-    raise InputError(source, found, f"an intact {kind} file", remedy)
+    raise InputError(source, found_there, f"an intact {kind} file", remedy)
 
 
-def answer() -> None:
-    """Answer the request on standard input, as the process that `sandboxed` starts."""
-    module, name, arguments, memory, seconds = json.load(sys.stdin)
+def _asked(request: bytes, patience: float) -> tuple[int, Answer | None, bytes]:
+    """Exit code, answer and last words of a process that is given a request and so many seconds."""
+    command = [sys.executable, "-c", _START, json.dumps(sys.path)]
+    pipe, environment = subprocess.PIPE, os.environ | _ONE_THREAD
+    late, words = Event(), bytearray()
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        hears = Thread(target=_collect, args=(process.stderr, words), daemon=True)
+
+        def lose_patience() -> None:
+            late.set()
+            process.kill()
+
+        waits = Timer(patience, lose_patience)
+        waits.daemon = True
+        found = None
+        try:
+            hears.start()
+            waits.start()
+            with suppress(OSError):  # it has ended already
+                process.stdin.write(request)
+                process.stdin.close()
+            with suppress(ValueError, EOFError):  # it ended before it had said all
+                found = received(process.stdout)
+            hears.join()
+            code = process.wait()
+        finally:  # an interrupt, too, leaves nothing behind
+            waits.cancel()
+            process.kill()
+            process.wait()
+    return _OUT_OF_TIME if late.is_set() else code, found, bytes(words)
+
+
+def _collect(stream: IO[bytes] | None, words: bytearray) -> None:
+    with suppress(OSError, ValueError):
+        words.extend(stream.read() if stream else b"")
+
+
+def answer(installed: Sequence[str]) -> None:
+    """Answer the request on standard input, as the process that `sandboxed` starts.
+
+    `installed` are the folders of packages that Python knew when it was started.
+    """
+    module, name, path, arguments, packages, memory, seconds = json.load(sys.stdin)
+    function = getattr(importlib.import_module(module), name)
+    for package in packages:
+        with suppress(ImportError):  # who needs it says so
+            importlib.import_module(package)
+    confine(path, installed)
     limit_process(memory, seconds)
     try:
-        send(getattr(importlib.import_module(module), name)(*arguments), sys.stdout.buffer)
+        send(function(path, *arguments), sys.stdout.buffer)
     except InputError as error:
         _leave([error.what, str(error.received), error.allowed, error.remedy], _REFUSED)
     except MemoryError:
@@ -104,14 +154,19 @@ def send(answer: Answer, to: BinaryIO) -> None:
     to.flush()
 
 
-def received(answer: bytes) -> Answer:
-    """Read what `send` wrote."""
-    start, arrays = answer.index(b"\n") + 1, []
-    description, kinds = json.loads(answer[:start])
+def received(answer: IO[bytes]) -> Answer:
+    """Read what `send` wrote, each array once, where it stays; a ValueError if that is not all there."""
+    description, kinds = json.loads(answer.readline())
+    arrays = []
     for kind, shape in kinds:
-        each = np.frombuffer(answer, kind, int(np.prod(shape)), start).reshape(shape)
-        arrays.append(each.copy())  # where the processor reads it fast, and it may be changed
-        start += each.nbytes
+        each = np.empty(shape, kind)  # where the processor reads it fast, and it may be changed
+        bytes_of_it = each.reshape(-1).view(np.uint8).data
+        while bytes_of_it:
+            count = answer.readinto(bytes_of_it)  # type: ignore[attr-defined]
+            if not count:
+                raise ValueError("an answer that ends before its numbers do")
+            bytes_of_it = bytes_of_it[count:]
+        arrays.append(each)
     return description, arrays
 
 

@@ -34,7 +34,7 @@ MAP = '[surface]\nfile = "{}"\nheight_unit = "um"\npixel = "8 um"\n'
 ONE = "[contact]\nsamples = 1\n"
 FREE = '[ball]\nload = "20 N"\n[beam]\nsupport = "free"\nsuspension_frequency = "0.1 Hz"\n'
 CIRCLES = Path(__file__).with_name("circles.nc").read_bytes()  # in which HDF5 turns in circles
-ENDS = Path(__file__).with_name("ends.nc").read_bytes()  # which ends the process that opens it
+ENDS = Path(__file__).with_name("ends.nc").read_bytes()  # which ends the process that reads its variables
 
 
 def case(text, says, **files):
@@ -68,7 +68,7 @@ CORPUS = {
     ),
     "a library that ends": (
         ("surface", "a.nc", "--height-unit", "um", "--pixel", "1 um"), 2,
-        "a file that ends the program that opens it", {"a.nc": ENDS},
+        "while it was opened; allowed: an intact netCDF-4 file", {"a.nc": ENDS},
     ),
 }  # fmt: skip
 

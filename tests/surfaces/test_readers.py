@@ -90,7 +90,7 @@ HOLED = {
 @pytest.fixture(autouse=True)
 def _read_here(monkeypatch):
     """What is read in a process of its own elsewhere is read in this one."""
-    at_once = lambda function, arguments, *_: function(*arguments)  # noqa: E731
+    at_once = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
     monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", at_once)
 
 

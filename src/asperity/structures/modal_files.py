@@ -10,9 +10,10 @@ import numpy as np
 from asperity.arguments import Array, Complex, file_path, listed, no_file, one_of, require, shown
 from asperity.errors import InputError
 from asperity.files import amount
+from asperity.hdf5 import check_unpacked, opened_netcdf
 from asperity.sandbox import Answer, sandboxed
 from asperity.structures.modal import ModalStructure
-from asperity.surfaces.readers.guards import check_claim, hostile
+from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
 
@@ -28,6 +29,7 @@ FULL = (0, 2, 3)
 OUT_OF_PHASE = 0.1
 """Share of a complex mode, of its mean square, that may move out of phase with the rest."""
 _EXPORT = "Export it again."
+_PACKAGES = ["h5netcdf", "pyuff"]
 
 
 def modes_of_universal(path: str, given: dict[str, Any]) -> Answer:
@@ -146,7 +148,6 @@ def _real_mode(values: Complex, frequency: float, source: str) -> tuple[Array, c
 
 LARGEST_FILE = 256 * 2**20
 """Bytes of a file with modes."""
-MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written
 
 VARIABLES = {
     "positions": ("m", 1),
@@ -248,8 +249,7 @@ def read_modal_structure(
 
 def _read_from(file: Path, kind: str, serve: Callable[..., Answer], *more: Any) -> ModalStructure:
     """Read a file in a process of its own, by a function that sends the names and values of its arrays."""
-    arguments = [str(file.absolute()), *more]
-    names, arrays = sandboxed(serve, arguments, file.name, file.stat().st_size, kind)
+    names, arrays = sandboxed(serve, file, [*more], source=file.name, kind=kind, packages=_PACKAGES)
     return _structure(dict(zip(names, arrays, strict=True)), file.name)
 
 
@@ -319,10 +319,8 @@ def _cell(cell: str) -> float:
 
 def modes_of_netcdf(path: str, places: str) -> Answer:
     """Read the variables of a netCDF-4 file, whose positions have a unit as `places`."""
-    import h5netcdf
-
     file = Path(path)
-    with hostile(file.name, "netCDF-4"), h5netcdf.File(file, "r") as opened:
+    with hostile(file.name, "netCDF-4"), opened_netcdf(file, file.name) as opened:
         present = [name for name in VARIABLES if name in opened.variables]
         if missing := [name for name in NEEDED if name not in present]:
             allowed = f"the variables {', '.join(NEEDED)}"
@@ -338,7 +336,7 @@ def modes_of_netcdf(path: str, places: str) -> Answer:
 
 def netcdf_numbers(variable: Any, name: str, unit: str, dimensions: int, file: Path) -> Array:
     """Read a variable of at most so many dimensions in SI; with a unit, its attribute must name one."""
-    check_claim(file.name, variable.shape, variable.dtype.itemsize / MAX_COMPRESSION, file.stat().st_size)
+    check_unpacked(file, f"{name} of {file.name}", variable.shape, np.dtype(variable.dtype).itemsize)
     if not 1 <= variable.ndim <= dimensions or variable.dtype.kind not in "fiu":
         received = f"{name} of {variable.ndim} dimensions and type {variable.dtype}"
         raise InputError(file.name, received, f"numbers along at most {dimensions} dimensions")

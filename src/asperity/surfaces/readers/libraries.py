@@ -10,19 +10,26 @@ import numpy as np
 
 from asperity.arguments import Array, listed, require, shown
 from asperity.errors import InputError
+from asperity.hdf5 import check_unpacked, is_hdf5, opened_netcdf, refuse_data_elsewhere
 from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards
 from asperity.surfaces.readers.hints import SPELLING, Hints, Spelling, spelled
 from asperity.units import factor
 
+PACKAGES = {"read_netcdf": ["h5netcdf"], "read_instrument": ["SurfaceTopography", "h5py"]}
+"""What each reader needs."""
+
 
 def read_apart(reader: str, kind: str) -> Callable[[Path, Hints], list[guards.Surface]]:
     """Make a reader of a format that calls a function of this module by its name in a process of its own."""
 
     def read(path: Path, hints: Hints) -> list[guards.Surface]:
-        request = [reader, str(path.absolute()), asdict(hints), asdict(SPELLING.get())]
-        described, found = sandboxed(surfaces_in, request, path.name, path.stat().st_size, kind)
+        request = [reader, asdict(hints), asdict(SPELLING.get())]
+        packages = PACKAGES[reader]
+        described, found = sandboxed(
+            surfaces_in, path, request, source=path.name, kind=kind, packages=packages
+        )
         return [
             (HeightMap if heights.ndim == 2 else Profile)(heights, spacing, source)
             for (spacing, source), heights in zip(described, found, strict=True)
@@ -31,7 +38,7 @@ def read_apart(reader: str, kind: str) -> Callable[[Path, Hints], list[guards.Su
     return read
 
 
-def surfaces_in(reader: str, path: str, hints: dict[str, Any], spelling: dict[str, Any]) -> Answer:
+def surfaces_in(path: str, reader: str, hints: dict[str, Any], spelling: dict[str, Any]) -> Answer:
     """Read a file as `read_apart` asks: spacings and sources of surfaces, and their heights."""
     read = {"read_netcdf": read_netcdf, "read_instrument": read_instrument}[reader]
     with spelled(Spelling(**spelling)):
@@ -45,6 +52,8 @@ def read_instrument(path: Path, hints: Hints) -> list[guards.Surface]:
     The other hints stand for a unit or a size that the file does not state. SurfaceTopography gives maps with
     the file's x as the first axis, which is kept.
     """
+    if is_hdf5(path):
+        refuse_data_elsewhere(path, path.name)
     # remarks of the package about itself
     with warnings.catch_warnings(action="ignore"), _opener(path)(path) as reader:
         channels = {channel.name: channel for channel in reader.channels}
@@ -86,8 +95,6 @@ def _surfaces(measured: Any, hints: Hints, source: str) -> list[guards.Surface]:
 
 # --- netCDF-4 through h5netcdf
 
-MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written
-
 
 def read_netcdf(path: Path, hints: Hints) -> list[guards.Surface]:
     """Read the variable of a netCDF-4 file that the hints name (``group/variable`` in a group).
@@ -98,12 +105,10 @@ def read_netcdf(path: Path, hints: Hints) -> list[guards.Surface]:
     the ``units`` attributes; points are put in the order of rising coordinates. The other hints stand for
     what is not stated.
     """
-    import h5netcdf
-
-    with h5netcdf.File(path, "r") as opened:
+    with opened_netcdf(path, path.name, phony_dims="access") as opened:
         variable = _chosen(opened, hints.array, path.name)
-        source, item_bytes = f"{path.name}:{variable.name.lstrip('/')}", variable.dtype.itemsize
-        guards.check_claim(source, variable.shape, item_bytes / MAX_COMPRESSION, path.stat().st_size)
+        source = f"{path.name}:{variable.name.lstrip('/')}"
+        check_unpacked(path, source, variable.shape, np.dtype(variable.dtype).itemsize)
         heights = _decoded(variable, hints.heights_in(source, _unit(variable)), source)
         names = [name.rpartition("/")[2] for name in variable.dimensions]
         within = variable.name.strip("/").rpartition("/")[0]
