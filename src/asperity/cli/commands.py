@@ -328,7 +328,11 @@ BEARING = [
     click.Option(["--speed"], metavar="SPEED", help="Of the ring that turns, as '1800 1/min'."),
     click.Option(["--clearance"], metavar="LENGTH", help="Diametral clearance, as '10 um'."),
     click.Option(["--signal"], type=PATH, help="Acceleration of it: .npz, .npy, .wav or text."),
-    click.Option(["--rate"], metavar="FREQUENCY", help="Sampling rate of the signal, as '12 kHz'."),
+    click.Option(
+        ["--rate"],
+        metavar="FREQUENCY",
+        help="Sampling rate of the signal, as '12 kHz', unless times beside it give it.",
+    ),
     click.Option(["--array"], help="Name of the signal, where a file holds several."),
     click.Option(["--column"], type=int, help="Number of its column, from 1, where there are several."),
     click.Option(

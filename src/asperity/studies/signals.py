@@ -3,6 +3,7 @@
 import io
 import os
 import warnings
+from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -18,6 +19,7 @@ from asperity import files
 from asperity.arguments import Array, ArrayLike, file_path, finite_array, one_of, positive, require, shown
 from asperity.case import any_case
 from asperity.case.ball_bearing import BallBearingCase
+from asperity.case.tables import heading_of
 from asperity.errors import InputError
 from asperity.results import save, variable
 from asperity.store import content_key
@@ -25,6 +27,7 @@ from asperity.structures.ball_bearing import PARTS
 from asperity.studies.axes import VARIANT, written_out
 from asperity.studies.definition import Member
 from asperity.studies.member import SIGNAL
+from asperity.studies.times import clock_of, rate_beside
 from asperity.surfaces.readers import arrays, guards
 from asperity.text_files import lines_of_cells, number_in, read_text, write_csv
 from asperity.units import quantity, unit_in
@@ -105,11 +108,12 @@ class SignalSet:
         rate = quantity(rate, "Hz") if isinstance(rate, str) else rate
         if rate is not None or file.suffix.lower() == ".wav":
             return read_signal(file, rate)
-        times, values = (read_signal(file, 1.0, column=n)[0] for n in (1, 2))
-        steps = np.diff(times)
-        even = steps.size > 0 and steps.min() > 0.0 and np.ptp(steps) <= 0.01 * steps.mean()
-        require(even, f"times in {file.name}", "uneven ones", "equal steps, s", "Or give the sampling rate.")
-        return values, float(1.0 / steps.mean())
+        values, titles, _ = _recorded(file, None)
+        received, allowed = f"an array of shape {values.shape}", "a column of times (s), then the response"
+        columns = values.ndim == 2 and values.shape[1] == 2
+        require(columns, file.name, received, allowed, "Or give the sampling rate.")
+        times = clock_of(values, titles or ["time (s)", ""], file.name)
+        return values[:, 1], rate_beside(None, times and times[1], file.name)
 
     @cached_property
     def _noise(self) -> dict[str, float]:
@@ -233,30 +237,48 @@ def read_signal(
     """Read a signal (n,) and its sampling rate, Hz, from ``.npy``, ``.npz``, ``.wav`` or a text table.
 
     `rate` is that which a file does not state, `array` the one of several in an archive, `column` the one of
-    several, from 1. Samples of a WAV file are in shares of full scale.
+    several, from 1. A column of times gives the rate, see `clock_of`. Samples of a WAV file are in shares of
+    full scale.
     """
     file = guards.readable_file(path)
-    kind = file.suffix.lower()
+    values, titles, stated = _recorded(file, array)
+    rate = rate or stated
+    if values.ndim == 2:
+        clock = clock_of(values, titles, file.name)
+        if clock is not None and (titles or not rate):
+            rate = rate_beside(rate, clock[1], file.name)
+        values = values[:, _column(column, values.shape[1], clock, file.name)]
+    require(rate, "sampling rate", "nothing", "samples per second", 'Give it, as in --rate "12 kHz".')
+    require(values.ndim == 1, file.name, f"an array of shape {values.shape}", "a signal, or columns of them")
+    return values, float(rate or 0.0)
+
+
+def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None]:
+    """What a file holds, with titles of its columns and the sampling rate, Hz, as far as it states them."""
+    kind, titles, rate = file.suffix.lower(), list[str](), None
     with guards.hostile(file.name, kind.lstrip(".") or "text"):
         if kind == ".wav":
-            stated, values = _of_wav(file)
-            rate = rate or stated
+            rate, values = _of_wav(file)
         elif kind == ".npz":
             values = arrays.array_in(arrays.array_of_archive(file, array, "signals")[1], file.name)
         elif kind == ".npy":
             values = arrays.array_in(file.read_bytes(), file.name)
         else:
-            values = _of_text(file)
-    require(rate, "sampling rate", "nothing", "samples per second", 'Give it, as in --rate "12 kHz".')
-    values = guards.scaled(values, 1.0, file.name)
-    if values.ndim == 2:
-        count = values.shape[1]
-        received, allowed = f"{count} columns", f"one of 1 to {count}"
-        chosen = 1 if column is None and count == 1 else column or 0
-        require(1 <= chosen <= count, f"column in {file.name}", received, allowed, "Choose it with --column.")
-        values = values[:, chosen - 1]
-    require(values.ndim == 1, file.name, f"an array of shape {values.shape}", "a signal, or columns of them")
-    return values, float(rate or 0.0)
+            values, titles = _of_text(file)
+    return guards.scaled(values, 1.0, file.name), titles, rate
+
+
+def _column(chosen: int | None, count: int, clock: tuple[int, float | None] | None, source: str) -> int:
+    """Column of a signal, from zero: that which was chosen, from one, or the only one that holds no times."""
+    signals = [number for number in range(count) if clock is None or number != clock[0]]
+    if chosen is None and len(signals) == 1:
+        return signals[0]
+    received, allowed = f"{count} columns", f"one of 1 to {count}"
+    if clock is not None:
+        allowed += f", of which {clock[0] + 1} holds the times"
+    within = chosen is not None and chosen - 1 in signals
+    require(within, f"column in {source}", received, allowed, "Choose it with --column.")
+    return (chosen or 0) - 1
 
 
 def _of_wav(file: Path) -> tuple[float, Any]:
@@ -271,20 +293,22 @@ def _of_wav(file: Path) -> tuple[float, Any]:
     return float(rate), values / full
 
 
-def _of_text(file: Path) -> Array:
-    """Numbers of a table, below lines of words."""
+def _of_text(file: Path) -> tuple[Array, list[str]]:
+    """Numbers of a table, below lines of words, of which the last may be titles of its columns."""
     rows: list[list[float]] = []
+    words: deque[list[str]] = deque(maxlen=2)
     for line, cells in lines_of_cells(read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT)):
         try:
             numbers = [number_in(cell) for cell in cells]
         except ValueError:
             require(not rows, file.name, f"words in line {line}", "numbers below the heading")
+            words.append(cells)
             continue
         even = not rows or len(numbers) == len(rows[0])
         require(even, file.name, f"{len(numbers)} cells in line {line}", f"{len(rows[0]) if rows else 0}")
         rows.append(numbers)
     require(rows, file.name, "no numbers", "a table of numbers")
-    return np.array(rows)
+    return np.array(rows), heading_of(words, ["s", *[""] * (len(rows[0]) - 1)])
 
 
 def through_path(signal: ArrayLike, rate: float, response: ArrayLike, response_rate: float) -> Array:

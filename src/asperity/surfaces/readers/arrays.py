@@ -1,26 +1,18 @@
-"""Bare arrays, ``.npy`` and ``.npz``, never unpickled; and points on a line or a grid as arrays."""
+"""Bare arrays, ``.npy`` and ``.npz``, never unpickled."""
 
 import io
-import math
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, listed, require, shown
+from asperity.arguments import NDArray, listed, require, shown
 from asperity.surfaces.readers import guards
 from asperity.surfaces.readers.hints import Hints, advice
 
 HEADER = 128
 """Bytes in which the header of a scalar ends."""
-TOLERANCE = 0.05
-"""Largest distance of a point from the grid, in spacings."""
-SPARSEST = 0.5
-"""Smallest share of grid points that must be there."""
-RESAMPLE = "Resample the heights at a uniform spacing first."
-UNEVEN = "coordinates that are not uniform"
-Index = NDArray[np.intp]
 
 
 def read_npy(path: Path, hints: Hints) -> list[guards.Surface]:
@@ -87,61 +79,3 @@ def array_in(data: bytes, file: str) -> NDArray[Any]:
     points = guards.check_claim(file, shape, kind.itemsize, len(data) - stream.tell()) if shape else 1
     flat: NDArray[Any] = np.frombuffer(data, kind, points, stream.tell())
     return flat.reshape(shape, order="F" if fortran else "C")
-
-
-def line(x: Array, z: Array, source: str) -> tuple[Array, float]:
-    """Put points x, z, given in any order, on the uniform line that they lie on.
-
-    Returns the heights along rising x, NaN where the line has no point, and the spacing, in the units given.
-    Refused are points that stand twice, or fill less than half of the line.
-    """
-    index, spacing = places(x, f"x of {source}", np.diff(np.sort(x)))
-    return _gridded(index, z, (int(index.max()) + 1,), source), spacing
-
-
-def rasterised(x: Array, y: Array, z: Array, source: str) -> tuple[Array, tuple[float, float]]:
-    """Sort points x, y, z, given in any order, into the regular grid that they lie on.
-
-    Returns the heights (nx, ny) along rising x and y, NaN where the grid has no point, and (dx, dy), in the
-    units given. Refused are points that stand twice, or fill less than half of the grid.
-    """
-    (i, dx), (j, dy) = (places(v, f"{name} of {source}", _steps(v)) for name, v in (("x", x), ("y", y)))
-    shape = (int(i.max()) + 1, int(j.max()) + 1)
-    return _gridded(i * shape[1] + j, z, shape, source), (dx, dy)
-
-
-def _gridded(index: Index, z: Array, shape: tuple[int, ...], source: str) -> Array:
-    """Heights on a grid; that points fill half of it is known before it is allocated."""
-    received = f"{len(z)} points that would need a grid of {' x '.join(str(n) for n in shape)}"
-    dense = math.prod(shape) * SPARSEST <= len(z)
-    require(dense, source, received, "points on a regular grid", RESAMPLE)
-    single, received = len(np.unique(index)) == len(index), "several points at one place"
-    require(single, source, received, "one height per grid point", RESAMPLE)
-    heights = np.full(math.prod(shape), np.nan)
-    heights[index] = z
-    return heights.reshape(shape)
-
-
-def _steps(coordinates: Array) -> Array:
-    """Gaps between grid lines; smaller ones are rounding within one grid line."""
-    gaps = np.diff(np.sort(coordinates))
-    return gaps[gaps > 0.5 * gaps.max(initial=0.0)]
-
-
-def places(coordinates: Array, what: str, gaps: Array) -> tuple[Index, float]:
-    """Number the places of coordinates on a uniform line, from zero on, and return its spacing.
-
-    Each is within 0.05 spacings of its place. `gaps` are distances of neighbours, of which the median is one
-    spacing; `what` they are is for messages.
-    """
-    finite, received = np.isfinite(coordinates).all(), "missing or infinite coordinates"
-    require(finite, what, received, "a coordinate for each point", RESAMPLE)
-    step = float(np.median(gaps)) if len(gaps) else 0.0
-    require(step > 0, what, "fewer than two different coordinates", "at least two", RESAMPLE)
-    origin, extent = coordinates.min(), np.ptp(coordinates)
-    step = float(extent / round(extent / step))
-    index = np.rint((coordinates - origin) / step)
-    uniform = np.abs(coordinates - origin - index * step).max() <= TOLERANCE * step
-    allowed = f"coordinates at a uniform spacing (within {TOLERANCE} of it)"
-    require(uniform, what, UNEVEN, allowed, RESAMPLE)
-    return index.astype(np.intp), step

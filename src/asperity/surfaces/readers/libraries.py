@@ -13,7 +13,7 @@ from asperity.errors import InputError
 from asperity.hdf5 import check_unpacked, is_hdf5, opened_netcdf, refuse_data_elsewhere
 from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import arrays, guards
+from asperity.surfaces.readers import arrays, guards, positions
 from asperity.surfaces.readers.hints import SPELLING, Hints, Spelling, spelled
 from asperity.units import factor
 
@@ -154,11 +154,13 @@ def _decoded(variable: Any, unit: float, source: str) -> Array:
     return (heights * float(np.ravel(scale)[0]) + float(np.ravel(offset)[0])) * unit
 
 
-def _placed(coordinate: Any, hints: Hints, source: str, name: str) -> tuple[arrays.Index, float]:
+def _placed(coordinate: Any, hints: Hints, source: str, name: str) -> tuple[positions.Index, float]:
     """Places of points along one axis, none left out, and their distance, m."""
     what = f"{name} of {source}"
     unit = hints.lateral_in(what, _unit(coordinate), "um", "Give it, as in", "Add the units attribute.")
     values = np.asarray(coordinate[...], dtype=np.float64)
-    index, step = arrays.places(values, what, np.diff(np.sort(values)))
-    require(len(values) == index.max() + 1, what, arrays.UNEVEN, "a point at each place", arrays.RESAMPLE)
+    index, step = positions.places(values, what)
+    require(
+        len(values) == index.max() + 1, what, positions.UNEVEN, "a point at each place", positions.RESAMPLE
+    )
     return index, step * unit

@@ -16,7 +16,7 @@ from asperity.arguments import Array, require
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.readers import arrays, guards
+from asperity.surfaces.readers import guards, positions
 from asperity.surfaces.readers.hints import Hints, advice, spell
 from asperity.text_files import lines_in, number_in, read_text
 from asperity.units import factor, quantity
@@ -97,7 +97,7 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     try:
         return _surfaces(table, header, hints, path.name)
     except InputError as error:
-        if error.received != arrays.UNEVEN or "dx" not in header or "z" not in header:
+        if error.received != positions.UNEVEN or "dx" not in header or "z" not in header:
             raise
     heights = table * hints.heights_in(path.name, header["z"])  # lines without their positions
     return guards.surfaces_of(heights, hints.spacing_in(path.name, (header["dx"], header["dy"])), path.name)
@@ -185,21 +185,21 @@ def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str)
         return hints.lateral_in(source, header.get(axis), "mm", f"{heading}, or give", f"{heading}.")
 
     if columns == 2:
-        line, step = arrays.line(table[:, 0], heights, source)
+        line, step = positions.line(table[:, 0], heights, source)
         if spacing:
             return [Profile(line, spacing[0], source)]
         unit = lateral("x")
         return [Profile(line, step * unit, source, float(table[:, 0].min()) * unit)]
     if columns == 3:
-        heights, steps = arrays.rasterised(table[:, 0], table[:, 1], heights, source)
+        heights, steps = positions.rasterised(table[:, 0], table[:, 1], heights, source)
         spacing = spacing or (steps[0] * lateral("x"), steps[1] * lateral("y"))
     return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
 
 
 def _lines(table: Array, along: float, unit: float, hints: Hints, source: str) -> list[guards.Surface]:
     """Lines beside each other at the positions of the first column, from units of both, m."""
-    lines = [arrays.line(table[:, 0], heights, source) for heights in table[:, 1:].T]
-    heights, step = np.stack([line for line, _ in lines], axis=1), lines[0][1] * along
+    heights, step = positions.line(table[:, 0], table[:, 1:], source)
+    step *= along
     return guards.surfaces_of(heights * hints.heights_in(source, unit), hints.pixel or (step, step), source)
 
 
