@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from packaging.version import Version
 
 import asperity
 from asperity.kernels import options
@@ -20,6 +21,7 @@ from command_line import call
 
 ROOT = Path(__file__).parents[1]
 READ = (".py", ".md", ".bib", ".rst", ".toml")
+USED = ("readers", "uff", "cluster", "app")  # extras of people, of which cupy needs a GPU
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
@@ -68,13 +70,53 @@ def test_the_gate_and_the_workflows_call_the_same_commands():
     assert ".ci/docs" in text(".ci/checks")
 
 
-def test_the_oldest_versions_are_tested():
-    oldest, newest = workflow("checks")["jobs"]["checks"]["strategy"]["matrix"]["versions"]
-    (numba,) = [name for name in PROJECT["dependencies"] if name.startswith("numba")]
-    assert oldest["numba"].replace("==", ">=").removesuffix(".*") == numba
+def required(lines):
+    """Version by the name of each package, of requirements that state one."""
+    stated = [re.split(r">=|==", re.sub(r"\[.*?\]", "", line)) for line in lines if "=" in line]
+    return {name: Version(version) for name, version in stated}
+
+
+def test_the_lowest_versions_declared_are_tested():
+    """In a list of their own, as pip takes the newest."""
+    extras = PROJECT["optional-dependencies"]
+    needed = [*PROJECT["dependencies"], *(line for name in USED for line in extras[name])]
+    floors = [line for line in text(".ci/floors.txt").splitlines() if not line.startswith("#")]
+    assert all("==" in line for line in floors)
+    assert required(floors) == required(needed)
+    versions = workflow("checks")["jobs"]["checks"]["strategy"]["matrix"]["versions"]
+    oldest, newest = versions
+    assert oldest["releases"] == "-c .ci/floors.txt"
+    assert newest["releases"] == ""
+    (install,) = [each for each in commands(workflow("checks")["jobs"]["checks"]) if "pip install" in each]
+    assert install.endswith(" ${{ matrix.versions.releases }}")
     assert PROJECT["requires-python"] == f">={oldest['python']}"
-    assert newest["numba"] == "numba"
-    assert f"numba {numba.removeprefix('numba>=')} to" in " ".join(options.__doc__.split())
+    assert f"numba {required(needed)['numba']} to" in " ".join(options.__doc__.split())
+
+
+TOP = {
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "CONFORMANCE.md",
+    "CONTRIBUTING.md",
+    "LICENSE",
+    "README.md",
+}
+SOURCES = {"pyproject.toml", "hatch_build.py"}
+
+
+def test_the_tree_holds_no_file_that_something_left_there():
+    """Examples and tests run in folders of their own."""
+    files = {path.name for path in ROOT.iterdir() if path.is_file() and not path.name.startswith(".")}
+    assert files - TOP == SOURCES
+    assert {path.suffix for path in (ROOT / "examples").iterdir() if path.is_file()} == {
+        ".py",
+        ".csv",
+        ".rst",
+    }
+    pages = [*(ROOT / "examples").glob("*.py"), *(ROOT / "docs").rglob("*.md")]
+    read = " ".join(path.read_text(encoding="utf-8") for path in pages)
+    assert all(path.name in read for path in (ROOT / "examples").glob("*.csv"))
 
 
 def test_every_link_and_picture_of_a_page_leads_somewhere():

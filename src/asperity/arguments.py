@@ -7,10 +7,9 @@ import os
 import stat
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, NewType, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike as ArrayLike
 from numpy.typing import NDArray as NDArray
 
 from asperity.errors import InputError
@@ -22,8 +21,15 @@ SHAKEDOWN = "shakedown"  # stands for a number of passes: until one changes noth
 FORMS = {"plane": 1, "quadratic": 2, "quartic": 4}  # words for polynomials of these degrees
 MOST_PASSES = 100  # of running-in
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike as ArrayLike
+
+    Array = NDArray[np.float64]
+    Complex = NDArray[np.complex128]
+else:  # names alone: help() would spell out what NumPy makes of them, in a hundred words
+    ArrayLike = NewType("ArrayLike", object)
+    Array = NewType("Array", np.ndarray)
+    Complex = NewType("Complex", np.ndarray)
 
 
 def require(right: object, what: str, received: object, allowed: str, remedy: str = "") -> None:

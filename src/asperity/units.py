@@ -150,7 +150,10 @@ def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -
         return "inf" if value > 0 else "-inf"
     unit = _suited(value, dimension, unit)
     sign = "+" if dimension == "dB" else ""
-    for form, each in (("g", unit), (".12g", unit), (".15g", unit), ("", unit), ("", dimension)):
+    # what was written as 50 nm is not 0.05 um to the last bit
+    units = [unit, *(_prefixed(value, dimension) if dimension in _PREFIXED else ()), dimension]
+    forms = [(form, each) for form in ("g", ".12g", ".15g") for each in units]
+    for form, each in [*forms, ("", unit), ("", dimension)]:
         text = f"{value / factor(each, dimension):{sign}{form}} {each}"
         if not exactly or quantity(text, dimension) == value:
             return text
@@ -162,7 +165,13 @@ def _suited(value: float, dimension: str, unit: str) -> str:
     size = abs(value / factor(unit, dimension))
     if size == 0.0 or LEAST_NUMBER <= size < MOST_NUMBER or dimension not in _PREFIXED:
         return unit
+    fitting = _prefixed(value, dimension)
+    return fitting[0] if fitting else dimension
+
+
+def _prefixed(value: float, dimension: str) -> list[str]:
+    """Units of a dimension with the prefixes that bring a number near one, the smallest above one first."""
     prefixes = {"": 1.0, **{name: scale for name, scale in _PREFIXES.items() if name != "µ"}}
-    below = [name for name, scale in prefixes.items() if scale <= abs(value)]
-    best = max(below, key=prefixes.__getitem__, default="n")
-    return best + dimension if LEAST_NUMBER <= abs(value) / prefixes[best] < MOST_NUMBER else dimension
+    sizes = {name + dimension: abs(value) / scale for name, scale in prefixes.items()}
+    fitting = [name for name, size in sizes.items() if LEAST_NUMBER <= size < MOST_NUMBER]
+    return sorted(fitting, key=lambda name: (sizes[name] < 1.0, abs(math.log(sizes[name]))))

@@ -223,6 +223,25 @@ def test_a_quantity_is_written_to_the_last_bit(value, dimension):
     assert quantity(written(value, dimension, dimension), dimension) == pytest.approx(value, rel=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("dimension", "preferred", "unit"),
+    [
+        ("m", "um", "nm"),
+        ("m", "mm", "um"),
+        ("N/m", "MN/m", "kN/m"),
+        ("Pa", "GPa", "MPa"),
+        ("m/s", "km/h", "m/s"),
+    ],
+)
+def test_a_quantity_comes_back_as_a_person_would_write_it(dimension, preferred, unit):
+    """As 50 nm came back as 0.05000000000000001 um."""
+    for number in (*range(1, 100), *np.arange(0.1, 30.0, 0.7).round(1).tolist()):
+        value = quantity(f"{number} {unit}", dimension)
+        text = written(value, dimension, preferred, exactly=True)
+        assert quantity(text, dimension) == value
+        assert len(text.partition(" ")[0]) <= 7
+
+
 def test_units_suit_their_numbers():
     found = [written(v, "m", "mm") for v in (0.025, 1e-7, 2e-5, 300.0)]
     assert found == ["25 mm", "100 nm", "0.02 mm", "300 m"]

@@ -2,6 +2,8 @@
 
 import doctest
 import inspect
+import pkgutil
+from importlib import import_module
 
 import pytest
 
@@ -25,3 +27,29 @@ def test_the_examples_of_a_public_name_hold(name, tmp_path, monkeypatch):
         example.globs |= {} if example is found[0] else vars(inspect.getmodule(thing))  # of methods
         doctest.DocTestRunner().run(example, out=said.append)
     assert not said, "".join(said)
+
+
+def callables_of(module):
+    """Functions and classes of a module, and the methods of its classes."""
+    for name, thing in vars(module).items():
+        if not name.startswith("_") and getattr(thing, "__module__", "") == module.__name__:
+            yield thing
+            if inspect.isclass(thing):
+                methods = (each for name, each in vars(thing).items() if not name.startswith("_"))
+                yield from filter(inspect.isroutine, methods)
+
+
+def test_help_names_arrays_in_a_word():
+    """It spelled out what NumPy makes an array of: a dozen types for each argument."""
+    modules = [each.name for each in pkgutil.walk_packages(asperity.__path__, "asperity.")]
+    count = 0
+    for module in (name for name in modules if ".kernels" not in name and "__main__" not in name):
+        for thing in callables_of(import_module(module)):
+            if callable(thing) and (inspect.isroutine(thing) or inspect.isclass(thing)):
+                try:
+                    told = str(inspect.signature(thing))
+                except ValueError:  # one that Python cannot ask
+                    continue
+                count += "ArrayLike" in told
+                assert "numpy._typing" not in told, f"{module}: {thing}"
+    assert count > 20

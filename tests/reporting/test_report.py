@@ -10,6 +10,7 @@ import xarray as xr
 from report_reading import HOSTILE, Reader, own_scripts
 from report_tree import LAWS, PARTS, report_tree, with_force
 
+import asperity
 from asperity.convergence import sentence
 from asperity.errors import ComputationError, InputError
 from asperity.laws import spec_of
@@ -20,6 +21,7 @@ from asperity.reporting.page import literature
 from asperity.reporting.tables import uncertainty_table
 from asperity.scenes.figures.motion import acceleration_answers
 from asperity.scenes.report import page_of, report
+from asperity.scenes.result import root_attributes
 from asperity.spectra import a_weighting, nominal_frequency
 
 
@@ -185,6 +187,21 @@ def test_the_command_that_remakes_it(converged):
         tree["convergence"] = xr.Dataset(words | {"law": ("law", ["areal"])})
     told = "asperity run case.toml" + (" --converge" if converged else "")
     assert f'<pre tabindex="0">{told}</pre>' in page_of(tree)
+
+
+def test_a_case_with_a_map_in_memory_says_what_to_save_first():
+    """The case of the page cannot be run as it stands."""
+    plane = asperity.HeightMap(1e-7 * np.random.default_rng(1).normal(size=(40, 30)), 8e-6)
+    case = asperity.BallOnBeam(surface={"file": plane})
+    assert case.with_(surface={"file": None, "rms": 1e-6}).in_memory == {}
+    tree = contact_only()
+    tree.attrs |= root_attributes(case, "", [], "", [])
+    again = page_of(tree).partition('id="remake"')[2].partition("<h3")[0]
+    assert (
+        "with <code>surface.file</code> in memory: height map of 40 × 30 points, 8 um × 8 um apart" in again
+    )
+    assert '<code>numpy.save("surface_file.npy", …)</code>' in html.unescape(again)
+    assert "Then save the case below" in again
 
 
 # --- numbers in files and words

@@ -260,6 +260,13 @@ class AnyCase(Section):
         keys = in_toml(self, in_memory=lambda _, value: described_value(value))
         return toml_text({"kind": self.kind, **keys})
 
+    @property
+    def in_memory(self) -> dict[str, str]:
+        """What stands in memory, which no case file can hold, by its dotted key."""
+        held: dict[str, str] = {}
+        in_toml(self, in_memory=lambda key, value: held.setdefault(key, described_value(value)))
+        return held
+
     def parameters(self) -> list[dict[str, Any]]:
         """List the keys that matter in this case, for people.
 

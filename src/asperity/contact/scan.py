@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from asperity.arguments import Array, finite_array, real, real_array, require, shown, whole
+from asperity.arguments import Array, ArrayLike, finite_array, real, real_array, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED

@@ -8,10 +8,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.special import wofz
 
-from asperity.arguments import Array, Complex, require
+from asperity.arguments import Array, ArrayLike, Complex, require
 from asperity.radiation.pass_by import STEPS, AxleSource, Passage, Receiver, time_weighted
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, wavenumber
 from asperity.reference import cnossos

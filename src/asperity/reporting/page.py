@@ -183,6 +183,7 @@ def page(
         created=data.moment(data.stated(tree, provenance.CREATED)),
         seed="" if seed is None else seed,
         case=data.stated(tree, provenance.CASE) or "",
+        in_memory=data.json_attribute(tree, provenance.IN_MEMORY, {}),
         asked=" --converge" * bool(setting_names(tree)) + " --what-helps" * ("effects" in tree.children),
         kind=kind or "",
         literature=literature(tree),

@@ -106,6 +106,7 @@ def root_attributes(
         provenance.SCHEMA_VERSION: VERSION,
         provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
         provenance.CASE: case.text,
+        **({provenance.IN_MEMORY: held} if (held := case.in_memory) else {}),
         provenance.SEED: case.seed,
         provenance.CITATIONS: sources,
         provenance.VERDICT: verdict,

@@ -11,6 +11,12 @@ ASPERITY_VERSION = _root("asperity_version", "text", "version of the program tha
 TITLE = _root("title", "text", "what was rolled")
 CREATED = _root("created", "text", "when the run ended, ISO 8601")
 CASE = _root("case", "text", "the case, in TOML")
+IN_MEMORY = _root(
+    "in_memory",
+    "JSON",
+    "keys that held a surface or a table in memory, which no case file can, and what it was",
+    "where some did",
+)
 SEED = _root("seed", "1", "of all that was drawn at random")
 CITATIONS = _root("citations", "JSON", "sources of methods and data")
 VERDICT = _root("verdict", "text", "what the run says, in a few sentences")
