@@ -139,9 +139,9 @@ def test_the_demonstration_says_where_its_report_lies():
 
 
 def test_a_check_shows_values_and_work():
-    shown = words_of(call("check", "case.toml").stdout)
+    shown = words_of(call("check", "case.toml", "--keys").stdout)
     for text in (
-        "case.toml: a valid case",
+        "case.toml: a valid case, 1 doubt:",
         "ball.radius 25 mm",
         "6001 points 10 µm apart",
         "0.01 s, and 0.05 s before it, 6000 steps of 10 µs",
@@ -150,9 +150,19 @@ def test_a_check_shows_values_and_work():
         assert text in shown
 
 
+def test_a_check_begins_with_what_is_doubted_and_decided_and_ends_with_the_keys_that_are_set():
+    said = call("check", "case.toml")
+    shown = words_of(said.stdout)
+    order = ["case.toml: a valid case", "laws", "work", "textures", "Keys that are not at their defaults"]
+    assert [shown.index(words) for words in order] == sorted(shown.index(words) for words in order)
+    assert "ball.radius" not in shown
+    assert re.search(r"\d+ keys are at their defaults \(--keys shows them\)", said.stderr)
+    assert "surface.rms" in shown.partition("Keys that are not at their defaults")[2]
+
+
 def test_a_check_shows_the_track_the_run_in_and_what_loss_factors_do_to_the_force():
     Path("rail.toml").write_text(RAIL)
-    shown = words_of(call("check", "rail.toml").stdout)
+    shown = words_of(call("check", "rail.toml", "--keys").stdout)
     for text in (
         "wheel.load",
         "16.8 m from -5.6 m",
@@ -167,6 +177,7 @@ def test_a_check_shows_the_track_the_run_in_and_what_loss_factors_do_to_the_forc
     outcome = call("check", "lossy.toml")
     for text in ("40 Hz +0.4", "630 Hz −1.0", "else below 0.05"):
         assert text in words_of(outcome.stdout)
+    assert "lossy.toml: a valid case, 1 doubt:" in words_of(outcome.stdout)
     assert "Nothing that answers after a force only has one loss factor at all" in outcome.stderr
     Path("viscous.toml").write_text(f'{RAIL}[track]\nname = "nordborg"\nrail_loss_factor = 0.0\n')
     assert "loss factors" not in call("check", "viscous.toml").stdout

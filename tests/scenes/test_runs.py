@@ -295,7 +295,7 @@ def test_a_kind_in_one_file_is_written_checked_run_and_reported(kind, tmp_path, 
     monkeypatch.chdir(tmp_path)
     assert f'kind = "{NAME}"' in command("new", NAME)
     Path("case.toml").write_text(CASE)
-    plan = command("check", "case.toml")
+    plan = command("check", "case.toml", "--keys")
     assert "roller.load" in plan
     assert "foundation.stiffness" in plan
     command("run", "case.toml", "-o", "out")

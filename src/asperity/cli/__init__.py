@@ -234,17 +234,20 @@ def creep(case: Path, picture: Path | None, **choices: Any) -> None:
 @click.argument("case", type=PATH)
 @commands.run_folder
 @commands.device
+@click.option("--keys", is_flag=True, help="Show every key with its value, those at their defaults too.")
 @commands.overwrite("the run of another case")
-def check(case: Path, directory: Path | None, overwrite: bool) -> Document:
-    """Check a CASE: show its values, what will be computed, and how long that takes.
+def check(case: Path, directory: Path | None, keys: bool, overwrite: bool) -> Document:
+    """Check a CASE: say what is doubtful, what will be computed, and how long that takes.
 
     Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
     which law to take and how far the others are off.
 
     Examples
     --------
-    # values (those that differ from the default in bold), work, time
+    # doubts, laws, time, and the keys that are not at their defaults
     asperity check case.toml
+    # every key with its value and what it is
+    asperity check case.toml --keys
     # the expected seconds, for a script
     asperity check case.toml --json | jq .work.seconds
     """
@@ -255,7 +258,7 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> Document:
     refuse_full(loaded, target)
     if not overwrite:
         refuse_other(loaded, target)
-    return show_plan(loaded, str(case))
+    return show_plan(loaded, str(case), every_key=keys)
 
 
 @_compute("Compute a case: results, report and CSVs.", long_work=True)

@@ -19,7 +19,7 @@ from asperity.case.any_case import AnyCase, ReadyCase
 from asperity.case.cases import of_bodies
 from asperity.case.form import case_key, file_digest
 from asperity.cli.commands import taken_folder
-from asperity.errors import Grade, InputError
+from asperity.errors import Finding, Grade, InputError, PhysicsWarning
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import bearing, provenance, rolling
 from asperity.store import Store, content_key
@@ -303,8 +303,12 @@ def refuse_other(case: AnyCase, directory: Path) -> None:
 # --- what will be computed
 
 
-def show_plan(case: AnyCase, source: str) -> dict[str, Any]:
-    """Print the values of a case, and what will be computed from it.
+DECIDED = ("laws", "law to take", "expected errors, dB", "runs", "work")
+"""Rows of a plan that are told first: what is decided in the case, and the time that it takes."""
+
+
+def show_plan(case: AnyCase, source: str, *, every_key: bool = False) -> dict[str, Any]:
+    """Print what is doubtful of a case, what will be computed, and the keys that it sets, or `every_key`.
 
     Returns what a program wants to know of it. An `InputError` says that the case cannot be computed.
     """
@@ -314,18 +318,33 @@ def show_plan(case: AnyCase, source: str) -> dict[str, Any]:
     found = planned(prepared_case(case, source)) if kept is None else json.loads(kept["plan"].tobytes())
     if kept is None:
         store.put(key, {"plan": np.frombuffer(json.dumps(found).encode(), dtype=np.uint8)})
+    doubts = len(found["warnings"])
+    told = f"{doubts} {'doubts' if doubts > 1 else 'doubt'}:" if doubts else "nothing in it is doubtful."
+    say(f"{source}: a valid case, {told}")
     _warn(found["warnings"])
+    rows = [(row["name"], row["value"]) for row in found["plan"]]
+    rows.sort(key=lambda row: DECIDED.index(row[0]) if row[0] in DECIDED else len(DECIDED))
+    say_table("What will be computed", (), rows, width=120)
+    _show_keys(case, every_key=every_key)
+    return {"case": source, "kind": case.kind, "parameters": case.parameters(), **found}
+
+
+def _show_keys(case: AnyCase, *, every_key: bool) -> None:
+    """Print the keys that a case sets, or every one, those in bold."""
     items = case.parameters()
     changed = {number for number, item in enumerate(items) if not item["is_default"]}
     values = [
         (item["key"], item["value"], item["default"] or "none" if n in changed else "", item["note"])
         for n, item in enumerate(items)
+        if every_key or n in changed
     ]
     headings = ("key", "value", "default", "what it is")
-    say_table(f"{source}: a valid case", headings, values, width=120, bold=changed)
-    rows = [(row["name"], row["value"]) for row in found["plan"]]
-    say_table("What will be computed", (), rows, width=120)
-    return {"case": source, "kind": case.kind, "parameters": items, **found}
+    if every_key:
+        say_table("Every key", headings, values, width=120, bold=changed)
+    elif values:
+        say_table("Keys that are not at their defaults", headings, values, width=120)
+    if not every_key:
+        remark(f"{len(items) - len(changed)} keys are at their defaults (--keys shows them).")
 
 
 def planned(prepared: ReadyCase) -> dict[str, Any]:
@@ -335,20 +354,23 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
     from asperity.scenarios.scene import PreparedCase
     from asperity.scenes.validity import foreseen
 
-    caught = [(getattr(each.message, "grade", Grade.WARNING), str(each.message)) for each in prepared.caught]
+    met = list(prepared.caught)
+    faults: list[Finding] = []
     if isinstance(prepared, PreparedCase):
-        with progress_bar() as progress:
+        with progress_bar() as progress, PhysicsWarning.caught() as planning:
             work = expect(prepared, progress)
             choice = law_choice(prepared)
             rows = plan(prepared, work, choice)
             faults = [] if work.tried is None else foreseen(prepared, work.tried, choice)
-        caught += [(each.grade, each.message) for each in faults if each.grade]
+        met += planning
     else:
         from asperity.scenes.bearing import PreparedBearing, expected
 
         assert isinstance(prepared, PreparedBearing)
         rows, work = expected(prepared)
         rows.append(_work(work))
+    caught = [(getattr(each.message, "grade", Grade.WARNING), str(each.message)) for each in met]
+    caught += [(each.grade, each.message) for each in faults if each.grade]
     return {
         "plan": [{"name": name, "value": value} for name, value in rows],
         "work": {
