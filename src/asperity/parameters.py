@@ -38,6 +38,9 @@ _WORDS = {
     "rad/m": ("an angle per length", "0.1 rad/m"),
 }
 
+_MEANT = {"rad": "deg", "m/s": "km/h"}
+"""Units that people leave out as often as the SI unit."""
+
 LEAST, MOST = 1e-30, 1e30
 """Numbers in SI lie between these: nothing in mechanics is outside, and ten multiplied are finite."""
 
@@ -138,14 +141,19 @@ class Quantity(Bounded):
     ----------
     dimension : str
         The SI unit of the value behind the door.
+    meant : str
+        Unit that people mean by a bare number where that is another one, as 1/min of what turns.
     """
 
     dimension: str
+    meant: str = ""
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
         word, example = _WORDS[self.dimension]
+        if self.meant:
+            example = f"1800 {self.meant}"
         return f'{word}{self.bounds}, with its unit, as "{example}"'
 
     def __call__(self, value: object, origin: Origin = FROM_PYTHON) -> float:
@@ -164,6 +172,8 @@ class Quantity(Bounded):
             if origin.units:
                 given = "dB" if self.dimension == "dB" else f"SI units ({self.dimension})"
                 remedy = f'Add unit and quotes: "{shown(value)} {self.dimension}" if it is in {given}.'
+                if meant := self.meant or _MEANT.get(self.dimension):
+                    remedy = f'{remedy[:-1]}, "{shown(value)} {meant}" if in that unit.'
                 self.refuse(value, remedy)
             if isinstance(value, int) and abs(value) > MOST:
                 raise InputError("value", "a huge number", self.allowed)

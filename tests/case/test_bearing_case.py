@@ -1,6 +1,7 @@
 """The case of a ball bearing: what follows from its keys, what is refused, what it reads."""
 
 import math
+import re
 from copy import deepcopy
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 import asperity
 from asperity.case.cases import as_case, parse_case, template
-from asperity.errors import CaseError
+from asperity.errors import CaseError, InputError
 from asperity.scenes.bearing import bearing_rings, expected, prepare_bearing
 from asperity.serving.worker import read_case_file
 from asperity.structures.modal import ModalStructure
@@ -51,6 +52,46 @@ test_what_cannot_be_is_told = refusals(
     of=lambda keys: as_case(CASE | keys),
     error=CaseError,
 )  # fmt: skip
+
+
+test_what_no_raceway_has_is_refused = refusals(
+    ({"outer_raceway": {"waviness": "0.5 mm"}}, r"outer raceway: waves all around: .* at most 100.* unit"),
+    ({"balls": {"waves": [1], "amplitudes": ["0.5 mm"]}}, r"balls: waves all around: received 500 µm"),
+    ({"inner_raceway": {"roughness": "90 um", "shortest": "50 um"}}, r"inner raceway: waves all around"),
+    of=lambda keys: prepare_bearing(as_case(CASE | keys)),
+    error=(CaseError, InputError),
+)
+
+
+@pytest.mark.parametrize(
+    ("keys", "told"),
+    [
+        ({"speed": "1797 Hz"}, r'speed = 1797 Hz is 107820 1/min, 4\.2e\+06.* Then write "1797 1/min"'),
+        ({"fault": PIT | {"shape": "spall", "length": "25 mm"}}, r"raceway is 25 mm long, .* are 16\.36 mm"),
+        ({"outer_raceway": {"waves": [4], "amplitudes": ["50 um"]}}, r"Waves all around of ± 50 µm are"),
+        ({"bearing": {"name": "6205", "clearance": "-100 um"}}, r"-100 µm alone presses .* a looser fit"),
+        ({"axial": "6 kN"}, r"Lower the load"),
+    ],
+)
+def test_what_hardly_anybody_means_is_told(keys, told):
+    """A speed in Hz, a spall that holds two balls, waves of many approaches, a fit that presses."""
+    caught = [str(each.message) for each in prepare_bearing(as_case(CASE | keys)).caught]
+    assert any(re.search(told, each) for each in caught), caught
+    if "fit" in told:
+        assert not any("Lower the load" in each for each in caught)
+
+
+def test_a_bare_speed_is_asked_for_in_turns_per_minute():
+    text = 'kind = "ball-bearing"\nspeed = 1800\naxial = "1 N"\n[bearing]\nname = "6205"\n'
+    with pytest.raises(CaseError, match=r'as "1800 1/min".*"1800 Hz" if .* \(Hz\), "1800 1/min" if in that'):
+        parse_case(text)
+
+
+def test_an_ordinary_bearing_is_not_doubted():
+    plain = CASE | {"outer_raceway": {"waviness": "0.5 um"}, "fault": PIT, "radial": "100 N"}
+    assert not prepare_bearing(as_case(plain)).caught
+    eccentric = {"inner_raceway": {"waves": [1], "amplitudes": ["30 um"]}}  # moves the ring, not the balls
+    assert not prepare_bearing(as_case(CASE | eccentric)).caught
 
 
 def test_the_commented_case_is_a_case_of_smooth_parts():

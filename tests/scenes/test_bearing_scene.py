@@ -224,3 +224,10 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
     *_, check = json.loads(tree["contact"].attrs["validity"])
     assert check["quantity"].startswith("areal from direct")
     assert check["value"].split(", ")[:2] == off
+
+
+def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):
+    """The filter that thins a record rings where a force begins or ends at once: by newtons at a pit."""
+    found = group(runs(BEARING), "rolling")
+    assert found["inner_force"].values.min() == 0.0
+    assert found["outer_force"].values.min() > 0.0  # centrifugal force keeps balls on it

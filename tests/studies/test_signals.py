@@ -244,3 +244,10 @@ test_wrong_paths_and_levels = refusals(
     (lambda: with_noise(TIME, 1, below=1.0, rms=1.0), "noise: received both or none"),
     (lambda: with_noise(TIME, 1), "allowed: one of below and rms"),
 )
+
+
+def test_a_signal_has_one_row_under_the_name_of_a_variant_where_the_case_as_it_is_is_the_same():
+    _, labels = written(sweep={"radial": ["50 N", "100 N"], "variant": {"heavy": {"radial": "100 N"}}})
+    told = [(row["variant"], float(row["radial [N]"])) for row in labels]
+    assert told == [(AS_IT_IS, 50.0), ("heavy", 100.0)]
+    assert len({row["file"] for row in labels}) == 2

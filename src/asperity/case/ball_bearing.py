@@ -45,6 +45,7 @@ FEWEST = 5.0
 """Periods of the slowest tone in a record, at least."""
 _STIFFNESS, _STIFF = Quantity("N/m", at_least=0), "1 N/m to 1 TN/m: softer holds nothing, harder is rigid"
 _RATE, _MASS = Quantity("Hz", above=0), Quantity("kg", above=0)
+_SPEED = Quantity("Hz", "1/min", above=0)
 _DAMPED = "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
 _BAND, _ANGLES = ListOf(Quantity("Hz", at_least=0), least=2), ListOf(Quantity("rad"), least=1)
 _RATIO, _SLIPS = Number(at_least=0, at_most=0.99), ListOf(Number(at_least=0, at_most=0.2), least=2)
@@ -93,7 +94,11 @@ class BearingKeys(BearingGeometry):
     radial: float = key(LOAD, "0 N", "radial load on the inner ring", LOADS)
     axial: float = key(LOAD, "0 N", "axial load on the inner ring", LOADS)
     speed: float | None = optional(
-        Quantity("Hz", at_least=0), "1800 1/min", "speed of the ring that turns", "it stands still", SPEEDS
+        Quantity("Hz", "1/min", at_least=0),
+        "1800 1/min",
+        "speed of the ring that turns",
+        "it stands still",
+        SPEEDS,
     )
 
 
@@ -254,7 +259,7 @@ class BallBearingCase(AnyCase):
 
     kind: str = key(Choice(("ball-bearing",)), "ball-bearing", "what rolls")
     speed: float = key(
-        _RATE, "1800 1/min", "speed of the ring that turns", "0.001 Hz to 10 kHz: bearings turn slower"
+        _SPEED, "1800 1/min", "speed of the ring that turns", "0.001 Hz to 10 kHz: bearings turn slower"
     )
     radial: float = key(LOAD, "0 N", "radial load of the inner on the outer ring", LOADS)
     axial: float = key(LOAD, "0 N", "axial load of the inner on the outer ring", LOADS)

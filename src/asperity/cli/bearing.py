@@ -15,6 +15,7 @@ from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, static_gro
 from asperity.scenes.figures.bearing import ball_contacts_table, envelope_spectrum, load_zone
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, PRINTED_BY, Kinematics
+from asperity.structures.bearing_statics import doubt_speed
 from asperity.studies.signals import read_signal
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
@@ -59,6 +60,7 @@ def show_bearing(
 
 def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     speed = keys.speed or 0.0
+    doubt_speed(keys.bearing, speed)
     found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
     load = f"{found.radial:.4g} N radial, {found.axial:.4g} N axial"
     turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)

@@ -282,6 +282,7 @@ def check_half_space(
     groove_radius: float = math.inf,
     raceway_radius: float = math.inf,
     cause: str = "the load",
+    lighter: str = "Lower the load",
 ) -> None:
     """Refuse a contact that is none on a half-space, and warn of one that is nearly none.
 
@@ -293,6 +294,8 @@ def check_half_space(
         As in `in_groove`, m.
     cause : str
         What makes the contact so large, for messages.
+    lighter : str
+        What makes it smaller.
 
     Raises
     ------
@@ -313,9 +316,9 @@ def check_half_space(
     0.3 rad, 11 % at 0.6.
     """
     along, across = semi_axes
-    _slender(along, min(radius, abs(raceway_radius)), "along the path", cause)
+    _slender(along, min(radius, abs(raceway_radius)), "along the path", cause, lighter)
     if math.isinf(groove_radius):
-        _slender(across, radius, "across the path", cause)
+        _slender(across, radius, "across the path", cause, lighter)
         return
     if radius > CONFORMITY * groove_radius:
         HalfSpaceWarning.warn(
@@ -326,23 +329,23 @@ def check_half_space(
     angle = across / groove_radius
     fills = f"fills {angle:.2g} rad of the groove to either side"
     allowed = f"at most {HOLLOW[1]:g} rad, where the groove is an elastic half-space"
-    remedy = "Lower the load, or take a groove of a greater radius."
+    remedy = f"{lighter}, or take a groove of a greater radius."
     require(angle <= HOLLOW[1], "contact", f"{cause}, a contact that {fills}", allowed, remedy)
     if angle > HOLLOW[0]:
         HalfSpaceWarning.warn(
             f"Under {cause} the contact {fills}, more than {HOLLOW[0]:g}: the plane of the half-space makes "
-            f"forces too large by about {percent(FORCE_LOST * angle**2)}. Lower the load."
+            f"forces too large by about {percent(FORCE_LOST * angle**2)}. {lighter}."
         )
 
 
-def _slender(a: float, radius: float, direction: str, cause: str) -> None:
-    axis, remedy = f"a semi-axis of {a / radius:.2g} R {direction}", "Lower the load, or take a larger body."
+def _slender(a: float, radius: float, direction: str, cause: str, lighter: str) -> None:
+    axis, remedy = f"a semi-axis of {a / radius:.2g} R {direction}", f"{lighter}, or take a larger body."
     allowed = "at most R/3, where the body is an elastic half-space"
     require(a <= SLENDER[1] * radius, "contact", f"{cause}, {axis}", allowed, remedy)
     if a > SLENDER[0] * radius:
         HalfSpaceWarning.warn(
             f"Under {cause} the contact has {axis}, above 0.1 R: the elastic half-space overestimates the "
-            "stiffness by some per cent. Lower the load."
+            f"stiffness by some per cent. {lighter}."
         )
 
 

@@ -21,12 +21,13 @@ from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios import preparing, reducing
 from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS, Kinematics
-from asperity.structures.bearing_statics import LoadedBearing
+from asperity.structures.bearing_statics import LoadedBearing, doubt_speed
 from asperity.structures.ring import Ring
 from asperity.surfaces.raceway import Raceway
 
@@ -90,6 +91,7 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
     parts += [("ball", case.balls, 0.5 * of.ball_diameter)] * of.balls * (not case.has_smooth_balls)
     with PhysicsWarning.caught() as caught:
         case.loaded()
+        doubt_speed(of, case.speed)
         for number, (name, keys, radius) in enumerate(parts):
             contact, load = case.contacts[min(number, 1)]  # of balls those with the outer ring
             on_it = (each for each in case.faults.values() if each.lies_on(name, number - 1))
@@ -97,8 +99,12 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
             seed = SEEDS * case.seed + number
             try:
                 made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
+                doubt_surface(made[-1], contact.approach(load))
             except InputError as error:
                 errors.append(error.about(f"{NAMES[name]}: {error.what}"))
+            apart = 2.0 * np.pi * radius / of.balls
+            for fault in faults if name != "ball" else ():
+                doubt_fault(fault, apart, NAMES[name])
     preparing.refuse(errors, source)
     return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
 
@@ -186,11 +192,14 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
         )  # fmt: skip
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
+        signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
         found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
     return found
 
 
-SIGNALS = ("inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion", "acceleration")
+FORCES = ("inner_force", "outer_force")
+"""They begin and end at once, where the filter rings: none is written that is below all that were found."""
+SIGNALS = (*FORCES, "ball_motion", "inner_motion", "outer_motion", "acceleration")
 """What a run holds over time, beside what grows evenly."""
 
 

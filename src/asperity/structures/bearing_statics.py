@@ -276,16 +276,20 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
 def _doubt(found: LoadedBearing) -> None:
     """Refuse or warn of contacts that fill their grooves, of dents, of balls that leave the inner ring."""
     of = found.bearing
+    alone = _pressed_unloaded(found)
     sides = zip(("inner", "outer"), (of.inner_conformity, of.outer_conformity), of.raceway_radii, strict=True)
     for ring, conformity, raceway in sides:
         contact, load = found._contacts[ring]
         heaviest, D = float(load.max()), of.ball_diameter
+        force, lighter = max(alone[ring], default=(0.0, ""))
+        lighter = lighter if force > 0.5 * heaviest else "Lower the load"
         check_half_space(
             contact.semi_axes(contact.approach(heaviest)),
             0.5 * D,
             groove_radius=conformity * D,
             raceway_radius=raceway if ring == "inner" else -raceway,
             cause=f"{heaviest:.4g} N of one ball on the {ring} ring",
+            lighter=lighter,
         )
         peak = float(found._pressure(ring).max())
         if peak > min(STATIC_PRESSURE, of.hardness):
@@ -293,10 +297,35 @@ def _doubt(found: LoadedBearing) -> None:
             means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
             grade = Grade.OUT if hard else Grade.WARNING
             message = f"Balls press the {ring} ring with {peak / 1e9:.3g} GPa, above {limit:g} GPa, {means}."
-            OutOfRangeWarning.warn(f"{message} Lower the load.", grade)
+            OutOfRangeWarning.warn(f"{message} {lighter}.", grade)
     if found.leaving_speed is not None:
         OutOfRangeWarning.warn(
             f"At {60.0 * found.speed:.5g} 1/min centrifugal force lifts balls off the inner ring, all of "
             f"which are pressed at rest; the first one leaves at {60.0 * found.leaving_speed:.5g} 1/min. "
             "Raise axial load or preload."
+        )
+
+
+def _pressed_unloaded(found: LoadedBearing) -> dict[str, list[tuple[float, str]]]:
+    """Forces of a ball on each ring, N, that come from no load, and what makes each of them smaller."""
+    of = found.bearing
+    squeezed = of.series_stiffness * max(-0.5 * of.radial_clearance, 0.0) ** 1.5
+    fit = f"A clearance of {of.radial_clearance * 1e6:.4g} µm alone presses each ball with {squeezed:.4g} N"
+    thrown = of.centrifugal_force(found.speed)
+    turning = f"Centrifugal force alone is {thrown:.4g} N at {60.0 * found.speed:.5g} 1/min"
+    looser, slower = (squeezed, f"{fit}: take a looser fit"), (thrown, f"{turning}: run slower")
+    return {"inner": [looser], "outer": [looser, slower]}
+
+
+FASTEST = 2e6
+"""Speed times pitch diameter, mm/min, beyond which only a few spindles and pumps run."""
+
+
+def doubt_speed(bearing: BallBearing, speed: float) -> None:
+    """Warn of a speed, turns per second, at which hardly any ball bearing runs."""
+    factor = 60.0 * speed * 1e3 * bearing.pitch_diameter
+    if factor > FASTEST:
+        OutOfRangeWarning.warn(
+            f"speed = {speed:.5g} Hz is {60.0 * speed:.6g} 1/min, {factor:.2g} mm/min by the pitch diameter: "
+            f'few ball bearings run beyond {FASTEST:.0e}. Is it in 1/min? Then write "{speed:.5g} 1/min".'
         )

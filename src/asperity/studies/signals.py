@@ -24,7 +24,7 @@ from asperity.errors import InputError
 from asperity.results import save, variable
 from asperity.store import content_key
 from asperity.structures.ball_bearing import PARTS
-from asperity.studies.axes import VARIANT, written_out
+from asperity.studies.axes import AS_IT_IS, VARIANT, written_out
 from asperity.studies.definition import Member
 from asperity.studies.member import SIGNAL
 from asperity.studies.times import clock_of, rate_beside
@@ -185,8 +185,15 @@ class SignalSet:
         files.write_bytes(file, image.getvalue())
 
     def label(self, labels: Mapping[tuple[int, ...], Mapping[str, Any]]) -> None:
-        """Write the table of labels, the members in the order of the study."""
-        rows = [labels[index] for index in sorted(labels)]
+        """Write the table of labels, the members in the order of the study.
+
+        Each signal once: the case as it is, which no variant changes, gives way to one that is the same.
+        """
+        of_file: dict[str, Mapping[str, Any]] = {}
+        for row in (labels[index] for index in sorted(labels)):
+            if row["file"] not in of_file or of_file[row["file"]].get(VARIANT) == AS_IT_IS:
+                of_file[row["file"]] = row
+        rows = list(of_file.values())
         if rows:
             longest = max(rows, key=len)  # of those with most faults
             names = list(longest)

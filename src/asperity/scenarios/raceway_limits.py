@@ -1,0 +1,53 @@
+"""What no raceway is meant to have: waves that lift the balls, slopes, faults as long as balls are apart."""
+
+import numpy as np
+
+from asperity.arguments import require
+from asperity.errors import OutOfRangeWarning
+from asperity.scenarios.geometry import HIGHEST_FORCE
+from asperity.scenarios.preparing import ROUGHEST, STEEPEST
+from asperity.surfaces.faults import Fault
+from asperity.surfaces.raceway import Raceway
+
+REMEDY = 'Is the unit right? Waviness is written as "0.5 um", roughness as "20 nm".'
+
+
+def doubt_surface(surface: Raceway, approach: float) -> None:
+    """Hold what is on a raceway or a ball all around to the approach of its smooth contact, m.
+
+    Waves that lift a ball out of the states of its laws are warned of. What goes round with one wave moves
+    the ring alone.
+
+    Raises
+    ------
+    InputError
+        Above a hundred approaches, or an rms slope of one.
+    """
+    turns = np.fft.rfft(surface.line)
+    turns[:2] = 0.0
+    waves = surface.heights + np.fft.irfft(turns, len(surface.line))[:, None]
+    for heights in (waves, surface.line):
+        highest = 0.5 * float(np.ptp(heights))
+        received = f"{highest * 1e6:.4g} µm, {highest / approach:.3g} approaches of {approach * 1e6:.3g} µm"
+        require(highest <= ROUGHEST * approach, "waves all around", received, f"at most {ROUGHEST:g}", REMEDY)
+    slope = np.diff(waves, axis=0, append=waves[:1]) / surface.spacing[0]
+    steep = float(np.sqrt(np.mean(slope**2)))
+    require(steep <= STEEPEST, "rms slope", f"{steep:.3g}", f"at most {STEEPEST:g}", REMEDY)
+    highest, held = 0.5 * float(np.ptp(waves)), HIGHEST_FORCE ** (2.0 / 3.0) * approach
+    if highest > held:
+        OutOfRangeWarning.warn(
+            f"Waves all around of ± {highest * 1e6:.3g} µm are {highest / approach:.3g} times the approach "
+            f"of the most loaded ball, {approach * 1e6:.3g} µm: balls lose contact and come down harder than "
+            f"the laws cover, which is ± {held * 1e6:.3g} µm. {REMEDY}"
+        )
+
+
+def doubt_fault(fault: Fault, apart: float, part: str) -> None:
+    """Warn of a fault that is as long as the balls are apart on a raceway, m, which `part` names."""
+    length = fault.size[0]
+    if length > apart:
+        OutOfRangeWarning.warn(
+            f"fault.length: the {fault.shape} on the {part} is {length * 1e3:.4g} mm long, the balls are "
+            f"{apart * 1e3:.4g} mm apart: two or more are in it at once, and no ball strikes it alone. "
+            "Is the unit right?"
+        )
