@@ -36,7 +36,12 @@ def computed(cache_of_module):
 @pytest.fixture(scope="module")
 def creeping(computed):
     """What is laid out of one run with other keys of [creep]."""
-    return lambda creep: creep_group(replace(computed, case=WheelOnRail(**KEYS | {"creep": creep})))
+
+    def group(creep, **sideways):
+        case = WheelOnRail(**KEYS | {"creep": creep, "sideways": sideways})
+        return creep_group(replace(computed, case=case))
+
+    return group
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +102,51 @@ def test_axial_modes_squeal_by_falling_friction_and_move_by_themselves(computed,
     constant = creeping({"angle_of_attack": ATTACK})
     assert constant[schema.GROWTH_RATE].max() < 0.0
     assert "Squeal: no, all " in answer(constant)
+    assert falling[schema.SQUEAL_GROWTH] == growth.max() > 0.0 > constant[schema.SQUEAL_GROWTH]
+
+
+def test_modes_that_squeal_hardly_know_what_carries_the_wheel_sideways(creeping, monkeypatch):
+    """Held instead of free: their growth changes by a tenth, that of n = 0 by more."""
+    free = creeping({"angle_of_attack": -ATTACK}, contact_place="15 mm")
+    monkeypatch.setattr(
+        "asperity.structures.lateral_rail.wheel_receptances",
+        lambda modes, mass, *at: wheel_receptances(modes, 1e9, *at),
+    )
+    held = creeping({"angle_of_attack": -ATTACK}, contact_place="15 mm")
+    growth, changed = free[schema.GROWTH_RATE], held[schema.GROWTH_RATE] - free[schema.GROWTH_RATE]
+    squeals = (free[schema.SQUEAL_DIAMETERS] >= 2) & (growth > 1.0)
+    assert np.count_nonzero(squeals) >= 4
+    assert np.all(np.abs(changed[squeals]) < 0.1 * growth[squeals].max())
+    first = np.argmin(np.where(free[schema.SQUEAL_DIAMETERS] == 0, free[schema.SQUEAL_FREQUENCY], np.inf))
+    assert abs(changed[first]) > 0.3 * abs(growth[first])
+
+
+def test_modes_that_move_the_axle_are_told_but_do_not_squeal(falling, creeping):
+    """Constant friction, the contact off the middle: pairs of waves are counted once, n = 0 and 1 aside."""
+    constant = creeping({"angle_of_attack": -ATTACK}, contact_place="15 mm")
+    growth, diameters = constant[schema.GROWTH_RATE], constant[schema.SQUEAL_DIAMETERS]
+    grows, believed = np.nan_to_num(growth, nan=-1.0) > 0.0, diameters >= 2
+    shapes, modes = (
+        set(constant[schema.SQUEAL_SHAPE][each].tolist()) for each in (grows & believed, believed)
+    )
+    assert 0 < len(shapes) < np.sum(grows & believed)
+    told = answer(constant)
+    assert f"Squeal: yes, {len(shapes)} of {len(modes)} modes of the wheel with two and more nodal" in told
+    assert " by mode coupling (linear stability); fastest axial n = 3 at " in told
+    first = 1e3 / constant[schema.SQUEAL_GROWTH]
+    assert f", the first e-fold in {first:.3g} ms" in told
+    assert constant[schema.SQUEAL_GROWTH] == growth[grows & believed].max()
+    aside = told.partition("Not counted: ")[2]
+    assert "axial n = 0 at " in aside
+    assert "of which the axle decides, here rigid" in aside
+    of_axle = dict(constant)
+    of_axle[schema.GROWTH_RATE] = np.where(believed, -1.0, growth)
+    assert answer(of_axle).startswith("Squeal: no, all ")
+    assert "Not counted: axial n = 0 at " in answer(of_axle)
+    before = {entry: each for entry, each in constant.items() if entry != schema.SQUEAL_SHAPE}
+    assert f"Squeal: yes, {np.sum(grows & believed)} of " in answer(before)  # of a result from before
+    assert "by falling friction (linear" in answer(falling)
+    assert "would stop all." in answer(falling)
 
 
 def test_the_page_says_whether_it_squeals_and_shows_where_it_slips(computed, falling, monkeypatch):
@@ -109,7 +159,7 @@ def test_the_page_says_whether_it_squeals_and_shows_where_it_slips(computed, fal
     assert [row[0] for row in rows] == ["smooth", "sample 1", "sample 2", "in time, linear"]
     assert rows[3][1:3] == ["–", "100.0"]
     of_study = kept(result)
-    assert of_study["largest_growth_rate"] == falling[schema.GROWTH_RATE].max()
+    assert of_study["squeal_growth_rate"] == falling[schema.SQUEAL_GROWTH]
     assert of_study["mean_friction_power"] == falling[schema.MEAN_FRICTION_POWER]
     rigid = replace(computed, scene=replace(computed.scene, modes=None))
     assert "Whether it squeals is not known" in answer(creep_group(rigid))

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from asperity import Friction
 from asperity.structures.modal import modal_answers
-from asperity.structures.squeal import CreepingContact, poles_of, ringing_modes
+from asperity.structures.squeal import CreepingContact, poles_of, ringing_modes, standing_modes
 from asperity.structures.wheel_modes import WheelModes
 
 RIGID, TURN = 1e30, 2.0 * math.pi
@@ -85,3 +86,90 @@ def test_the_mode_that_rings_is_that_of_most_energy():
     assert ringing_modes(wheel, 0.0, roots, forces).tolist() == [0, 1, 0]
     poles = poles_of(wheel)  # without friction each mode rings alone
     assert ringing_modes(wheel, 0.0, poles, 0.0 * poles).tolist() == [*range(len(poles))]
+
+
+# --- one mass on two springs or one, against eigenvalues of its states and closed forms of their boundary
+
+MASS, LOSS = 40.0, 90.0  # kg, N s/m
+
+
+def mass_on_springs(up, across, oblique):
+    """A mass that is held up and down, sideways, and by what couples both, N/m; damped alike each way."""
+    square, ways = np.linalg.eigh(np.array([[up, oblique], [oblique, across]]) / MASS)
+    natural = np.sqrt(square)
+    return modes_of(natural / TURN, LOSS / (2.0 * MASS * natural), *(ways / math.sqrt(MASS)))
+
+
+def states(stiffness, damping):
+    """Angular frequencies, rad/s, of M q̈ + C q̇ + K q = 0, those with positive real parts."""
+    none, one = np.zeros((2, 2)), np.eye(2)
+    values = -1j * np.linalg.eigvals(np.block([[none, one], [-stiffness / MASS, -damping / MASS]]))
+    return np.sort_complex(values[values.real > 0.0])
+
+
+@pytest.mark.parametrize("oblique", [6e7, -6e7])
+@pytest.mark.parametrize("side", [0.97, 1.03])
+def test_constant_friction_couples_two_modes_to_flutter_beyond_its_closed_form(oblique, side):
+    """Hoffmann et al. (2002): F = κ N with N = k_N z makes K unsymmetric.
+
+    [[k_z + k_N, k], [k − κ k_N, k_y]]: its eigenvalues p ± iq are complex where 4 k (κ k_N − k) is more than
+    (k_z + k_N − k_y)², and damping c alike each way is overcome where q² > c² p/m. Of the other sign κ draws
+    the frequencies apart.
+    """
+    normal, up, across = 4e8, 1e8, 5.4e8
+    mean, apart = 0.5 * (up + normal + across), up + normal - across
+    overcome = LOSS**2 * mean / MASS  # q², (N/m)²
+    critical = ((4.0 * overcome + apart**2) / (4.0 * oblique) + oblique) / normal
+    assert 0.1 < abs(critical) < 0.3
+    for sign in (1.0, -1.0):
+        kappa = sign * side * critical
+        contact, wheel = CreepingContact(normal, RIGID, 0.0, kappa), mass_on_springs(up, across, oblique)
+        stiffness = np.array([[up + normal, oblique], [oblique - kappa * normal, across]])
+        both = states(stiffness, LOSS * np.eye(2)), roots_of(contact, wheel)
+        expected, found = (each[np.argsort(each.real + 0.1 * each.imag)] for each in both)
+        assert found == pytest.approx(expected, rel=1e-8)
+        flutters = sign > 0.0 and side > 1.0
+        assert np.sum(found.imag < 0.0) == (1 if flutters else 0)
+        assert (np.ptp(found.real) < 1e-3 * found.real.mean()) == flutters
+
+
+@pytest.mark.parametrize("side", [0.9, 1.1])
+def test_falling_friction_is_unstable_where_its_slope_is_more_than_the_damping(side):
+    """A mass on a belt: −β = N |dµ/dv| against c, growth (−β − c)/2m; constant and rising friction damp.
+
+    Of Coulomb's coefficient µ_s (k + (1 − k) exp(−v/v₀)), by the slope that a case has for it.
+    """
+    load, kinetic, fall, slip = 5e3, 0.6, 0.5, 0.2
+    friction, step = Friction(0.3, kinetic, fall), 1e-6
+    speeds = np.array([slip - step, slip + step])
+    slope = float(np.diff(friction.coefficient(speeds, np.ones(2, dtype=bool)))[0]) / (2.0 * step)
+    assert slope == pytest.approx(-0.3 * (1.0 - kinetic) / fall * math.exp(-slip / fall), rel=1e-6)
+    loss, stiffness = -load * slope / side, 5e8
+    natural = math.sqrt(stiffness / MASS)
+    wheel = modes_of([natural / TURN], [loss / (2.0 * MASS * natural)], [0.0], [MASS**-0.5])
+    for beta, growth in ((load * slope, 0.5 * (side - 1.0) * loss / MASS), (0.0, -0.5 * loss / MASS)):
+        (root,) = roots_of(CreepingContact(1e9, RIGID, beta, 0.3), wheel)
+        assert -root.imag == pytest.approx(growth, rel=1e-6)
+        damping = np.diag([1e-3, loss + beta])
+        assert root == pytest.approx(states(np.diag([9e9, stiffness]), damping)[0], rel=1e-8)
+    assert (side > 1.0) == (load * slope + loss < 0.0)
+
+
+def test_a_spring_in_line_delays_what_friction_does():
+    """With it the states are three: m ÿ + c ẏ + k y = −k_T e, β (ẏ − ė) = k_T e; stable, unstable alike."""
+    stiffness, spring, natural = 5e8, 2e9, math.sqrt(5e8 / MASS)
+    wheel = modes_of([natural / TURN], [LOSS / (2.0 * MASS * natural)], [0.0], [MASS**-0.5])
+    for beta in (-80.0, -100.0, -3e3, 3e3):
+        moving = [-stiffness / MASS, -LOSS / MASS, -spring / MASS]
+        values = -1j * np.linalg.eigvals(np.array([[0.0, 1.0, 0.0], moving, [0.0, 1.0, -spring / beta]]))
+        (root,) = roots_of(CreepingContact(1e9, spring, beta, 0.0), wheel)
+        assert root == pytest.approx(values[values.real > 1.0][0], rel=1e-8)
+        assert (root.imag < 0.0) == (beta < -LOSS)
+
+
+def test_waves_of_one_mode_are_told_apart_from_modes():
+    """As a wheel turns, each mode with nodal diameters is two; each gets the number of what it is at rest."""
+    none = np.zeros(5)
+    wheel = WheelModes(np.linspace(200.0, 900.0, 5), none + 1e-3, np.array([1, 0, 2, 2, 0]), np.zeros(1),
+                       none[:, None] + 0.1, none[:, None] + 0.1, none, none)  # fmt: skip
+    assert standing_modes(wheel.turning(10.0)).tolist() == [1, 1, 2, 3, 3, 4, 4, 5]

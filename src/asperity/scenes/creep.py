@@ -17,7 +17,13 @@ from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import compute, schema
 from asperity.scenes.sideways import Sideways
 from asperity.schema import Values
-from asperity.structures.squeal import CreepingContact, poles_of, ringing_modes
+from asperity.structures.squeal import (
+    FREE_OF_AXLE,
+    CreepingContact,
+    poles_of,
+    ringing_modes,
+    standing_modes,
+)
 
 LEAST_CELLS = 4.0
 """Cells in the shorter semi-axis of the smooth contact in the lowest state."""
@@ -137,14 +143,17 @@ def _squeal(computed: compute.Computed, bodies: creep.CreepingBodies) -> Values:
     which, known = np.arange(len(omega)), np.isfinite(omega)
     forces = contact.force_ratio(receptances(omega[known]))
     which[known] = ringing_modes(modes, place, omega[known], forces)
+    believed = known & (modes.nodal_diameters[which] >= FREE_OF_AXLE)
     radial, axial = (each[which] ** 2 for each in modes.at(place))
     return {
         schema.SQUEAL_MODE: 1 + np.arange(len(omega)),
         schema.SQUEAL_FREQUENCY: omega.real / (2.0 * np.pi),
         schema.GROWTH_RATE: -omega.imag,
         schema.SQUEAL_DIAMETERS: modes.nodal_diameters[which],
+        schema.SQUEAL_SHAPE: standing_modes(modes)[which],
         schema.AXIAL_SHARE: axial / (radial + axial),
         schema.CREEP_DAMPING: contact.damping,
         schema.LOAD_SLOPE: over_load,
         schema.LARGEST_GROWTH: float(np.max(-omega.imag[known], initial=-np.inf)),
+        schema.SQUEAL_GROWTH: float(np.max(-omega.imag[believed], initial=-np.inf)),
     }

@@ -401,13 +401,22 @@ SQUEAL_MODE = _squeal("squeal_mode", "1", "free motion of the wheel on the rail,
 SQUEAL_FREQUENCY = _squeal("squeal_frequency(squeal_mode)", "Hz", "frequency, as the contact feels it")
 GROWTH_RATE = _squeal("growth_rate(squeal_mode)", "1/s", "growth of the amplitude, negative in decay")
 SQUEAL_DIAMETERS = _squeal("squeal_diameters(squeal_mode)", "1", "nodal diameters of what rings most")
+SQUEAL_SHAPE = _squeal(
+    "squeal_shape(squeal_mode)", "1", "number of what rings most at rest: as it turns, it is two waves"
+)
 AXIAL_SHARE = _squeal("axial_share(squeal_mode)", "1", "axial part of its squared motion at the contact")
 CREEP_DAMPING = _creep_fact(
     "creep_damping", "N s/m", "−∂F_y/∂η/V; negative: friction falls", condition=_SQUEALS
 )
 LOAD_SLOPE = _creep_fact("friction_per_load", "1", "slope of the lateral force over load", condition=_SQUEALS)
 LARGEST_GROWTH = _creep_fact(
-    "largest_growth_rate", "1/s", "growth rate of the fastest motion; squeal above zero", condition=_SQUEALS
+    "largest_growth_rate", "1/s", "growth rate of the fastest motion, whatever it is", condition=_SQUEALS
+)
+SQUEAL_GROWTH = _creep_fact(
+    "squeal_growth_rate",
+    "1/s",
+    "growth rate of the fastest motion with two and more nodal diameters; squeal above zero",
+    condition=_SQUEALS,
 )
 
 
@@ -436,6 +445,6 @@ SHOWN = (
     TRANSIT_EXPOSURE_LEVEL.name,
     FULL_SLIP_SHARE.name,
     MEAN_FRICTION_POWER.name,
-    LARGEST_GROWTH.name,
+    SQUEAL_GROWTH.name,
 )
 """What a study shows of it unasked."""

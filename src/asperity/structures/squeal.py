@@ -23,6 +23,9 @@ from asperity.structures.wheel_modes import WheelModes
 BEGIN, STEP, WIDEST, CLOSE, LEAST, MOST = 1e-5, 1e-7, 0.03, 1e-11, 0.5, 80
 """Shares of a frequency: first distance of a root from its pole, step of the slope, longest step, error of a
 root, and least real part of one that rings; most iterations."""
+FREE_OF_AXLE = 2
+"""Nodal diameters from which on a mode leaves the axle at rest: those that squeal. A wheel that is held at
+its seat says little of the others, which move and bend the axle, and are damped by it."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +97,17 @@ def poles_of(modes: WheelModes) -> Complex:
     """Angular frequencies (p,), rad/s, at which the modes of a wheel ring by themselves; they decay."""
     ratio = modes.damping_ratios
     return np.asarray(2.0 * np.pi * modes.natural_frequencies * (np.sqrt(1.0 - ratio**2) + 1j * ratio))
+
+
+def standing_modes(modes: WheelModes) -> NDArray[np.intp]:
+    """Number (p,) of the mode at rest that each mode of a turning wheel belongs to, from 1.
+
+    With nodal diameters it is two waves, one behind the other (`WheelModes.turning`).
+    """
+    waves, second = modes.nodal_diameters > 0, np.zeros(len(modes.nodal_diameters), dtype=bool)
+    for n in range(1, len(waves)):
+        second[n] = waves[n] and waves[n - 1] and not second[n - 1]
+    return np.cumsum(~second)
 
 
 def ringing_modes(modes: WheelModes, place: float, omega: Complex, forces: Complex) -> NDArray[np.intp]:

@@ -33,7 +33,13 @@ KEPT = (
 """What is kept of all results, beside what the schema of a scene says."""
 OF_CONTACTS = spectra.CONTACT_FORCE_LEVEL
 """What is kept of every contact, where there are several; all else by contact is that of the first."""
-FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE, scene.LARGEST_GROWTH)
+FACTS = (
+    contact.WORKING_APPROACH,
+    contact.WORKING_STIFFNESS,
+    contact.YIELDED_SHARE,
+    scene.LARGEST_GROWTH,
+    scene.SQUEAL_GROWTH,
+)
 """Attributes of a result that are kept."""
 LEVEL = "dB re"
 """Beginning of the units of levels."""

@@ -1,10 +1,11 @@
 """What moves sideways: lateral force, receptances and decay; friction of a wheel that creeps, and squeal."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from xarray import DataTree
 
+from asperity.arguments import Array
 from asperity.reporting import data, headline, panels
 from asperity.reporting.chart import BLUE, MUTED, VERMILLION, Axis, Line, Note, Panel
 from asperity.reporting.figure import Lines, Of, field, figure
@@ -14,6 +15,7 @@ from asperity.scenes import schema
 from asperity.scenes.figures import force
 from asperity.scenes.figures.measured import over_bands
 from asperity.schema import rolling, spectra
+from asperity.structures.squeal import FREE_OF_AXLE
 
 FORCE, _DOTS = schema.LATERAL_FORCE_LEVEL, (1.5, 1.5)
 
@@ -162,28 +164,64 @@ def friction_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     )
 
 
-def _growing(tree: DataTree) -> list[int]:
-    """Numbers of the motions that grow, the fastest first."""
+def _growing(tree: DataTree) -> tuple[list[int], list[int]]:
+    """Numbers of the motions that grow, the fastest first: those that squeal, and those of the axle."""
     growth = np.nan_to_num(data.values(tree, GROWTH), nan=-np.inf)
-    return [int(n) for n in np.argsort(-growth, kind="stable") if growth[n] > 0.0]
+    squeals = data.values(tree, schema.SQUEAL_DIAMETERS) >= FREE_OF_AXLE
+    order = [int(n) for n in np.argsort(-growth, kind="stable") if growth[n] > 0.0]
+    return [n for n in order if squeals[n]], [n for n in order if not squeals[n]]
+
+
+def _shapes(tree: DataTree) -> Array:
+    """Numbers of the modes at rest; of a result that does not know them each motion is one."""
+    if data.present(tree, schema.SQUEAL_SHAPE):
+        return data.values(tree, schema.SQUEAL_SHAPE)
+    return data.values(tree, schema.SQUEAL_MODE)
+
+
+def _once(tree: DataTree, motions: Iterable[int]) -> list[int]:
+    """Of the motions the first of each mode at rest: as a wheel turns, there are two of most."""
+    shape, first = _shapes(tree), dict[float, int]()
+    for n in motions:
+        first.setdefault(float(shape[n]), n)
+    return list(first.values())
+
+
+def _named(tree: DataTree, motion: int) -> str:
+    entries = schema.AXIAL_SHARE, schema.SQUEAL_DIAMETERS, schema.SQUEAL_FREQUENCY
+    axial, count, frequency = (float(data.values(tree, entry)[motion]) for entry in entries)
+    return f"{'axial' if axial > 0.5 else 'radial'} n = {count:.0f} at {frequency:.0f} Hz"
 
 
 def creep_answers(tree: DataTree) -> headline.Answers | None:
-    """Say whether a wheel that creeps squeals, and in which modes; n are nodal diameters."""
+    """Say whether a wheel that creeps squeals, in which modes and by what; n are nodal diameters."""
     if not data.present(tree, schema.STICK_AREA):
         return None
     if not data.present(tree, GROWTH):
         unknown = "Whether it squeals is not known, for want of the wheel's axial modes."
         return headline.Answers(more=unknown)
-    growing, growth = _growing(tree), data.values(tree, GROWTH)
-    modes = f"{np.isfinite(growth).sum()} modes of the wheel on the rail"
+    growing, of_axle = _growing(tree)
+    growth, frequency, diameters = (
+        data.values(tree, entry) for entry in (GROWTH, schema.SQUEAL_FREQUENCY, schema.SQUEAL_DIAMETERS)
+    )
+    looked = np.flatnonzero(np.isfinite(growth) & (diameters >= FREE_OF_AXLE)).tolist()
+    modes = f"{len(_once(tree, looked))} modes of the wheel with two and more nodal diameters"
+    aside = ""
+    if of_axle:
+        named = ", ".join(_named(tree, n) for n in _once(tree, of_axle)[:3])
+        aside = f" Not counted: {named}, of which the axle decides, here rigid."
     if not growing:
-        return headline.Answers(more=f"Squeal: no, all {modes} decay (linear stability).")
-    of = (schema.SQUEAL_DIAMETERS, schema.SQUEAL_FREQUENCY, schema.AXIAL_SHARE)
-    fastest = np.transpose([data.values(tree, entry)[growing[:3]] for entry in of]).tolist()
-    told = [f"{'axial' if axial > 0.5 else 'radial'} n = {n:.0f} at {at:.0f} Hz" for n, at, axial in fastest]
-    first = f"{', '.join(told)}, the first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}"
-    more = f"Squeal: yes, {len(growing)} of {modes} grow (linear stability); fastest {first}."
+        return headline.Answers(more=f"Squeal: no, all {modes} decay (linear stability).{aside}")
+    shapes = _once(tree, growing)
+    falls = (data.number(tree, schema.CREEP_DAMPING) or 0.0) < 0.0
+    cause = "falling friction" if falls else "mode coupling"
+    fastest = ", ".join(_named(tree, n) for n in shapes[:3])
+    ratio = max(float(growth[n] / (2.0 * np.pi * frequency[n])) for n in growing)
+    more = (
+        f"Squeal: yes, {len(shapes)} of {modes} grow, by {cause} (linear stability); fastest {fastest}, the "
+        f"first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}; about {100.0 * ratio:.2g} % "
+        f"more of critical damping would stop all.{aside}"
+    )
     return headline.Answers(more=more)
 
 
@@ -193,22 +231,33 @@ def creep_answers(tree: DataTree) -> headline.Answers | None:
     Of(GROWTH),
     Of(schema.SQUEAL_DIAMETERS),
     Of(schema.AXIAL_SHARE),
+    Of(schema.SQUEAL_SHAPE, optional=True),
 )
 def squeal(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Growth rate of each motion over its frequency, named by its nodal diameters where it grows."""
-    growth, growing = data.values(tree, GROWTH), _growing(tree)
+    growth, (squeals, of_axle) = data.values(tree, GROWTH), _growing(tree)
+    growing = squeals + of_axle
     reach = 1.2 * max(float(growth[growing].max(initial=0.0)), 5.0)
-    looks = ((np.flatnonzero(growth <= 0.0), "decays", MUTED, "o"), (growing, "grows", VERMILLION, "^"))
-    points = [Line(lines.at[n], growth[n], name, colour, (), 0.0, mark) for n, name, colour, mark in looks]
-    named = {float(data.values(tree, schema.SQUEAL_DIAMETERS)[n]): n for n in reversed(growing)}
-    notes = [Note(f" {count:.0f}", lines.at[n], growth[n]) for count, n in named.items()]
+    looks = (
+        (np.flatnonzero(growth <= 0.0), "decays", MUTED, "o"),
+        (of_axle, "grows, as the axle decides", BLUE, "s"),
+        (squeals, "grows", VERMILLION, "^"),
+    )
+    points = [
+        Line(lines.at[n], growth[n], name, colour, (), 0.0, mark) for n, name, colour, mark in looks if len(n)
+    ]
+    named = _once(tree, growing)
+    diameters = data.values(tree, schema.SQUEAL_DIAMETERS)
+    notes = [Note(f" {diameters[n]:.0f}", lines.at[n], growth[n]) for n in named]
     along = panels.frequency_axis(float(np.nanmin(lines.at)) / 1.1, float(np.nanmax(lines.at)) * 1.1)
     yield Panel(along, Axis("growth rate / (1/s)", -reach, reach), (panels.zero(), *points, *notes))
     damping, slope = (data.number(tree, fact) or 0.0 for fact in (schema.CREEP_DAMPING, schema.LOAD_SLOPE))
     yield (
         "Small motions of the wheel on the rail at mid-span, with nodal diameters where they grow; some "
-        "decay faster than the axis shows. Linear, by quasi-steady friction in line with the springs of the "
-        f"contact: it damps by {data.engineering(damping, 'N s/m')}, and follows the load by {slope:.3g}."
+        "decay faster than the axis shows. As the wheel turns, a mode with nodal diameters is two. Linear, "
+        "by quasi-steady friction in line with the springs of the contact: it damps by "
+        f"{data.engineering(damping, 'N s/m')}, and follows the load by {slope:.3g}. Squeal is that of two "
+        "and more nodal diameters: the others move the axle, which is rigid here."
     )
 
 
