@@ -23,7 +23,7 @@ from asperity.results import GROUPS, read_result, save
 from asperity.schema import VERSION
 from asperity.studies.definition import load_study, study_of
 from asperity.surfaces.readers import read_surface
-from asperity.surfaces.readers.text import parsed_header
+from asperity.surfaces.readers.headings import parsed_header, titles_of
 from asperity.units import quantity
 
 BALL = 'kind = "ball-on-beam"\n'
@@ -124,11 +124,11 @@ def test_long_headers_say_nothing(columns):
         "# unit" + " " * MANY + "(", "# dx" + " " * MANY + "1", "# pixel = " + "1" * MANY + "_ um",
         "# " + "(" * MANY, "# " + "( " * MANY + "um", "# " + "unit" * MANY, "# " + "[a " * MANY,
     ):  # fmt: skip
-        assert "z" not in parsed_header([line], None, columns)
+        assert "z" not in parsed_header([line], titles_of([line], None, columns))
 
 
 def test_headers_are_read_across_white_space():
-    found = parsed_header(["# height \t unit  =   um", "# pixel \t size :  1.5   um"], None, 9)
+    found = parsed_header(["# height \t unit  =   um", "# pixel \t size :  1.5   um"], [])
     assert found == pytest.approx({"z": 1e-6, "dx": 1.5e-6, "dy": 1.5e-6})
 
 

@@ -17,6 +17,8 @@ _FORMULA = ("=", "+", "-", "@")
 """First characters of what spreadsheets take for a formula, and would compute or even run."""
 
 
+LATIN_SHARE = 0.5
+"""Least share of Latin characters in UTF-16 that bears no mark."""
 _APART = re.compile(r",\s")
 """A comma that is no decimal mark."""
 
@@ -50,7 +52,7 @@ def read_text(
 
 
 def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -> str:
-    """Decode the content of a text file, UTF-8 or marked UTF-16, without the mark.
+    """Decode the content of a text file, UTF-8 or UTF-16, without the mark.
 
     Of another encoding an `InputError` says which it probably is; `source` and `allowed` are for that
     message.
@@ -60,6 +62,8 @@ def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -
         if content.startswith(_MARKS):
             return content.decode("utf-16")
         if b"\0" in content:
+            if order := _order_of_utf16(content):
+                return content.decode(f"utf-16-{order}")
             raise InputError(source, "bytes that are no text, or not in UTF-8", allowed, remedy)
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -69,6 +73,17 @@ def decoded(content: bytes, source: str, allowed: str, *, latin: bool = False) -
         encoding = error.encoding[:6].upper()  # whatever the order of bytes
         received = f"a byte that is no {encoding} in line {line}"
         raise InputError(source, received, allowed, remedy) from None
+
+
+def _order_of_utf16(content: bytes) -> str:
+    """Order of bytes of UTF-16 that bears no mark, ``"le"`` or ``"be"``; empty for anything else.
+
+    Latin letters and digits have their zeros at every second byte, and nowhere else.
+    """
+    first, second = content[::2].count(0), content[1::2].count(0)
+    if len(content) % 2 or min(first, second) or max(first, second) < LATIN_SHARE * len(content) / 2:
+        return ""
+    return "le" if second else "be"
 
 
 def lines_in(content: str) -> Iterator[str]:

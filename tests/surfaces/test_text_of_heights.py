@@ -181,3 +181,121 @@ def test_points_in_one_unit_are_no_lines(read):
     assert surface.shape == (3, 4)
     with pytest.raises(InputError, match="coordinates that are not uniform"):
         read("a;b\n1;2\n5;3\n6;1\n", pixel="1 mm", height_unit="um", pixel_unit="mm")
+
+
+# --- headings of instruments' exports
+
+LEVELS = np.round(1e2 * np.random.default_rng(8).normal(size=(10, 8)), 4)  # nm: rows along y, columns along x
+LINE_X = 0.25 * np.arange(40)
+LINE_Z = np.round(0.1 * np.sin(LINE_X), 6)
+
+
+def gwyddion(channel, width, height, unit, columns=8, value="m"):
+    """A matrix as Gwyddion exports it, in the language of the program."""
+    rows = "\n".join("\t".join(f"{v * 1e-9:.6e}" for v in row[:columns]) for row in LEVELS)
+    size = f"# {width}: {12.0:.1f} µm\n# {height}: 5000 nm\n"
+    return f"# {channel}: Topography\n{size}# {unit}: {value}\n{rows}\n"
+
+
+@pytest.mark.parametrize("words", [
+    ("Channel", "Width", "Height", "Value units"),
+    ("Kanal", "Breite", "Höhe", "Werteinheiten"),
+    ("Canal", "Largeur", "Hauteur", "Unités de valeur"),
+    ("Kanál", "Šířka", "Výška", "Jednotky hodnot"),
+    ("チャンネル", "幅", "高さ", "値の単位"),
+])  # fmt: skip
+@pytest.mark.parametrize("columns", [8, 3, 2])
+def test_a_map_that_states_its_size(read, words, columns):
+    surface = read(gwyddion(*words, columns))
+    np.testing.assert_allclose(surface.heights, 1e-9 * LEVELS[:, :columns].T, atol=1e-15)
+    assert surface.spacing == pytest.approx((12e-6 / columns, 0.5e-6))
+    other = read(gwyddion(*words, columns), pixel="1 um", height_unit="mm")
+    assert other.spacing == pytest.approx((1e-6, 1e-6))  # hints are stronger
+    np.testing.assert_allclose(other.heights, 1e-12 * LEVELS[:, :columns].T, atol=1e-18)
+
+
+def test_sizes_of_no_map_are_left_alone(read):
+    read(
+        "# Sample: 3\n# Radius: 2.5 um\n# Length: 5 mm\n# Operator: me\n# unit: um\n1 2 3 4\n5 6 7 8\n",
+        pixel="1 mm",
+    )
+    points = read(f"# Width: 4 um\n# Height: 9 um\nx (um),y (um),z (um)\n{ANY_ORDER}")
+    assert points.spacing == pytest.approx((2e-6, 3e-6))
+    with pytest.raises(InputError, match="a length above zero"):
+        read(gwyddion("Channel", "Width", "Height", "Value units").replace("12.0", "0.0"))
+    with pytest.raises(InputError, match=r"unit in the header: received 'V'"):
+        read(gwyddion("Channel", "Width", "Height", "Value units", value="V"))
+
+
+def exported(head, end="", separator=","):
+    return head + "".join(f"{x:.2f}{separator}{z:.6f}{end}\n" for x, z in zip(LINE_X, LINE_Z, strict=True))
+
+
+BLOCK = "Scan Parameters\nScan Type,Standard Scan\nStylus,Radius: 2.5 µm\nLength,10 mm\n\nScan Data\n"
+
+
+@pytest.mark.parametrize(("head", "separator"), [
+    ("x in µm,y in µm\n", ","),
+    ("x in um;z in um\n", ";"),
+    ("Länge / µm;Profil / µm\n", ";"),
+    (BLOCK + "Lateral um,Raw Micrometer,\n", ","),
+    (BLOCK.replace(",", "\t") + "Lateral um\tRaw micron\n", "\t"),
+    ('"Lateral (um)","Raw (um)"\n', ","),
+    ("X;Z\n[µm];[µm]\n", ";"),
+    ("X\tZ\nµm\tMikrometer\n", "\t"),
+    ("# X  Z\n# um um\n", " "),
+    ("Distance micrometres  Height micrometers\n", " "),
+])  # fmt: skip
+def test_units_in_titles_of_all_kinds(read, head, separator):
+    for encoding in ("utf-8", "utf-16", "utf-16-le", "utf-16-be", "latin-1"):
+        for empty in (0, 1, 3):  # cells at the end of each line; white space makes none
+            line = read(exported(head, separator * empty, separator), encoding)
+            np.testing.assert_allclose(line.heights, 1e-6 * LINE_Z)
+            assert line.spacing == pytest.approx(0.25e-6)
+
+
+@pytest.mark.parametrize(("titles", "ones"), [
+    ("X;Y;valid\n[mm];[mm];[1/0]", True),
+    ("X (mm);Z (mm);Valid", True),
+    ("X;Z;gültig\nmm;mm;-", True),
+    ("x in mm;z in mm;is invalid", False),
+    ("Valid;X (mm);Z (mm)", True),
+])  # fmt: skip
+def test_a_column_says_what_is_valid(read, titles, ones):
+    good = np.ones(40, dtype=bool)
+    good[[0, 7, 8]] = False
+    flags = np.where(good == ones, 1, 0)
+    cells = [
+        [f"{x / 1e3:.5f}", f"{z / 1e3:.9f}", f"{f}"] for x, z, f in zip(LINE_X, LINE_Z, flags, strict=True)
+    ]
+    first = titles.startswith("Valid")
+    rows = "\n".join(";".join([row[2], *row[:2]] if first else row) for row in cells)
+    with pytest.warns(MissingPointsWarning, match="3 points"):
+        line = read(f"{titles}\n{rows}\n")
+    np.testing.assert_allclose(line.heights, np.where(good, 1e-6 * LINE_Z, np.nan), atol=1e-12)
+
+
+def test_a_column_of_other_numbers_is_no_validity(read):
+    with pytest.raises(InputError, match=r"not uniform|regular grid"):
+        read("X (mm);Y (mm);valid\n0;1;2\n1;4;3\n2;2;5\n", height_unit="mm")
+
+
+@pytest.mark.parametrize("name", ["a.prn", "a.out", "a.prf2", "noname"])
+def test_text_is_known_by_its_content(tmp_path, name):
+    file = tmp_path / name
+    file.write_text(exported("x in um,z in um\n"), encoding="utf-16")
+    np.testing.assert_allclose(read_surface(file).heights, 1e-6 * LINE_Z)
+    file.write_bytes(b"x in um\n" + bytes(range(256)) * 4)
+    with pytest.raises(InputError):
+        read_surface(file)
+
+
+@pytest.mark.parametrize("text", [
+    "", "\n\n", "words\n", "x (um)\n", "1\n", "1;2\n3\n", "a,b\n1,2\n", "# Width: 1 um\n1 2 3 4\n2 3 4 5\n",
+    "X;Y;valid\n[mm];[mm];[1/0]\n0;1;0\n1;2;0\n2;3;0\n", "0 1 2\n0 2 2\n", "x (V),z (um)\n0,1\n1,2\n",
+])  # fmt: skip
+def test_text_that_is_intact_is_never_called_damaged(read, text):
+    for encoding in ("utf-8", "utf-16", "utf-16-le"):
+        with pytest.raises((InputError, MissingPointsWarning)) as told:
+            read(text, encoding)
+        assert "damaged" not in str(told.value)

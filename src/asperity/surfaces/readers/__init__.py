@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import require, shown, whole
-from asperity.errors import MissingPointsWarning
+from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards, iso_25178, text
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
@@ -147,7 +147,12 @@ def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
         require(content == extension, file.name, received, allowed, remedy)
     kind, reader = OWN[content] if content else TEXT if extension in READ_AS_TEXT else OTHER
     with guards.hostile(file.name, kind):
-        return reader(file, hints)
+        if reader is not OTHER[1] or not text.is_numeric(file):
+            return reader(file, hints)
+        try:
+            return reader(file, hints)
+        except InputError:  # no library knows it: numbers are numbers, whatever the name of their file
+            return text.read(file, hints)
 
 
 def _by_content(file: Path, head: bytes) -> str | None:

@@ -17,28 +17,19 @@ from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import guards, positions
+from asperity.surfaces.readers.headings import parsed_header, titles_of, units_of_lines, without_invalid
 from asperity.surfaces.readers.hints import Hints, advice, spell
-from asperity.text_files import lines_in, number_in, read_text
-from asperity.units import factor, quantity
+from asperity.text_files import decoded, lines_in, number_in, read_text
 
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")
 MAX_TEXT_BYTES = 1 << 28
 MAX_HEADER = 1 << 20  # characters of headings and comments
+PROBE = 1 << 13  # bytes at either end of a file that say whether it is text
 PIECE = 1 << 16  # fields of a long line that are split off at a time
 
 _CHECK = "Check the file and its separators."
 _NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
-_NUMBER = r"[-+]?\d++(?:[.,]\d*+)?(?:[eE][-+]?\d++)?"
-# For lines in which one blank stands for all white space: whatever the line, they need time like its length.
-_BRACKET = re.compile(r"[\[(] ?([^\s\[\]()\d]{1,20}) ?[\])]")
-_UNIT_LINE = re.compile(r"(.*?)\bunits?\b ?[:=]? ?[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
-_PIXEL_LINE = re.compile(
-    r"(pixel(?:[ _]size)?|spacing|sampl(?:e|ing)[ _](?:spacing|interval|distance)|dx|dy)"
-    rf" ?[:=;]? ?({_NUMBER}) ?([^\s\d;,]{{1,20}})[;,]*",
-    re.IGNORECASE,
-)
-_LATERAL_WORDS = {"x", "y", "xy", "lateral", "length", "distance", "position", "pixel"}
 
 
 @dataclass(frozen=True)
@@ -71,9 +62,12 @@ class Dialect:
             text = text.replace(self.delimiter, "")
         return not text.strip() and (self.delimiter is None or self.delimiter not in text)
 
-    def is_closed(self, text: str) -> bool:
-        """Whether a delimiter follows the last number of a line."""
-        return self.delimiter is not None and not text.rpartition(self.delimiter)[2].strip()
+    def empty_at_the_end(self, text: str) -> int:
+        """How many cells at the end of a line are empty."""
+        if self.delimiter is None:
+            return 0
+        held = text.rstrip(f"{self.delimiter} \t\r\n" if self.delimiter != "\t" else "\t \r\n")
+        return text.count(self.delimiter, len(held))
 
 
 def read(path: Path, hints: Hints) -> list[guards.Surface]:
@@ -81,7 +75,9 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
 
     One column is a line z; two are x, z at uniform x; three are x, y, z on a regular grid; more are a matrix
     of heights whose rows follow one another along x, so the first axis of the map is the line number. Lines
-    beside each other may have their position in the first of three columns or more, see `units_of_lines`.
+    beside each other may have their position in the first of three columns or more, see `units_of_lines`. A
+    map whose heading states its width and height has its columns along x. A column titled "valid" holds 1,
+    or 0 where the height is none. Cells that are empty at the end of all lines are left out.
     Missing heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that
     start with ``#``, ``%`` or ``//`` are header, see `parsed_header`; a hint is stronger than it.
     """
@@ -91,9 +87,12 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     content = read_text(path, path.name, "heights as text", largest=size, latin=True)
     dialect = _dialect(lines_in(content), hints.decimal, path.name)
     header_lines, table = _table(lines_in(content), dialect, path.name)
-    if (units := units_of_lines(header_lines, table.shape[1])) is not None:
+    table, titles = without_invalid(table, titles_of(header_lines, dialect.delimiter, table.shape[1]))
+    if (units := units_of_lines(titles)) is not None:
         return _lines(table, *units, hints, path.name)
-    header = parsed_header(header_lines, dialect.delimiter, table.shape[1])
+    header = parsed_header(header_lines, titles)
+    if not titles and "width" in header and "height" in header:
+        return _map_of_a_size(table.T, header, hints, path.name)
     try:
         return _surfaces(table, header, hints, path.name)
     except InputError as error:
@@ -101,6 +100,21 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
             raise
     heights = table * hints.heights_in(path.name, header["z"])  # lines without their positions
     return guards.surfaces_of(heights, hints.spacing_in(path.name, (header["dx"], header["dy"])), path.name)
+
+
+def is_numeric(path: Path) -> bool:
+    """Whether a file, whatever its name, is text that ends with lines of numbers."""
+    with path.open("rb") as stream:
+        head = stream.read(PROBE)
+        stream.seek(-min(path.stat().st_size, PROBE), 2)
+        tail = stream.read(PROBE)
+    try:
+        decoded(head[: len(head) // 4 * 4], path.name, "text", latin=True)
+        lines = decoded(tail[-(len(tail) // 4 * 4) :], path.name, "text", latin=True).splitlines()
+    except (InputError, UnicodeDecodeError):
+        return False
+    last = [line for line in lines[1:] if line.strip()][-3:]
+    return bool(last) and all(_NUMERIC.fullmatch(line) for line in last)
 
 
 def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
@@ -130,7 +144,8 @@ def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
 def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[str], Array]:
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
     header: list[str] = []
-    values, columns, closed, characters = array("d"), 0, True, 0
+    values, columns, characters = array("d"), 0, 0
+    empty = guards.MAX_POINTS  # cells at the end of each line
     blanks = array("q")  # how many rows stand above each empty line
     for number, text in enumerate(lines, 1):
         comment = text.lstrip().startswith(COMMENT)
@@ -156,14 +171,13 @@ def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[st
             received = f"{len(row)} values in row {len(values) // columns + 1}"
             allowed = f"{columns}, as in the first row"
             raise InputError(source, received, allowed, "Mark missing heights with NaN.")
-        closed = closed and dialect.is_closed(text)
+        empty = min(empty, dialect.empty_at_the_end(text))
         values.extend(row)
         if len(values) > guards.MAX_POINTS:
             guards.check_claim(source, (len(values) // columns, columns), 1, len(values))
     require(columns, source, "no line of numbers", "heights as text", _CHECK)
     table = np.frombuffer(values).reshape(-1, columns)
-    if closed and columns > 1:  # every line ends with a delimiter
-        table = table[:, :-1]
+    table = table[:, : max(columns - empty, 1)]
     return header, table if table.shape[1] > 1 else _with_gaps(table, blanks)
 
 
@@ -196,86 +210,17 @@ def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str)
     return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
 
 
+def _map_of_a_size(
+    heights: Array, header: dict[str, float], hints: Hints, source: str
+) -> list[guards.Surface]:
+    """Map of a width and a height: its columns, x, were those of the numbers."""
+    stated = (header["width"] / heights.shape[0], header["height"] / heights.shape[1])
+    metres = heights * hints.heights_in(source, header.get("z"))
+    return guards.surfaces_of(metres, hints.spacing_in(source, stated), source)
+
+
 def _lines(table: Array, along: float, unit: float, hints: Hints, source: str) -> list[guards.Surface]:
     """Lines beside each other at the positions of the first column, from units of both, m."""
     heights, step = positions.line(table[:, 0], table[:, 1:], source)
     step *= along
     return guards.surfaces_of(heights * hints.heights_in(source, unit), hints.pixel or (step, step), source)
-
-
-FINER = 100.0
-"""Least ratio of the unit of positions to that of heights at which several columns are lines: mm to µm."""
-
-
-def units_of_lines(lines: list[str], columns: int) -> tuple[float, float] | None:
-    """Units of positions and of heights, m, of three columns or more whose titles are those of lines.
-
-    Each title has a unit: the first a much larger one, all others the same. None for any other heading.
-    """
-    titles = next((found for text in reversed(lines) if len(found := _brackets(text)) == columns > 2), [])
-    try:
-        along, *heights = map(_length, titles)
-    except (InputError, ValueError):
-        return None
-    return (along, heights[0]) if len(set(heights)) == 1 and along >= FINER * heights[0] else None
-
-
-def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> dict[str, float]:
-    """Find units and pixel sizes in the lines above the numbers.
-
-    Understood are column titles with units (``x [mm]; z (µm)``, ``Height (nm)``), lines such as ``# unit:
-    um``, ``height unit = nm``, ``lateral unit: mm`` (a bare ``unit`` is that of the heights), and ``# pixel:
-    1.5 um``, ``dx = 1 mm``. The delimiter of the columns is None for white space.
-
-    Returns lengths in m, where the lines do not leave them out: of one unit of ``x``, ``y`` and ``z``, and
-    the distances ``dx`` and ``dy`` of neighbouring points, which are the same where only one is given.
-    """
-    cleaned = [each.strip().lstrip("#%/!").strip() for each in lines]
-    stated: dict[str, float] = {}
-    pixels: dict[str, float] = {}
-    for text in (" ".join(each.split()) for each in cleaned):
-        if match := _UNIT_LINE.match(text):
-            stated |= dict.fromkeys("xy" if _is_lateral(match[1]) else "z", _length(match[2]))
-        if match := _PIXEL_LINE.fullmatch(text):
-            pixels[match[1].lower()] = quantity(f"{match[2].replace(',', '.')} {match[3]}", "m")
-    titles = _column_units(cleaned, delimiter, columns)
-    stated |= ({"y": titles["x"]} if "x" in titles else {}) | titles
-    if pixels:
-        dx = pixels.get("dx", next(iter(pixels.values())))
-        stated |= {"dx": dx, "dy": pixels.get("dy", dx)}
-    return stated
-
-
-def _column_units(lines: list[str], delimiter: str | None, columns: int) -> dict[str, float]:
-    """Units of the column titles: of x, y, z for two or three columns, else of the heights alone."""
-    axes = {2: "xz", 3: "xyz"}.get(columns)
-    for text in reversed(lines):
-        units = _brackets(text)
-        if axes is None:
-            if len(units) == 1 and not _is_lateral(text):
-                return {"z": _length(units[0])}
-            continue
-        titles = text.split(delimiter) if delimiter else []
-        if len(titles) != columns and len(units) == columns:
-            return {axis: _length(unit) for axis, unit in zip(axes, units, strict=True)}
-        if units and len(titles) == columns:
-            each = [_brackets(title) for title in titles]
-            return {axis: _length(unit[-1]) for axis, unit in zip(axes, each, strict=True) if unit}
-    return {}
-
-
-def _brackets(text: str) -> list[str]:
-    return _BRACKET.findall(" ".join(text.split()))
-
-
-def _is_lateral(words: str) -> bool:
-    return not _LATERAL_WORDS.isdisjoint(re.findall(r"[a-z]+", words.lower()))
-
-
-def _length(unit: str) -> float:
-    try:
-        return factor(unit, "m")
-    except InputError as error:
-        correct = "Correct the header"
-        remedy = advice("height_unit", "um", f"{correct}, or leave the bracket out and give", f"{correct}.")
-        raise InputError("unit in the header", repr(unit), "a unit of length", remedy) from error
