@@ -171,3 +171,22 @@ def test_direct_sees_the_pits_of_ball_and_raceway_where_they_are(forwards):
 
         assert_allclose(on.evaluate(step, APPROACH)[0], solved(both, APPROACH), rtol=8e-3)
         on.accept(step)
+
+
+def test_a_ball_that_runs_backwards_shows_the_same_spot():
+    """What lies before it lies behind, and the force of a spot stays, to less than a cell's turn."""
+    surface = raceway_on(CONTACT, LOAD, 1.0 * MM)
+    ball = raceway_on(CONTACT, LOAD, 0.7 * MM, AroundTexture(waves=(3, 5), amplitudes=(0.2 * UM, 0.3 * UM)))
+    spots, found = np.array([0.0, 0.4, 1.1, 2.9, 5.3]), []
+    for forwards in (True, False):
+        keys = {"balls": [ball], "forwards": forwards}
+        (law,) = raceway_laws(["direct"], CONTACT, surface, LOAD, **keys)["direct"]
+        on = law.prepare(np.column_stack([np.full(len(spots), 0.5 * MM), spots]))
+        found.append([])
+        for step in range(len(spots)):
+            found[-1].append(on.evaluate(step, APPROACH)[0])
+            on.accept(step)
+    assert np.ptp(found[0]) > 0.05 * LOAD
+    assert_allclose(found[1], found[0], rtol=1e-4)
+    cell = surface.spacing[0] / (0.7 * MM)
+    assert np.abs(np.gradient(found[0], spots)).max() * cell > 20 * 1e-4 * LOAD  # so much a cell off would be

@@ -15,6 +15,7 @@ from asperity.scenarios import raceway_laws
 from asperity.scenes.bearing import bearing_rings, cage_slip, heard_group, prepare_bearing, thinned
 from asperity.scenes.figures.bearing import load_zone
 from asperity.schema import bearing as schema
+from asperity.schema import spectra
 from small_cases import BEARING
 
 D, PITCH, BALLS, TURNS = 7.94e-3, 39.04e-3, 9, 30.0
@@ -118,6 +119,18 @@ def test_bands_beyond_the_sampling_are_missing_and_a_band_that_is_given_is_taken
     found = heard_group(case, {"hertz": SimpleNamespace(acceleration=noise)})
     assert np.isnan(found[schema.BAND_VELOCITY][0][0]).tolist() == [False, False, True]
     assert (found[schema.ENVELOPE_LOW], found[schema.ENVELOPE_HIGH]) == (4000.0, 5000.0)
+
+
+def test_the_spectrum_of_velocity_is_that_of_the_acceleration_over_the_angular_frequency():
+    """Of a sine of 3 m/s² at 1 kHz, 3/(2π 1000) m/s; its rms is the velocity in the band."""
+    case = as_case(SMOOTH | {"duration": "1 s", "sampling_rate": "25.6 kHz"})
+    sine = 3.0 * np.sin(2.0 * np.pi * 1e3 * np.arange(25_600) / 25_600.0)
+    found = heard_group(case, {"hertz": SimpleNamespace(acceleration=sine[None])})
+    at = int(np.argmax(found[schema.VELOCITY_AMPLITUDE][0]))
+    assert found[spectra.FREQUENCY][at] == pytest.approx(1e3, rel=1e-12)
+    assert found[schema.VELOCITY_AMPLITUDE][0][at] == pytest.approx(3.0 / (2.0 * np.pi * 1e3), rel=1e-3)
+    in_band = found[schema.BAND_VELOCITY][0][0][1]
+    assert in_band == pytest.approx(found[schema.VELOCITY_AMPLITUDE][0][at] / math.sqrt(2.0), rel=2e-3)
 
 
 def test_thinned_signals_hold_what_fewer_samples_hold_and_nothing_more():

@@ -12,7 +12,7 @@ from asperity.reference.materials import MATERIALS
 from asperity.scenarios.preparing import prepare
 from asperity.scenes import schema
 from asperity.scenes.compute import compute
-from asperity.scenes.creep import creep_group, friction_of
+from asperity.scenes.creep import creep_group, friction_of, rough_strips
 from asperity.scenes.figures.sideways import CREEP, creep_answers, friction_table
 from asperity.scenes.result import computed_result
 from asperity.schema import tree
@@ -84,6 +84,29 @@ def test_friction_follows_the_contact_force_by_its_coefficient_in_full_slip(comp
     for none in (found, little):  # by symmetry there is no force along, and no rounding in its place
         assert not np.any([none[schema.SAMPLE_FRICTION][0][0], *none[schema.FRICTION_FORCE][:, :, 0].ravel()])
     assert little[schema.FULL_SLIP_SHARE] == np.mean(force <= little[schema.FULL_SLIP_LOAD])
+
+
+def test_steps_over_a_sample_are_long_and_what_they_miss_is_added(computed, creeping, monkeypatch):
+    """A sample without roughness slips, sticks and pulls as smooth bodies in steps of a cell do."""
+    smooth = np.zeros_like(rough_strips(computed)[0])
+    monkeypatch.setattr("asperity.scenes.creep.rough_strips", lambda of: [smooth])
+    found = creeping({"lateral": 0.002, "spin": 0.3})
+    for entry in (schema.STICK_AREA, schema.SLIP_AREA, schema.SPIN_MOMENT, schema.SAMPLE_HEAT):
+        both = np.array(found[entry])
+        assert both[1] == pytest.approx(both[0], rel=2e-3)
+    assert found[schema.SAMPLE_FRICTION][1] == pytest.approx(found[schema.SAMPLE_FRICTION][0], rel=2e-3)
+
+
+def test_a_wheel_in_flight_does_not_slip(computed, creeping, monkeypatch):
+    """Of a force that is off for a quarter of the time, all the rest slips: three quarters."""
+    force = computed.stacked("contact_force").copy()
+    force[..., : force.shape[-1] // 4] = 0.0
+    apart = np.mean(force == 0.0)
+    monkeypatch.setattr(type(computed), "stacked", lambda self, name: force)
+    found = creeping({"angle_of_attack": 0.03})
+    assert found[schema.FULL_SLIP_SHARE] == pytest.approx(1.0 - apart, rel=1e-12)
+    assert 0.2 < apart < 0.3
+    assert not np.any(found[schema.FRICTION_POWER][force == 0.0])
 
 
 def test_axial_modes_squeal_by_falling_friction_and_move_by_themselves(computed, falling, creeping):
