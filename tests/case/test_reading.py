@@ -27,7 +27,7 @@ DEFAULTS = {
     },
     "wheel-on-rail": {
         "speed": 56.0, "seed": 1, "start": 0.0, "duration": 1.0, "settling": 0.3,
-        "laws": ("areal", "shifted", "printed", "linear-filtered", "linear"),
+        "laws": ("areal", "linear-filtered"),
         "surface.lateral": 1.0, "surface.level": 0.0, "surface.continuation": "refuse",
         "wheel.radius": 0.46, "wheel.mass": 600.0, "wheel.load": 65e3, "wheel.transverse_radius": math.inf,
         "track.name": "x2000", "track.overrides": {}, "track.rail_head_radius": 0.3,

@@ -24,8 +24,9 @@ from asperity.reporting.chart import (
     Rules,
     Shape,
 )  # fmt: skip
+from asperity.reporting.data import page_colours
 from asperity.reporting.figure import PageFigure
-from asperity.reporting.page import figures_page
+from asperity.reporting.page import figures_page, whole_page
 from browser import OVERLAPS, assert_accessible, assert_readable, pages_of, pixels
 from small_cases import CASES
 
@@ -145,6 +146,21 @@ def test_a_law_is_shown_or_not_in_all_figures_at_once_and_what_is_no_law_in_its_
     page.locator("#words").get_by_role("checkbox", name="share").uncheck()
     assert pixels(page, "words", GREEN, 1) == 0
     assert pixels(page, "bands", GREEN, 1) > 15
+
+
+def test_a_law_that_is_unticked_is_one_click_away(browser, tmp_path):
+    figure = PageFigure("run", "Forces", "", CHARTS["run"], "", NUMBERS)
+    colours = page_colours([BLUE, VERMILLION])
+    words = {"title": "", "summary": "", "version": "", "files": {}, "blocks": [figure]}
+    path = tmp_path / "page.html"
+    path.write_text(
+        whole_page("figures.html.jinja", [figure], colours, ["linear"], **words), encoding="utf-8"
+    )
+    with pages_of(browser, path.as_uri()) as opened:
+        page = opened()
+        assert (pixels(page, "run", VERMILLION), pixels(page, "run", BLUE) > 15) == (0, True)
+        page.locator("#run").get_by_role("checkbox", name="linear").check()
+        assert pixels(page, "run", VERMILLION) > 15
 
 
 def said(page, name):

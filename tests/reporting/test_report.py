@@ -15,7 +15,7 @@ from asperity.convergence import sentence
 from asperity.errors import ComputationError, InputError
 from asperity.laws import spec_of
 from asperity.reporting.chart import envelope, smooth_on_log_axis
-from asperity.reporting.data import engineering, nominal_band, power_of_ten
+from asperity.reporting.data import engineering, nominal_band, power_of_ten, unticked_laws
 from asperity.reporting.headline import deciding_bands, force_answers, lights
 from asperity.reporting.page import literature
 from asperity.reporting.tables import uncertainty_table
@@ -202,6 +202,20 @@ def test_a_case_with_a_map_in_memory_says_what_to_save_first():
     )
     assert '<code>numpy.save("surface_file.npy", …)</code>' in html.unescape(again)
     assert "Then save the case below" in again
+
+
+@pytest.mark.parametrize(
+    ("laws", "unticked"),
+    [
+        (["areal", "shifted", "linear-filtered", "linear"], ["shifted", "linear"]),
+        (["linear-filtered", "areal"], []),  # that of practice is the answer
+        (["areal", "linear"], []),  # nothing to show beside it
+    ],
+)
+def test_a_page_begins_with_the_main_law_and_that_of_practice(laws, unticked):
+    tree = xr.DataTree()
+    tree["scenario"] = xr.Dataset(attrs={"laws": json.dumps([spec_of(name).entry() for name in laws])})
+    assert unticked_laws(tree) == unticked
 
 
 # --- numbers in files and words

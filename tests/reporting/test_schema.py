@@ -60,7 +60,7 @@ def test_attributes_are_those_of_the_schema(real_run):
         assert isinstance(value, str) == (known[place].units in ("text", "JSON")), place
 
 
-ON_TRACK = "over a track", "of a wheel", "law linear", "loss factors"
+ON_TRACK = "over a track", "of a wheel", "rail is rough", "loss factors"
 NOWHERE = (
     "calls them nothing else", "of several contacts", "contacts at equal distances", "measured on the track",
     "passage was measured", "says what passes", "disc and tread vibrate", "bays differ", "[creep] gives",

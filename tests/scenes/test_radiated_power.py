@@ -112,6 +112,18 @@ def ringing(runs):
     return runs(WheelOnRail(**CASE | {"wheel": {"roughness": "disc", "modes": MODES}}))
 
 
+def test_cnossos_is_told_whatever_laws_are_rolled(runs):
+    """It was told only where `linear` was among them: the bare law is rolled for it where nobody names it."""
+    alone, beside = (runs(WheelOnRail(**HEARD | {"laws": ["hertz", *more]})) for more in ([], ["linear"]))
+    assert list(alone["rolling"]["law"].values) == ["hertz"]
+    for name in ("sound_power_level", "sound_power_level_a", "cnossos_sound_power_level_a"):
+        told, known = (tree["spectra"][name] for tree in (alone, beside))
+        if "law" in known.dims:
+            told, known = (each.sel(law="hertz", drop=True) for each in (told, known))
+        np.testing.assert_array_equal(told, known)
+        assert told.attrs == known.attrs
+
+
 def levels(tree, name="radiated_power_level"):
     return dict(zip(RADIATORS, tree["spectra"][name].values[0], strict=True))
 

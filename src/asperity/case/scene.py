@@ -73,7 +73,8 @@ class Case(AnyCase):
     laws: tuple[str, ...] = key(
         ListOf(LAW, least=1, once=True),
         ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
-        "laws of the contact force; the first is the main one, direct where a flat or a joint is rolled over",
+        "laws of the contact force that are computed, others once they are named here; the first is the main "
+        "one, direct where a flat or a joint is rolled over",
     )
     seed: int = key(INDEX, 1, "seed of everything random")
     start: float | None = optional(
@@ -308,9 +309,9 @@ class Case(AnyCase):
 
     def _usual_laws(self) -> tuple[str, ...]:
         """Laws of a case that names none."""
-        if self.has_defect:
-            return OVER_DEFECTS
         usual: tuple[str, ...] = super().default_of("laws")
+        if self.has_defect:
+            return tuple(law for law in OVER_DEFECTS if law == OVER_DEFECTS[0] or law in usual)
         if not self.surface.has_line:
             return usual
         allowed = _allowed(line=True, samples=self.surface.has_samples)

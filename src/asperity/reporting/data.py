@@ -377,6 +377,18 @@ def baselines_among(tree: DataTree, names: Sequence[str]) -> list[str]:
     return [roles[role] for role in spectra.FORCE_LEVEL_DIFFERENCES if role in roles]
 
 
+def unticked_laws(tree: DataTree) -> list[str]:
+    """Laws that a page shows once they are ticked: all but the main one and that of practice.
+
+    None where that of practice is the main one, or was not rolled.
+    """
+    entries = list(law_entries(tree).values())
+    practice = {entry.name for entry in entries if entry.role == spectra.PRACTICE}
+    if not practice or entries[0].name in practice:
+        return []
+    return [entry.name for entry in entries[1:] if entry.name not in practice]
+
+
 def differences(tree: DataTree) -> dict[Entry, str]:
     """Variables of force level differences to the linear laws, with the law each compares with."""
     of_role = {entry.role: entry.name for entry in law_entries(tree).values()}

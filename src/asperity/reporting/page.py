@@ -39,14 +39,22 @@ class PageSection:
         return [block for block in self.blocks if isinstance(block, PageFigure)]
 
 
-def whole_page(name: str, blocks: Sequence[object], colours: Mapping[str, str], /, **words: object) -> str:
+def whole_page(
+    name: str,
+    blocks: Sequence[object],
+    colours: Mapping[str, str],
+    unticked: Sequence[str] = (),
+    /,
+    **words: object,
+) -> str:
     """Fill a template with words, and with the figures among blocks, as one self-contained HTML text.
 
+    Laws that are `unticked` are not shown until a reader ticks them.
     Styles, charts and the script are inside; nothing is loaded from elsewhere, and no other script may run.
     """
     charts = {each.name: each.chart for each in blocks if isinstance(each, PageFigure)}
     text = page_template(name).render(
-        charts=Markup(payload.charts_json(charts, colours)),
+        charts=Markup(payload.charts_json(charts, colours, unticked)),
         script=Markup(payload.chart_script()),
         script_style=Markup(payload.chart_style()),
         digest=payload.digest_of(payload.chart_script()),
@@ -172,6 +180,7 @@ def page(
         "report.html.jinja",
         blocks,
         colours,
+        data.unticked_laws(tree),
         title=data.stated(tree, provenance.TITLE) or kind or "Rolling contact",
         summary=summary,
         on_sheet={figure.name for figure in on_sheet},

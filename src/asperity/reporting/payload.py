@@ -4,7 +4,7 @@ import base64
 import hashlib
 import json
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from importlib.resources import files
@@ -89,17 +89,19 @@ COLOURED = ("colour", "fill", "edge")
 SCRIPTS = ("numbers", "ticks", "marks", "panel", "cursor", "legend", "figures")
 
 
-def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str]) -> str:
+def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str], unticked: Sequence[str] = ()) -> str:
     """What the script draws, by the name of its figure, as text that may stand in a script element.
 
-    `colours` are those of the page, in the order of its CSS variables.
+    `colours` are those of the page, in the order of its CSS variables; `unticked` are the laws that are not
+    shown until they are ticked.
     """
     arrays, look = Arrays(), list(colours)
     told = {
         name: {"panels": [_panel(panel, arrays, look) for panel in _thinned(drawn).panels]}
         for name, drawn in charts.items()
     }
-    found = {"charts": told, "colours": look, "arrays": arrays.told, "data": arrays.packed}
+    found: dict[str, Any] = {"charts": told, "colours": look, "arrays": arrays.told, "data": arrays.packed}
+    found |= {"unticked": list(unticked)} if unticked else {}
     text = json.dumps(found, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c")  # so that nothing in it ends the element
 

@@ -12,7 +12,7 @@ from asperity.arguments import Array, NDArray
 from asperity.case.form import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
-from asperity.laws import Law, Need, needs_of, spec_of
+from asperity.laws import Law, Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies
@@ -43,6 +43,8 @@ class Computed(ReducedCase):
     runs: dict[str, RolledBodies]  # time histories, by law
     scan: ScannedForces | None  # of the path
     running_in: Values  # what passes before did to the textures
+    # (c, n), N, over a track by the bare linear law, of whose force CNOSSOS-EU's sound power is
+    bare_force: Array | None
     # (laws, points, n), displacement, m, and velocity, m/s, of the rail at the points that are passed
     points: tuple[Array, ...] = ()
 
@@ -111,6 +113,11 @@ class Computed(ReducedCase):
         return self.levels(self.force_psd)
 
     @cached_property
+    def bare_levels(self) -> Array | None:
+        """Levels of the forces by the bare linear law (c, b), dB re 1 N; None where it was not rolled."""
+        return None if self.bare_force is None else self.levels(self.psd(self.bare_force))
+
+    @cached_property
     def band(self) -> Array:
         """Centres of the one-third octaves (b,), Hz."""
         highest = self.case.numerics.highest_frequency
@@ -154,10 +161,10 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     first = reduced_case(run_in, progress)
     book("reduction")
     every, unused = [first, *(first.of_contact(*own) for own in others)], replace(first, seconds=seconds)
-    runs: dict[str, RolledBodies] = {}
-    for name in case.laws:
+
+    def rolled(name: str) -> RolledBodies:
         laws = [materials.build(name) for materials in every]
-        runs[name] = roll_bodies(
+        return roll_bodies(
             over,
             scene.rolling,
             [laws[k] for k in which],
@@ -172,10 +179,19 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             progress=progress,
             checkpoint=checkpoint_of(laws[0], prepared, store),
         )
-        del laws
+
+    runs: dict[str, RolledBodies] = {}
+    for name in case.laws:
+        runs[name] = rolled(name)
         book(f"law {name}")
+    bare, bare_force = in_role(Role.BARE, names()), None
+    if bare is not None and isinstance(scene.over, Track) and np.ptp(first.textures.line):
+        bare_force = (runs[bare] if bare in runs else rolled(bare)).contact_force
+        book("what CNOSSOS-EU's sound power is of")
     scan = first.path_scan if Need.SCAN in needs_of(case.laws) else None
-    computed = Computed(**vars(unused), over=over, runs=runs, scan=scan, running_in=ran)
+    computed = Computed(
+        **vars(unused), over=over, runs=runs, scan=scan, running_in=ran, bare_force=bare_force
+    )
     if not case.point_positions:
         return computed
     computed = replace(computed, points=_passed(computed, progress))

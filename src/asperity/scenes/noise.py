@@ -11,7 +11,7 @@ import xarray
 from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.case.tables import read_ratios
 from asperity.errors import Finding, Grade, MissingSourceWarning
-from asperity.laws import Role, in_role
+from asperity.laws import Role, in_role, names
 from asperity.radiation import pass_by
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
@@ -122,16 +122,16 @@ def noise(computed: compute.Computed) -> Values:
     Several contacts count by the energy mean of their changes, all with the roughness of the first. The
     linear law follows the bare line, so its sound power is that of CNOSSOS-EU without the contact filter A3:
     the difference of another law holds what its contact filters. Bands in which the force is not computed are
-    left out of all totals. Nothing without the linear law or without roughness.
+    left out of all totals. The linear law is rolled for it where the case does not name it. Nothing without
+    roughness.
     """
-    laws, case = list(computed.runs), computed.case
-    bare = in_role(Role.BARE, laws)
-    if bare is None or not np.ptp(computed.textures.line):
+    case, bare = computed.case, in_role(Role.BARE, names())
+    if bare is None or computed.bare_levels is None:
         return {}
     contact_filter = cnossos.nearest_contact_filter(computed.shape.load, 2.0 * case.rolling.radius)
     centres, linear = _linear(computed, None)
     _, filtered = _linear(computed, cnossos.contact_filter(contact_filter))
-    changes = computed.force_levels - computed.force_levels[laws.index(bare)]
+    changes = computed.force_levels - computed.bare_levels
     change = 10.0 * np.log10(np.mean(10.0 ** (changes / 10.0), axis=1))
     at = np.searchsorted(_numbers(computed.band), _numbers(centres))
     levels = linear + np.where(np.isfinite(change), change, 0.0)[:, None, at]

@@ -146,7 +146,7 @@ ROUGHNESS_LEVEL = _rail_spectra(
     missing="this part has no roughness of these wavelengths",
 )
 
-_NOISE = "where the law linear rolled over a roughness"
+_NOISE = "where a wheel or a rail is rough"
 _noise = partial(_spectra, condition=_NOISE)
 SOURCE = _noise("source", "1", "what radiates")
 NOISE_BAND = _noise("noise_band", "Hz", _BAND)

@@ -8,7 +8,6 @@ import numpy as np
 from asperity import spectra
 from asperity.arguments import Array
 from asperity.errors import Finding, Grade, LossFactorWarning, warn_of_findings
-from asperity.laws import Role, in_role
 from asperity.reduction.texture import along_path
 from asperity.reference.railways import iso_3095_decay_rate
 from asperity.reporting import data
@@ -275,7 +274,7 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
     known = "rail, sleepers and wheel"
     if reason := noise.silent_wheel(case):
         known = f"rail and sleepers: {reason}"
-    if in_role(Role.BARE, case.laws) is not None:
+    if np.ptp(prepared.textures.line):
         known += (
             f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"
         )

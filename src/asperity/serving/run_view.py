@@ -51,7 +51,7 @@ def viewed_run(path: str) -> dict[str, Any]:
             "load": data.number(tree, contact.WORKING_LOAD),
         },
         "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
-        **told_blocks(page.drawn_figures(tree, FIGURES)),
+        **told_blocks(page.drawn_figures(tree, FIGURES), data.unticked_laws(tree)),
     }
 
 
@@ -104,8 +104,11 @@ def _spacing(coordinate: Array) -> float:
 # --- figures and tables
 
 
-def told_blocks(blocks: Sequence[page.Block]) -> dict[str, str]:
-    """Elements of figures and tables, one after the other, and the charts that go into them."""
+def told_blocks(blocks: Sequence[page.Block], unticked: Sequence[str] = ()) -> dict[str, str]:
+    """Elements of figures and tables, one after the other, and the charts that go into them.
+
+    Laws that are `unticked` are not shown at first.
+    """
     macros: Any = page.page_template("blocks.html.jinja").module
     charts = {block.name: block.chart for block in blocks if isinstance(block, PageFigure)}
     # no file lies beside this page
@@ -113,7 +116,7 @@ def told_blocks(blocks: Sequence[page.Block]) -> dict[str, str]:
         macros.figure(replace(block, file="")) if isinstance(block, PageFigure) else macros.table(block)
         for block in blocks
     )
-    return {"blocks": "".join(elements), "charts": payload.charts_json(charts, chart.COLOURS)}
+    return {"blocks": "".join(elements), "charts": payload.charts_json(charts, chart.COLOURS, unticked)}
 
 
 # --- several runs

@@ -13,6 +13,7 @@ async function show(found, root = document) {  // what `charts_json` wrote, in t
   const elements = named.filter(([, element]) => element);
   for (const [, element] of elements) for (const folded of element.querySelectorAll("details.numbers")) folded.open = false;
   const get = await unpacked(found);
+  if (!figures.size) for (const law of found.unticked ?? []) off.add(law);  // what a reader ticked stays ticked
   if (!document.getElementById("chart-keys")) make("p", { id: "chart-keys", hidden: true, textContent: HELP }, document.body);
   for (const [name, element] of elements) {
     for (const old of figures) if (old.element === element) old.remove();
