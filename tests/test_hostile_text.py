@@ -3,6 +3,7 @@
 The texts here are so long that time with their square would be hours.
 """
 
+import io
 import os
 import re
 import tracemalloc
@@ -11,7 +12,10 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
 
+from asperity import text_files
 from asperity.arguments import listed, shown
 from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class, load_case, parse_case
@@ -22,8 +26,10 @@ from asperity.parameters import Quantity
 from asperity.results import GROUPS, read_result, save
 from asperity.schema import VERSION
 from asperity.studies.definition import load_study, study_of
+from asperity.studies.signals import read_signal
 from asperity.surfaces.readers import read_surface
 from asperity.surfaces.readers.headings import parsed_header, titles_of
+from asperity.text_files import blocks_of_lines, even_rows, number_in
 from asperity.units import quantity
 
 BALL = 'kind = "ball-on-beam"\n'
@@ -254,6 +260,47 @@ def test_no_more_of_a_file_is_read_than_it_may_have(tmp_path, read, size, messag
 def test_heights_as_text_take_a_few_times_their_file(tmp_path, text):
     with within(2**20 + 16 * len(text)):  # a number of eight bytes for each two, and its copy
         heights(text, tmp_path)
+
+
+def test_a_signal_as_text_takes_a_few_times_its_file(tmp_path):
+    (tmp_path / "a.txt").write_text(text := "volt\n" + "1\n" * 200_000)
+    with within(2**20 + 16 * len(text)):
+        values, _ = read_signal(tmp_path / "a.txt", 1e3)
+    assert values.shape == (200_000,)
+
+
+PLAIN = st.lists(st.floats(allow_nan=False, allow_infinity=False).map(repr), min_size=1, max_size=3)
+
+
+@given(
+    rows=st.lists(PLAIN, min_size=1, max_size=4),
+    wide=st.sampled_from([" ", "\t", " \t "]),
+    comma=st.booleans(),
+)
+def test_rows_at_once_are_what_their_numbers_are_one_by_one(rows, wide, comma):
+    """To the last bit; lines of several lengths are left to those who say which."""
+    lines = [f"{wide.join(row)}\n" for row in rows]
+    found = even_rows(
+        [line.replace(".", ",") for line in lines] if comma else lines, None, "," if comma else "."
+    )
+    if len({len(row) for row in rows}) > 1:
+        assert found is None
+    else:
+        assert found.tolist() == [[number_in(word) for word in row] for row in rows]
+
+
+@pytest.mark.parametrize(
+    "line", ["1_0", "nan", "1;;2", "1;2;", "", " ", "0x1", "1;2;3", "1 2", "1", "é", "١"]
+)
+def test_what_is_not_plain_is_left_to_those_who_say_what_it_is(line):
+    assert even_rows(["1;2\n", f"{line}\n", "3;4\n"], ";") is None
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_blocks_hold_whole_lines_whatever_ends_them(monkeypatch, end):
+    monkeypatch.setattr(text_files, "_BLOCK", 5)
+    content = end.join(["a", "", "longer than a block", "b", end])
+    assert [line for lines in blocks_of_lines(content) for line in lines] == list(io.StringIO(content, None))
 
 
 # --- names in messages

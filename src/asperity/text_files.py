@@ -6,11 +6,17 @@ import io
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from asperity.arguments import no_file
 from asperity.errors import InputError, printable
 from asperity.files import amount, write_bytes
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _FORMULA = ("=", "+", "-", "@")
@@ -19,6 +25,11 @@ _FORMULA = ("=", "+", "-", "@")
 
 LATIN_SHARE = 0.5
 """Least share of Latin characters in UTF-16 that bears no mark."""
+_BLOCK = 1 << 16
+"""Characters of a text that are taken at a time."""
+_PLAIN = re.compile(r"[\d.,;+\-eE \t\n]*+", re.ASCII)
+"""Numbers and what stands between them."""
+_EMPTY_LINE = re.compile(r"(?:\A|\n)[,; \t]*(?:\n|[,; \t]\Z)")
 _APART = re.compile(r",\s")
 """A comma that is no decimal mark."""
 
@@ -42,7 +53,7 @@ def read_text(
         raise InputError(source, received, allowed, remedy)
     try:
         with open(path, "rb") as file:
-            content = file.read(largest + 1)
+            content = file.read(min(largest, path.stat().st_size) + 1)  # room for no more is made
     except OSError as error:
         raise InputError(source, f"a file that cannot be read ({error.strerror})", allowed) from None
     if len(content) > largest:
@@ -88,24 +99,65 @@ def _order_of_utf16(content: bytes) -> str:
 
 def lines_in(content: str) -> Iterator[str]:
     """Lines of a text, one at a time: a list of them takes many times the memory of short lines."""
-    return iter(io.StringIO(content, newline=None))
+    return chain.from_iterable(blocks_of_lines(content))
 
 
-def lines_of_cells(content: str) -> Iterator[tuple[int, list[str]]]:
-    """Cells of each line of a table that holds any, with its number.
+def blocks_of_lines(content: str) -> Iterator[list[str]]:
+    """Lines of a text, in lists of some ten kilobytes, at ends of lines of any system."""
+    start = 0
+    while start < len(content):
+        ends = (content.find(mark, start + _BLOCK) + 1 for mark in "\n\r")
+        end = next((end for end in ends if end), len(content))
+        yield list(io.StringIO(content[start:end], newline=None))
+        start = end
 
-    They are apart by semicolon or tab, both with decimal commas, by comma, or by white space. Text from '#'
-    on is left out, and so are separators at the end, as spreadsheets write them.
+
+def even_rows(lines: list[str], delimiter: str | None, decimal: str = ".") -> "NDArray[np.float64] | None":
+    """Numbers (rows, columns) of lines that hold nothing else, equally many in each, all at once.
+
+    None where there is anything else: a word, a missing number, an empty line. As `number_in` reads them one
+    by one, at a small part of the time. The delimiter is None for white space.
     """
-    for number, line in enumerate(lines_in(content), start=1):
+    import numpy as np
+
+    text = "".join(lines)
+    if (
+        not _PLAIN.fullmatch(text)
+        or _EMPTY_LINE.search(text)
+        or (delimiter != "," != decimal and "," in text)
+    ):
+        return None
+    if decimal == ",":
+        lines = text.replace(",", ".").splitlines()
+    try:
+        return np.loadtxt(lines, delimiter=delimiter, comments=None, ndmin=2)
+    except ValueError:
+        return None
+
+
+def lines_of_cells(content: str, first: int = 1) -> Iterator[tuple[int, list[str]]]:
+    """Cells of each line of a table that holds any, with its number, from that of the first on.
+
+    They are apart as `separator_in` says. Text from '#' on is left out, and so are separators at the end, as
+    spreadsheets write them.
+    """
+    for number, line in enumerate(lines_in(content), start=first):
         text = line.partition("#")[0].strip().rstrip(";, \t")
-        tabs = "\t" in text and not _APART.search(text)
-        separator = ";" if ";" in text else "\t" if tabs else "," if "," in text else None
+        separator = separator_in(text)
         if separator in (";", "\t"):
             text = text.replace(",", ".")
         if text:
             cells = [cell.strip().strip('"') for cell in text.split(separator)]
-            yield number, [cell for cell in cells if cell] if tabs else cells
+            yield number, [cell for cell in cells if cell] if separator == "\t" else cells
+
+
+def separator_in(text: str) -> str | None:
+    """Semicolon or tab, both with decimal commas, comma, or None for white space, between cells of a line."""
+    if ";" in text:
+        return ";"
+    if "\t" in text and not _APART.search(text):
+        return "\t"
+    return "," if "," in text else None
 
 
 def number_in(text: str | bytes) -> float:

@@ -3,6 +3,7 @@
 import io
 import os
 import warnings
+from array import array
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,7 +30,15 @@ from asperity.studies.definition import Member
 from asperity.studies.member import SIGNAL
 from asperity.studies.times import clock_of, rate_beside
 from asperity.surfaces.readers import arrays, guards
-from asperity.text_files import lines_of_cells, number_in, read_text, write_csv
+from asperity.text_files import (
+    blocks_of_lines,
+    even_rows,
+    lines_of_cells,
+    number_in,
+    read_text,
+    separator_in,
+    write_csv,
+)
 from asperity.units import quantity, unit_in
 
 FORMATS = ("nc", "npy", "wav")
@@ -302,20 +311,31 @@ def _of_wav(file: Path) -> tuple[float, Any]:
 
 def _of_text(file: Path) -> tuple[Array, list[str]]:
     """Numbers of a table, below lines of words, of which the last may be titles of its columns."""
-    rows: list[list[float]] = []
+    content = read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT)
+    numbers, columns = array("d"), 0
     words: deque[list[str]] = deque(maxlen=2)
-    for line, cells in lines_of_cells(read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT)):
-        try:
-            numbers = [number_in(cell) for cell in cells]
-        except ValueError:
-            require(not rows, file.name, f"words in line {line}", "numbers below the heading")
-            words.append(cells)
+    line = 1
+    for lines in blocks_of_lines(content):
+        separator = separator_in(lines[-1])
+        even = even_rows(lines, separator, "." if separator in (None, ",") else ",")
+        if even is not None and even.shape[1] == (columns or even.shape[1]):
+            columns = even.shape[1]
+            numbers.frombytes(even.tobytes())
+            line += len(lines)
             continue
-        even = not rows or len(numbers) == len(rows[0])
-        require(even, file.name, f"{len(numbers)} cells in line {line}", f"{len(rows[0]) if rows else 0}")
-        rows.append(numbers)
-    require(rows, file.name, "no numbers", "a table of numbers")
-    return np.array(rows), heading_of(words, ["s", *[""] * (len(rows[0]) - 1)])
+        for number, cells in lines_of_cells("".join(lines), line):
+            try:
+                row = [number_in(cell) for cell in cells]
+            except ValueError:
+                require(not columns, file.name, f"words in line {number}", "numbers below the heading")
+                words.append(cells)
+                continue
+            columns = columns or len(row)
+            require(len(row) == columns, file.name, f"{len(row)} cells in line {number}", str(columns))
+            numbers.extend(row)
+        line += len(lines)
+    require(columns, file.name, "no numbers", "a table of numbers")
+    return np.frombuffer(numbers).reshape(-1, columns), heading_of(words, ["s", *[""] * (columns - 1)])
 
 
 def through_path(signal: ArrayLike, rate: float, response: ArrayLike, response_rate: float) -> Array:

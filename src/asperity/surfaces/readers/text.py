@@ -6,8 +6,7 @@ import math
 import re
 from array import array
 from collections import deque
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -19,13 +18,15 @@ from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import guards, positions
 from asperity.surfaces.readers.headings import parsed_header, titles_of, units_of_lines, without_invalid
 from asperity.surfaces.readers.hints import Hints, advice, spell
-from asperity.text_files import decoded, lines_in, number_in, read_text
+from asperity.text_files import blocks_of_lines, decoded, even_rows, lines_in, number_in, read_text
 
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")
 MAX_TEXT_BYTES = 1 << 28
 MAX_HEADER = 1 << 20  # characters of headings and comments
 PROBE = 1 << 13  # bytes at either end of a file that say whether it is text
+END = 1 << 14  # characters at the end of a text, in which ...
+SAMPLE = 50  # ... so many lines of numbers tell how they are written
 PIECE = 1 << 16  # fields of a long line that are split off at a time
 
 _CHECK = "Check the file and its separators."
@@ -85,8 +86,8 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
     require(size <= MAX_TEXT_BYTES, f"size of {path.name}", amount(size), allowed, remedy)
     content = read_text(path, path.name, "heights as text", largest=size, latin=True)
-    dialect = _dialect(lines_in(content), hints.decimal, path.name)
-    header_lines, table = _table(lines_in(content), dialect, path.name)
+    dialect = _dialect(_last_numbers(content), hints.decimal, path.name)
+    header_lines, table = _table(content, dialect, path.name)
     table, titles = without_invalid(table, titles_of(header_lines, dialect.delimiter, table.shape[1]))
     if (units := units_of_lines(titles)) is not None:
         return _lines(table, *units, hints, path.name)
@@ -117,10 +118,20 @@ def is_numeric(path: Path) -> bool:
     return bool(last) and all(_NUMERIC.fullmatch(line) for line in last)
 
 
-def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
-    """Judge by the last lines that hold nothing but numbers and missing markers."""
-    numeric = (text.strip(" \r\n") for text in lines if _NUMERIC.fullmatch(text) and text.strip())
-    sample = deque(numeric, maxlen=50)
+def _last_numbers(content: str) -> list[str]:
+    """The last lines that hold nothing but numbers and missing markers."""
+    for text in (content[-END:], content):
+        numeric = (
+            line.strip(" \r\n") for line in lines_in(text) if _NUMERIC.fullmatch(line) and line.strip()
+        )
+        sample = deque(numeric, maxlen=SAMPLE + 1)  # one more, as the first may be the end of a line
+        if len(sample) > SAMPLE:
+            break
+    return list(sample)[-SAMPLE:]
+
+
+def _dialect(sample: list[str], decimal: str | None, source: str) -> Dialect:
+    """Judge by lines of numbers."""
     joined = "\n".join(sample)
     for delimiter in "\t;":
         if delimiter in joined:
@@ -141,44 +152,82 @@ def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
     raise InputError(source, received, allowed, remedy)
 
 
-def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[str], Array]:
+def _table(content: str, dialect: Dialect, source: str) -> tuple[list[str], Array]:
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
-    header: list[str] = []
-    values, columns, characters = array("d"), 0, 0
-    empty = guards.MAX_POINTS  # cells at the end of each line
-    blanks = array("q")  # how many rows stand above each empty line
-    for number, text in enumerate(lines, 1):
-        comment = text.lstrip().startswith(COMMENT)
-        if not comment and dialect.is_blank(text, above=not columns):
-            blanks.append(len(values) // columns if columns else 0)
-            continue
-        row = None if comment else dialect.numbers(text)
+    table, number, decimal = _Table(dialect, source), 0, "," if dialect.decimal_comma else "."
+    for lines in blocks_of_lines(content):
+        even = even_rows(lines, dialect.delimiter, decimal)
+        if even is not None and even.shape[1] == (table.columns or even.shape[1]):
+            table.take(even)
+        else:
+            for place, text in enumerate(lines, number + 1):
+                table.take_line(place, text)
+        number += len(lines)
+    return table.header, table.finished()
+
+
+@dataclass
+class _Table:
+    """Rows of numbers, and lines above and among them, as they are read."""
+
+    dialect: Dialect
+    source: str
+    header: list[str] = field(default_factory=list)
+    characters: int = 0  # of the header
+    values: array[float] = field(default_factory=lambda: array("d"))
+    columns: int = 0
+    empty: int = guards.MAX_POINTS  # cells at the end of each line
+    blanks: array[int] = field(default_factory=lambda: array("q"))  # rows above each empty line
+
+    def take(self, rows: Array) -> None:
+        """Take rows of numbers alone."""
+        self.columns = rows.shape[1]
+        self.empty = 0
+        self.values.frombytes(rows.tobytes())
+        self._check_count()
+
+    def take_line(self, number: int, text: str) -> None:
+        """Take a line of any kind."""
+        columns, comment = self.columns, text.lstrip().startswith(COMMENT)
+        if not comment and self.dialect.is_blank(text, above=not columns):
+            self.blanks.append(self.rows)
+            return
+        row = None if comment else self.dialect.numbers(text)
         if row is None:
             if columns and not comment:
                 received, allowed = (
                     f"{text.strip()[:60]!r} in line {number}",
                     "numbers or marks of missing ones",
                 )
-                raise InputError(source, received, allowed, "Correct or remove the line.")
-            header.append(text)
-            characters += len(text)
+                raise InputError(self.source, received, allowed, "Correct or remove the line.")
+            self.header.append(text)
+            self.characters += len(text)
             received = f"more than {amount(MAX_HEADER)} of text that is no number"
-            require(characters <= MAX_HEADER, source, received, "heights as text", _CHECK)
-            continue
-        if not columns:
-            columns = len(row)
+            require(self.characters <= MAX_HEADER, self.source, received, "heights as text", _CHECK)
+            return
+        self.columns = columns = columns or len(row)
         if len(row) != columns:
-            received = f"{len(row)} values in row {len(values) // columns + 1}"
-            allowed = f"{columns}, as in the first row"
-            raise InputError(source, received, allowed, "Mark missing heights with NaN.")
-        empty = min(empty, dialect.empty_at_the_end(text))
-        values.extend(row)
-        if len(values) > guards.MAX_POINTS:
-            guards.check_claim(source, (len(values) // columns, columns), 1, len(values))
-    require(columns, source, "no line of numbers", "heights as text", _CHECK)
-    table = np.frombuffer(values).reshape(-1, columns)
-    table = table[:, : max(columns - empty, 1)]
-    return header, table if table.shape[1] > 1 else _with_gaps(table, blanks)
+            received, allowed = f"{len(row)} values in row {self.rows + 1}", f"{columns}, as in the first row"
+            raise InputError(self.source, received, allowed, "Mark missing heights with NaN.")
+        self.empty = min(self.empty, self.dialect.empty_at_the_end(text))
+        self.values.extend(row)
+        self._check_count()
+
+    @property
+    def rows(self) -> int:
+        """How many there are."""
+        return len(self.values) // self.columns if self.columns else 0
+
+    def _check_count(self) -> None:
+        if len(self.values) > guards.MAX_POINTS:
+            guards.check_claim(self.source, (self.rows, self.columns), 1, len(self.values))
+
+    def finished(self) -> Array:
+        """The numbers (rows, columns)."""
+        require(self.columns, self.source, "no line of numbers", "heights as text", _CHECK)
+        table = np.frombuffer(self.values).reshape(-1, self.columns)
+        table = table[:, : max(self.columns - self.empty, 1)]
+        return _with_gaps(table, self.blanks) if table.shape[1] == 1 and self.blanks else table
 
 
 def _with_gaps(table: Array, blanks: array[int]) -> Array:
