@@ -10,6 +10,8 @@ from asperity.case.cases import parse_case
 from asperity.case.tables import read_dynamic_stiffness
 from asperity.errors import CaseError, UnconvergedWarning
 from asperity.scenes.noise import sleeper_top
+from asperity.structures import support
+from asperity.structures.support import StiffnessTable
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pad_stiffness.csv"
 PARTS = "frequency (Hz), real part (MN/m), imaginary part (MN/m)\n10, 90, 9\n300, 120, 18\n2000, 160, 40\n"
@@ -42,6 +44,19 @@ def test_parts_and_loss_factors_are_read(tmp_path):
     np.testing.assert_allclose(np.abs(rows[:, 1] + 1j * rows[:, 2]), [150.75e6] * 3 + [301.5e6] * 3)
     np.testing.assert_allclose(rows[:, 2] / rows[:, 1], 0.1)
     assert set(rows[:, 3]) == {20e3, 60e3}
+
+
+def test_a_table_of_many_preloads_takes_time_with_their_number(monkeypatch):
+    """Each of them is looked at once, and to find one between them two are."""
+    made = []
+    monkeypatch.setattr(
+        support, "StiffnessTable", lambda *parts: made.append(parts) or StiffnessTable(*parts)
+    )
+    rows = np.array([(f, 1e8 + 1e5 * p, 1e7, 1e3 * p) for p in range(1, 401) for f in (10.0, 100.0, 1e3)])
+    read_dynamic_stiffness(rows[::-1])
+    assert len(made) == 400
+    assert support.stiffness_at_preload(rows, 20.5e3).real[0] == pytest.approx(1e8 + 20.5e5)
+    assert len(made) == 403
 
 
 def test_the_wheel_decides_the_preload(tmp_path):

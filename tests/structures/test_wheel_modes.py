@@ -211,6 +211,10 @@ test_outlines_that_are_none_are_refused = refusals(
     (np.random.default_rng(1).uniform(0.1, 0.2, (3000, 2)), "3000 different points"),
     (np.array(SQUARE) + np.array([0.0, 0.1]), "axial places of 50 mm to 150 mm"),
     ([[0.1, -0.1], [0.46, 0.1], [0.46, 0.10002], [0.1, -0.09998]], "a mean thickness of 0.0175 mm"),
+    (
+        [[0.1, -1e-3], [0.46, -1e-3], [0.46, 0.0], [0.46, 1e-3], [0.1, 1e-3]],
+        r"6725 triangles of 0.497 mm, for a mean thickness of 1.99 mm; allowed: at most 5000, .* unit right",
+    ),
     ([[0.1, 0.0], [0.2, -0.05], [0.2, 0.05]], "one point nearest to the axis"),
     of=lambda outline: wheel_modes(outline, STEEL, 1000.0),
 )

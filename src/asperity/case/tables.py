@@ -196,8 +196,7 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
         real = rows[:, 1] / np.hypot(1.0, rows[:, 2])
         rows = np.column_stack([rows[:, 0], real, real * rows[:, 2], rows[:, 3:]])
     try:
-        for preload in support.preloads_of(rows):
-            support.stiffness_at_preload(rows, preload)
+        support.check_stiffness_tables(rows)
     except InputError as error:
         raise error.about(name_of(table), f"{error.received} ({error.what})") from None
     return rows

@@ -18,6 +18,8 @@ BLUNT = 0.01
 """By which part of that size an outline may be straightened."""
 MOST_CELLS = 2e7
 """Most triangles that fit beside the section, times pieces around it: real wheels have some 10⁵."""
+MOST_TRIANGLES = 5000
+"""Most triangles of a section: wheels have some 600, and each mode takes time like their number."""
 MOST_SPLITS = 12
 """Times that edges of an outline are halved until triangles meet them."""
 LARGEST_WHEEL = 0.7
@@ -153,6 +155,10 @@ def mesh_of(outline: Array, size: float | None = None, kept: ArrayLike = ()) -> 
     if width * height * _doubled_area(outline) / thick > MOST_CELLS * step**3:
         received = f"a mean thickness of {thick * 1e3:.3g} mm on {max(width, height) * 1e3:.3g} mm"
         raise InputError("outline of the section", received, "a section that is not so thin or jagged")
+    count = round(_doubled_area(outline) / (0.5 * np.sqrt(3.0) * step**2))
+    received = f"{count} triangles of {step * 1e3:.3g} mm, for a mean thickness of {thick * 1e3:.3g} mm"
+    allowed = f"at most {MOST_TRIANGLES}, some more than a disc of 3 mm has"
+    require(count <= MOST_TRIANGLES, "outline of the section", received, allowed, "Is the unit right?")
     around = _divided(_straightened(outline, BLUNT * step, np.atleast_1d(np.asarray(kept, dtype=int))), step)
     inner = _lattice(around, step)
     for _ in range(MOST_SPLITS):

@@ -124,13 +124,24 @@ def stiffness_at_preload(rows: Array, preload: float) -> StiffnessTable:
     An `InputError` says what is wrong with the table.
     """
     preloads = preloads_of(rows)
-    tables = [_table(rows if rows.shape[1] < 4 else rows[rows[:, 3] == each]) for each in preloads]
     place = np.interp(preload, preloads, np.arange(len(preloads)))
-    below, above = tables[int(place)], tables[min(int(place) + 1, len(tables) - 1)]
+    beside = preloads[int(place) : int(place) + 2]
+    tables = [_table(rows if rows.shape[1] < 4 else rows[rows[:, 3] == each]) for each in beside]
+    below, above = tables[0], tables[-1]
     at = np.union1d(below.frequencies, above.frequencies)
     low, high = (each.at(2.0 * np.pi * at) * each.nominal for each in (below, above))
     mixed = low + (place - int(place)) * (high - low)
     return StiffnessTable(*(tuple(part.tolist()) for part in (at, mixed.real, mixed.imag)))
+
+
+def check_stiffness_tables(rows: Array) -> None:
+    """Refuse a table, see `stiffness_at_preload`, that is none of a stiffness at one of its preloads."""
+    if rows.shape[1] < 4:
+        _table(rows)
+        return
+    sorted_rows = rows[np.argsort(rows[:, 3], kind="stable")]
+    for each in np.split(sorted_rows, np.flatnonzero(np.diff(sorted_rows[:, 3])) + 1):
+        _table(each)
 
 
 def preloads_of(rows: Array) -> Array:
