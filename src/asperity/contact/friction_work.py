@@ -11,6 +11,7 @@ In steady rolling E is E'. In a shift a cell slips under its bound alone, whatev
 W = ∫ µ p |s|, with the mean of its pressures.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -30,14 +31,16 @@ def with_work(
     displacement: Displacement,
     coupled: bool,
 ) -> SlidingContact:
-    """A solution with its work and elastic energy, rolled by a distance, m, or shifted if that is zero.
+    """A solution with its work, rolled by a distance, m, or shifted if that is zero, and its elastic energy.
 
+    The latter is found where it is not known yet (NaN).
     Where pressure and traction act on each other, `coupled`, what the pressure displaces counts as well.
     """
-    nothing = np.zeros(found.normal.pressure.shape)
-    traction = found.traction[0] + 1j * found.traction[1]
-    moved = displacement(traction, nothing, 0.0)
-    stored = 0.5 * float((traction.conj() * moved).real.sum()) * found.normal.half_space.cell_area
+    stored = found.elastic_energy
+    if math.isnan(stored):
+        traction = found.traction[0] + 1j * found.traction[1]
+        moved = displacement(traction, np.zeros(found.normal.pressure.shape), 0.0)
+        stored = 0.5 * float((traction.conj() * moved).real.sum()) * found.normal.half_space.cell_area
     if distance == 0.0:
         return replace(found, work=_shifted(found, before, displacement), elastic_energy=stored)
     past = before or found
@@ -52,7 +55,7 @@ def with_work(
 def driven(state: SlidingContact, creepage: tuple[float, float, float]) -> float:
     """What drives creepages and spin against the friction of a state, over the rolled distance, J/m."""
     (along, across), (xi, eta, spin) = state.force, creepage
-    return -(along * xi + across * eta + state.moment * spin)
+    return -(along * xi + across * eta + (state.moment * spin if spin else 0.0))
 
 
 def _pressed(

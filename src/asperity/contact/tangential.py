@@ -436,9 +436,15 @@ class FrictionalHalfSpace:
         p, s = _cells(box.traction, box), _cells(box.slip, box) / manner.step
         fields[:, *inside] = p.real, p.imag, s.real, s.imag, _cells(box.normal, box) == 0.0
         sticks = (fields[4] > 0.0) & (bound > 0.0)
+        stored = (
+            math.nan
+        )  # in steady rolling what tractions displace here less that ahead tells nothing of it
+        if not steady:
+            displaced = box.traction.conj() * (box.slip - box.rigid)
+            stored = 0.5 * float(displaced.real.sum()) * self.half_space.cell_area
         return SlidingContact(
             normal, fields[:2], fields[2:4] * contact, sticks, bound, (xi, eta, spin), manner.speed,
-            math.nan, math.nan, iterations, convolutions, worst, outcome,
+            math.nan, stored, iterations, convolutions, worst, outcome,
         )  # fmt: skip
 
 
