@@ -1,6 +1,7 @@
 """Tables that a case names: read in SI as text or array, or refused with what is wrong and where."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from case_texts import refusal_of_table
 
 from asperity import WheelOnRail
 from asperity.case import measured, tables
-from asperity.errors import CaseError
+from asperity.errors import CaseError, InputError
 from refusals import refusals
 
 LEVELS = "wavelength (m), level (dB)\n"
@@ -95,7 +96,28 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("levels", "100, 3\n80, 2", f"no heading; allowed: {ASKED}"),
         ("levels", "wavelength, level (dB)\n100, 3", f"heading 'wavelength, level (dB)'; allowed: {ASKED}"),
         ("levels", "level [dB], wavelength [mm]\n3, 100", "'level [dB]' for the wavelength; allowed: colu"),
-        ("levels", "wavelength (m), level (dB re 1 nm)\n0.1, 3", "the heading 'level (dB re 1 nm)'"),
+        (
+            "levels",
+            "wavelength (m), level (dB re 1 um/s)\n0.1, 3",
+            "the heading 'level (dB re 1 um/s)'; allowed: a level in dB re 1 um, or re another number of m",
+        ),
+        ("levels", "Wellenlänge (m), Pegel (dB re 20 µPa)\n0.1, 3", "allowed: a level in dB re 1 um, or re"),
+        (
+            "levels",
+            "wavelength (m), left (dB), right (dB), mean (dB)\n0.1, 3, 3, 3",
+            "the heading 'mean (dB)' beside other columns of levels; allowed: levels of lines beside each",
+        ),
+        (
+            "levels",
+            "rail,date,10 cm,8 cm,6.3 cm,5 cm\nleft,1 May,3,2,1,0\n",
+            "4 wavelengths beside each other in line 1, one measurement in a row; allowed: one line for each "
+            "wavelength, with the columns wavelength (m), level (dB). Turn the table: write the line "
+            "'wavelength (m), level (dB)' and lines below it as '10, …'",
+        ),
+        ("levels", "100 mm;80 mm;63 mm;50 mm\n3;2;1;0\n", "4 wavelengths beside each other in line 1"),
+        ("levels", "n;100 mm;80 mm;63 mm;50 mm\n1;3;2;1;0\n", "4 wavelengths beside each other in line 1"),
+        ("rates", "place,100 Hz,125 Hz,160 Hz,200 Hz\nB1,3,4,5,6\n", "4 frequencies beside each other in"),
+        ("rates", "f (Hz); 100; 125; 160\nTDR (dB/m); 3; 4; 5\n", "one measurement in a row; allowed: one"),
         ("levels", "# nothing", "no line of numbers"),
         ("levels", "100 mm, 3\n80 mm, 2", "'100 mm, 3' in line 1"),
         ("modes", MODES + "0, 0.1, 300", "a frequency of 0; allowed: greater than 0 Hz"),
@@ -117,7 +139,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("rates", RATES + "100, 400\n125, 500\n160, 4", "a decay rate of 400 dB/m; allowed: 0.01"),
         ("rates", RATES + "100, 4\n125, 5\n126, 4", "twice the band of 126 Hz; allowed: centres"),
         ("rates", RATES + "100, 4\n110, 5\n120, 4", "a frequency of 110 Hz; allowed: centres of"),
-        ("rates", "f (Hz), rate (dB/km)\n100, 4\n", "the heading 'rate (dB/km)'; allowed: vertical decay"),
+        ("rates", "f (Hz), rate (dB/kg)\n100, 4\n", "the heading 'rate (dB/kg)'; allowed: vertical decay"),
         ("rates", "f (Hz), rate\n100, 4\n", "the heading 'f (Hz), rate'; allowed: a heading with the units"),
         ("rates", "f (Hz), lateral (dB/m), vertical (dB/m)\n100, 1, 4\n", "'lateral (dB/m)' for the vert"),
         ("mobility", MOBILITY + "100, 1e-5\n200, 1e-5\n", "2 frequencies; allowed: at least 3"),
@@ -136,6 +158,12 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("pad", PAD + "10, 90, 9\n10, 1, 1", "numbers that do not rise"),
         ("pad", PAD + "10, 90, 9", "1 frequencies"),
         ("pad", PAD.replace("(MN/m)", "(m/N)") + "10, 90, 9", "real part in N/m"),
+        (
+            "pad",
+            PAD.replace("MN/m", "N/m") + "10, 180, 9\n300, 190, 9",
+            "a stiffness of 180.225 N/m; allowed: 1",
+        ),
+        ("pad", BY_LOSS + "1; 90; 0.1; 9e5\n8; 90; 0.1; 9e5", "a preload of 900 MN; allowed: 1 N to 10 MN."),
         ("pad", PAD + "10, 90", "'10, 90' in line 2"),
         ("pad", "frequency (Hz), loss factor\n1, 1", "magnitude"),
         ("bands", "f (Hz), L (dB)\n100, 60\n200, 70\n201, 60", "twice the band of 201 Hz"),
@@ -147,6 +175,74 @@ def test_tables_that_are_wrong(name, text, message, source):
     told, of_case = refusal_of_table(*READ[name], source.parent / f"{name}.csv", text)
     assert message in told
     assert message.partition(";")[0] in of_case
+
+
+@pytest.mark.parametrize("title", [
+    "Limit ISO 3095 [dB re 1 um]", "limit (dB)", "EN ISO 3095 [dB]", "Grenzkurve [dB]", "TSI [dB re 1 µm]",
+    "Valeur limite [dB]", "Target [dB]",
+])  # fmt: skip
+@pytest.mark.parametrize("first", [True, False])
+def test_a_limit_beside_the_levels_is_none_of_them(title, first, tmp_path):
+    cells = [[at, *((17, level) if first else (level, 17))] for at, level in ((10, 3), (8, 2))]
+    titles = [title, "Level [dB re 1 um]"] if first else ["Level [dB re 1 um]", title]
+    lines = [";".join(map(str, row)) for row in (["Wavelength [cm]", *titles], *cells)]
+    for text in ("\n".join(lines), "# " + "\n".join(lines), "Site;A;B\n" + "\n".join(lines)):
+        (tmp_path / "levels.csv").write_text(text, encoding="utf-8")
+        np.testing.assert_allclose(tables.read_levels(tmp_path / "levels.csv")[1], [3, 2])
+
+
+def test_a_limit_is_none_of_the_lateral_decay_rates(tmp_path):
+    (tmp_path / "a.csv").write_text(
+        "f (Hz), rate (dB/m), limit TSI (dB/m)\n100, 4, 8\n125, 5, 8\n160, 6, 8\n"
+    )
+    _, vertical, lateral = measured.read_decay_rates(tmp_path / "a.csv")
+    assert (vertical.tolist(), lateral) == ([4, 5, 6], None)
+
+
+def test_levels_by_the_standard_in_each_title_are_levels(tmp_path):
+    text = "wavelength (m), left ISO 3095 (dB), right ISO 3095 (dB)\n0.1, 3, 3\n0.08, 2, 2\n"
+    (tmp_path / "a.csv").write_text(text)
+    np.testing.assert_allclose(tables.read_levels(tmp_path / "a.csv")[1], [3, 2])
+
+
+@pytest.mark.parametrize(("reference", "more"), [
+    ("re 1 nm", -60), ("re 1nm", -60), ("rel. 1 m", 120), ("re 1e-6 m", 0), ("ref. 1 µm", 0),
+    ("re: 1 mm", 60), ("re 1 micron", 0), ("re nm", -60),
+])  # fmt: skip
+def test_levels_have_whatever_reference(reference, more, tmp_path):
+    """20 lg of the ratio of both references."""
+    text = f"wavelength (m), level (dB {reference})\n0.1, {3 - more}\n0.08, {2 - more}\n"
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    np.testing.assert_allclose(tables.read_levels(tmp_path / "a.csv")[1], [3, 2], atol=1e-9)
+
+
+def test_levels_of_sound_have_whatever_reference(tmp_path):
+    text = "f (Hz), L (dB(A) re 1 Pa)\n1000, -20\n1250, -20\n1600, -20\n"
+    (tmp_path / "a.csv").write_text(text)
+    expected = -20 + 20 * math.log10(1 / 20e-6)
+    assert measured.read_band_levels(tmp_path / "a.csv")[1][0] == pytest.approx(
+        expected, abs=1e-3
+    )  # weighted by 0 dB
+
+
+@pytest.mark.parametrize(
+    ("unit", "scale"), [("dB/km", 1000), ("dB/cm", 0.01), ("dB/m", 1), ("dB / km", 1000)]
+)
+def test_decay_rates_per_any_length(unit, scale, tmp_path):
+    rows = "".join(f"{f}, {rate * scale:g}\n" for f, rate in ((100, 4), (125, 5), (160, 6)))
+    (tmp_path / "a.csv").write_text(f"f (Hz), rate ({unit})\n{rows}")
+    np.testing.assert_allclose(measured.read_decay_rates(tmp_path / "a.csv")[1], [4, 5, 6])
+
+
+@pytest.mark.parametrize(("row", "message"), [
+    ("0.6, 180, 1e8", "a pad stiffness of 180 N/m; allowed: 1 kN/m to 1 TN/m. Pads lie between. Is the unit"),
+    ("600, 3e8, 1e8", "a spacing of 600 m; allowed: 0.1 m to 10 m"),
+    ("0.6, 3e8, 1e-3", "a ballast stiffness of 0.001 N/m; allowed: 1 kN/m to 1 TN/m"),
+])  # fmt: skip
+def test_what_is_refused_as_a_key_is_refused_in_a_table(row, message, tmp_path):
+    (tmp_path / "bays.csv").write_text(f"d (m), pad (N/m), ballast (N/m)\n{row}\n")
+    with pytest.raises(InputError, match=re.escape(message)):
+        tables.read_bays(tmp_path / "bays.csv")
 
 
 def bytes_of_levels(content, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import jv, jvp, yv, yvp
 
+from asperity.case.tables import read_outline
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS
 from asperity.reference.railways import SECTIONS
@@ -247,6 +248,26 @@ def test_the_tread_is_that_beside_the_flange(modes):
     for place in (-0.07, 0.066, np.nan):
         with pytest.raises(InputError, match="the tread"):
             modes.at(place)
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254)])
+def test_an_outline_gives_the_same_modes_in_whatever_unit(unit, metres, tmp_path):
+    """A chamfer ends as far below the running circle as the tread goes, or a rounding error further."""
+    outline = np.round(WheelSection.named("straight-web").outline(0.46), 4)
+    corner = int(np.argmax(outline[:, 1] + outline[:, 0]))
+    chamfer = [[0.45, outline[corner, 1]], [0.457, outline[corner, 1] - 0.007]]
+    drawn = np.insert(np.delete(outline, corner, axis=0), corner, chamfer, axis=0)
+    lines = "".join(f"{r / metres:.12g}, {z / metres:.12g}\n" for r, z in drawn)
+    (tmp_path / "a.csv").write_text(f"radius ({unit}), axial place ({unit})\n{lines}")
+    np.testing.assert_array_equal(read_outline(tmp_path / "a.csv"), drawn)
+    expected = wheel_modes(drawn, STEEL, 500.0, size=0.02)
+    assert expected.places[-1] == pytest.approx(outline[corner, 1])
+    moved = np.array(drawn)
+    moved[corner, 0] += -1e-12 if unit == "m" else 1e-12
+    for other in (drawn / metres * metres, moved):
+        found = wheel_modes(other, STEEL, 500.0, size=0.02)
+        for name in ("natural_frequencies", "disc", "tread", "places"):
+            np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-6, atol=1e-9)
 
 
 def test_modes_that_do_not_answer_in_the_middle_answer_beside_it():

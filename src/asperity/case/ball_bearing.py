@@ -19,7 +19,8 @@ from asperity.case.body import DAMPING
 from asperity.case.form import Numbers, Section, name_of, section
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
 from asperity.case.surface import INDEX
-from asperity.case.tables import Column, TableFile, TableSource, read_table
+from asperity.case.table_headings import Column
+from asperity.case.tables import TableFile, TableSource, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import Choice, File, Flag, ListOf, Number, Origin, Quantity, key, keys_of, optional
 from asperity.structures.ball_bearing import BEARINGS, PARTS, BallBearing, Kinematics

@@ -6,7 +6,8 @@ import numpy as np
 
 from asperity.arguments import Array, NDArray
 from asperity.case.form import name_of
-from asperity.case.tables import Column, TableSource, read_table, refuse_disorder
+from asperity.case.table_headings import Column
+from asperity.case.tables import TableSource, read_table, refuse_disorder
 from asperity.errors import InputError
 from asperity.spectra import a_weighting
 
@@ -23,6 +24,8 @@ MOST_GAINS = 0.1
 """Share of the lines at which noise may turn the power round that a hammer gives to a rail."""
 
 SOUND = ("dB", "dB(A)")
+PRESSURE = "20 uPa"
+"""Reference of levels of sound."""
 SOUND_LEVELS = (-20.0, 180.0)
 """dB re 20 µPa."""
 
@@ -113,7 +116,7 @@ def _in_some_unit(
     """
     errors, tried = [], list(units)
     for unit in tried:
-        second, *others = (Column(name, unit) for name in names)
+        second, *others = (Column(name, unit, PRESSURE if unit in SOUND else "") for name in names)
         try:
             return read_table(table, (first, second), tuple(others)), unit
         except InputError as error:

@@ -155,14 +155,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "(N/m) and loss factor, and the preload (N) if at several; approximated in time; with pad_stiffness "
         "it is scaled to have that as its real part at 300 Hz",
     )
-    pad_preload: float | None = optional(
-        Quantity("N", above=0),
-        "30 kN",
-        "preload of the pads at which such a table is taken",
-        "what a support carries of the wheel's static load",
-        "1 N to 10 MN: rails press on pads with as much",
-        goes_with="pad_table",
-    )
+    pad_preload: float | None = tables.PRELOAD_KEY
     sleeper_table: Path | Array | None = optional(
         tables.TableFile(columns=(3,), read=tables.read_seat_receptance),
         "sleeper.csv",

@@ -1,7 +1,6 @@
 """Tables that a case names, as text with columns: what they hold, read in SI and checked."""
 
 import math
-import re
 from array import array
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -9,40 +8,45 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice, pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NoReturn
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray, shown
+from asperity.arguments import Array, NDArray
 from asperity.case.form import name_of
+from asperity.case.table_headings import (
+    MOST_HEADING,
+    Column,
+    are_words,
+    converted,
+    heading_of,
+    is_wide,
+    named,
+    refuse_statistics,
+    refuse_wide,
+    without_limits,
+)
 from asperity.errors import InputError
-from asperity.parameters import FROM_PYTHON, File, Origin, Problems
+from asperity.parameters import FROM_PYTHON, File, Key, Origin, Problems, Quantity, keys_of, optional, outside
 from asperity.spectra import energy_sum
 from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
-from asperity.units import factor, unit_in_brackets
+from asperity.units import unit_in_brackets
 
 LARGEST_TABLE = 32 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
 FEWEST_LINES = 10  # of a receptance
-MOST_HEADING = 50
-"""Lines of a file among which its heading is sought."""
 _BAND = 0.1  # of a decade
+DECIMALS = 9
+"""Of an outline, m."""
 
 TableSource = Path | Array
 """A file, or from Python the array that it would hold."""
 
 
-class Column(NamedTuple):
-    """A column of a table."""
-
-    name: str
-    dimension: str  # SI unit; "" for a pure number
-
-
 _FREQUENCY = Column("frequency", "Hz")
-LEVELS = (Column("wavelength", "m"), Column("level", "dB"))
+LEVELS = (Column("wavelength", "m"), Column("level", "dB", "1 um"))
 MODES = (_FREQUENCY, Column("damping ratio", ""), Column("modal mass", "kg"))
 RADIATION = (
     Column("nodal diameters", ""),
@@ -52,6 +56,17 @@ RADIATION = (
 """Further columns of modes: how they move the whole wheel, rms per radial velocity at the contact."""
 OUTLINE = (Column("radius", "m"), Column("axial place", "m"))
 BAYS = (Column("spacing", "m"), Column("pad stiffness", "N/m"), Column("ballast stiffness", "N/m"))
+_TRACK = keys_of(track_parameters.TrackParameters, "")
+_OF_BAYS = ("sleeper_spacing", "pad_stiffness", "ballast_stiffness")
+"""Keys whose plausible limits are those of the same columns."""
+PRELOAD_KEY = optional(
+    Quantity("N", above=0),
+    "30 kN",
+    "preload of the pads at which such a table is taken",
+    "what a support carries of the wheel's static load",
+    "1 N to 10 MN: rails press on pads with as much",
+    goes_with="pad_table",
+)
 RATIOS = (_FREQUENCY, Column("radiation ratio", ""))
 STIFFNESS = (_FREQUENCY, Column("real part", "N/m"), Column("imaginary part", "N/m"))
 STIFFNESS_AND_LOSS = (_FREQUENCY, Column("magnitude", "N/m"), Column("loss factor", ""))
@@ -149,9 +164,17 @@ def refuse_where(
 
 def read_outline(table: TableSource) -> Array:
     """Read the outline of a wheel's section (n, 2), radius and axial place, m, and check it."""
-    outline = read_table(table, OUTLINE)
+    outline = np.round(read_table(table, OUTLINE), DECIMALS)  # in whatever unit, the same numbers
     checked_outline(outline, f"outline in {name_of(table)}")
     return outline
+
+
+def _refuse_implausible(table: TableSource, what: str, values: Array, key: Key) -> None:
+    """Refuse numbers of a table where the same number as a key of a case is refused."""
+    for value in (values.min(), values.max()):
+        for error in outside(what, float(value), key.kind, key.within):
+            received = f"a {what} of {error.received}"
+            raise InputError(name_of(table), received, error.allowed, f"{error.remedy} Is the unit right?")
 
 
 def read_ratios(table: TableSource) -> tuple[Array, Array]:
@@ -195,6 +218,9 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
     if by_loss:
         real = rows[:, 1] / np.hypot(1.0, rows[:, 2])
         rows = np.column_stack([rows[:, 0], real, real * rows[:, 2], rows[:, 3:]])
+    _refuse_implausible(table, "stiffness", np.hypot(rows[:, 1], rows[:, 2]), _TRACK["pad_stiffness"])
+    if rows.shape[1] > 3:
+        _refuse_implausible(table, "preload", rows[:, 3], PRELOAD_KEY)
     try:
         support.check_stiffness_tables(rows)
     except InputError as error:
@@ -212,13 +238,14 @@ def read_bays(table: TableSource) -> Array:
             f"at most {track_parameters.MOST_BAYS}",
             "They repeat by themselves.",
         )
-    for column, values in zip(BAYS, rows.T, strict=True):
+    for column, name, values in zip(BAYS, _OF_BAYS, rows.T, strict=True):
         if (wrong := values <= 0.0).any():
             received = (
                 f"a {column.name} of {values[wrong][0]:g} {column.dimension} in bay {wrong.argmax() + 1}"
             )
             remedy = "Give a sleeper that hangs very soft ballast, as 1 kN/m." if column is BAYS[2] else ""
             raise InputError(name_of(table), received, "greater than 0", remedy)
+        _refuse_implausible(table, column.name, values, _TRACK[name])
     return rows
 
 
@@ -250,9 +277,9 @@ def read_table(
     line that does not hold one finite number for each column. Other lines of words may stand above the
     heading. With `repeated` the last column may come several times.
     """
-    allowed = f"a table with the columns {_named(columns)}"
+    allowed = f"a table with the columns {named(columns)}"
     if further:
-        allowed += f", or with these and {_named(further)}"
+        allowed += f", or with these and {named(further)}"
     if isinstance(table, np.ndarray):
         if not len(table) or not np.isfinite(table).all():
             raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
@@ -260,30 +287,49 @@ def read_table(
     content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, latin=True)
     words: deque[list[str]] = deque(maxlen=2)
     heading: list[str] = []
+    kept: list[int] = []
     found = array("d")
     for number, cells in lines_of_cells(content):
         if not found and are_words(cells):
             words.append(cells)
             continue
         if not found:
-            if len(cells) == len(columns) + len(further):
+            above = _comment_above(content, number)
+            kept = without_limits([*words, above], len(cells), len(columns))
+            count = len(kept)
+            if count == len(columns) + len(further):
                 columns += further
-            elif repeated and len(cells) > len(columns):
-                columns += columns[-1:] * (len(cells) - len(columns))
-            dimensions = [column.dimension for column in columns]
-            heading = heading_of(words, dimensions) or _comment_above(content, number)
-        values = [_number(cell) for cell in cells]
-        short = not heading and words and len(cells) < len(words[-1])  # than what may be its heading
-        if short or len(cells) != len(columns) or not all(map(math.isfinite, values)):
-            raise InputError(name_of(table), f"'{', '.join(cells)[:40]}' in line {number}", allowed)
+            elif repeated and count > len(columns):
+                columns += columns[-1:] * (count - len(columns))
+            titles = [_of(row, kept, len(cells)) for row in words]
+            heading = heading_of(titles, [each.dimension for each in columns]) or _of(above, kept, len(cells))
+            short = not heading and words and len(cells) < len(words[-1])  # than what may be its heading
+            if short or count != len(columns) or any(is_wide(row, columns[0]) for row in words):
+                _refuse_line(table, content, cells, number, columns, allowed)
+            if repeated:
+                refuse_statistics(heading, table.name)
+            width = len(cells)
+        values = [_number(cell) for cell in _of(cells, kept, width)]
+        if len(cells) != width or not all(map(math.isfinite, values)):
+            _refuse_line(table, content, cells, number, columns, allowed)
         found.extend(values)
     if not found:
+        refuse_wide(content, columns, table.name)
         raise InputError(name_of(table), "no line of numbers", allowed)
-    return np.array(found).reshape(-1, len(columns)) * _scales(heading, columns, table)
+    return converted(np.array(found).reshape(-1, len(columns)), heading, columns, table.name)
 
 
-def _named(columns: tuple[Column, ...]) -> str:
-    return ", ".join(f"{column.name} ({column.dimension or '1'})" for column in columns)
+def _of(cells: list[str], kept: list[int], count: int) -> list[str]:
+    """Cells of the columns that are kept, of a line that has as many as all columns."""
+    return [cells[each] for each in kept] if len(cells) == count else cells
+
+
+def _refuse_line(
+    table: Path, content: str, cells: list[str], number: int, columns: Sequence[Column], allowed: str
+) -> NoReturn:
+    """Refuse a line that does not fit, or the table whose lines do not because it lies on its side."""
+    refuse_wide(content, columns, table.name)
+    raise InputError(name_of(table), f"'{', '.join(cells)[:40]}' in line {number}", allowed)
 
 
 def _number(cell: str) -> float:
@@ -298,100 +344,3 @@ def _comment_above(content: str, number: int) -> list[str]:
     above = "".join(islice(lines_in(content), max(number - 2, 0), number - 1)).strip()
     text = above.lstrip("#") if above.startswith("#") else ""
     return next((cells for _, cells in lines_of_cells(text)), [])
-
-
-def _scales(heading: list[str], columns: tuple[Column, ...], path: Path) -> list[float]:
-    """SI values of the units that a heading names in brackets, for each column."""
-    units = map(unit_of, heading, (column.dimension for column in columns))
-    fit = len(heading) == len(columns)
-    if not fit or any(not unit and column.dimension for unit, column in zip(units, columns, strict=True)):
-        received = f"the heading {shown(', '.join(heading))}" if fit else "no heading"
-        example = f"'{', '.join(c.name + f' ({c.dimension})' * bool(c.dimension) for c in columns)}'"
-        remedy = f"Add the line {example} above the numbers, with the units that they are in."
-        raise InputError(path.name, received, "a heading with the units in brackets", remedy)
-    for cell, column in zip(heading, columns, strict=True):
-        for other in columns:
-            if _words(cell) & (_words(other.name) - _words(column.name)) and not (
-                _words(cell) & (_words(column.name) - _words(other.name))
-            ):
-                received = f"the heading {shown(cell)} for the {column.name}"
-                allowed = f"columns in the order {_named(columns)}"
-                raise InputError(path.name, received, allowed, "Exchange the columns.")
-    return [_scale(cell, column, path) for cell, column in zip(heading, columns, strict=True)]
-
-
-def _words(text: str) -> set[str]:
-    return set(re.findall(r"[a-z]+", text.lower()))
-
-
-def _scale(heading: str, column: Column, path: Path) -> float:
-    """SI value of the unit that a heading names in brackets; 1 for a pure number."""
-    unit = unit_of(heading, column.dimension)
-    if not column.dimension and unit in ("", "-", "1"):
-        return 1.0
-    try:
-        return factor(unit, column.dimension)
-    except InputError as error:
-        allowed = f"{column.name} in {column.dimension or 'no unit'}"
-        raise InputError(path.name, f"the heading {shown(heading)}", allowed, error.remedy) from None
-
-
-# --- headings
-
-
-_REFERENCE = re.compile(r" ?re[fl]?\.? ?(1 ?([uµμ]m|micron)|1e-6 ?m|20 ?[uµμ]Pa)$")
-_AFTER = re.compile(r"(?:.* in |[^/]*/)\s*(\S.*)")
-"""``level in dB``, ``wavelength / cm``."""
-_WITH_UNIT = re.compile(r"[^()\[\]]+[(\[][^()\[\]]*[)\]]")
-_NUMBER = re.compile(r"[-+.]?\d|nan|[-+]?inf", re.IGNORECASE)
-
-
-def are_words(cells: Sequence[str]) -> bool:
-    """Whether cells begin a line of words: neither with a number nor with what stands for one."""
-    return not _NUMBER.match(cells[0])
-
-
-def heading_of(lines: Sequence[list[str]], dimensions: Sequence[str]) -> list[str]:
-    """Title of each column, with its unit, from the lines of words above a table; none without such a line.
-
-    The last with a title for each column of a dimension, in SI. Units in a line of their own are those of the
-    titles above them.
-    """
-    fitting = [_titles(cells, len(dimensions)) for cells in lines]
-    fitting = [cells for cells in fitting if len(cells) == len(dimensions)]
-    if not fitting:
-        return []
-    *above, last = fitting
-    if any(unit_of(*each) for each in zip(last, dimensions, strict=True)):
-        bare = all(cell[:1] in "([" for cell in last)
-        if bare and above:
-            return [f"{title} {unit}" for title, unit in zip(above[-1], last, strict=True)]
-        return last
-    if above and all(map(_is_unit, last, dimensions)):
-        return [f"{title} ({unit})" for title, unit in zip(above[-1], last, strict=True)]
-    return last
-
-
-def unit_of(title: str, dimension: str) -> str:
-    """Unit that a title names, in brackets, or of a dimension also behind "in" or a stroke; empty without."""
-    found = unit_in_brackets(title)
-    if not found and dimension and (behind := _AFTER.fullmatch(title)):
-        found = " ".join(behind[1].split())
-    if dimension.startswith("dB"):
-        found = re.sub(r"^dB ?A$", "dB(A)", _REFERENCE.sub("", found))
-    return found
-
-
-def _titles(cells: list[str], count: int) -> list[str]:
-    """Cells, or titles that each end with a bracket, where blanks stand between them."""
-    if len(cells) != count:
-        found = [each.strip() for each in _WITH_UNIT.findall(" ".join(cells))]
-        return found if len(found) == count else cells
-    return cells
-
-
-def _is_unit(text: str, dimension: str) -> bool:
-    try:
-        return not dimension or factor(unit_of(f"({text})", dimension), dimension) > 0.0
-    except InputError:
-        return False

@@ -121,7 +121,7 @@ HEADING = (
     "radial velocity of the tread",
 )
 """Of a table of modes in a file."""
-FORMAT = 1
+FORMAT = 2
 """Of modes that are kept: raise it where their computation changes."""
 BEYOND = 1.25
 """Modes are sought up to this multiple of the highest frequency of the spectra."""
@@ -132,6 +132,8 @@ DAMPING = (1e-3, 1e-2, 1e-4)
 MOST_DIAMETERS = 40
 TREAD_DEPTH = 0.010
 """By which the radius of the tread may differ from that at the running circle, m: not the flange."""
+ROUNDED = 1e-6
+"""Depth, m, by which a point at the edge of the tread may be off as its place is rounded."""
 HIGHEST_FLANGE = 0.060
 """By which a flange stands out of the tread at most, m: they have 25 mm to 40 mm."""
 SEAT = 1e-3
@@ -354,7 +356,7 @@ def with_running_circle(outline: Array) -> tuple[Array, int]:
         both = inside > largest + TREAD_DEPTH
         require(z[top] < 0.0 or both, "outline of the section", received, allowed, "Change their sign.")
     for number in (edge, (edge + 1) % len(outline)):
-        if abs(outline[number, 1]) < 1e-6:
+        if abs(outline[number, 1]) < ROUNDED:
             return outline, number
     return np.insert(outline, edge + 1, (largest, 0.0), axis=0), edge + 1
 
@@ -387,7 +389,7 @@ def _tread(mesh: Mesh, radius: float) -> tuple[NDArray[np.int64], NDArray[np.int
     """Nodes of the tread by rising axial place, and its edges."""
     r, z = mesh.nodes.T
     first, last = mesh.edges[:, 0], mesh.edges[:, 2]
-    outer = (z[last] > z[first]) & (np.abs(r[mesh.edges] - radius) <= TREAD_DEPTH).all(axis=1)
+    outer = (z[last] > z[first]) & (np.abs(r[mesh.edges] - radius) <= TREAD_DEPTH + ROUNDED).all(axis=1)
     start = int(np.argmin(np.hypot(r[first] - radius, z[first])))
     count = len(outer)
     kept = []

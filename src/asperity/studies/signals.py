@@ -20,7 +20,7 @@ from asperity import files
 from asperity.arguments import Array, ArrayLike, file_path, finite_array, one_of, positive, require, shown
 from asperity.case import any_case
 from asperity.case.ball_bearing import BallBearingCase
-from asperity.case.tables import heading_of
+from asperity.case.table_headings import heading_of
 from asperity.errors import InputError
 from asperity.results import save, variable
 from asperity.store import content_key

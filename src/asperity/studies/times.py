@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from asperity.arguments import Array, require
-from asperity.case.tables import unit_of
+from asperity.case.table_headings import unit_of
 from asperity.errors import InputError
 from asperity.surfaces.readers.positions import places
 from asperity.units import factor
