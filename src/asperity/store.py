@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import re
 import sys
 import tempfile
 import threading
@@ -20,13 +21,18 @@ import numpy as np
 
 from asperity.arguments import NDArray, no_file
 from asperity.errors import ComputationError, InputError
-from asperity.files import amount, atomic_write, claimed_file, is_sealed
+from asperity.files import amount, atomic_write, claimed_file, is_sealed, left_overs
 
 FORMAT = 2  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
 _HOLDING = threading.Lock()
 PATIENCE = 0.02  # how often is looked for what another process makes, s
 MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
+_FIRST = b"__key__.npy"
+"""First member of each archive, whose name stands within …"""
+_HEAD = 64
+"""… so many bytes."""
+_PART = re.compile(r"\.[\w-]+\.npz\.[0-9a-f]{8}\.part", re.ASCII)
 KERNELS = "ASPERITY_KERNELS"
 """Names the folder of compiled kernels; by default they lie in the cache."""
 
@@ -157,15 +163,32 @@ class Store:
         return claimed_file(self.path(key))
 
     def files(self) -> list[Path]:
-        """List the files of this store, sorted by name."""
+        """List the files that stores have written to the folder, not what others keep there, by name."""
         try:
-            return sorted(self.root.glob("*.npz")) if self.root.is_dir() else []
+            return sorted(filter(_is_kept, self.root.glob("*.npz"))) if self.root.is_dir() else []
         except OSError:  # a name that is too long
             return []
+
+    def left_overs(self) -> list[Path]:
+        """List what writing of such files left there, when it was interrupted."""
+        return [part for part in left_overs(self.root) if _PART.fullmatch(part.name) and _is_file(part)]
 
     def size(self) -> int:
         """Total size of the files, in bytes."""
         return sum(path.stat().st_size for path in self.files())
+
+
+def _is_kept(path: Path) -> bool:
+    """Whether a store has written a file: an archive that begins with its key."""
+    try:
+        with open(path, "rb") as file:
+            return _is_file(path) and _FIRST in file.read(_HEAD)
+    except OSError:
+        return False
+
+
+def _is_file(path: Path) -> bool:
+    return path.is_file() and not path.is_symlink()
 
 
 def made(

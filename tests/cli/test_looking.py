@@ -69,10 +69,15 @@ def test_what_is_kept_is_shown_and_cleared(own_folder, monkeypatch):
     cache, version = own_folder / "cache", own_folder / "kernels" / "0123456789abcdef"
     Store().put("scan-1", {"force": np.zeros(2**17)})
     version.mkdir(parents=True, mode=0o700)
-    (version / "kernel-0").write_bytes(bytes(2**20))
+    (version / f"asperity.kernels.box-{24 * '0'}").write_bytes(bytes(2**20))
     for left in (cache / ".scan-2.npz.01234567.part", version / ".kernel-1.01234567.part"):
         left.write_bytes(bytes(2**10))
     (cache / "notes.txt").write_text("of the user")
+    for own in (cache / "map.npz", version / "map.npz"):
+        np.savez(own, heights=np.eye(3))
+    (cache / ".map.npz.01234567.part").mkdir()
+    (cache / f"scan-{64 * '0'}.npz").symlink_to(cache / "map.npz")
+    mine = {path.name for path in cache.iterdir()} - {"scan-1.npz", ".scan-2.npz.01234567.part"}
     told = [
         f"{cache}: 1 results{{}}, 1 MiB",
         f"{own_folder / 'kernels'}: 1 compiled functions{{}}, 1 MiB",
@@ -81,5 +86,5 @@ def test_what_is_kept_is_shown_and_cleared(own_folder, monkeypatch):
     ]
     assert call("cache").stdout.splitlines() == [line.format("") for line in told]
     assert call("cache", "--clear").stdout.splitlines() == [line.format(" deleted") for line in told]
-    assert [path.name for path in cache.iterdir()] == ["notes.txt"]
-    assert list(version.iterdir()) == []
+    assert {path.name for path in cache.iterdir()} == mine
+    assert [path.name for path in version.iterdir()] == ["map.npz"]

@@ -131,6 +131,28 @@ def test_a_run_tells_what_became_of_it(tmp_path):
     assert told_of(folder)["name"] == folder.name
 
 
+def test_links_in_a_run_lead_nowhere(tmp_path):
+    """Whether a file or the folder of the sounds is one, and whatever is asked of the run."""
+    elsewhere, folder = tmp_path / "elsewhere", tmp_path / ("0" * 16)
+    elsewhere.mkdir()
+    folder.mkdir()
+    for name in ("own.wav", "run.nc", "case.toml", "run.json"):
+        (elsewhere / name).write_text('{"name": "secret"}')
+        (folder / name).symlink_to(elsewhere / name)
+    (folder / "sounds").symlink_to(elsewhere)
+    assert stored_runs.file_of_run(folder, "sounds/own.wav") is None
+    assert stored_runs.sounds_of_run(folder) == []
+    assert told_of(folder)["state"] == "interrupted"
+    assert told_of(folder)["name"] == folder.name
+    with pytest.raises(InputError, match="received a link to another file"):
+        stored_runs.case_of_run(folder)
+    assert stored_runs.surface_named(tmp_path, folder.name) is None
+    (folder / "sounds").unlink()
+    (folder / "sounds").mkdir()
+    (folder / "sounds" / "own.wav").write_bytes(b"")
+    assert stored_runs.sounds_of_run(folder) == ["own.wav"]
+
+
 @pytest.mark.parametrize(
     "name",
     ["../run.nc", "run.json", "outcome.json", "sounds/../run.nc", "/etc/passwd", "sounds", ".hidden.nc",

@@ -1,5 +1,6 @@
 """What is made of finished runs: reports, figures, comparisons, sounds; and what is kept between runs."""
 
+import re
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -15,6 +16,9 @@ from asperity.results import read_result
 from asperity.scenes.report import comparison_of, figures_of, write_comparison, write_page, write_summary
 from asperity.store import Store, is_private, kernel_folders
 from asperity.terminal import say, say_files, say_table
+
+_KERNEL = re.compile(r"asperity[\w.<>]+-[0-9a-f]{24}")
+"""Name of a compiled function that is kept."""
 
 
 def _folder_beside(run: Path, folder: Path | None, name: str = "") -> Path:
@@ -79,12 +83,12 @@ def show_cache(*, clear: bool = False) -> dict[str, Any]:
     """Print what is kept, how much it is and where; delete it if asked, but for what another run writes."""
     store = Store()
     kept = [("results", store.root, store.files())]
-    left = {store.root: left_overs(store.root)}
+    left = {store.root: store.left_overs()}
     for folder in kernel_folders():
         versions: list[Path] = []
         with suppress(OSError):  # a name that is too long
             versions = [place for place in folder.glob("[0-9a-f]" * 16) if is_private(place)]
-        kernels = [file for place in versions for file in place.iterdir() if not file.name.startswith(".")]
+        kernels = [file for place in versions for file in place.iterdir() if _KERNEL.fullmatch(file.name)]
         left[folder] = [part for place in versions for part in left_overs(place)]
         kept += [("compiled functions", folder, sorted(kernels))] if kernels else []
     kept += [

@@ -196,8 +196,8 @@ class Server:
 
     async def view(self, request: Request) -> Response:
         """Send what there is to be seen of a run that is done."""
-        path = self._run(request) / stored_runs.RESULT
-        return JSONResponse(await self.files.ask("view", path=str(path)))
+        path = _result_of(self._run(request))
+        return JSONResponse(await self.files.ask("view", path=path))
 
     async def cancel(self, request: Request) -> Response:
         """End a run."""
@@ -207,7 +207,7 @@ class Server:
     async def go_on(self, request: Request) -> Response:
         """Roll a run that ended too early; what of it is finished is not computed again."""
         folder = self._run(request)
-        if not (folder / stored_runs.RESULT).is_file():
+        if not stored_runs.is_own(folder, stored_runs.RESULT):
             self.jobs.start(folder)
         return await self.state(request)
 
@@ -224,9 +224,9 @@ class Server:
         The report is written when it is asked for first.
         """
         folder, name = self._run(request), request.path_params["name"]
-        result = folder / stored_runs.RESULT
-        if name == stored_runs.REPORT and result.is_file() and not (folder / name).is_file():
-            await self.files.ask("report", path=str(result))
+        done = stored_runs.is_own(folder, stored_runs.RESULT)
+        if name == stored_runs.REPORT and done and not (folder / name).exists():
+            await self.files.ask("report", path=_result_of(folder))
         return _handed_out(folder, name)
 
     async def compare(self, request: Request) -> Response:
@@ -235,7 +235,7 @@ class Server:
         folders = [folder for folder in found if folder is not None]
         if not 2 <= len(folders) <= MOST_COMPARED:
             raise HTTPException(400, f"Two to {MOST_COMPARED} runs can be compared.")
-        paths = [str(folder / stored_runs.RESULT) for folder in folders]
+        paths = [_result_of(folder) for folder in folders]
         names = [str(stored_runs.told_of(folder)["name"]) for folder in folders]
         return JSONResponse(await self.files.ask("compare", paths=paths, names=names))
 
@@ -270,6 +270,14 @@ def _form(found: dict[str, Any]) -> dict[str, Any]:
     if not isinstance(values, dict):
         raise HTTPException(400, "The question has no values.")
     return {"kind": found.get("kind"), "values": values}
+
+
+def _result_of(folder: Path) -> str:
+    """Path of the result of a run, which is a file of its folder where there is one."""
+    result = folder / stored_runs.RESULT
+    if result.exists() and not stored_runs.is_own(folder, result.name):
+        raise HTTPException(404, "There is no such file.")
+    return str(result)
 
 
 def _handed_out(folder: Path, name: str) -> Response:

@@ -18,7 +18,7 @@ from asperity.scenes.figures.force import force_bands, force_envelope
 from asperity.scenes.report import comparison_of, report
 from asperity.schema import contact, provenance
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
-from asperity.serving.stored_runs import SOUNDS
+from asperity.serving.stored_runs import sounds_of_run
 
 PIECE = 20_000
 """Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""
@@ -50,7 +50,7 @@ def viewed_run(path: str) -> dict[str, Any]:
             "across": data.number(tree, contact.HERTZ_RADIUS_ACROSS),
             "load": data.number(tree, contact.WORKING_LOAD),
         },
-        "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
+        "sounds": sounds_of_run(Path(path).parent),
         **told_blocks(page.drawn_figures(tree, FIGURES), data.unticked_laws(tree)),
     }
 

@@ -44,6 +44,12 @@ def folder_of(root: Path, identifier: str) -> Path | None:
     return folder if folder.is_dir() and not folder.is_symlink() else None
 
 
+def is_own(folder: Path, name: str) -> bool:
+    """Whether a folder holds a file of that name, by itself: no link on the way leads elsewhere."""
+    file = folder / name
+    return file.is_file() and file.resolve() == folder.resolve() / name
+
+
 def kept_in(root: Path) -> list[Path]:
     """Folders that are kept there, the latest first."""
     found = [folder for each in root.glob("*") if (folder := folder_of(root, each.name))]
@@ -86,15 +92,17 @@ def keep_run(root: Path, case: str, *, kind: str, name: str, changed: str) -> st
 def told_of(folder: Path) -> dict[str, Any]:
     """What a run is, and what became of it: done, failed, cancelled, or interrupted where nobody knows."""
     told = dict.fromkeys(("kind", "changed", "created", "message"), "")
-    told |= {"name": folder.name, "state": "interrupted"} | _read(folder / _FACTS)
-    outcome = {"state": "done"} if (folder / RESULT).is_file() else _read(folder / OUTCOME)
+    told |= {"name": folder.name, "state": "interrupted"} | _read(folder, _FACTS)
+    outcome = {"state": "done"} if is_own(folder, RESULT) else _read(folder, OUTCOME)
     return told | outcome | {"id": folder.name}
 
 
-def _read(file: Path) -> dict[str, str]:
+def _read(folder: Path, name: str) -> dict[str, str]:
     """Words that were kept by their names; none of a file that is missing or damaged."""
+    if not is_own(folder, name):
+        return {}
     try:
-        found = json.loads(read_text(file, file.name, "JSON", largest=LARGEST_CASE))
+        found = json.loads(read_text(folder / name, name, "JSON", largest=LARGEST_CASE))
     except (InputError, ValueError, RecursionError):
         return {}
     words = found.items() if isinstance(found, dict) else ()
@@ -103,7 +111,10 @@ def _read(file: Path) -> dict[str, str]:
 
 def case_of_run(folder: Path) -> str:
     """Text of the case of a run; an `InputError` if it is missing or damaged."""
-    return read_text(folder / CASE, f"the case of {folder.name}", "a case", largest=LARGEST_CASE)
+    source, allowed = f"the case of {folder.name}", "a case"
+    if (folder / CASE).exists() and not is_own(folder, CASE):
+        raise InputError(source, "a link to another file", allowed)
+    return read_text(folder / CASE, source, allowed, largest=LARGEST_CASE)
 
 
 def write_outcome(folder: Path, state: str, message: str = "") -> None:
@@ -114,9 +125,14 @@ def write_outcome(folder: Path, state: str, message: str = "") -> None:
 
 def file_of_run(folder: Path, name: str) -> Path | None:
     """A file of a run that may be looked at: of its folder or its sounds, and nothing else."""
-    file = folder / name
     offered = _OFFERED.fullmatch(name) and ".." not in name
-    return file if offered and file.is_file() and not file.is_symlink() else None
+    return folder / name if offered and is_own(folder, name) else None
+
+
+def sounds_of_run(folder: Path) -> list[str]:
+    """Names of the sounds of a run that may be listened to."""
+    found = sorted(file.name for file in (folder / SOUNDS).glob("*.wav"))
+    return [name for name in found if file_of_run(folder, f"{SOUNDS}/{name}")]
 
 
 # --- surfaces: streamed to disk, never held in memory
@@ -196,8 +212,10 @@ async def _write_pieces(file: Path, pieces: AsyncIterator[bytes], check: Callabl
 def surface_named(root: Path, identifier: str) -> Path | None:
     """File of an uploaded surface."""
     folder = folder_of(root, identifier)
-    files = sorted(folder.iterdir()) if folder is not None else []
-    return next((file for file in files if file.is_file() and not file.name.startswith(".")), None)
+    if folder is None:
+        return None
+    files = sorted(folder.iterdir())
+    return next((file for file in files if is_own(folder, file.name) and not file.name.startswith(".")), None)
 
 
 def identifier_of(root: Path, path: str) -> str | None:
