@@ -17,6 +17,7 @@ from asperity.scenes.figures.sideways import CREEP, creep_answers, friction_tabl
 from asperity.scenes.result import computed_result
 from asperity.schema import tree
 from asperity.structures.lateral_rail import LateralTrack, wheel_receptances
+from asperity.structures.squeal import standing_modes
 from asperity.studies.member import kept
 from small_cases import HEARD
 
@@ -144,7 +145,7 @@ def test_modes_that_squeal_hardly_know_what_carries_the_wheel_sideways(creeping,
     assert abs(changed[first]) > 0.3 * abs(growth[first])
 
 
-def test_modes_that_move_the_axle_are_told_but_do_not_squeal(falling, creeping):
+def test_modes_that_move_the_axle_are_told_but_do_not_squeal(computed, falling, creeping):
     """Constant friction, the contact off the middle: pairs of waves are counted once, n = 0 and 1 aside."""
     constant = creeping({"angle_of_attack": -ATTACK}, contact_place="15 mm")
     growth, diameters = constant[schema.GROWTH_RATE], constant[schema.SQUEAL_DIAMETERS]
@@ -158,6 +159,14 @@ def test_modes_that_move_the_axle_are_told_but_do_not_squeal(falling, creeping):
     assert " by mode coupling (linear stability); fastest axial n = 3 at " in told
     first = 1e3 / constant[schema.SQUEAL_GROWTH]
     assert f", the first e-fold in {first:.3g} ms" in told
+    share = growth[grows & believed] / (2.0 * np.pi * constant[schema.SQUEAL_FREQUENCY][grows & believed])
+    assert f"; about {100.0 * share.max():.2g} % more of critical damping would stop all." in told
+    radial, axial = np.square(computed.scene.modes.at(15e-3))  # where the contact is
+    first_of = {
+        number: n for n, number in reversed([*enumerate(standing_modes(computed.scene.modes).tolist())])
+    }
+    at = [first_of[number] for number in constant[schema.SQUEAL_SHAPE].tolist()]
+    assert constant[schema.AXIAL_SHARE] == pytest.approx((axial / (radial + axial))[at], rel=1e-12)
     assert constant[schema.SQUEAL_GROWTH] == growth[grows & believed].max()
     aside = told.partition("Not counted: ")[2]
     assert "axial n = 0 at " in aside
