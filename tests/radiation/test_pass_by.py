@@ -220,6 +220,20 @@ def test_sources_share_the_measured_time_and_add_up():
     assert np.isnan(without[1:]).all()
 
 
+def test_a_train_that_is_louder_at_its_rear_is_measured_ten_decibels_below_each_end():
+    """By exponentials: A τ (1 − 0.1) before, B τ' (1 − 0.1) behind, (B − A) T/ln(B/A) between."""
+    front, rear, rises, falls, passing = 0.02, 0.3, 0.4, 0.9, 2.0
+    time = np.linspace(-4.0, 9.0, 26_001)
+    before, behind = front * np.exp(time / rises), rear * np.exp(-(time - passing) / falls)
+    between = front * (rear / front) ** (time / passing)
+    squared = np.where(time < 0.0, before, np.where(time > passing, behind, between))
+    _, mean, exposure = pass_by.pass_by_levels(time, squared[None], (0.0, passing))[:, 0]
+    inside = (rear - front) * passing / np.log(rear / front)
+    assert mean == pytest.approx(10.0 * np.log10(inside / passing / 4e-10), abs=1e-4)
+    outside = 0.9 * (front * rises + rear * falls)
+    assert exposure == pytest.approx(10.0 * np.log10((inside + outside) / passing / 4e-10), abs=1e-3)
+
+
 def test_a_level_that_does_not_fall_is_refused():
     message = "does not fall by 10 dB before and after the train between -1"
     with pytest.raises(ComputationError, match=message):
