@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
+from asperity.written_numbers import rounded
+
 LONGEST = 1000
 """Characters of a name or value that a message repeats: more than the paths that people use."""
 TOO_MUCH_MEMORY = (
@@ -116,7 +118,7 @@ class Grade(Enum):
 
 def percent(share: float) -> str:
     """Write a share for a message, as ``"0.32 %"``."""
-    return f"{100 * share:.0f} %" if share >= 0.0995 else f"{100 * share:.2g} %"
+    return f"{100 * share:.0f} %" if share >= 0.0995 else f"{rounded(100 * share, 2)} %"
 
 
 class PhysicsWarning(UserWarning):

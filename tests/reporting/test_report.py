@@ -371,11 +371,11 @@ def test_what_is_known_of_the_uncertainty_is_listed():
     held[np.flatnonzero(product >= 10.0)[1]] = 0.499  # half of the mean square
     tree["spectra"]["start_share"] = xr.Variable("band", held)
     told = np.flatnonzero((bands < 5500) & (product >= 10.0))
-    ends = [f"{deviation[i]:.1f} dB at {nominal_band(bands[i])} Hz" for i in (told[-1], told[0])]
+    ends = [f"{deviation[i]:.1f} dB at {nominal_frequency(bands[i])}" for i in (told[-1], told[0])]
     assert {row[0].text: row[1].text for row in uncertainty_table(tree).rows} == {
         "the law areal, against direct": "0.5 dB (0.3 to 0.8)",
         "chance: one record of this length": " to ".join(ends),
-        "start of the record": f"up to 3.0 dB low, at {nominal_band(bands[told[1]])} Hz",
+        "start of the record": f"up to 3.0 dB low, at {nominal_frequency(bands[told[1]])}",
     }
 
 
@@ -389,6 +389,25 @@ def test_numbers_of_the_main_law_come_first():
     assert (loss.value, loss.note) == ("0 %", "contact is never lost")
     flying = with_force(np.maximum(10 * wave, 0.0))
     assert force_answers(flying).numbers[1].value == f"{100 * (wave <= 0).mean():.1f} %"
+
+
+def test_numbers_of_several_contacts_are_of_all_of_them(real_runs):
+    """A bogie's tile had the forces of its first contact, at most 85.5 kN, where the second had 89.1."""
+    tree = real_runs["bodies"].copy(deep=True)
+    wave = np.sin(np.linspace(0.0, 40.0 * np.pi, tree["rolling"].sizes["time"]))
+    forces, losses = tree["rolling/contact_force"], tree["rolling/contact_loss_share"]
+    forces.values[0] = np.stack([40.0 + 10.0 * wave, 60.0 + 20.0 * wave])
+    losses.values[0] = 0.0, 0.25
+    force, loss = force_answers(tree).numbers
+    assert force.name == "forces of 2 contacts vary by, rms"
+    assert force.value == engineering(np.sqrt(0.5 * (10.0**2 + 20.0**2) * np.mean(wave**2)), "N")
+    assert force.note.endswith("of its mean of 50.0 N; at most 80.0 N at contact 2")
+    assert (loss.value, loss.note[-12:]) == ("25.0 %", "at contact 2")
+    for name in ("force_peak", "force_envelope", "force_bands", "force_psd"):
+        assert (
+            "Of contact 1 of 2; the others are in the chapter All contacts."
+            in PARTS[name].drawn(tree).caption
+        )
 
 
 def test_the_most_shaken_sensor_is_named_with_the_bands_that_hold_half_of_it():

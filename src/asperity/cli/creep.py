@@ -21,6 +21,7 @@ from asperity.reporting.figure import write_chart, write_columns
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import creep
 from asperity.terminal import say, say_table
+from asperity.written_numbers import counted, rounded
 
 NAMES = {"longitudinal": "creepage along", "lateral": "creepage across", "spin": "spin × √(ab)"}
 MOST_POINTS = 1000
@@ -75,13 +76,15 @@ def show_creep(
 def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
     """Forces over what friction carries; of rough samples their mean."""
     limit, name, (slope, *rough) = curve.limit, NAMES[curve.direction], curve.slopes
-    title = f"{source}: {engineering(load, 'N')}, friction {limit / load:.4g}, {curve.direction}"
+    title = f"{source}: {engineering(load, 'N')}, friction {rounded(limit / load, 4)}, {curve.direction}"
     smooth, samples = curve.force[0] / limit, curve.force[1:] / limit
     drawn: dict[str, tuple[Array, Array | None]] = {"smooth": (smooth, None)}
     words = f"At the smallest {name} the smooth contact has {slope:.4f} of Kalker's linear force"
     if rough:
         drawn["rough"] = samples.mean(axis=0), samples.std(axis=0)
-        words += f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {len(rough)} samples)"
+        words += (
+            f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {counted(len(rough), 'sample')})"
+        )
     drawn |= {"linear theory": (curve.linear / limit, None), "FASTSIM": (curve.fastsim / limit, None)}
     columns = {name: curve.creepage}
     for label, (mean, scatter) in drawn.items():
@@ -96,9 +99,9 @@ def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
 def _told_states(states: TractionStates, source: str) -> Told:
     """Rough over smooth under the same load in words, the functions themselves as columns."""
     load, change = states.load.mean(axis=0), states.change
-    title = f"{source}: rough contact over smooth under the same load, {len(states.load)} samples"
+    title = f"{source}: rough contact over smooth under the same load, {counted(len(states.load), 'sample')}"
     told = {
-        name: [f"{m:.3f} ± {s:.2g}" if m == m else "short sample" for m, s in zip(*each, strict=True)]
+        name: [f"{m:.3f} ± {rounded(s, 2)}" if m == m else "short sample" for m, s in zip(*each, strict=True)]
         for name, each in change.items()
     }
     _say_columns(title, {"approach / µm": 1e6 * states.approaches, "load / N": load} | told)
@@ -116,7 +119,7 @@ def _told_states(states: TractionStates, source: str) -> Told:
 
 def _say_columns(title: str, columns: Mapping[str, Any]) -> None:
     rows = zip(*columns.values(), strict=True)
-    cells = [[each if isinstance(each, str) else f"{each:.4g}" for each in row] for row in rows]
+    cells = [[each if isinstance(each, str) else rounded(each, 4) for each in row] for row in rows]
     say_table(title, [*columns], cells, width=120)
 
 

@@ -25,6 +25,7 @@ from asperity.schema import bearing, provenance, rolling
 from asperity.store import Store, content_key
 from asperity.terminal import detail, remark, say, say_files, say_table
 from asperity.threads import THREADS, processors
+from asperity.written_numbers import between, counted, rounded
 
 if TYPE_CHECKING:
     from xarray import DataTree
@@ -394,16 +395,19 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
     first, last = case.rolled_range
     points = round((last - first) / contact.spacing) + 1
     offsets = prepared.scene.offsets
-    places = f"{min(offsets):g} to {max(offsets):g} m ahead of the position"
+    places = f"{between(rounded(min(offsets)), rounded(max(offsets)))} m ahead of the position"
     run_in = f", and {settling:g} s before it" if settling else ""
     rows = [
         ("textures", prepared.textures.origin),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
-        ("time", f"{case.rolled_time:g} s{run_in}, {work.steps} steps of {case.time_step * 1e6:.4g} µs"),
+        (
+            "time",
+            f"{case.rolled_time:g} s{run_in}, {work.steps} steps of {rounded(case.time_step * 1e6, 4)} µs",
+        ),
         *([("contacts", f"{len(offsets)}, {places}")] if len(offsets) > 1 else []),
         *planned_track(prepared),
         ("laws", ", ".join(case.laws)),
-        ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
+        ("contact", f"{nx} × {ny} cells, {counted(contact.samples, 'sample')}, {states} approaches"),
     ]
     if work.tried is not None:  # a sample
         share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"

@@ -27,6 +27,7 @@ from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.spectra import psd_1d, psd_radial
 from asperity.terminal import say
 from asperity.text_files import write_csv
+from asperity.written_numbers import rounded
 
 Surfaces = Sequence[HeightMap | Profile]
 Spectra = dict[str, tuple[Array, Array]]
@@ -203,7 +204,7 @@ def _lengths(metres: Iterable[float]) -> str:
     lengths = list(metres)
     units = ((1.0, 1.0, "m"), (0.05e-3, 1e3, "mm"), (0.0, 1e6, "µm"))
     scale, unit = next((scale, unit) for least, scale, unit in units if max(lengths) >= least)
-    return " × ".join(f"{length * scale:.4g}" for length in lengths) + f" {unit}"
+    return " × ".join(rounded(length * scale, 4) for length in lengths) + f" {unit}"
 
 
 def _filtered(
@@ -225,7 +226,7 @@ def _scaled(item: statistics.Statistic) -> str:
         return "–"
     if item.unit == "rad":
         return f"{math.degrees(item.value):.0f}°"
-    return f"{item.value * 1e6:.4g} µm" if item.unit == "m" else f"{item.value:.4g}"
+    return f"{rounded(item.value * 1e6, 4)} µm" if item.unit == "m" else rounded(item.value, 4)
 
 
 def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
@@ -247,7 +248,7 @@ def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
         verdict = "not the same everywhere: a piece of it does not stand for another"
     say(
         f"Homogeneity: mean squares of {tiles} tiles vary by {100 * found.variation:.0f} %, of stationary "
-        f"textures like it by {100 * found.expected:.0f} % (p = {found.p_value:.2g}): {verdict}"
+        f"textures like it by {100 * found.expected:.0f} % (p = {rounded(found.p_value, 2)}): {verdict}"
     )
     if surface.missing_share:
         say(f"{what} the map with its missing points, {surface.missing_share:.2g} of all, interpolated.")

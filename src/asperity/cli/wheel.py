@@ -17,6 +17,7 @@ from asperity.structures.body import GRAVITY
 from asperity.structures.outline import checked_outline, doubts_of, volume_of
 from asperity.structures.wheel_modes import with_running_circle
 from asperity.terminal import say
+from asperity.written_numbers import rounded
 
 COLUMNS = ("Hz", "n", "damping", "modal mass/kg", "axial", "radial")
 
@@ -37,7 +38,7 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
         OutOfRangeWarning.warn(doubt)
     modes = wheel.standing_modes(case.numerics.highest_frequency)
     rows = modes.table()
-    say(f"{section}: {wheel.drawn_mass:.4g} kg without its axle, held at a radius of "
+    say(f"{section}: {rounded(wheel.drawn_mass, 4)} kg without its axle, held at a radius of "
         f"{1e3 * wheel.outline[:, 0].min():.4g} mm; {len(rows)} modes answer to a radial force up to "
         f"{rows[:, 0].max():.0f} Hz.")  # fmt: skip
     say("Axial motion of the disc and radial motion of the tread, rms per radial motion at the contact:")

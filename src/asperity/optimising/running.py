@@ -28,6 +28,7 @@ from asperity.scenes import result
 from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
+from asperity.written_numbers import between, rounded
 
 if TYPE_CHECKING:
     from asperity.scenes.report import Result
@@ -120,7 +121,7 @@ class Optimised:
         lay = f", lay {first.lateral:.3g} to {last.lateral:.3g}" if aim.lateral and first.lateral else ""
         words = [
             f"{self.measure.meaning}: {', '.join(told)}; "
-            f"rms of the bands {rms[0]:.3g} to {rms[1]:.3g} µm{lay}.",
+            f"rms of the bands {between(*map(rounded, rms))} µm{lay}.",
             f"On its limits: {'; '.join(self.active) or 'none'}.",
         ]
         if not self.settled:

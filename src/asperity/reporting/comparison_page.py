@@ -12,6 +12,7 @@ from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
 from asperity.spectra import nominal_frequency
+from asperity.written_numbers import rounded
 
 SURE = 2.0
 """Standard deviation of a difference by chance, dB, from which a band says little."""
@@ -50,7 +51,7 @@ def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
             continue
         less = (found - found[0] if kept is None else kept.isel(at).values)[1:].tolist()
         law = str(table["law"].values[at["law"]]) if "law" in at else ""
-        where = f"{float(table[place][at[place]]):.6g} {table[place].attrs['units']}" if place else ""
+        where = f"{rounded(float(table[place][at[place]]), 6)} {table[place].attrs['units']}" if place else ""
         kind = what.get(place, "contact" if not law else "level" if name.endswith("_a") else "force")
         last = ["", *[""] * len(less)] if name == DEVIATION else [less_units, *less]
         yield [kind, name, law, where, units, *found.tolist(), *last]

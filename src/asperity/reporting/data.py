@@ -17,12 +17,15 @@ from asperity.reporting import chart
 from asperity.schema import Attribute, Entry, provenance, rolling, spectra
 from asperity.spectra import nominal, say_little
 from asperity.units import quantity
+from asperity.written_numbers import PREFIXES as PREFIXES
+from asperity.written_numbers import SUPERSCRIPT, rounded
+from asperity.written_numbers import between as between
+from asperity.written_numbers import engineering as engineering
+from asperity.written_numbers import plain as plain
+from asperity.written_numbers import signed as signed
 
 SOME = 64
 """Numbers among which a finite one is sought before it is among all."""
-PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
 
 Made = TypeVar("Made")
 
@@ -160,6 +163,19 @@ def of_law(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:
     )
 
 
+def of_contacts(tree: DataTree, entry: Entry, law: str) -> chart.Numbers:
+    """Numbers of one law at all contacts, these first (c, …)."""
+    found = variable_of(tree, entry).sel(law=law)
+    several = rolling.CONTACT.name in found.dims
+    return np.asarray((found if several else found.expand_dims(rolling.CONTACT.name)).values, dtype=float)
+
+
+def of_first_contact(tree: DataTree) -> str:
+    """Say of what is shown of the first of several contacts that it is; nothing of a single one."""
+    count = tree["rolling"].sizes.get(rolling.CONTACT.name, 1) if "rolling" in tree.children else 1
+    return f"Of contact 1 of {count}; the others are in the chapter All contacts." if count > 1 else ""
+
+
 def doubtful(tree: DataTree, product: Entry) -> chart.Flags:
     """Bands whose levels say little: the `product` of bandwidth and averaging time is small.
 
@@ -176,39 +192,9 @@ def doubtful(tree: DataTree, product: Entry) -> chart.Flags:
 # --- numbers in words
 
 
-def engineering(value: float, unit: str, digits: int = 3) -> str:
-    """Write `value`, in the SI `unit`, with a prefix: ``engineering(3.1e-7, "m")`` is ``"310 nm"``."""
-    if not math.isfinite(value):
-        return "–"
-    if unit in ("", "1"):
-        return plain(value, digits)
-    if unit == "rad":
-        return f"{math.degrees(value):.0f}°"
-    power = 2 if unit == "m²" else 1  # a prefix on a squared unit is squared with it
-    value += 0.0  # no minus before zero
-    exponent = 0 if value == 0 else 3 * math.floor(math.floor(math.log10(abs(value))) / (3 * power))
-    exponent = min(max(exponent, -12 if power == 1 else -9), 0 if power == 2 else 12)
-    scaled = value / 10.0 ** (exponent * power)
-    places = 0 if scaled == 0 else max(0, digits - 1 - math.floor(math.log10(abs(scaled))))
-    return f"{scaled:.{places}f} {PREFIXES[exponent]}{unit}".replace("-", "−")
-
-
-def plain(value: float, digits: int = 3) -> str:
-    """Write a number with `digits` digits and a true minus sign."""
-    return f"{value:.{digits}g}".replace("-", "−")
-
-
-def signed(value: float, places: int = 1) -> str:
-    """Write a difference with its sign, but for one that is rounded to zero; a dash where there is none."""
-    if not math.isfinite(value):
-        return "–"
-    rounded = round(float(value), places)
-    return f"{rounded:+.{places}f}".replace("-", "−") if rounded else f"{0.0:.{places}f}"
-
-
 def in_percent(share: float) -> str:
     """Write a share in per cent."""
-    return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
+    return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{rounded(100 * share, 2)} %"
 
 
 def written_units(units: str) -> str:
@@ -236,7 +222,7 @@ def time_unit(duration: float) -> tuple[float, str]:
 
 def power_of_ten(value: float) -> str:
     """Write a power of ten with superscripts: ``"10⁻¹⁶"``."""
-    return "10" + str(round(math.log10(value))).translate(_SUPERSCRIPT)
+    return "10" + str(round(math.log10(value))).translate(SUPERSCRIPT)
 
 
 def nominal_band(centre: float) -> str:
@@ -266,7 +252,15 @@ def typed_values(key: DataArray) -> list[Any]:
 def typed_words(key: DataArray) -> list[str]:
     """Values of a swept key in words, each with its unit: ``"50 km/h"``."""
     unit = typed_unit(key).removesuffix("1")
-    return [value if isinstance(value, str) else f"{value:.6g} {unit}".strip() for value in typed_values(key)]
+    values = typed_values(key)
+    numbers = [value for value in values if not isinstance(value, str)]
+    digits = next((n for n in (4, 5) if len({_whole(v, n) for v in numbers}) == len(set(numbers))), 6)
+    return [v if isinstance(v, str) else f"{_whole(v, digits)} {unit}".strip() for v in values]
+
+
+def _whole(value: float, digits: int) -> str:
+    """Write a number with so many digits, and with all that stand before the point."""
+    return rounded(value, max(digits, len(f"{abs(value):.0f}")))
 
 
 def moment(instant: object) -> str:

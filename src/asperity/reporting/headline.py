@@ -141,25 +141,36 @@ class Answers:
 
 
 def force_answers(tree: DataTree) -> Answers:
-    """Force of the main law, and its losses of contact."""
+    """Force of the main law at all contacts, and its losses of contact."""
     main = data.main_law(tree, rolling.CONTACT_FORCE)
-    force = data.of_law(tree, rolling.CONTACT_FORCE, main)
-    mean, rms = float(np.nanmean(force)), float(np.nanstd(force))
-    top = data.engineering(float(np.nanmax(force)), "N")
+    forces = data.of_contacts(tree, rolling.CONTACT_FORCE, main)
+    count, largest = len(forces), np.nanmax(forces, axis=1)
+    mean, rms = float(np.nanmean(forces)), float(np.sqrt(np.nanmean(np.nanvar(forces, axis=1))))
+    top = data.engineering(float(largest.max()), "N") + _at_contact(int(largest.argmax()), count)
     share = (
         f"{data.in_percent(rms / mean)} of its mean of {data.engineering(mean, 'N')}; " if mean > 0 else ""
     )
     varies = data.engineering(rms, "N")
-    dynamic = HeadlineNumber("contact force varies by, rms", varies, f"{share}at most {top}")
+    what = "contact force varies" if count == 1 else f"forces of {count} contacts vary"
+    dynamic = HeadlineNumber(f"{what} by, rms", varies, f"{share}at most {top}")
     return Answers(numbers=(dynamic, *_loss(tree, main)))
 
 
+def _at_contact(place: int, count: int) -> str:
+    """Name a contact where there are several."""
+    return f" at contact {place + 1}" if count > 1 else ""
+
+
 def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
+    """Loss of contact, of several contacts at that which is lost longest."""
     if main not in data.laws(tree, rolling.CONTACT_LOSS_SHARE):
         return
-    share, count, longest = (float(data.of_law(tree, entry, main)) for entry in rolling.LOSSES)
-    value, told = data.in_percent(share), f"lost {'once' if count == 1 else f'{count:.0f} times'}, longest "
-    told += data.engineering(longest, "s")
+    losses = [data.of_contacts(tree, entry, main) for entry in rolling.LOSSES]
+    worst = int(np.nanargmax(losses[0]))
+    share, events, longest = (float(of_contacts[worst]) for of_contacts in losses)
+    lost = "once" if events == 1 else f"{events:.0f} times"
+    value, told = data.in_percent(share), f"lost {lost}, longest {data.engineering(longest, 's')}"
+    told += _at_contact(worst, len(losses[0]))
     if data.law_entry(tree, main).may_pull:
         value, told = "–", f"{main} cannot lose it: its force may pull"
     elif not share:

@@ -21,6 +21,7 @@ from asperity.files import together, write_bytes
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
 from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum
 from asperity.text_files import write_csv
+from asperity.written_numbers import rounded
 
 PASS_BY = "pass_by_pressure"
 """Name of what is heard."""
@@ -212,7 +213,7 @@ def sounds_of(tree: DataTree, what: str | None = None) -> list[Sound]:
     for index in product(range(values.sizes[LAW.name]), *(range(values.sizes[dim]) for dim in places)):
         one = values.isel(dict(zip((LAW.name, *places), index, strict=True)))
         where = (
-            f"{float(one[dim]):.6g} {one[dim].attrs.get('units', '').removeprefix('1')}".strip()
+            f"{rounded(float(one[dim]), 6)} {one[dim].attrs.get('units', '').removeprefix('1')}".strip()
             for dim in places
         )
         samples = at_rate(one.values.astype(float), step)

@@ -11,7 +11,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data
 from asperity.schema import Attribute, Entry, contact, convergence, provenance, rolling, spectra
-from asperity.spectra import say_little
+from asperity.spectra import nominal_frequency, say_little
 
 
 @dataclass(frozen=True)
@@ -235,6 +235,7 @@ def loss_table(tree: DataTree) -> ReportTable:
     verb, note = "pulls" if len(pulling) == 1 else "pull", ""
     if pulling:
         note = f"{' and '.join(pulling)} cannot lose contact, but {verb} where others let go."
+    note = " ".join(filter(None, [note, data.of_first_contact(tree)]))
     return table("contact_loss", "Loss of contact", {"law": text_cells(laws), **columns}, note)
 
 
@@ -376,15 +377,15 @@ def _chance(tree: DataTree) -> Iterator[Known]:
     source = "chance: one record of this length"
     if shown.size:
         ends = (shown[np.argmin(deviation[shown])], shown[np.argmax(deviation[shown])])
-        told = [f"{deviation[i]:.1f} dB at {data.nominal_band(band[i])} Hz" for i in ends]
+        told = [f"{deviation[i]:.1f} dB at {nominal_frequency(band[i])}" for i in ends]
         how = "standard deviation of a level, from the bandwidth and the resonances that ring in it"
-        yield source, " to ".join(dict.fromkeys(told)), how
+        yield source, data.between(*told), how
     else:
         yield source, "not small", "no band has a level that says something"
     if data.present(tree, spectra.START_SHARE):
         low = -10.0 * np.log10(1.0 - data.values(tree, spectra.START_SHARE))
         worst = int(np.argmax(low))
         if low[worst] >= NOTICED:
-            size = f"up to {low[worst]:.1f} dB low, at {data.nominal_band(band[worst])} Hz"
+            size = f"up to {low[worst]:.1f} dB low, at {nominal_frequency(band[worst])}"
             how = "mean square that resonances have not built up yet; longer settling, or more damping, helps"
             yield "start of the record", size, how

@@ -15,6 +15,7 @@ from asperity.schema import contact
 from asperity.spectra import nominal
 from asperity.surfaces.measured_lines import ThirdOctaves
 from asperity.surfaces.statistics import material_ratio_curve
+from asperity.written_numbers import rounded
 
 SLENDER = 2.5
 """Times longer than wide: such a map gets the whole width."""
@@ -138,7 +139,7 @@ def texture_sample(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         named, height_scale(heights)[:2], title="heights", height=below, beside=not slender
     )
     missing = data.number(tree, contact.MISSING_SHARE)
-    gaps = f"; {100 * missing:.3g} % of its points had no height" if missing else ""
+    gaps = f"; {rounded(100 * missing)} % of its points had no height" if missing else ""
     yield (
         f"Source: {data.stated(tree, contact.SOURCE) or 'not stated'}{gaps}. Heights are positive out of the "
         "material; the colours leave out 0.1 % of the points at either end."
@@ -331,7 +332,7 @@ def _lines_panel(lines: Sequence[Numbers], spacing: float) -> Panel:
         Axis(f"distance along the lines / {along_symbol}", 0.0, end),
         Axis("line", -(len(lines) - 0.4) * reach, 1.1 * reach, ticks=ticks),
         (*marks, bar, note),
-        title=f"lines {reach:.3g} {symbol} apart, levelled" if len(lines) > 1 else "line, levelled",
+        title=f"lines {rounded(reach)} {symbol} apart, levelled" if len(lines) > 1 else "line, levelled",
         height=2.4 + 0.42 * len(lines),
         share=2.0,
     )

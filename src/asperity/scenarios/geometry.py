@@ -13,6 +13,7 @@ from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning, Grade, OutOfRangeWarning
 from asperity.structures.outline import LARGEST_WHEEL, checked_outline, doubts_of
+from asperity.written_numbers import force, rounded
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in loads of the class of the working load."""
@@ -80,7 +81,7 @@ class Geometry:
         wanted = max(HIGHEST_FORCE * self.class_load, self.largest_force)
         kept_out = self.hertz.approach(wanted) - self.hertz.approach(self.largest_force)
         side = window_for(self.body, self.spacing, highest + kept_out + datum)
-        return f'contact.window = "{side * 1e3:.3g} mm" holds them.'
+        return f'contact.window = "{rounded(side * 1e3)} mm" holds them.'
 
     def within_window(self) -> "Geometry":
         """Bound the states by a contact that the window holds."""
@@ -133,9 +134,9 @@ def geometry_of(case: scene.Case) -> Geometry:
     _doubt_wheel(case)
     width = 2.0 * max(shape.semi_axes)
     for side, size in over.sides.items():
-        allowed = f"at least {width * 1e6:.3g} um, the width of the smooth contact under {load:.3g} N"
+        allowed = f"at least {rounded(width * 1e6)} um, the width of the smooth contact under {force(load)}"
         remedy = "A beam smaller than its contact is no elastic half-space: enlarge it, or press less."
-        require(size >= width, f"{case.over_name}.{side}", f"{size * 1e6:.3g} um", allowed, remedy)
+        require(size >= width, f"{case.over_name}.{side}", f"{rounded(size * 1e6)} um", allowed, remedy)
     _check_grid(n, h, shape.semi_axes, load)
     return shape.within_window()
 
@@ -143,9 +144,9 @@ def geometry_of(case: scene.Case) -> Geometry:
 def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
     """Hold the contact under the load, and in the highest state given, to the half-space."""
     body, top = case.rolling, case.contact.approaches
-    asked = [(hertz.approach(load), f"a working load of {load:.3g} N")]
+    asked = [(hertz.approach(load), f"a working load of {force(load)}")]
     if top is not None:
-        asked.append((top[-1], f"an approach of {top[-1] * 1e6:.3g} µm"))
+        asked.append((top[-1], f"an approach of {rounded(top[-1] * 1e6)} µm"))
     bent = abs(body.raceway_along)
     smallest = min(body.radius, body.across, case.rolled_over.radius_across, bent, hertz.radius_y)
     for approach, cause in asked:
@@ -168,23 +169,23 @@ def _doubt_wheel(case: scene.Case) -> None:
         for doubt in doubts_of(checked_outline(wheel.outline), wheel.radius):
             OutOfRangeWarning.warn(f"{name}: {doubt}")
     elif wheel.radius > LARGEST_WHEEL:
-        radius = f"{name}.radius = {wheel.radius * 1e3:.4g} mm"
+        radius = f"{name}.radius = {rounded(wheel.radius * 1e3, 4)} mm"
         OutOfRangeWarning.warn(f"{radius}: wheels of trains have 170 mm to 625 mm. Is it the diameter?")
 
 
 def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
     """Hold the grid to the smooth contact under the load, N: the window holds it, cells are finer than it."""
     wide, small = 2.2e6 * max(axes), min(axes)
-    allowed = f"at least {wide:.4g} um, 1.1 times the width of the smooth contact under {load:.3g} N"
+    allowed = f"at least {rounded(wide, 4)} um, 1.1 times the width of the smooth contact under {force(load)}"
     held = cells * spacing * 1e6
-    require(held >= wide, "contact.window", f"{held:.4g} um", allowed, "Enlarge the window.")
-    allowed = f"less than {2e6 * small:.2g} um, the width of the smooth contact under {load:.3g} N"
+    require(held >= wide, "contact.window", f"{rounded(held, 4)} um", allowed, "Enlarge the window.")
+    allowed = f"less than {rounded(2e6 * small, 2)} um, the width of the smooth contact under {force(load)}"
     remedy = "Refine the spacing and the window with it, or press harder."
-    require(spacing <= 2.0 * small, "contact.spacing", f"{spacing * 1e6:.3g} um", allowed, remedy)
+    require(spacing <= 2.0 * small, "contact.spacing", f"{rounded(spacing * 1e6)} um", allowed, remedy)
     if spacing > small / 8:
         CoarseSamplingWarning.warn(
-            f"contact.spacing = {spacing * 1e6:.3g} µm is coarser than an eighth of the contact radius "
-            f"({small * 1e6:.3g} µm under {load:.3g} N): forces carry an error of some per cent. "
+            f"contact.spacing = {rounded(spacing * 1e6)} µm is coarser than an eighth of the contact radius "
+            f"({rounded(small * 1e6)} µm under {force(load)}): forces carry an error of some per cent. "
             "Refine the spacing."
         )
 

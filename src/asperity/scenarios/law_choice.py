@@ -20,6 +20,7 @@ from asperity.structures.track import Track
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
 from asperity.threads import thread_count
+from asperity.written_numbers import force
 
 ROWS = 2**15
 """Most rows of a path, from its middle, that are looked at: a length that is transformed fast."""
@@ -194,7 +195,7 @@ class LawChoice:
             f"rms {place.roughness:.2g} approaches, {place.within:.2g} within the patch; correlation length "
             f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load; k a of "
             f"{HIGH / 1e3:g} kHz {place.highest_wavenumber:.2g}, mapped from {self.reach[0]:.2g} to "
-            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {written_force(near.load)}, "
+            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {force(near.load)}, "
             f"{near.speed:g} m/s, {self.distance:.1f} half decades away{off}",
         )
 
@@ -300,8 +301,3 @@ def _coordinates(mapped: LawMap, kind: str, place: Place) -> Array:
 
 def _db(error: float) -> str:
     return f"{error:.1f}" if error < 9.95 else f"{error:.0f}"
-
-
-def written_force(newtons: float) -> str:
-    """Write a force in N or kN."""
-    return f"{newtons:.3g} N" if newtons < 1e3 else f"{newtons / 1e3:.3g} kN"

@@ -22,6 +22,8 @@ from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Strip
 from asperity.threads import in_order, thread_count
+from asperity.written_numbers import force as in_newtons
+from asperity.written_numbers import rounded
 
 STATES = 16
 """States chosen where the case names no approaches; up to twice as many where the path is touched earlier."""
@@ -127,7 +129,7 @@ def reduce(prepared: PreparedCase, planes: Array | None, progress: Progress) -> 
     lowest["path"] = min(lowest["samples"], *strips, *([] if along is None else [float(along.min())]))
     approaches = _approaches(prepared, along, samples)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
-        raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
+        raise _too_rough(textures, f"first touch at {rounded(1e6 * approaches[0])} um")
     remedy = shape.remedy_for_cut_off(float(approaches[-1]), -lowest["path"])
     ensemble = stiffness.stiffness_ensemble(
         samples, half_space, shape.body, approaches, 0.0, rtol=scan.rtol_for(numerics.force_accuracy),
@@ -162,14 +164,16 @@ def refuse_low_states(approaches: Array, highest: Array, shape: Geometry, workin
     `highest` are the mean forces of the samples in the last states, two or more, N; the working approach, m,
     is that of a sample under the load.
     """
-    reached = f"up to {approaches[-1] * 1e6:.4g} um, where the samples carry {highest[-1]:.3g} N"
+    reached = (
+        f"up to {rounded(approaches[-1] * 1e6, 4)} um, where the samples carry {in_newtons(highest[-1])}"
+    )
     if highest[-1] < shape.load:
-        allowed = f"approaches that reach the working load of {shape.load:.3g} N and beyond"
-        remedy = f"Go to {2e6 * working_approach:.3g} um or more, or leave the key out."
+        allowed = f"approaches that reach the working load of {in_newtons(shape.load)} and beyond"
+        remedy = f"Go to {rounded(2e6 * working_approach)} um or more, or leave the key out."
         raise InputError("contact.approaches", reached, allowed, remedy)
     if not highest[-2] > 0.0:
-        received = f"{reached}, and none at {approaches[-2] * 1e6:.4g} um"
-        remedy = f"Add some around {1e6 * working_approach:.3g} um, or leave the key out."
+        received = f"{reached}, and none at {rounded(approaches[-2] * 1e6, 4)} um"
+        remedy = f"Add some around {rounded(1e6 * working_approach)} um, or leave the key out."
         raise InputError("contact.approaches", received, "at least two approaches in contact", remedy)
 
 
@@ -177,7 +181,7 @@ def _too_rough(textures: Textures, sign: str) -> InputError:
     """Error about samples on which no contact can be followed from touch to load."""
     rms = float(np.mean([np.std(sample.heights) for sample in textures.maps]))
     allowed = "heights that are small against the window, and states of contact from the touch to the load"
-    received = f"samples of {1e6 * rms:.3g} um rms, with {sign}"
+    received = f"samples of {rounded(1e6 * rms)} um rms, with {sign}"
     return InputError("surface", received, allowed, "Check the unit of the heights.")
 
 

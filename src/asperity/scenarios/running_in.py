@@ -20,6 +20,7 @@ from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
 from asperity.threads import in_order, thread_count
+from asperity.written_numbers import force, rounded
 
 EXPECTED_PASSES = 10
 """Passes to shakedown, for the plan: four to twenty."""
@@ -51,7 +52,7 @@ def run_in_case(prepared: PreparedCase, progress: Progress) -> tuple[Textures, V
             parts = parts | {over: parts[over] - lowered}
     worst = max(surfaces, key=lambda each: float(each.largest[-1]))
     together = replace(worst, counts=total(each.counts for each in surfaces))
-    window = f"now {shape.body.shape[0] * shape.spacing[0] * 1e3:.3g} mm"
+    window = f"now {rounded(shape.body.shape[0] * shape.spacing[0] * 1e3)} mm"
     remedy = f"Enlarge contact.window, {window}, or leave long waves out by surface.longest."
     warn_of_running_in(together, job, "numerics.rtol", remedy)
     maps = tuple(HeightMap(s.heights, shape.spacing, "run in") for s in strips)
@@ -96,7 +97,7 @@ def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures)
     what = "samples" if textures.path is None else "samples and path"
     passes = sorted({len(each.largest) for each in surfaces})
     number = " to ".join(map(str, sorted({passes[0], passes[-1]})))
-    words = f"{what} run in by {number} pass{'es' if passes[-1] > 1 else ''} under {job.load:.3g} N"
+    words = f"{what} run in by {number} pass{'es' if passes[-1] > 1 else ''} under {force(job.load)}"
     return words if textures.path is not None else f"{words}, line of the path as given"
 
 

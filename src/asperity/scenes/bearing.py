@@ -30,6 +30,7 @@ from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import LoadedBearing, doubt_speed
 from asperity.structures.ring import Ring
 from asperity.surfaces.raceway import Raceway
+from asperity.written_numbers import force, rounded
 
 RINGS = ("inner", "outer")
 NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
@@ -122,15 +123,18 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     for law in (law for law in case.laws if spec_of(law).solved_every_step):
         solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
     seconds = preparing.START_TIME + STEP_TIME * steps * found.bearing.balls * runs
-    tones = ", ".join(f"{NAMES[part]} {turning.tone(part):.4g} Hz" for part in PARTS)
+    tones = ", ".join(f"{NAMES[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS)
     load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
-    held = f"{touching.mean():.3g} of {found.bearing.balls} on average, {touching.min():.0f} or more"
+    held = f"{rounded(touching.mean())} of {found.bearing.balls} on average, {touching.min():.0f} or more"
     rows = [
-        ("heaviest load of a ball", f"{load:.4g} N, contact angle {angle:.3g}°"),
-        ("balls that touch both rings", f"{held}; at rest {at_rest.mean():.3g}"),
-        ("tones", f"{tones}; cage {turning.cage:.4g} Hz"),
-        ("time", f"{steps} steps of {case.step * 1e6:.4g} µs, {case.settling:g} s of them before the record"),
+        ("heaviest load of a ball", f"{force(load)}, contact angle {rounded(angle)}°"),
+        ("balls that touch both rings", f"{held}; at rest {rounded(at_rest.mean())}"),
+        ("tones", f"{tones}; cage {rounded(turning.cage, 4)} Hz"),
+        (
+            "time",
+            f"{steps} steps of {case.step * 1e6:.4g} µs, {case.settling:g} s of them before the record",
+        ),
         ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} by areal with parts alone"),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
         ("not in it", LEFT_OUT),
@@ -383,12 +387,14 @@ def _verdict(heard: Values, deciding: Sequence[str], faulty: bool) -> str:
     """
     velocities = heard[bearing.BAND_VELOCITY][0][0]
     told = ", ".join(
-        f"{1e6 * rms:.3g} µm/s in {band}{part}"
+        f"{rounded(1e6 * rms)} µm/s in {band}{part}"
         for rms, band, part in zip(velocities, heard[bearing.JUDGED_BAND], deciding, strict=True)
         if np.isfinite(rms)
     )
     lines = zip(PARTS, heard[bearing.LINES_FOUND][0], heard[bearing.LINE_FREQUENCY][0], strict=True)
-    parts = " and of the ".join(f"{NAMES[part]} ({at[0]:.4g} Hz)" for part, found, at in lines if found)
+    parts = " and of the ".join(
+        f"{NAMES[part]} ({rounded(at[0], 4)} Hz)" for part, found, at in lines if found
+    )
     lead = f"Radial velocity by {heard[bearing.LAW][0]}: {told or 'no band is sampled'}"
     struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if faulty else ""
     return f"{lead}.{struck} {LEFT_OUT}"
@@ -467,8 +473,8 @@ def _missed(runs: dict[str, RolledBearing]) -> Iterator[Finding]:
 
 def _numerics(case: BallBearingCase, wall: float) -> Iterator[tuple[str, str]]:
     """Numbers of the computation: names and values."""
-    yield "time step", f"{case.step * 1e6:.4g} µs"
+    yield "time step", f"{rounded(case.step * 1e6, 4)} µs"
     yield "time steps per sample that is written", f"{case.steps_per_sample}"
-    yield "resonance of the most loaded ball between the rings", f"{case.ball_resonance:.4g} Hz"
+    yield "resonance of the most loaded ball between the rings", f"{rounded(case.ball_resonance, 4)} Hz"
     yield "imbalance of the static solution", f"{case.static.imbalance:.0e} of the load"
     yield "wall time", f"{wall:.2f} s"

@@ -16,6 +16,7 @@ from asperity.scenes.compute import Computed
 from asperity.spectra import level_of
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, texture_direction
+from asperity.written_numbers import counted, rounded
 
 SIGNIFICANCE = 0.01
 """Probability by chance below which groups are told apart: there are several tests in every run."""
@@ -81,7 +82,7 @@ def _stiffness(reduction: Reduction, laws: tuple[str, ...]) -> Iterator[Finding]
     enough = "One stiffness is enough" if place <= EFFECT[0] else "One stiffness is not enough"
     yield _answer(
         "Is one contact stiffness enough for the path?",
-        f"{len(samples)} samples, coefficient of variation {100 * spread:.2g} %",
+        f"{counted(len(samples), 'sample')}, coefficient of variation {rounded(100 * spread, 2)} %",
         f"{enough}: where stiffness governs the force, single places differ by {place:.1f} dB (one standard "
         f"deviation), and the mean of the samples is known to {mean:.1f} dB.",
         place,
@@ -124,7 +125,7 @@ def _maps(computed: Computed, reduction: Reduction, laws: tuple[str, ...]) -> It
             "deviation) beyond what places of one map do."
         )
     brief = f"maps differ by {beyond:.1f} dB in stiffness"
-    value, effect = f"{len(maps)} maps, p = {p:.2g}", beyond if apart else 0.0
+    value, effect = f"{len(maps)} maps, p = {rounded(p, 2)}", beyond if apart else 0.0
     yield _answer("Are the measured maps one population?", value, answer, effect, brief, laws)
 
 
@@ -143,7 +144,7 @@ def _along_path(computed: Computed) -> Iterator[Finding]:
             "differs by as much."
         )
     brief = f"roughness varies by {beyond:.1f} dB along the path"
-    value, effect = f"{len(levels)} parts, p = {p:.2g}", beyond if apart else 0.0
+    value, effect = f"{len(levels)} parts, p = {rounded(p, 2)}", beyond if apart else 0.0
     yield _answer("Is the path the same all along?", value, answer, effect, brief, tuple(computed.case.laws))
 
 
@@ -192,7 +193,9 @@ def _direction(computed: Computed) -> Iterator[Finding]:
     first = computed.textures.maps[0]
     with ShortRecordWarning.ignored():  # a bound is good enough
         lags = autocorrelation_lengths(first)
-    numbers = f"{difference:+.1f} dB from {1e6 * longest:.3g} to {1e6 * shortest:.3g} µm".replace("-", "−")
+    numbers = f"{difference:+.1f} dB from {rounded(1e6 * longest)} to {rounded(1e6 * shortest)} µm".replace(
+        "-", "−"
+    )
     value = f"{numbers}; Str {lags[0] / lags[1]:.2f}"
     answer = "Lines along and across are as rough: the direction of rolling does not matter."
     if abs(difference) > EFFECT[0]:

@@ -26,6 +26,7 @@ from asperity.scenes.population import answers
 from asperity.schema import VERSION, Values, group, provenance, rolling, spectra, tree
 from asperity.structures.rail_poles import RailBetween, RailPoles
 from asperity.structures.track import Track
+from asperity.written_numbers import rounded
 
 METHOD = (
     "O. Lundberg, licentiate thesis, KTH Stockholm (2014).",
@@ -129,9 +130,9 @@ def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
 def _numerics(computed: Computed, choice: LawChoice | None, losses: Values) -> Iterator[tuple[str, str]]:
     """Numbers of the computation: names and values."""
     case, (nx, ny), runs = computed.case, computed.shape.body.shape, computed.runs
-    yield "time step", f"{case.time_step * 1e6:.4g} µs"
+    yield "time step", f"{rounded(case.time_step * 1e6, 4)} µs"
     yield "time steps", f"{max(len(run.time) for run in runs.values()) - 1}"
-    yield "contact window", f"{nx} × {ny} cells of {case.contact.spacing * 1e6:.4g} µm"
+    yield "contact window", f"{nx} × {ny} cells of {rounded(case.contact.spacing * 1e6, 4)} µm"
     if (device := find_device()) is not None:
         yield "scans solved on", device.name
     if (reduction := computed.reduction) is not None:
@@ -159,7 +160,7 @@ def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
         yield "start positions of the moving kernel", f"{weights.shape[0]} in a bay"
         yield (
             "length of the moving kernel",
-            f"{(weights.shape[1] - 1) * step:.3g} s, {weights.shape[1]} steps",
+            f"{rounded((weights.shape[1] - 1) * step)} s, {weights.shape[1]} steps",
         )
         if isinstance(over.direct, RailPoles):
             yield "track in time", f"{over.direct.count} poles"

@@ -19,6 +19,7 @@ from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
+from asperity.written_numbers import between, rounded
 
 
 def track_spectra(computed: compute.Computed) -> Values:
@@ -280,10 +281,12 @@ def planned_track(prepared: PreparedCase) -> list[tuple[str, str]]:
         )
         doubts += noise.findings_of_labels(case)
     warn_of_findings(doubts)
-    frequencies = f"critical speed {track.critical_speed:.4g} m/s"
+    frequencies = f"critical speed {rounded(track.critical_speed, 4)} m/s"
     if not track.continuous:
-        passing = f"sleeper passing {case.speed / track.sleeper_spacing:.4g} Hz"
-        frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, {passing}, {frequencies}"
+        passing = f"sleeper passing {rounded(case.speed / track.sleeper_spacing, 4)} Hz"
+        frequencies = (
+            f"pinned–pinned {rounded(track.pinned_pinned_frequency, 4)} Hz, {passing}, {frequencies}"
+        )
     points = ", ".join(f"{position:g} m" for position in case.point_positions)
     return [
         ("track", frequencies),
@@ -300,9 +303,9 @@ def _rows_of_bays(track: Track) -> Iterator[tuple[str, str]]:
     if track.bays is None:
         return
     lengths, count = track.sleeper_spacing * track.bays.lengths, track.cell_bays
-    parts = [f"{lengths.min():.3g} to {lengths.max():.3g} m long"]
+    parts = [f"{between(rounded(lengths.min()), rounded(lengths.max()))} m long"]
     for name in ("pad", "ballast"):
         stiffness = 1e-6 * getattr(track, f"{name}_stiffness") * np.array(getattr(track.bays, name))
         if np.ptp(stiffness):
-            parts.append(f"{name} {stiffness.min():.3g} to {stiffness.max():.3g} MN/m")
-    yield "bays that differ", f"{count} in {track.period:.4g} m, then they repeat: {', '.join(parts)}"
+            parts.append(f"{name} {between(rounded(stiffness.min()), rounded(stiffness.max()))} MN/m")
+    yield "bays that differ", f"{count} in {rounded(track.period, 4)} m, then they repeat: {', '.join(parts)}"

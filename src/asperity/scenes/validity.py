@@ -11,12 +11,13 @@ from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
 from asperity.reporting import data
 from asperity.rolling.roll import RolledBodies
-from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice, written_force
+from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice
 from asperity.scenarios.preparing import ContactTrial
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, spectra
 from asperity.spectra import nominal_frequency, say_little
+from asperity.written_numbers import force, rounded
 
 AREA = (0.9, 0.7)
 """Real contact area over that of smooth bodies: warned of, and out of range, below."""
@@ -125,13 +126,13 @@ def _slope(prepared: PreparedCase) -> Finding:
     pressure = 0.5 * prepared.shape.modulus * slope
     return Finding(
         "rms slope of the samples, Sdq",
-        f"{slope:.2g}",
+        rounded(slope, 2),
         f"up to {SLOPE[0]:g}",
         _grade(slope, SLOPE),
         "An elastic half-space is for small slopes, and elastic asperities carry about E* Sdq/2 = "
-        f"{pressure / 1e9:.2g} GPa.",
+        f"{rounded(pressure / 1e9, 2)} GPa.",
         "Leave out the short waves that yield at first touch by surface.shortest, or give contact.hardness.",
-        f"rms slope {slope:.2g}",
+        f"rms slope {rounded(slope, 2)}",
         tuple(prepared.case.laws),
     )
 
@@ -170,7 +171,7 @@ def _cut_off(computed: Computed) -> Iterator[Finding]:
         percent(visited),
         "below 1 %",
         Grade.of_share(visited) if visited and not spec_of(main).is_smooth else None,
-        f"Forces above {held:.3g} N are too small: their contacts are larger than the window.",
+        f"Forces above {force(held)} are too small: their contacts are larger than the window.",
         reduction.remedy,
         f"{percent(visited)} of the time in contacts that the window cuts off",
         (main,),
@@ -257,8 +258,10 @@ def _compared(bands: xarray.Dataset, main: str, others: dict[str, str]) -> Itera
     """Distance of the main law to the linear laws, the one of practice first, and to the reference."""
     for law, name in others.items():
         ends = (bands[name][end] for end in (bands[name].values.argmin(), bands[name].values.argmax()))
-        told = (f"{data.signed(float(end))} dB ({nominal_frequency(float(end.band))})" for end in ends)
-        yield f"{' to '.join(told)} over {law}"
+        low, high = ((f"{data.signed(float(end))} dB", nominal_frequency(float(end.band))) for end in ends)
+        alike = low[0] == high[0]  # in all bands
+        told = low[0] if alike else f"{low[0]} ({low[1]}) to {high[0]} ({high[1]})"
+        yield f"{told} over {law}"
     to_reference = bands.get(spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE.name)
     if to_reference is not None and to_reference.attrs["reference"] != main:
         yield f"at most {float(abs(to_reference).max()):.1f} dB from {to_reference.attrs['reference']}"
@@ -266,7 +269,7 @@ def _compared(bands: xarray.Dataset, main: str, others: dict[str, str]) -> Itera
 
 def _varies(run: RolledBodies) -> str:
     """Rms of the contact forces, each about its own mean."""
-    return written_force(float(np.sqrt(np.mean(np.var(run.contact_force, axis=-1)))))
+    return force(float(np.sqrt(np.mean(np.var(run.contact_force, axis=-1)))))
 
 
 def _contact(run: RolledBodies, body: str) -> str:
@@ -276,8 +279,8 @@ def _contact(run: RolledBodies, body: str) -> str:
         return f"The {body} never loses contact"
     if one:
         times = f"{len(starts)} time{'s' if len(starts) > 1 else ''}"
-        return f"The {body} loses contact {times}, {share[0]:.2g} % of the time"
-    lost = [f"{k + 1} ({part:.2g} %)" for k, part in enumerate(share) if part > 0.0]
+        return f"The {body} loses contact {times}, {rounded(share[0], 2)} % of the time"
+    lost = [f"{k + 1} ({rounded(part, 2)} %)" for k, part in enumerate(share) if part > 0.0]
     if not lost:
         return f"None of the {len(share)} contacts is ever lost"
     named = ", ".join(lost[:MOST_NAMED]) + (" and others" if len(lost) > MOST_NAMED else "")

@@ -12,6 +12,7 @@ from asperity.reporting.figure import Lines, Of, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.schema import bearing, provenance, rolling, spectra
+from asperity.written_numbers import between, force, rounded
 
 CORNERS = 180
 RING = 0.35
@@ -276,7 +277,7 @@ def lines_table(tree: DataTree) -> ReportTable:
         lines, sides, found = (data.of_law(tree, each, law) for each in entries)
         told = zip(lines[:, 0], sides[:, 0], found, strict=True)
         columns[f"{law}, m/s²"] = text_cells(
-            f"{line:.3g}, side bands {data.in_percent(side / line)}" if seen else "–"
+            f"{rounded(line)}, side bands {data.in_percent(side / line)}" if seen else "–"
             for line, side, seen in told
         )
     note = "First line of each part in the envelope, where it and its multiples stand out."
@@ -301,8 +302,8 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
     moved = 1e6 * data.values(tree, bearing.RING_DISPLACEMENT)
     stiffness = 1e-6 * data.values(tree, bearing.RING_STIFFNESS)
     told = (
-        f"{way} {np.round(to.mean(), 6) + 0.0:.4g} µm, varying by {np.ptp(to):.2g} µm, "
-        f"{each.min():.4g} to {each.max():.4g} MN/m"
+        f"{way} {rounded(np.round(to.mean(), 6) + 0.0, 4)} µm, varying by {rounded(np.ptp(to), 2)} µm, "
+        f"{between(rounded(each.min(), 4), rounded(each.max(), 4))} MN/m"
         for way, to, each in zip(data.words(tree, bearing.DIRECTION), moved, stiffness, strict=True)
     )
     note = (
@@ -318,9 +319,9 @@ def bearing_answers(tree: DataTree) -> Answers:
     velocities = data.of_law(tree, bearing.BAND_VELOCITY, _main(tree))[0]
     lead, _, more = str(data.stated(tree, provenance.VERDICT) or "").partition(". ")
     numbers = [
-        HeadlineNumber(band, f"{1e6 * rms:.3g} µm/s", "rms radial velocity, outer ring")
+        HeadlineNumber(band, f"{rounded(1e6 * rms)} µm/s", "rms radial velocity, outer ring")
         for band, rms in zip(data.words(tree, bearing.JUDGED_BAND), velocities, strict=True)
     ]
     load, peak = (float(data.values(tree, each).max()) for each in (bearing.BALL_LOAD, bearing.PEAK_PRESSURE))
-    heaviest = HeadlineNumber("heaviest load of a ball", f"{load:.3g} N", f"{peak / 1e9:.2f} GPa at rest")
+    heaviest = HeadlineNumber("heaviest load of a ball", force(load), f"{peak / 1e9:.2f} GPa at rest")
     return Answers(f"{lead}.", more, (*numbers, heaviest))

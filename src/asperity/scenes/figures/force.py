@@ -16,6 +16,7 @@ from asperity.scenes.figures import track
 from asperity.schema import rolling, spectra
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, CONTACT_FORCE_LEVEL
 from asperity.spectra import energy_sum
+from asperity.written_numbers import rounded
 
 TO_REFERENCE = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
 FORCES = Of(rolling.CONTACT_FORCE, "{law}")
@@ -69,6 +70,7 @@ def force_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         yield f"Below: level minus that of {others}; positive where linear contact underestimates."
     for law in solved.values():
         yield f"Last: level minus that of {law}, which solves or scans the whole contact."
+    yield data.of_first_contact(tree)
     yield panels.shaded_words(tree)
 
 
@@ -96,6 +98,7 @@ def force_psd(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         yield f"Dotted: the pinned–pinned frequency as the moving wheel meets it, {words}."
     if turns := data.number(tree, schema.WHEEL_REVOLUTION_FREQUENCY):
         yield f"The wheel turns at {turns:.1f} Hz."
+    yield data.of_first_contact(tree)
     yield panels.shaded_words(tree)
 
 
@@ -169,6 +172,7 @@ def force_envelope(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         f"highest force. {_WORDS} The CSV file holds lowest and highest force in each of {count} stretches, "
         "run.nc every time step."
     )
+    yield data.of_first_contact(tree)
 
 
 @figure("Contact force around its largest value", Of(rolling.TIME), FORCES, rows=around_peak)
@@ -179,8 +183,9 @@ def force_peak(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     peak = int(np.nanargmax(force))
     where = f"{data.engineering(force[peak], 'N')} at {data.values(tree, rolling.TIME)[peak]:.4f} s"
     if data.present(tree, rolling.POSITION):
-        where += f", {data.values(tree, rolling.POSITION)[peak]:.3f} m along the rail"
+        where += f", {data.values(tree, rolling.POSITION)[peak]:.3f} m along the path"
     yield f"Around the largest force of the main law, {law}: {where}. Every time step. {_WORDS}"
+    yield data.of_first_contact(tree)
 
 
 FORCE = force_envelope, force_peak, force_psd, force_bands
@@ -195,7 +200,7 @@ MEAN = "energy mean"
 
 def _names(tree: DataTree) -> list[str]:
     offsets = data.values(tree, rolling.OFFSET)
-    return [f"contact {number}, {offset:.4g} m" for number, offset in enumerate(offsets, 1)]
+    return [f"contact {number}, {rounded(offset, 4)} m" for number, offset in enumerate(offsets, 1)]
 
 
 _LEVELS = Of(CONTACT_FORCE_LEVEL, "{contact}", called={"contact": _names})

@@ -16,6 +16,7 @@ from asperity.scenes.figures import force, track
 from asperity.schema import rolling
 from asperity.schema.spectra import BAND, FREQUENCY
 from asperity.spectra import a_weighted_total
+from asperity.written_numbers import rounded
 
 _SPECTRUM = "acceleration PSD / dB re (1 µm/s²)²/Hz", schema.ACCELERATION_REFERENCE**2
 _AT = "x = {sensor:g} m"
@@ -71,7 +72,7 @@ def _passing_tones(tree: DataTree) -> tuple[list[Mark], str]:
     low, high = panels.frequency_range(tree)
     tones = data.values(tree, schema.PASSING_FREQUENCY)
     rules = chart.Rules(tones[(tones > low) & (tones < high)][:10], dashes=(1, 2), width=0.6)
-    first = f"{float(tones[0]):.4g} Hz at which contacts pass a place"
+    first = f"{rounded(float(tones[0]), 4)} Hz at which contacts pass a place"
     return [rules], f"Dotted: k v/L, multiples of the {first}; ten are drawn."
 
 
@@ -149,7 +150,7 @@ def point_labels(tree: DataTree) -> list[str]:
     for point in data.values(tree, schema.ROLLING_POINT).tolist():
         place = (point / bay) % 1 if bay else np.nan
         name = ", over a sleeper" if min(place, 1 - place) < 0.02 else ""
-        found.append(f"x = {point:.4g} m{', mid-span' if abs(place - 0.5) < 0.02 else name}")
+        found.append(f"x = {rounded(point, 4)} m{', mid-span' if abs(place - 0.5) < 0.02 else name}")
     return found
 
 

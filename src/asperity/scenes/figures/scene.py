@@ -12,6 +12,7 @@ from asperity.reporting.figure import Lines, Series, figure
 from asperity.scenes.figures.track import sleepers_between
 from asperity.scenes.schema import ROLLING_POINT, ROLLING_SENSOR
 from asperity.schema import contact, rolling
+from asperity.written_numbers import rounded
 
 Lengths = dict[str, float]
 """Of a scene, by name, m."""
@@ -161,7 +162,7 @@ def scene(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     count, radius = len(_beginning(of, "contact")) or 1, _radius(of)
     contacts = "One contact" if count == 1 else f"{count} contacts"
     told = f"{contacts}, rolled from {of['record begins at x']:.4g} m to {of['record ends at x']:.4g} m (red)"
-    told += f" at {speed:.3g} m/s" if speed else ""
+    told += f" at {rounded(speed)} m/s" if speed else ""
     told += (
         f"; radius {data.engineering(radius, 'm', 2)}, drawn larger where it is not seen" if radius else ""
     )

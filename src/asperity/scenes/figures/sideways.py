@@ -16,6 +16,7 @@ from asperity.scenes.figures import force
 from asperity.scenes.figures.measured import over_bands
 from asperity.schema import rolling, spectra
 from asperity.structures.squeal import FREE_OF_AXLE
+from asperity.written_numbers import rounded
 
 FORCE, _DOTS = schema.LATERAL_FORCE_LEVEL, (1.5, 1.5)
 
@@ -47,7 +48,11 @@ def lateral_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     facts = schema.CONTACT_PLACE, schema.RAIL_CONTACT_PLACE, schema.STICK_STIFFNESS
     place, head, stiffness = (data.number(tree, fact) for fact in facts)
     if place is not None and stiffness is not None:
-        own = "" if head in (None, place) else f" of the tread, and {1e3 * head:.3g} mm off that of the head"
+        own = (
+            ""
+            if head in (None, place)
+            else f" of the tread, and {rounded(1e3 * head)} mm off that of the head"
+        )
         yield (
             f"The contact is {1e3 * place:.3g} mm off the middle{own}, positive towards the field side, and "
             f"as stiff as {data.engineering(stiffness, 'N/m')} sideways (Mindlin)."
@@ -134,7 +139,7 @@ def stick_and_slip(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     )
     # where full slip begins, by creepage and by load
     share, load = (data.number(tree, each) for each in (schema.FULL_SLIP_SCALE, schema.FULL_SLIP_LOAD))
-    begins = "is not reached" if share is None else f"begins at {share:.3g} times these creepages"
+    begins = "is not reached" if share is None else f"begins at {rounded(share)} times these creepages"
     under = "under any load of the run" if load is None else f"up to {data.engineering(load, 'N')}"
     yield f"Full slip {begins}, by smooth bodies under the working load; with them all slips {under}."
 

@@ -12,6 +12,7 @@ from asperity.reporting.figure import Lines, Of, figure
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
 from asperity.schema import contact, rolling
+from asperity.written_numbers import rounded
 
 # --- marks of the track: its natural frequencies, the passing of sleepers
 
@@ -240,7 +241,7 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         "roughness level / dB re 1 µm", [line.y for line in drawn], span=100.0, step=5.0
     )
     along = panels.band_axis(np.sort(wavelength), "wavelength / mm", _millimetres)
-    along = panels.long_waves_left(along, f"frequency v/λ, at v = {speed or 0.0:.3g} m/s", speed)
+    along = panels.long_waves_left(along, f"frequency v/λ, at v = {rounded(speed or 0.0)} m/s", speed)
     doubtful = panels.doubtful_boxes(wavelength, data.doubtful(tree, PRODUCT)[kept])
     yield Panel(along, axis, (*doubtful, *_contact(tree, wavelength), *drawn), height=4.2)
     yield (

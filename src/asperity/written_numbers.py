@@ -1,0 +1,67 @@
+"""Numbers as people write them: without a computer's exponents, units with prefixes, one thing singular."""
+
+import math
+
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SMALLEST, _LARGEST = 1e-4, 1e6
+"""Sizes between which all digits are written out."""
+
+
+def rounded(value: float, digits: int = 3) -> str:
+    """Write a number with so many digits, without zeros at its end: ``"4670"``, or ``"6.1·10⁻⁶"``."""
+    short = f"{value:.{digits}g}"
+    if "e" not in short:
+        return short
+    number = float(short)
+    if _SMALLEST <= abs(number) < _LARGEST:
+        places = max(0, digits - 1 - math.floor(math.log10(abs(number))))
+        written = f"{number:.{places}f}"
+        return written.rstrip("0").rstrip(".") if "." in written else written
+    mantissa, _, exponent = short.partition("e")
+    return f"{mantissa}·10{str(int(exponent)).translate(SUPERSCRIPT)}"
+
+
+def plain(value: float, digits: int = 3) -> str:
+    """Write a number as `rounded` does, with a true minus sign."""
+    return rounded(value, digits).replace("-", "−")
+
+
+def signed(value: float, places: int = 1) -> str:
+    """Write a difference with its sign, but for one that is rounded to zero; a dash where there is none."""
+    if not math.isfinite(value):
+        return "–"
+    number = round(float(value), places)
+    return f"{number:+.{places}f}".replace("-", "−") if number else f"{0.0:.{places}f}"
+
+
+def engineering(value: float, unit: str, digits: int = 3) -> str:
+    """Write `value`, in the SI `unit`, with a prefix: ``engineering(3.1e-7, "m")`` is ``"310 nm"``."""
+    if not math.isfinite(value):
+        return "–"
+    if unit in ("", "1"):
+        return plain(value, digits)
+    if unit == "rad":
+        return f"{math.degrees(value):.0f}°"
+    power = 2 if unit == "m²" else 1  # a prefix on a squared unit is squared with it
+    value += 0.0  # no minus before zero
+    exponent = 0 if value == 0 else 3 * math.floor(math.floor(math.log10(abs(value))) / (3 * power))
+    exponent = min(max(exponent, -12 if power == 1 else -9), 0 if power == 2 else 12)
+    scaled = value / 10.0 ** (exponent * power)
+    places = 0 if scaled == 0 else max(0, digits - 1 - math.floor(math.log10(abs(scaled))))
+    return f"{scaled:.{places}f} {PREFIXES[exponent]}{unit}".replace("-", "−")
+
+
+def force(newtons: float) -> str:
+    """Write a force in N or kN with three digits: ``"65 kN"``."""
+    return f"{rounded(newtons)} N" if abs(newtons) < 1e3 else f"{rounded(newtons / 1e3)} kN"
+
+
+def between(low: str, high: str) -> str:
+    """Two ends in words; one of them where both are written alike: ``"0.6 to 0.7"``, ``"0.6"``."""
+    return low if low == high else f"{low} to {high}"
+
+
+def counted(count: int, thing: str) -> str:
+    """A number of things: ``"1 sample"``, ``"8 samples"``."""
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"

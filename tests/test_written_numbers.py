@@ -1,0 +1,56 @@
+"""Numbers for people have no exponent of a computer, and two ends that read alike are told once."""
+
+import re
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import asperity
+from asperity.reporting.data import typed_words
+from asperity.written_numbers import between, counted, force, plain, rounded
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "written"),
+    [
+        (4670.4, 3, "4670"), (65e3, 3, "65000"), (123456.0, 3, "123000"), (999_999.0, 3, "1·10⁶"),
+        (1.234e-4, 3, "0.000123"), (-6.06e-6, 3, "-6.06·10⁻⁶"), (2.5e8, 2, "2.5·10⁸"), (0.5, 3, "0.5"),
+        (0.0, 3, "0"), (56.0, 3, "56"), (float("nan"), 3, "nan"), (float("inf"), 3, "inf"),
+    ],
+)  # fmt: skip
+def test_digits_are_written_out(value, digits, written):
+    assert rounded(value, digits) == written
+    assert plain(value, digits) == written.replace("-", "−")
+
+
+def test_ends_counts_and_forces_are_in_words():
+    assert (between("0.6", "0.6"), between("0.6", "0.7")) == ("0.6", "0.6 to 0.7")
+    assert [counted(n, "sample") for n in (0, 1, 8)] == ["0 samples", "1 sample", "8 samples"]
+    assert [force(each) for each in (5.04, 65e3, 999.6)] == ["5.04 N", "65 kN", "1000 N"]
+
+
+@pytest.mark.parametrize(
+    ("values", "factor", "unit", "words"),
+    [
+        ([80 / 3.6, 85.7232 / 3.6, 120 / 3.6], 1 / 3.6, "km/h", ["80 km/h", "85.72 km/h", "120 km/h"]),
+        ([80.001, 80.002], 1.0, "m/s", ["80.001 m/s", "80.002 m/s"]),  # as many digits as tell them apart
+        ([123456.0, 7.0], 1.0, "N", ["123456 N", "7 N"]),
+    ],
+)
+def test_swept_values_have_as_many_digits_as_tell_them_apart(values, factor, unit, words):
+    attrs = {"units": "1", "typed_unit": unit, "typed_factor": factor}
+    assert typed_words(xr.DataArray(values, dims="key", attrs=attrs)) == words
+
+
+def test_no_force_in_newtons_is_written_with_a_computer_s_exponent():
+    """``{load:.3g} N`` reads 6.5e+04 N from 1 kN on; `force` writes it."""
+    package = Path(asperity.__file__).parent
+    found = [
+        f"{path.relative_to(package)}: {line.strip()}"
+        for room in ("scenarios", "scenes", "reporting", "contact", "studies", "optimising")
+        for path in sorted((package / room).rglob("*.py"))
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if re.search(r":\.[1-4]g\} N(?![\w/ ])", line)
+    ]
+    assert not found
