@@ -42,7 +42,15 @@ test_what_cannot_be_is_told = refusals(
     ({"housing": {"width": "10 mm"}}, r"housing\.width: received 0.01; allowed: only together with lobes"),
     ({"inner_raceway": {"waves": [3]}}, r"inner_raceway\.waves: received 1 waves and 0 amplitudes"),
     ({"fault": {"length": "0.2 mm"}}, r'fault\.on: received nothing; allowed: "outer", "inner", "ball"'),
-    ({"fault": {"on": "outer"}}, r"fault\.length of a fault, a pit: received nothing"),
+    (
+        {"fault": {"on": "outer"}},
+        r"fault\.length of a fault, a pit: received nothing; allowed: a length along the path, as 0.18 mm. Give its "
+        r"length",
+    ),
+    (
+        {"fault": {"on": "outer", "shape": "map", "length": "1 mm"}},
+        r"fault\.length of a fault, a map: received one; allowed: none: a map has its own. Remove its length",
+    ),
     ({"fault": PIT | {"on": "ball", "ball": 10}}, r"fault\.ball: received 10; allowed: 1 to 9"),
     ({"fault": PIT | {"ball": 2}}, r'fault\.ball: received 2; allowed: only together with on = "ball"'),
     ({"fault": [{}, PIT]}, r"fault\.on: received nothing; .* Or remove the section"),

@@ -11,6 +11,7 @@ from scipy.io import wavfile
 
 from asperity.case.cases import as_case
 from command_line import call, words_of
+from faulty_signals import faulty_signal
 from small_cases import BEARING
 
 RATE = 12_000
@@ -40,6 +41,16 @@ def pulses(tone, seed=0):
     struck[(np.arange(int(2 * tone)) / tone * RATE).astype(int)] = 1.0
     rung = np.convolve(struck, np.exp(-900 * TIME[:150]) * np.sin(2 * np.pi * 3000 * TIME[:150]))
     return rung[: TIME.size] + 0.02 * np.random.default_rng(seed).normal(size=TIME.size)
+
+
+def shaft(speed):
+    """Lines of a shaft that turns."""
+    return sum(0.05 * np.sin(2 * np.pi * n * speed * TIME) for n in (1, 2, 3, 4))
+
+
+def last_line(said):
+    """What is said last."""
+    return said.strip().splitlines()[-1]
 
 
 def heard(signal, *words):
@@ -80,15 +91,21 @@ def test_a_bearing_of_ones_own_and_options_that_are_stronger():
     assert "per turn" in call("bearing", "6205", "--axial", "10 N").stdout
 
 
-def test_a_fault_is_heard_and_drawn(drawn):
-    said = words_of(heard(pulses(108.0), "-o", "b.png"))
-    assert "There are lines of the outer ring at 108." in said
-    assert "1800 1/min as given: it has no clear lines" in said
-    assert re.search(r"outer ring +107.5\d .*? 108.\d+ +3.6\d+ +\+0.\d+ % +1 2 3 4 5 ", said)
+def test_a_fault_is_heard_and_drawn_with_the_kurtogram_that_its_band_is_from(drawn):
+    said = words_of(heard(pulses(108.0) + shaft(29.95), "-o", "b.png"))
+    assert said.endswith(" % sure.")
+    assert "There are lines of the outer ring at 108.0 Hz, resolved to 0.5 Hz: " in said
+    speed = float(re.search(r"([\d.]+) 1/min by lines of the shaft", said)[1])
+    assert speed == pytest.approx(1797.0, abs=3.0)
+    assert re.search(r"outer ring +107.\d\d .*? 108.\d+ +3.6\d+ +\+0.\d+ % +1 2 3 4 5 ", said)
     ((chart, title),) = drawn
-    assert title.startswith("run.npy: There are lines of the outer ring")
-    found = chart.panels[0].marks[-1]
-    np.testing.assert_allclose(found.x, 108.0 * np.arange(1, 6), atol=1.0)
+    assert title.replace("\n", " ").startswith("run.npy: There are lines of the outer ring")
+    envelope, kurtogram = chart.panels
+    np.testing.assert_allclose(envelope.marks[-1].x, 108.0 * np.arange(1, 6), atol=1.0)
+    field, edges = kurtogram.marks
+    low, high = edges.at
+    column, _ = np.unravel_index(np.nanargmax(field.values), field.values.shape)
+    assert low <= (column + 0.5) / field.values.shape[0] * 6.0 <= high
 
 
 @pytest.mark.parametrize(("share", "faults"), [(0.05, ["outer"]), (0.6, ["outer", "ball"])])
@@ -100,11 +117,75 @@ def test_of_two_faults_a_faint_one_is_left_to_what_modulates_the_clear_one(share
 
 
 def test_noise_is_no_fault_and_lines_of_the_turns_give_the_speed():
-    turns = sum(0.05 * np.sin(2 * np.pi * n * 29.8 * TIME) for n in (1, 2, 3))
-    said = heard(pulses(1e-9) + turns, "--band", "all")
-    assert "No lines of rings or balls stand out." in said
-    speed = float(re.search(r"([\d.]+) 1/min by its lines", said)[1])
+    said = heard(pulses(1e-9) + shaft(29.8), "--band", "all")
+    assert last_line(said).startswith("No lines of rings or balls stand out: no sign of a fault, ")
+    speed = float(re.search(r"([\d.]+) 1/min by lines of the shaft", said)[1])
     assert speed == pytest.approx(60 * 29.8, abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("told", "begin", "part"),
+    [
+        ("1800 1/min", "There are lines of the inner ring at 162.", ["inner"]),
+        (
+            "3600 1/min",
+            r"The line of the shaft is not at 60 Hz \(3600 1/min\), as told, but at (29.9|30)",
+            [],
+        ),
+        (
+            "1980 1/min",
+            r"The line of the shaft is not at 33 Hz \(1980 1/min\), as told, but at (29.9|30)",
+            [],
+        ),
+    ],
+)
+def test_a_wrong_speed_is_said_first_and_no_fault_is_listed_at_it(told, begin, part):
+    signal = faulty_signal("inner", 30.0, RATE, 2.0, noise=0.1)
+    np.save("run.npy", signal)
+    words = ("bearing", "6205", "--speed", told, "--signal", "run.npy", "--rate", "12 kHz")
+    document = json.loads(call(*words, "--json").stdout)
+    assert re.match(begin, document["verdict"]), document["verdict"]
+    assert document["faults"] == part
+    assert document["speed"] == pytest.approx(30.0, rel=0.01)
+    assert last_line(call(*words).stdout) == document["verdict"]
+    assert f"{100 * document['confidence']:.0f} % sure" in document["verdict"]
+
+
+def test_a_wrong_rate_is_said_as_a_wrong_speed_is():
+    np.save("run.npy", faulty_signal("outer", 30.0, RATE, 2.0, noise=0.1))
+    words = ("bearing", "6205", "--speed", "30 Hz", "--signal", "run.npy", "--rate", "48 kHz")
+    said = last_line(call(*words).stdout)
+    told = re.match(
+        r"The line of the shaft is not at 30 Hz \(1800 1/min\), as told, but at ([\d.]+) Hz ", said
+    )
+    assert "there are lines of the outer ring" in said
+    assert float(told[1]) == pytest.approx(120.0, rel=0.005)
+
+
+def test_of_a_fault_that_is_known_to_be_there_a_record_without_its_sign_says_so():
+    signal = shaft(30.0) + 0.5 * np.random.default_rng(1).normal(size=TIME.size)
+    said = last_line(heard(signal, "--known", "ball"))
+    assert said.endswith("Of the fault of the ball that is known to be there, the record holds no sign.")
+    assert "known" not in last_line(heard(signal + 3.0 * pulses(108.0), "--known", "outer"))
+
+
+def test_a_record_of_a_tenth_of_a_second_says_what_is_too_short_and_judges_the_rings():
+    signal = faulty_signal("outer", 30.0, 25_600.0, 0.1, noise=0.1, jitter=0.0)
+    np.save("run.npy", signal)
+    words = ("bearing", "6205", "--speed", "1800 1/min", "--signal", "run.npy", "--rate", "25.6 kHz")
+    assert re.match(
+        r"The record of 0.1 s is too short for the line of the shaft at 30 Hz \(1800 1/min\), which takes "
+        r"0.2 s: the speed "
+        r"is not confirmed. If it is right, there are lines of the outer ring at 1\d\d Hz, resolved to 10 "
+        r"Hz: \d+ % sure.",
+        last_line(call(*words).stdout),
+    )
+    np.save("run.npy", signal[:256])
+    said = call(*words, code=2).stderr
+    assert (
+        "duration of the signal: received 0.01 s; allowed: at least 0.0369 s, to resolve the lines of the "
+        "inner ring" in said
+    )
 
 
 @pytest.mark.parametrize("kind", ["npz", "txt", "wav"])
@@ -115,7 +196,7 @@ def test_signals_come_in_files_of_several_kinds(kind):
     wavfile.write("run.wav", RATE, (signal / np.abs(signal).max() * 32000).astype("<i2"))
     words += ["--rate", "12 kHz"] if words else []
     told = call("bearing", "6205", "--speed", "1800 1/min", "--signal", f"run.{kind}", *words).stdout
-    assert "There are lines of the outer ring at 108." in told
+    assert "there are lines of the outer ring at 10" in told
     assert "2 s at 12000 Hz" in told
 
 

@@ -1,18 +1,24 @@
 """``asperity bearing``: how a ball bearing carries a load, its tones, and which of them its signal holds."""
 
 import math
+import textwrap
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from asperity import diagnostics
-from asperity.arguments import Array, require
+from asperity.arguments import require
 from asperity.case.ball_bearing import BearingKeys, read_bearing
-from asperity.diagnostics import LineFamily
+from asperity.diagnostics import Diagnosis, LineFamily, Spectrum, Tone
+from asperity.diagnostics.decision import NAMES
+from asperity.diagnostics.verdict import faint_lines
+from asperity.reporting.chart import Chart
 from asperity.reporting.figure import write_chart
 from asperity.scenes.bearing import HARMONICS, REACH, envelope_group, static_group, tones_group
-from asperity.scenes.figures.bearing import ball_contacts_table, envelope_spectrum, load_zone
+from asperity.scenes.figures.bearing import ball_contacts_table, envelope_spectrum, kurtogram_panel, load_zone
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, PRINTED_BY, Kinematics
 from asperity.structures.bearing_statics import doubt_speed
@@ -23,10 +29,11 @@ from asperity.units import quantity
 
 Band = tuple[float, float] | None
 WIDTH = 122
-TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "band", "lines", "faults",
-        "verdict")  # fmt: skip
+TITLE = 105
+"""Characters of a line of a title."""
+TOLD = ("balls", "displacement", "stiffness", "imbalance", "tones", "speed", "speed_is", "band", "lines",
+        "faults", "confidence", "resolution", "verdict")  # fmt: skip
 """Names of what is said to programs."""
-NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
 MEANINGS = {
     "outer": "BPFO: balls pass a spot of it",
     "inner": "BPFI: balls pass a spot of it",
@@ -50,7 +57,6 @@ def show_bearing(
         say(f"Balls and diameters as printed by {PRINTED_BY}; grooves and clearance chosen here or given.")
     told = _heard(keys, signal, picture, **hints) if signal else _carried(keys, picture)
     if picture is not None:
-        say(f"Picture: {picture.resolve()}")
         told["files"] = {"picture": picture}
     return {"bearing": name, **dict.fromkeys(TOLD), **told}
 
@@ -75,6 +81,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     say(f"Balance to {found.imbalance:.0e} of the load.")
     if picture is not None:
         write_chart(load_zone.drawn(at_rest).chart, f"{keys.name or 'bearing'}, {load}", picture)
+        say(f"Picture: {picture.resolve()}")
     names = ("azimuth", "inner_load", "outer_load", "inner_angle", "inner_pressure", "outer_pressure")
     balls = {name: getattr(found, name)[0] for name in names}
     tones = {"cage": turning.cage} | {part: turning.tone(part) for part in PARTS}
@@ -111,60 +118,111 @@ def _heard(
     array: str | None,
     column: int | None,
     band: str | None,
+    known: str | None,
 ) -> dict[str, Any]:
     allowed = "the speed at which it was recorded"
     require(keys.speed, "speed", "nothing", allowed, 'Give it, as in --speed "1800 1/min".')
-    nominal = float(keys.speed or 0.0)
+    told = float(keys.speed or 0.0)
     given = None if rate is None else quantity(rate, "Hz")
     with spelled(on_command_line):
         values, sampled = read_signal(signal, given, array=array, column=column)
-    lines = diagnostics.find_lines(diagnostics.amplitude_spectrum(values, sampled), nominal, harmonics=3)
-    speed = nominal * (1.0 + lines.deviation) if lines.found else nominal
+    tones, edges = keys.bearing.tones(axial=keys.axial > 0.0), _band(band, sampled)
+    diagnosis = diagnostics.diagnose(values, sampled, tones, told, band=edges)
+    speed, within = diagnosis.speed, diagnosis.record.limits
     name, length = f"{signal.name}{f', {array}' if array else ''}", values.size / sampled
-    origin = "by its lines" if lines.found else "as given: it has no clear lines"
+    origin = {
+        "confirmed": "by lines of the shaft",
+        "unconfirmed": "as given: lines of the shaft are not found",
+        "contradicted": f"by what its lines fit, not {60.0 * told:.5g} 1/min as given",
+    }[diagnosis.speed_is]
     say(f"{name}: {values.size} samples, {length:.4g} s at {sampled:g} Hz; {60.0 * speed:.5g} 1/min {origin}")
-    turning = keys.bearing.kinematics(speed, contact_angle=None if keys.axial else 0.0)
-    within = _band(values, sampled, band, 5.0 * turning.ball_pass_inner)
-    spectrum = diagnostics.envelope_spectrum(values, sampled, within)
-    explained = diagnostics.explained_lines(spectrum, turning.families | {"turns": (speed, 0.0)})
-    found = {part: lines for part, lines in explained.items() if part in PARTS}
-    faults = diagnostics.clear_families(found)
-    _say_lines(found, faults, speed, within)
-    there = [f"lines of the {NAMES[each]} at {found[each].frequency[0]:.1f} Hz" for each in faults]
-    verdict = f"There are {' and '.join(there)}." if there else "No lines of rings or balls stand out."
-    say(verdict)
+    struck = diagnostics.envelope_spectrum(values, sampled, within)
+    found = _lines_of(struck, tones, diagnosis)
+    faults = [each.part for each in diagnosis.parts]
+    _say_lines(found, tones, diagnosis)
+    if faint := faint_lines(diagnosis):
+        say(faint)
+    verdict = diagnostics.diagnosis_sentence(diagnosis, known)
     if picture is not None:
-        highest = REACH * HARMONICS * max(tone for tone, _ in turning.families.values())
-        drawn = envelope_group(["signal"], [spectrum], [found], [faults], highest, "unit of the file")
-        chart = envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart
-        write_chart(chart, f"{name}: {verdict}", picture)
+        nominal = {part: tone.order * speed for part, tone in tones.items()}
+        highest = REACH * HARMONICS * max(nominal.values())
+        shown = {part: lines or _no_lines(nominal[part]) for part, lines in found.items()}
+        drawn = envelope_group(["signal"], [struck], [shown], [faults], highest, "unit of the file")
+        turning = keys.bearing.kinematics(speed, contact_angle=0.0)
+        envelope = envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart
+        bands = kurtogram_panel(diagnostics.kurtogram(values, sampled), within)
+        title = textwrap.fill(f"{name}: {verdict}", TITLE)
+        write_chart(Chart((*envelope.panels, bands)), title, picture)
+        say(f"Picture: {picture.resolve()}")
+    say(verdict)
     names = ("expected", "deviation", "found", "frequency", "amplitude", "background", "side_bands")
-    told = {part: {name: getattr(found[part], name) for name in names} for part in PARTS}
-    return {"speed": speed, "band": within, "lines": told, "faults": faults, "verdict": verdict}
+    lines = {part: each and {name: getattr(each, name) for name in names} for part, each in found.items()}
+    return {
+        "speed": speed,
+        "speed_is": diagnosis.speed_is,
+        "band": within,
+        "lines": lines,
+        "faults": [] if diagnosis.speed_is == "contradicted" else faults,
+        "confidence": diagnosis.confidence,
+        "resolution": diagnosis.resolution,
+        "verdict": verdict,
+    }
 
 
-def _band(values: Array, rate: float, band: str | None, least: float) -> Band:
-    """Band of the envelope, Hz: found, given as ``"2 kHz, 4 kHz"``, or none for ``"all"``."""
+def _band(band: str | None, rate: float) -> Band:
+    """Band of the envelope, Hz, given as ``"2 kHz, 4 kHz"`` or ``"all"``; None where it is to be found."""
     if band is None:
-        return diagnostics.impulsive_band(values, rate, least)
+        return None
     edges = [] if band == "all" else [quantity(part.strip(), "Hz") for part in band.split(",")]
     require(len(edges) in (0, 2), "--band", band, '"all", or two frequencies, as "2 kHz, 4 kHz"')
-    return (edges[0], edges[1]) if edges else None
+    return (edges[0], edges[1]) if edges else (0.0, 0.5 * rate)
 
 
-def _say_lines(found: dict[str, LineFamily], faults: list[str], speed: float, band: Band) -> None:
+def _lines_of(
+    spectrum: Spectrum, tones: Mapping[str, Tone], diagnosis: Diagnosis
+) -> dict[str, LineFamily | None]:
+    """Lines of each part at the speed of a diagnosis: of those it names where it found them; None if not
+    resolved."""
+    named = {each.part: each.tone for each in diagnosis.parts}
+    reached, step = spectrum[0][-1], spectrum[0][1]
+    found: dict[str, LineFamily | None] = {}
+    for part, tone in tones.items():
+        nominal, distance = tone.order * diagnosis.speed, tone.modulation * diagnosis.speed
+        at = named.get(part, nominal)
+        if not 8.0 * step <= at <= 0.9 * reached:
+            found[part] = None
+            continue
+        low, high = tone.lowest / tone.order - 1.0, tone.highest / tone.order - 1.0
+        slip = 0.0 if part in named else max(-low, high, 0.0)
+        lines = diagnostics.find_lines(spectrum, at, distance=distance, slip=slip)
+        off = lines.frequency[0] / nominal - 1.0 if part in named else lines.deviation
+        found[part] = replace(lines, expected=nominal, deviation=off)
+    return found
+
+
+def _no_lines(expected: float) -> LineFamily:
+    """What stands for lines that the record does not resolve."""
+    missing = np.full(HARMONICS, np.nan)
+    return LineFamily(expected, 0.0, 0.0, missing, missing, missing, np.full((HARMONICS, 2), np.nan))
+
+
+def _say_lines(
+    found: Mapping[str, LineFamily | None], tones: Mapping[str, Tone], diagnosis: Diagnosis
+) -> None:
     rows = []
-    for part in PARTS:
-        lines = found[part]
+    named = {each.part for each in diagnosis.parts}
+    for part, lines in found.items():
+        expected = f"{tones[part].order * diagnosis.speed:.2f}"
+        if lines is None:
+            rows.append([NAMES[part], expected, "not resolved", *["–"] * 6])
+            continue
         line, height = lines.frequency[0], lines.amplitude[0]
         sides = "±{:.4g}: {:.2f}, {:.2f}".format(lines.distance, *lines.side_bands[0] / height)
-        stand = " ".join(str(n + 1) for n in np.flatnonzero(lines.prominent))
-        seen = [f"{line:.2f}", f"{line / speed:.3f}", f"{100 * lines.deviation:+.2f} %"]
+        stand = " ".join(str(n + 1) for n in np.flatnonzero(lines.prominent)) or "–"
+        seen = [f"{line:.2f}", f"{line / diagnosis.speed:.3f}", f"{100 * lines.deviation:+.2f} %"]
         seen += [stand, sides if lines.distance else "–"]
         heights = [f"{height:.3g}", f"{height / lines.background[0]:.1f}"]
-        rows.append(
-            [NAMES[part], f"{lines.expected:.2f}", *heights, *(seen if part in faults else ["–"] * 5)]
-        )
+        rows.append([NAMES[part], expected, *heights, *(seen if part in named else ["–"] * 5)])
     columns = [
         "of",
         "expected / Hz",
@@ -175,5 +233,6 @@ def _say_lines(found: dict[str, LineFamily], faults: list[str], speed: float, ba
         "off by",
         "harmonics",
     ]
-    where = "all frequencies" if band is None else f"{band[0]:g} to {band[1]:g} Hz"
+    low, high = diagnosis.record.limits
+    where = f"{low:g} to {high:g} Hz"
     say_table(f"Lines in the envelope of {where}", [*columns, "side bands / line"], rows, width=WIDTH)

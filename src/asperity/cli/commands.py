@@ -338,5 +338,10 @@ BEARING = [
     click.Option(
         ["--band"], help="Frequencies of the envelope: 'all', or as '2 kHz, 4 kHz'. [default: found]"
     ),
+    click.Option(
+        ["--known"],
+        type=click.Choice(["outer", "inner", "ball"]),
+        help="Part that is known to have a fault: whether the record shows it is said.",
+    ),
 ]
 """What a bearing carries, and where its signal is."""

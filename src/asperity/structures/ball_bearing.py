@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from asperity.arguments import ArrayLike, not_negative, one_of, real, require, whole
 from asperity.contact.hertz import Hertz, in_groove
+from asperity.diagnostics.hypotheses import Tone
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
 
@@ -33,6 +34,8 @@ STATIC_PRESSURE = 4.2e9
 """Peak pressure, Pa, from which on a dent of about 1/10 000 of the ball's diameter remains (ISO 76:2006)."""
 HARDNESS = 7.0e9
 """Of hardened rings, Pa: about 700 HV, chosen here."""
+SLIP = 0.01
+"""Share by which the cage of a bearing that is loaded lags at most."""
 PARTS = ("outer", "inner", "ball")
 """What can be wavy or faulty."""
 STEEL = MATERIALS["steel"]
@@ -273,6 +276,39 @@ class BallBearing:
         cage = 0.5 * (inner * (1.0 - gamma) + outer * (1.0 + gamma)) * (1.0 - slip)
         spin = 0.5 * speed * self.pitch_diameter / self.ball_diameter * (1.0 - gamma**2)
         return Kinematics(self.balls, inner, outer, cage, spin)
+
+    def tones(self, axial: bool = False) -> dict[str, Tone]:
+        """Tones of faults of its parts per turn, and how far contact angle and slip may move them.
+
+        Parameters
+        ----------
+        axial : bool
+            Whether it carries an axial load, so that the balls touch at the free angle. It does where it has
+            a preload, or is described by a contact angle.
+
+        Returns
+        -------
+        dict
+            `asperity.diagnostics.Tone` of ``"outer"``, ``"inner"`` and ``"ball"``: in pure rolling at that
+            angle, or at 0 of a radial load, with limits from 10 degrees less to 5 more than the free angle,
+            15 degrees at least, and for a cage that lags by up to 1 %.
+        """
+        pressed = axial or self.preload > 0.0 or self.contact_angle is not None
+        angle = self.free_angle if pressed else 0.0
+        least = max(angle - math.radians(10.0), 0.0)
+        most = max(self.free_angle + math.radians(5.0), math.radians(15.0))
+        here = self.kinematics(1.0, contact_angle=angle).families
+        limits = [
+            self.kinematics(1.0, contact_angle=each, slip=slip)
+            for each in (least, angle, most)
+            for slip in (0.0, SLIP)
+        ]
+        found = {}
+        for part, (order, modulation) in here.items():
+            tones = [each.tone(part) for each in limits]
+            slower = 1.0 - SLIP if part == "ball" else 1.0  # its spin follows that of the cage
+            found[part] = Tone(order, modulation, min(tones) * slower, max(tones))
+        return found
 
     def loaded(
         self,

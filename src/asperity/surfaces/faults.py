@@ -21,6 +21,12 @@ _TURN = "-360 deg to 360 deg: raceways end there"
 _OFFSET = "-1 m to 1 m: raceways end"
 _RIM = Number(at_least=0, at_most=10)
 _COUNT = "1 to 500: balls are fewer"
+NEEDED = {
+    "length": "a length along the path, as 0.18 mm",
+    "depth": "a depth, or the height of a particle, as 0.28 mm",
+    "map": "a file of heights, as spall.x3p",
+}
+"""What a fault takes, and its kind: a map has its own size, the others have no map."""
 
 
 @dataclass(frozen=True)
@@ -86,11 +92,17 @@ class Fault:
 
     def __post_init__(self) -> None:
         checked_parameters(self)
-        for name in ("length", "depth", "map"):
-            right = (name == "map") == (self.shape == "map")
-            received, allowed = ("nothing", "one") if right else ("one", "none")
+        for name, needed in NEEDED.items():
+            wanted = (name == "map") == (self.shape == "map")
             given = getattr(self, name) is not None
-            require(given == right, f"{name} of a fault, a {self.shape}", received, allowed)
+            what = f"{name} of a fault, a {self.shape}"
+            require(given or not wanted, what, "nothing", needed, f"Give its {name}.")
+            without = (
+                "none: a map has its own"
+                if self.shape == "map"
+                else "none: only a fault of shape map has one"
+            )
+            require(wanted or not given, what, "one", without, f"Remove its {name}.")
         own: dict[str, Any] = {"width": self.width or self.length}
         if self.map is not None:
             laid = map_of(self.map)

@@ -1,15 +1,14 @@
-"""What is read from the signal of a bearing: its envelope spectrum, lines in it, and velocities in bands."""
+"""Lines in a spectrum: a fundamental, its harmonics and side bands, and of several families which is
+which."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, finite_array, one_of, positive, real, require, whole
-from asperity.spectra import band_energies, psd
+from asperity.arguments import Array, positive, real, require, whole
+from asperity.diagnostics.envelopes import Spectrum
 
-ISO_BANDS = ((50.0, 300.0), (300.0, 1800.0), (1800.0, 10_000.0))
-"""Hz, of a bearing at 1800 1/min (ISO 15242-2)."""
 STANDS_OUT = 4.0
 """Amplitude of a line over the median around it: noise is above in one of 65 000 places."""
 COUNTED = 30.0
@@ -20,135 +19,8 @@ FEWEST = 20
 """Places that this covers at least, on either side."""
 WITHIN = 2
 """Places of the spectrum by which a line may be beside its harmonic."""
-SPLITS = (1, 2, 3, 4, 6, 8, 12, 16)
-"""Numbers of bands of equal width among which the most impulsive one is sought."""
 FAINT = 0.1
 """Share of the clearest family below which another one is not told apart from what modulates it."""
-LEAST_POWER = 0.02
-"""Share of the mean square that it holds: filters leave next to nothing, where every click stands out."""
-Spectrum = tuple[Array, Array]
-
-
-def _signal(signal: ArrayLike, rate: float) -> tuple[Array, float]:
-    values = finite_array("signal", signal, "a series of finite numbers", shape=(None,))
-    require(values.size >= 64, "signal", f"{values.size} samples", "at least 64")
-    require(np.ptp(values) > 0.0, "signal", "the same number throughout", "a signal that varies")
-    return values - values.mean(), positive("sampling rate (Hz)", rate)
-
-
-def amplitude_spectrum(signal: ArrayLike, rate: float) -> Spectrum:
-    """Amplitudes of the lines of a signal, by a Hann window over all of it.
-
-    Parameters
-    ----------
-    signal : array_like (n,)
-        In any unit.
-    rate : float
-        Samples per second, Hz.
-
-    Returns
-    -------
-    frequency, amplitude : ndarray (f,)
-        Hz, at half the step that the record resolves, and in the unit of the signal: a sine of amplitude A
-        has A at its frequency, less at most 4 % between two places.
-    """
-    from scipy.fft import next_fast_len, rfft
-
-    values, rate = _signal(signal, rate)
-    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * (np.arange(values.size) + 0.5) / values.size)
-    size = next_fast_len(2 * values.size, real=True)
-    amplitude = 2.0 * np.abs(rfft(values * window, size)) / window.sum()
-    frequency = np.arange(amplitude.size) * (rate / size)
-    return frequency, np.asarray(amplitude, dtype=np.float64)
-
-
-def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] | None = None) -> Spectrum:
-    """Amplitudes of the lines in the envelope of a signal: how often, and how evenly, it is struck.
-
-    Parameters
-    ----------
-    signal : array_like (n,)
-        Acceleration, in any unit.
-    rate : float
-        Samples per second, Hz.
-    band : (float, float), optional
-        Part of its frequencies that is taken, as around a resonance, Hz; all by default.
-
-    Returns
-    -------
-    frequency, amplitude : ndarray (f,)
-        Hz, and in the unit of the signal; of the magnitude of the analytic signal, less its mean. Up to the
-        width of the band.
-
-    Notes
-    -----
-    R. B. Randall and J. Antoni, Mechanical Systems and Signal Processing 25 (2011) 485.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from asperity.diagnostics import envelope_spectrum
-    >>> time = np.arange(8192) / 8192
-    >>> struck = (1 + 0.5 * np.cos(2 * np.pi * 40 * time)) * np.sin(2 * np.pi * 1500 * time)
-    >>> frequency, amplitude = envelope_spectrum(struck, 8192, (1000, 2000))
-    >>> print(f"{frequency[amplitude.argmax()]:.0f} Hz, {amplitude.max():.3f}")
-    40 Hz, 0.500
-    """
-    values, rate = _signal(signal, rate)
-    low, high = (0.0, 0.5 * rate) if band is None else band
-    received, allowed = f"{low:g} to {high:g} Hz", f"rising, within 0 to {0.5 * rate:g} Hz"
-    require(0.0 <= low < high <= 0.5 * rate, "band", received, allowed)
-    frequency, amplitude = amplitude_spectrum(np.abs(_analytic(values, rate, low, high)), rate)
-    kept = frequency <= high - low
-    return frequency[kept], amplitude[kept]
-
-
-def _analytic(values: Array, rate: float, low: float, high: float) -> Array:
-    """Analytic signal (n,) of what lies between two frequencies, Hz."""
-    from scipy.fft import fft, ifft
-
-    lines, frequency = fft(values), np.fft.fftfreq(values.size, 1.0 / rate)
-    return np.asarray(ifft(np.where((frequency >= low) & (frequency <= high), 2.0, 0.0) * lines))
-
-
-def impulsive_band(signal: ArrayLike, rate: float, least_width: float = 0.0) -> tuple[float, float]:
-    """Band in which a signal is most impulsive: of the largest spectral kurtosis.
-
-    Parameters
-    ----------
-    signal : array_like (n,)
-        In any unit.
-    rate : float
-        Samples per second, Hz.
-    least_width : float
-        Width of the band, at least, Hz: an envelope holds frequencies up to it.
-
-    Returns
-    -------
-    low, high : float
-        Hz: of 1 to 16 equal bands those that hold at least 2 % of the mean square.
-
-    Notes
-    -----
-    E|z|⁴/(E|z|²)² − 2 of the analytic signal in each band; J. Antoni, Mechanical Systems and Signal
-    Processing 21 (2007) 108, of whose faster search this is the plain form.
-    """
-    from scipy.fft import ifft, rfft
-
-    values, rate = _signal(signal, rate)
-    lines, best = rfft(values), (-np.inf, 0.0, 0.5 * rate)
-    for count in SPLITS:
-        width = 0.5 * rate / count
-        if count > 1 and width < least_width:
-            break
-        for number in range(count):
-            first, last = (1 + (lines.size - 1) * each // count for each in (number, number + 1))
-            part = ifft(lines[first:last])  # at the rate that the band needs
-            power = np.abs(part) ** 2
-            if 2.0 * power.sum() * power.size >= LEAST_POWER * (values**2).sum() * values.size:
-                peaks = float((power**2).mean() / power.mean() ** 2 - 2.0)
-                best = max(best, (peaks, number * width, (number + 1) * width))
-    return best[1], best[2]
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,43 +173,3 @@ def _without(frequency: Array, amplitude: Array, lines: LineFamily) -> Array:
     left = amplitude.copy()
     left[places] = np.minimum(left[places], np.median(amplitude))
     return left
-
-
-def band_velocities(
-    signal: ArrayLike,
-    rate: float,
-    bands: tuple[tuple[float, float], ...] = ISO_BANDS,
-    *,
-    quantity: str = "velocity",
-) -> Array:
-    """Rms velocity of a signal in bands, by default those in which bearings are judged.
-
-    Parameters
-    ----------
-    signal : array_like (n,)
-        Velocity, m/s, or acceleration, m/s².
-    rate : float
-        Samples per second, Hz.
-    bands : tuple of (float, float)
-        Edges, Hz.
-    quantity : {"velocity", "acceleration"}
-        What the signal is.
-
-    Returns
-    -------
-    ndarray (bands,)
-        m/s; NaN where the sampling does not reach the upper edge.
-
-    Notes
-    -----
-    ISO 15242-2: the outer ring, radially, at 1800 1/min of the inner one under an axial load. Its bands have
-    slopes at their edges; these end there.
-    """
-    values, rate = _signal(signal, rate)
-    one_of("quantity", quantity, ("velocity", "acceleration"))
-    frequency, density = psd(values, 1.0 / rate)
-    if quantity == "acceleration":
-        density = density / (2.0 * np.pi * np.maximum(frequency, frequency[1])) ** 2
-    low, high = np.array(bands, dtype=float).T
-    rms = np.sqrt(np.maximum(band_energies(frequency, density, low, high), 0.0))
-    return np.where(high <= 0.5 * rate, rms, np.nan)

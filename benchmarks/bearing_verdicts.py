@@ -1,0 +1,307 @@
+"""How often the part of a bearing that is struck is named rightly, wrongly or not, at right and wrong speeds
+and rates.
+
+    python benchmarks/bearing_verdicts.py DATA --save after.json           # of the package that Python finds
+    PYTHONPATH=old/src python benchmarks/bearing_verdicts.py DATA --save before.json
+    python benchmarks/bearing_verdicts.py DATA --page before.json after.json
+    python benchmarks/bearing_verdicts.py DATA --calibrate                 # confidence, on pieces of the
+    records
+
+DATA is a folder with cwru_6205_12k.npz, mfpt_nice_48k.npz and hit_6205_51k.npz: records of one bearing each,
+whose fault is in its name. `asperity bearing` is called on every whole record with its speed and sampling
+rate, and with wrong ones; what its last line says is counted. `--calibrate` cuts the records into pieces,
+asks at right and at wrong speeds, and fits the coefficients of `asperity.diagnostics.confidence`, once for
+all records and once without each of them, from which the table of how often a confidence is right is made.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+NICE = """
+balls = 8
+ball_diameter = "5.97 mm"
+pitch_diameter = "31.62 mm"
+inner_conformity = 0.52
+outer_conformity = 0.52
+clearance = "0 um"
+"""
+SETS = {
+    "cwru": ("cwru_6205_12k.npz", 12_000.0),
+    "mfpt": ("mfpt_nice_48k.npz", 48_828.0),
+    "hit": ("hit_6205_51k.npz", 51_200.0),
+}
+SPEEDS = (1.0, 0.97, 1.03, 0.9, 1.1, 0.7, 1.3, 0.5, 2.0)
+RATES = (0.25, 0.5, 0.8, 1.25, 2.0, 4.0)
+PIECES = ((1.0, 3), (0.5, 2), (0.25, 1))
+"""Duration, s, and number of pieces of each record."""
+ALLOWED = 0.031
+"""Share by which a speed that is named may be off the nominal one: those of these rigs are so far."""
+PART = re.compile(r"lines of the (outer|inner|ball)")
+DOUBT = re.compile(r"line of the shaft")
+
+
+def records(folder: Path):
+    """Yield set, name, file, signal, sampling rate, nominal speed and part of each record."""
+    for of, (file, rate) in SETS.items():
+        with np.load(folder / file) as data:
+            for name in data.files:
+                part = (
+                    "outer"
+                    if "OR" in name or "outer" in name
+                    else "inner"
+                    if "I" in name or "inner" in name
+                    else None
+                )
+                number = {"cwru": name.split("_")[0], "mfpt": "1500", "hit": name.split("_")[-1]}[of]
+                yield of, name, folder / file, data[name].astype(float), rate, float(number) / 60.0, part
+
+
+# --- what the last line says of whole records
+
+
+def last_lines(folder: Path) -> list[dict[str, object]]:
+    """What the command says of every record, at every speed and rate."""
+    from click.testing import CliRunner
+
+    from asperity.cli import main
+
+    asked = [(speed, 1.0) for speed in SPEEDS] + [(1.0, rate) for rate in RATES]
+    found = []
+    with tempfile.TemporaryDirectory() as scratch:
+        (nice := Path(scratch) / "nice.toml").write_text(NICE)
+        for of, name, file, _, rate, speed, part in records(folder):
+            for by_speed, by_rate in asked:
+                words = [
+                    "bearing",
+                    str(nice) if of == "mfpt" else "6205",
+                    "--speed",
+                    f"{speed * by_speed:.8g} Hz",
+                ]
+                words += ["--signal", str(file), "--array", name, "--rate", f"{rate * by_rate:.8g} Hz"]
+                said = CliRunner().invoke(main, words)
+                last = said.output.strip().splitlines()[-1]
+                row = {
+                    "set": of,
+                    "record": name,
+                    "part": part,
+                    "speed": by_speed,
+                    "rate": by_rate,
+                    "said": last,
+                }
+                found.append(
+                    row | {"outcome": outcome(last, part, speed * by_rate, (by_speed, by_rate) != (1.0, 1.0))}
+                )
+    return found
+
+
+def outcome(said: str, part: str | None, speed: float, wrong: bool) -> str:
+    """What a last line does: names the part "rightly" or "wrongly" or "not", or says so "in doubt" of the
+    speed."""
+    named, doubted = sorted(set(PART.findall(said))), bool(DOUBT.search(said))
+    if not named:
+        return "speed doubted, no part" if doubted else "no part"
+    right = named == [part]
+    if elsewhere := re.search(r"but at ([\d.]+) Hz", said):
+        right = right and abs(float(elsewhere[1]) / speed - 1.0) <= ALLOWED
+        return "speed doubted, part right" if right else "speed doubted, part wrong"
+    if doubted:
+        return "if the speed is right: right" if right else "if the speed is right: wrong"
+    return "part right" if right else "part wrong"
+
+
+OUTCOMES = ("part right", "part wrong", "no part", "if the speed is right: right",
+            "if the speed is right: wrong", "speed doubted, part right",
+            "speed doubted, part wrong", "speed doubted, no part")  # fmt: skip
+
+
+def page(before: Path, after: Path) -> None:
+    """Print tables of outcomes before and after."""
+    rows = {name: json.loads(path.read_text()) for name, path in (("before", before), ("after", after))}
+    kinds = {
+        "fault, right speed and rate": lambda row: row["part"] and row["speed"] == row["rate"] == 1.0,
+        "no fault, right speed and rate": lambda row: not row["part"] and row["speed"] == row["rate"] == 1.0,
+        "fault, speed ±3 %": lambda row: (
+            (row["part"] and abs(row["speed"] - 1.0) == abs(0.03))
+            or (row["part"] and row["speed"] in (0.97, 1.03))
+        ),
+        "fault, speed ±10 %": lambda row: row["part"] and row["speed"] in (0.9, 1.1),
+        "fault, speed ±30 %": lambda row: row["part"] and row["speed"] in (0.7, 1.3),
+        "fault, speed half or twice": lambda row: row["part"] and row["speed"] in (0.5, 2.0),
+        "no fault, wrong speed": lambda row: not row["part"] and row["speed"] != 1.0,
+        "fault, wrong rate": lambda row: row["part"] and row["rate"] != 1.0,
+        "no fault, wrong rate": lambda row: not row["part"] and row["rate"] != 1.0,
+    }
+    print(f"| asked with | | {' | '.join(OUTCOMES)} |")
+    print(f"|---|---|{'---:|' * len(OUTCOMES)}")
+    for kind, held in kinds.items():
+        for name, found in rows.items():
+            count = Counter(row["outcome"] for row in found if held(row))
+            cells = [str(count[each] or "–") for each in OUTCOMES]
+            print(f"| {kind if name == 'before' else ''} | {name} | {' | '.join(cells)} |")
+    print("\n| record | fault | right speed and rate, before | after |\n|---|---|---|---|")
+    both = zip(rows["before"], rows["after"], strict=True)
+    for old, new in both:
+        if new["speed"] == new["rate"] == 1.0:
+            print(
+                f"| {new['set']} {new['record']} | {new['part'] or 'none'} | {old['said']} | {new['said']} |"
+            )
+
+
+# --- how sure, on pieces of records
+
+
+def pieces(folder: Path, seed: int = 1):
+    """Yield what is decided of pieces of all records at right and wrong speeds, without a confidence."""
+    from asperity.diagnostics import decision
+    from asperity.structures.ball_bearing import BallBearing
+
+    draw, asked = np.random.default_rng(seed), {}
+    decision.sure = lambda kind, margin=0.0, support=0.0: (
+        asked.update(kind=kind, margin=margin, support=support) or 0.0
+    )
+    bearings = {"mfpt": BallBearing(8, 5.97e-3, 31.62e-3)}
+    for of, name, _, signal, rate, speed, part in records(folder):
+        tones = bearings.get(of, BallBearing.named("6205")).tones()
+        for duration, count in ((signal.size / rate, 1), *PIECES):
+            for _ in range(count):
+                size = int(duration * rate)
+                first = draw.integers(0, signal.size - size + 1)
+                wrong = draw.choice(
+                    [0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0, 4.0],
+                    4 if size < signal.size else 10,
+                    False,
+                )
+                for factor in (1.0, *wrong):
+                    try:
+                        found = decision.diagnose(signal[first : first + size], rate, tones, speed * factor)
+                    except ValueError:
+                        continue  # too short for a tone
+                    right = _right(found, part, speed, factor)
+                    yield {
+                        "set": of,
+                        "record": name,
+                        "duration": duration,
+                        "factor": float(factor),
+                        "right": right,
+                        **asked,
+                    }
+
+
+def _right(found, part: str | None, speed: float, factor: float) -> bool:
+    """Whether what is said is so."""
+    right_speed = factor == 1.0
+    named = [each.part for each in found.parts]
+    if named:
+        return named == [part] and abs(found.parts[0].speed / speed - 1.0) <= ALLOWED
+    if found.speed_is == "confirmed":
+        return right_speed and part is None
+    return not right_speed or (part is None and not found.blows)
+
+
+def fitted(rows, kinds):
+    """Coefficients by kind: of kinds with features a logistic line with a penalty, of others the share, both
+    as log-odds."""
+    from scipy.optimize import minimize
+
+    found = {}
+    for kind in kinds:
+        own = [row for row in rows if row["kind"] == kind]
+        right = np.array([row["right"] for row in own], dtype=float)
+        told = np.array([row["factor"] == 1.0 for row in own], dtype=bool)
+        weight = np.where(told, 4.0, 1.0)  # as if half of all speeds were right
+        features = np.array(
+            [
+                [min(max(row["margin"], 0.0), 40.0) / 10.0, min(max(row["support"], 0.0), 40.0) / 10.0]
+                for row in own
+            ]
+        ).reshape(-1, 2)
+
+        def loss(a, features=features, right=right, weight=weight):
+            line = a[0] + features @ a[1:]
+            fit = (weight * (np.logaddexp(0.0, line) - right * line)).sum()
+            prior = np.logaddexp(0.0, a[0]) - 0.5 * a[0]  # one more, half of it right
+            return fit + prior + 0.5 * (a[1:] ** 2).sum()
+
+        slopes = [(None, None)] + [(0.0, None) if kind in WITH_FEATURES else (0.0, 0.0)] * 2
+        found[kind] = minimize(loss, np.zeros(3), bounds=slopes).x
+    return found
+
+
+WITH_FEATURES = ("fault", "fault, shaft not found", "elsewhere")
+
+
+def said_sure(row, coefficients) -> float:
+    """Confidence of a row, as the package has it."""
+    a, b, c = coefficients[row["kind"]]
+    line = a + b * min(max(row["margin"], 0.0), 40.0) / 10.0 + c * min(max(row["support"], 0.0), 40.0) / 10.0
+    return min(max(1.0 / (1.0 + np.exp(-line)), 0.01), 0.99)
+
+
+def calibrate(rows) -> None:
+    """Print coefficients, and how often what is said with a confidence is right, each record by the
+    others."""
+    kinds = sorted({row["kind"] for row in rows})
+    for kind, values in fitted(rows, kinds).items():
+        own = [row for row in rows if row["kind"] == kind]
+        print(
+            f'    "{kind}": ({", ".join(f"{each:.2f}" for each in values)}),'
+            f"  # {sum(row['right'] for row in own):.0f} of {len(own)}"
+        )
+    for group in ("record", "set"):
+        said, right, weight = [], [], []
+        for left in sorted(
+            {(row["set"], row["record"]) if group == "record" else row["set"] for row in rows}
+        ):
+            inside = lambda row: ((row["set"], row["record"]) if group == "record" else row["set"]) == left  # noqa: B023, E731
+            others = fitted([row for row in rows if not inside(row)], kinds)
+            for row in filter(inside, rows):
+                said.append(said_sure(row, others))
+                right.append(row["right"])
+                weight.append(4.0 if row["factor"] == 1.0 else 1.0)
+        said, right, weight = map(np.array, (said, right, weight))
+        print(f"\n| said, without the {group} | times | mean said | right |\n|---|---:|---:|---:|")
+        for low, high in ((0.0, 0.5), (0.5, 0.7), (0.7, 0.85), (0.85, 0.95), (0.95, 1.0)):
+            own = (said >= low) & (said < high)
+            if own.any():
+                means = (
+                    np.average(said[own], weights=weight[own]),
+                    np.average(right[own], weights=weight[own]),
+                )
+                print(
+                    f"| {100 * low:.0f} to {100 * high:.0f} % | {own.sum()} "
+                    f"| {100 * means[0]:.0f} % | {100 * means[1]:.0f} % |"
+                )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("data", type=Path)
+    parser.add_argument("--save", type=Path)
+    parser.add_argument("--page", nargs=2, type=Path, metavar=("BEFORE", "AFTER"))
+    parser.add_argument("--calibrate", action="store_true")
+    parser.add_argument("--rows", type=Path, help="of --calibrate: written there, or read from it")
+    chosen = parser.parse_args()
+    if chosen.save:
+        chosen.save.write_text(json.dumps(last_lines(chosen.data), indent=0))
+    if chosen.page:
+        page(*chosen.page)
+    if chosen.calibrate:
+        if chosen.rows and chosen.rows.exists():
+            rows = json.loads(chosen.rows.read_text())
+        else:
+            rows = [json.loads(json.dumps(row, default=float)) for row in pieces(chosen.data)]
+            if chosen.rows:
+                chosen.rows.write_text(json.dumps(rows))
+        calibrate(rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,41 @@
+"""What is read from the signal of a bearing: which part is struck, at which speed, and how sure that is.
+
+Spectra of the signal and of its envelope (`envelopes`), the band that rings (`kurtogram`), lines where they
+are expected (`lines`), what else stands out (`prominence`), what it may mean (`hypotheses`), and what is said
+of it (`decision`, `confidence`, `verdict`).
+"""
+
+from asperity.diagnostics.decision import Diagnosis, diagnose
+from asperity.diagnostics.envelopes import (
+    ISO_BANDS,
+    Spectrum,
+    amplitude_spectrum,
+    band_velocities,
+    envelope_spectrum,
+    prewhitened,
+)
+from asperity.diagnostics.hypotheses import Hypothesis, Tone
+from asperity.diagnostics.kurtogram import Kurtogram, impulsive_band, kurtogram
+from asperity.diagnostics.lines import LineFamily, clear_families, explained_lines, find_lines
+from asperity.diagnostics.verdict import diagnosis_sentence
+
+__all__ = [
+    "ISO_BANDS",
+    "Diagnosis",
+    "Hypothesis",
+    "Kurtogram",
+    "LineFamily",
+    "Spectrum",
+    "Tone",
+    "amplitude_spectrum",
+    "band_velocities",
+    "clear_families",
+    "diagnose",
+    "diagnosis_sentence",
+    "envelope_spectrum",
+    "explained_lines",
+    "find_lines",
+    "impulsive_band",
+    "kurtogram",
+    "prewhitened",
+]  # fmt: skip

@@ -1,0 +1,44 @@
+"""How sure a verdict is: how often one like it was right, on measured records."""
+
+import numpy as np
+
+COEFFICIENTS = {
+    "blows": (2.02, 0.00, 0.00),
+    "elsewhere": (0.06, 1.61, 0.42),
+    "fault": (-0.08, 1.83, 0.20),
+    "fault, shaft not found": (0.43, 1.80, 0.00),
+    "nothing": (3.48, 0.00, 0.00),
+    "sound": (0.32, 0.00, 0.00),
+}
+"""Log-odds by kind of verdict: a constant, and slopes over margin and support.
+
+By `benchmarks/bearing_verdicts.py DATA --calibrate`: pieces of 0.25 to 4 s of 28 records from three rigs,
+with and without faults of the rings, asked at right speeds and at wrong ones by a factor of 0.25 to 4, as if
+either were as frequent.
+"""
+SCALE, MOST = 10.0, 40.0
+"""Of margin and support: unit, and from where on more of it counts no more."""
+LEAST = 0.01
+"""Confidence, and doubt, at least: the records are too few for more."""
+
+
+def sure(kind: str, margin: float = 0.0, support: float = 0.0) -> float:
+    """How sure a verdict is, 0.01 to 0.99.
+
+    Parameters
+    ----------
+    kind : str
+        ``"fault"`` of a part at the speed given; ``"fault, shaft not found"``; ``"elsewhere"``: of a part at
+        another speed; ``"blows"`` of no part at the speed given; ``"sound"``: lines of the shaft and none of
+        a part; ``"nothing"``: neither.
+    margin, support : float
+        Score by which the hypothesis is ahead of the next one, and how clearly the shaft speaks for it.
+
+    Returns
+    -------
+    float
+        By a logistic line of both, fitted to measured records.
+    """
+    constant, *slopes = COEFFICIENTS[kind]
+    features = np.clip([margin, support], 0.0, MOST) / SCALE
+    return float(np.clip(1.0 / (1.0 + np.exp(-(constant + features @ slopes))), LEAST, 1.0 - LEAST))

@@ -1,0 +1,249 @@
+"""What is said of a record: whether its speed is confirmed, which parts are struck, and how sure that is."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from asperity.arguments import ArrayLike, positive, require
+from asperity.diagnostics.confidence import sure
+from asperity.diagnostics.envelopes import checked_signal
+from asperity.diagnostics.hypotheses import FINE, NEAR, BearingRecord, Hypothesis, Tone
+from asperity.diagnostics.kurtogram import impulsive_band
+from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
+
+SUPPORTED = 15.0
+"""Support from which on the shaft is believed to be where it is sought: of a wrong speed one in ten has
+it."""
+APART = 0.06
+"""Share about the speed given within which its lines are sought: one that is 3 % off is told where it is."""
+ODD = 8.0
+"""Support that the odd multiples of a speed alone must have: half of the true one has none."""
+TOLD = 15.0
+"""Score that the speed given is worth: what is told is more often right than not."""
+AHEAD, AHEAD_OF_SHAFT = 10.0, 25.0
+"""Score by which a hypothesis at another speed must be ahead to be named: where lines of the shaft are found
+at the speed given, another shaft may be near, and more is asked."""
+LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
+"""Share by which the envelope follows the blows of a fault: balls that pass a sound ring that stands in the
+load make it rise and fall, too, by 0.13 at most in the records of sound bearings that were looked at."""
+ALIKE = 8.0
+"""Score within which two parts that have the same lines are not told apart."""
+
+Speed = Literal["confirmed", "unconfirmed", "contradicted"]
+NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
+"""Of parts, as people say them."""
+CONFIRMED: Speed = "confirmed"
+UNCONFIRMED: Speed = "unconfirmed"
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What the lines of a record say.
+
+    Attributes
+    ----------
+    told, speed : float
+        Speed given, and by the lines of the shaft where they are there, Hz.
+    speed_is : {"confirmed", "unconfirmed", "contradicted"}
+        Whether lines of the shaft are where the speed given says, are not found, or are elsewhere.
+    parts : tuple of Hypothesis
+        Parts that are struck, the clearest first; none of a record without the lines of a fault. More than
+        one where several are struck.
+    alike : tuple of Hypothesis
+        Other parts that have the same lines.
+    faint : Hypothesis or None
+        Lines of a part that are too faint for a fault.
+    blows : float
+        Frequency of blows that are those of no part at this speed, Hz; 0 for none.
+    confidence : float
+        That this is so, 0 to 1.
+    resolution : float
+        Distance of two lines that are told apart, Hz: one over the duration.
+    record : BearingRecord
+        What was looked at.
+    """
+
+    told: float
+    speed: float
+    speed_is: Speed
+    parts: tuple[Hypothesis, ...]
+    alike: tuple[Hypothesis, ...]
+    faint: Hypothesis | None
+    blows: float
+    confidence: float
+    resolution: float
+    record: BearingRecord
+
+
+def diagnose(
+    signal: ArrayLike,
+    rate: float,
+    tones: Mapping[str, Tone],
+    speed: float,
+    *,
+    band: tuple[float, float] | None = None,
+) -> Diagnosis:
+    """Find which part of a bearing is struck in a record, at which speed, and how sure that is.
+
+    Parameters
+    ----------
+    signal : array_like (n,)
+        Acceleration, in any unit.
+    rate : float
+        Samples per second, Hz.
+    tones : dict
+        `Tone` by part, as of `BallBearing.tones`.
+    speed : float
+        Of the shaft, as told, Hz.
+    band : (float, float), optional
+        Of the second envelope, Hz; by default that of the largest kurtosis (`impulsive_band`).
+
+    Returns
+    -------
+    Diagnosis
+        Its confidence is calibrated on measured records (`asperity.diagnostics.confidence`).
+
+    Raises
+    ------
+    InputError
+        If the record is too short for any tone.
+
+    Notes
+    -----
+    Two envelopes are looked at, as W. A. Smith and R. B. Randall (Mechanical Systems and Signal Processing
+    64–65 (2015) 100) recommend: that of the prewhitened signal, and that of the band of the largest kurtosis.
+    In both the clearest combs of harmonics are sought at *any* speed from a quarter to four times that given.
+    Each comb may be that of each part, at the speed that follows from it; the lines of the shaft, and side
+    bands at its speed or, of a ball, at that of the cage, say which. That speaks against two mistakes: a
+    wrong speed or sampling rate, and a second ring beside the right one, whose lines f_i = Z f_r − f_o are
+    those of the right one and the shaft's.
+    """
+    values, rate = checked_signal(signal, rate)
+    told = positive("speed (Hz)", speed)
+    duration = values.size / rate
+    part, tone = max(tones.items(), key=lambda each: each[1].order)
+    needed = 2.0 * LOWEST_PLACE / (tone.order * told)
+    lines = f"the lines of the {NAMES[part]} at {tone.order * told:.4g} Hz"
+    received, allowed = f"{duration:.3g} s", f"at least {needed:.3g} s, to resolve {lines}"
+    require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
+    edges = band or impulsive_band(values, rate, HARMONICS * tone.order * told)
+    record = BearingRecord.of(values, rate, edges)
+    return decided(record, record.read(tones, told), tones, told)
+
+
+def decided(
+    record: BearingRecord, found: Sequence[Hypothesis], tones: Mapping[str, Tone], told: float
+) -> Diagnosis:
+    """Decide what the hypotheses of a record say of the speed given."""
+    ranked = sorted(found, key=lambda each: -_worth(each, told))
+    struck = [each for each in ranked if _deep(each, tones)]
+    shaft, support = shaft_near(record, told)
+    there = support >= SUPPORTED and _at(shaft, told) and _at(record.speed(shaft), told)
+    resolution = 1.0 / record.duration
+    speed, state = (record.speed(shaft), CONFIRMED) if there else (told, UNCONFIRMED)
+    bare = Diagnosis(
+        told, speed, state, (), (), None, 0.0, sure("sound" if there else "nothing"), resolution, record
+    )
+    if not struck:
+        return replace(bare, faint=next((each for each in ranked if _near(each, told)), None))
+    best, rivals = struck[0], [each for each in struck if not _same(each, struck[0])]
+    margin = _worth(best, told) - max((_worth(each, told) for each in rivals), default=0.0)
+    if _near(best, told):
+        return _of_parts(bare, best, rivals, tones, margin)
+    ahead = AHEAD_OF_SHAFT if there and not _multiple(best.speed / told) else AHEAD
+    if best.support >= SUPPORTED and margin >= ahead:
+        confidence = sure("elsewhere", margin, best.support)
+        elsewhere = replace(
+            bare, speed=record.speed(best.speed), speed_is="contradicted", confidence=confidence
+        )
+        return replace(elsewhere, parts=(best,), blows=best.tone)
+    return replace(bare, blows=best.tone, confidence=sure("sound" if there else "blows"))
+
+
+def _of_parts(
+    bare: Diagnosis, best: Hypothesis, rivals: Sequence[Hypothesis], tones: Mapping[str, Tone], margin: float
+) -> Diagnosis:
+    """What is said where a part is struck at the speed given."""
+    told, resolution = bare.told, bare.resolution
+    there = bare.speed_is == CONFIRMED or best.support >= SUPPORTED
+    near = [each for each in rivals if _near(each, told)]
+    close = [each for each in near if abs(each.tone - best.tone) <= 2.0 * resolution]
+    alike = {each.part: each for each in close if _worth(each, told) >= _worth(best, told) - ALIKE}
+    seconds = () if alike else tuple(_seconds(near, best, tones, resolution))
+    confidence = sure("fault" if there else "fault, shaft not found", margin, best.support)
+    found = replace(bare, parts=(best, *seconds), alike=tuple(alike.values()), confidence=confidence)
+    if not there:
+        return found
+    speed = bare.record.speed(best.speed)
+    return replace(found, speed=speed, speed_is=CONFIRMED if _at(speed, told) else "contradicted")
+
+
+def _worth(each: Hypothesis, told: float) -> float:
+    """Score of a hypothesis, that of the speed given the more."""
+    return each.score + (TOLD if _near(each, told) else 0.0)
+
+
+def _near(each: Hypothesis, told: float) -> bool:
+    return _at(each.speed, told)
+
+
+def _at(speed: float, told: float) -> bool:
+    """Whether a speed is the one given, but for what speeds are rounded by."""
+    return abs(speed / told - 1.0) <= NEAR + 2 * FINE
+
+
+def _multiple(ratio: float) -> bool:
+    """Whether one speed is a multiple of the other, whose lines the other has, too."""
+    larger = max(ratio, 1.0 / ratio)
+    return abs(larger / round(larger) - 1.0) <= NEAR
+
+
+def _deep(each: Hypothesis, tones: Mapping[str, Tone]) -> bool:
+    """Whether the envelope follows the blows as it does those of a fault."""
+    return each.depth >= LEAST_DEPTH["turns" if tones[each.part].modulation else "stands"]
+
+
+def _same(one: Hypothesis, other: Hypothesis) -> bool:
+    return one.part == other.part and abs(one.speed / other.speed - 1.0) <= 1.5 * NEAR
+
+
+def _seconds(
+    near: Sequence[Hypothesis], best: Hypothesis, tones: Mapping[str, Tone], resolution: float
+) -> list[Hypothesis]:
+    """Other parts that are struck, too: with lines of their own, that those of the first and the shaft do not
+    make."""
+    found: dict[str, Hypothesis] = {}
+    for each in near:
+        own = each.part != best.part and each.part not in found
+        own = own and abs(each.speed / best.speed - 1.0) <= 0.5 * NEAR  # there is one shaft
+        if own and each.depth >= 0.5 * best.depth and not _of_shaft(each, best, tones, resolution):
+            found[each.part] = each
+    return list(found.values())
+
+
+def _of_shaft(each: Hypothesis, best: Hypothesis, tones: Mapping[str, Tone], resolution: float) -> bool:
+    """Whether the tone of a part is made by the harmonics of another with the shaft or the cage.
+
+    Both rings are: f_o + f_i = Z f_r.
+    """
+    rings = {name for name in tones if name != "ball"}
+    if {each.part, best.part} <= rings:
+        return True
+    turns = np.arange(-2, 3)[:, None] * best.speed
+    made = np.arange(1, HARMONICS + 1) * best.tone + turns
+    return bool((np.abs(made - each.tone) <= 2.0 * resolution).any())
+
+
+def shaft_near(record: BearingRecord, told: float) -> tuple[float, float]:
+    """Where near a speed lines of the shaft are clearest, Hz, and how clear: 0 of twice or half the true
+    speed."""
+    speeds = told * np.exp(np.arange(-APART, APART, FINE))
+    support = record.supports(speeds)
+    at = int(support.argmax())
+    here = speeds[at : at + 1]
+    between = float(record.supports(here, offset=0.5)[0])
+    odd = float(record.supports(2.0 * here, offset=0.5)[0])
+    alone = between < support[at] and odd >= ODD
+    return float(here[0]), float(support[at]) if alone else 0.0

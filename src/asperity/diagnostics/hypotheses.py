@@ -1,0 +1,225 @@
+"""What the lines of a record may mean: which part is struck, at which speed, and what the shaft says of
+it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.diagnostics.envelopes import amplitude_spectrum, prewhitened
+from asperity.diagnostics.lines import STANDS_OUT
+from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
+
+RANGE = 4.2
+"""Factor by which the speed is sought off the one given, either way."""
+NEAR = 0.02
+"""Share by which a speed may be off the one given: motors slip, and speeds are rounded."""
+FINE = 2e-4
+"""Share between speeds that are tried."""
+TURNS = (10, 6, 6)
+"""Multiples of the speed that are sought: in the spectrum, and in both envelopes."""
+BESIDE = (1, 2, 3)
+"""Harmonics of a fault beside which the speed is sought."""
+TURNED = 25.0
+"""Multiples of the speed up to which lines are held against one another."""
+BETTER = 8.0
+"""Support by which a speed beside the one given must be better to be taken in its place."""
+WEAK = 3.0
+"""Amplitude over the median from which on lines count that lie where a part has them."""
+
+
+@dataclass(frozen=True)
+class Tone:
+    """A fault's tone, per turn of the shaft.
+
+    Parameters
+    ----------
+    order : float
+        Blows per turn in pure rolling.
+    modulation : float
+        Turns of the fault past a load that stands still, per turn of the shaft: 0 of one that stands, too.
+    lowest, highest : float
+        Orders that the contact angle and slip allow.
+    """
+
+    order: float
+    modulation: float
+    lowest: float
+    highest: float
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A part that is struck at a speed, and what speaks for it.
+
+    Attributes
+    ----------
+    part : str
+        As in the tones.
+    speed, tone : float
+        Of the shaft, and of the blows, Hz.
+    clearness : float
+        Mean logarithm of the lines of the comb over the median around them, from 0 to ln 30.
+    support : float
+        How clearly lines of the shaft, and side bands at its speed or the cage's, stand at that speed: a sum
+        of standardised values, each kind less its largest, so that one foreign line does not make it.
+    depth : float
+        Share by which the envelope rises and falls with the blows.
+    """
+
+    part: str
+    speed: float
+    tone: float
+    clearness: float
+    support: float
+    depth: float
+
+    @property
+    def score(self) -> float:
+        """By which hypotheses are ranked."""
+        return self.support + 10.0 * self.clearness + 15.0 * float(np.log(min(self.depth, 1.0) + 1e-3))
+
+
+@dataclass(frozen=True, eq=False)
+class BearingRecord:
+    """A record by what stands out in it: its spectrum and two envelopes.
+
+    Attributes
+    ----------
+    duration : float
+        s.
+    spectrum, white, band : Prominence
+        Of the signal, of the envelope of the prewhitened signal, and of that of a band.
+    limits : (float, float)
+        Of the band, Hz.
+    """
+
+    duration: float
+    spectrum: Prominence
+    white: Prominence
+    band: Prominence
+    limits: tuple[float, float]
+
+    @classmethod
+    def of(cls, signal: Array, rate: float, limits: tuple[float, float]) -> "BearingRecord":
+        """A record (n,) at a sampling rate, Hz, and the band of its second envelope."""
+        values = signal - signal.mean()
+        white = prewhitened(values, rate)
+        return cls(
+            duration=values.size / rate,
+            spectrum=Prominence.of(amplitude_spectrum(values, rate)),
+            white=Prominence.of_envelope(white, rate, (0.0, 0.5 * rate)),
+            band=Prominence.of_envelope(values, rate, limits),
+            limits=limits,
+        )
+
+    @property
+    def envelopes(self) -> tuple[Prominence, Prominence]:
+        """Both of them."""
+        return self.white, self.band
+
+    def _beside(self, view: Prominence, frequency: Array, tone: float) -> Array:
+        """Standardised values at frequencies, without those that the comb of a tone may make itself."""
+        found = view.standardised(frequency, TURNED * float(frequency.flat[0]))
+        if not tone:
+            return found
+        nearest = np.maximum(np.rint(frequency / tone), 1.0) * tone
+        return np.where(np.abs(frequency - nearest) <= (LOWEST_PLACE + 1) * view.step, np.nan, found)
+
+    def supports(
+        self, speed: Array, tone: float = 0.0, modulation: float = 1.0, offset: float = 0.0
+    ) -> Array:
+        """How clearly there are lines of the shaft at each speed (n,), Hz, as `Hypothesis.support` has it.
+
+        Without those of the comb of a tone, but with its side bands at the modulation times the speed. With
+        an offset of a half, between the multiples of the speed instead.
+        """
+        views = (self.spectrum, *self.envelopes)
+        total = np.zeros(speed.size)
+        for view, count in zip(views, TURNS, strict=True):
+            lines = speed[:, None] * (np.arange(1, count + 1) - offset)
+            own = tone if view is not self.spectrum else 0.0
+            total += _less_largest(self._beside(view, lines, own))
+        for view in self.envelopes if tone and modulation else ():
+            sides = np.array([n * tone + side * modulation * speed for n in BESIDE for side in (-1.0, 1.0)]).T
+            total += _less_largest(self._beside(view, sides, tone))
+        return np.where(speed >= 2 * LOWEST_PLACE * self.spectrum.step, total, 0.0)
+
+    def read(self, tones: Mapping[str, Tone], told: float) -> list[Hypothesis]:
+        """What the combs of the record may mean, the best first: of each comb and part the best speeds."""
+        found = []
+        for clear, tone in self._combs(tones, told):
+            depth = max(each.depth(tone) for each in self.envelopes)
+            for name, part in tones.items():
+                best, support = self._best_speed(part, tone, told / RANGE, told * RANGE)
+                near, nearly = self._best_speed(part, tone, told * (1.0 - NEAR), told * (1.0 + NEAR))
+                if best:
+                    found.append(Hypothesis(name, best, tone, clear, support, depth))
+                if near and nearly >= support - BETTER:
+                    found.append(Hypothesis(name, near, tone, clear, nearly, depth))
+        return sorted(found, key=lambda each: -each.score)
+
+    def _combs(self, tones: Mapping[str, Tone], told: float) -> list[tuple[float, float]]:
+        """How clear combs are, and their tones, Hz: the clearest at any speed, and those of the parts."""
+        lowest = min(tone.lowest for tone in tones.values()) * told / RANGE
+        highest = max(tone.highest for tone in tones.values()) * told * RANGE
+        step, places = self.white.step, self.white.amplitude.size
+        low, high = max(lowest, 2 * LOWEST_PLACE * step), min(highest, step * places / 2.2)
+        found = [each.strongest(low, high) for each in self.envelopes] if high > low else []
+        found += [self._at_its_place(part, told) for part in tones.values()]
+        return [each for each in found if each[0]]
+
+    def _at_its_place(self, part: Tone, told: float) -> tuple[float, float]:
+        """The comb, a faint one too, where a part has it at the speed given; 0 for none."""
+        low, high = part.lowest * told * (1.0 - NEAR), part.highest * told * (1.0 + NEAR)
+        found = [(0.0, 0.0)]
+        for view in self.envelopes:
+            tones = np.linspace(low, high, 3 + int(15.0 * (high - low) / view.step))
+            clear = view.combs(tones, WEAK)
+            if clear.max() > 0.0:
+                tone = view.refined(float(tones[clear.argmax()]))
+                if view.true_fundamental(tone) == tone:
+                    found.append((float(clear.max()), tone))
+        return max(found)
+
+    def _best_speed(self, part: Tone, tone: float, low: float, high: float) -> tuple[float, float]:
+        """Speed within limits at which the shaft speaks most for a part with a tone, Hz, and how much; 0 for
+        none."""
+        blurred = 0.5 * self.white.step  # a comb is known to a quarter of the resolution
+        low = max((tone - blurred) / part.highest, low)
+        high = min((tone + blurred) / part.lowest, high)
+        if low >= high:
+            return 0.0, 0.0
+        speeds = np.exp(np.arange(np.log(low), np.log(high) + FINE, FINE))
+        support = self.supports(speeds, tone, part.modulation or 1.0)
+        clearest = np.flatnonzero(support >= support.max() - 1e-9)
+        at = int(clearest[clearest.size // 2])
+        return float(speeds[at]), float(support[at])
+
+    def speed(self, about: float) -> float:
+        """Speed by the lines of the shaft near one, Hz: the median of what each line says, higher ones the
+        more.
+
+        The median, so that a foreign line beside one of them does not decide.
+        """
+        said = []
+        for view, count in zip((self.spectrum, *self.envelopes), TURNS, strict=True):
+            order = np.arange(1, count + 1)
+            middle = np.rint(order * about / view.step).astype(int)
+            inside = (middle >= LOWEST_PLACE) & (middle < view.amplitude.size - 3)
+            order, middle = order[inside], middle[inside]
+            around = middle[:, None] + np.arange(-2, 3)
+            place = np.take_along_axis(around, view.amplitude[around].argmax(axis=1)[:, None], axis=1)[:, 0]
+            clear = view.amplitude[place] >= STANDS_OUT * view.background[place]
+            said += [(p * view.step / n, n) for p, n in zip(place[clear], order[clear], strict=True)]
+        if len(said) < 3:
+            return about
+        value, weight = np.array(sorted(said)).T
+        return float(value[np.searchsorted(np.cumsum(weight), 0.5 * weight.sum())])
+
+
+def _less_largest(terms: Array) -> Array:
+    """Sums (n,) of values (n, k) without the largest of each row; what is not known counts nothing."""
+    known: Array = np.sort(np.nan_to_num(terms, nan=0.0), axis=-1)
+    return np.asarray(known[:, :-1].sum(axis=-1))

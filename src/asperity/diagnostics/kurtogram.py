@@ -1,0 +1,103 @@
+"""The kurtogram: how impulsive a signal is in each of many bands, and which one is the most."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array, ArrayLike
+from asperity.diagnostics.envelopes import checked_signal
+
+SPLITS = (1, 2, 3, 4, 6, 8, 12, 16)
+"""Numbers of bands of equal width among which the most impulsive one is sought."""
+LEAST_POWER = 0.02
+"""Share of the mean square that it holds: filters leave next to nothing, where every click stands out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Kurtogram:
+    """How impulsive a signal is in bands of several widths.
+
+    Attributes
+    ----------
+    count : ndarray (b,)
+        Number of equal bands to which each one belongs, rising.
+    low, high : ndarray (b,)
+        Edges, Hz.
+    kurtosis : ndarray (b,)
+        E|z|⁴/(E|z|²)² − 2 of the analytic signal z in the band: 0 of Gaussian noise, −1 of a sine.
+    power : ndarray (b,)
+        Share of the mean square of the signal.
+    """
+
+    count: Array
+    low: Array
+    high: Array
+    kurtosis: Array
+    power: Array
+
+    @property
+    def best(self) -> tuple[float, float]:
+        """Band of the largest kurtosis of those that hold at least 2 % of the mean square, Hz."""
+        at = int(np.argmax(np.where(self.power >= LEAST_POWER, self.kurtosis, -np.inf)))
+        return float(self.low[at]), float(self.high[at])
+
+
+def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurtogram:
+    """Lay out how impulsive a signal is over bands of several widths.
+
+    Parameters
+    ----------
+    signal : array_like (n,)
+        In any unit.
+    rate : float
+        Samples per second, Hz.
+    least_width : float
+        Width of the bands, at least, Hz: an envelope holds frequencies up to it.
+
+    Returns
+    -------
+    Kurtogram
+        Of 1, 2, 3, 4, 6, 8, 12 and 16 equal bands, as far as they are wide enough.
+
+    Notes
+    -----
+    The bands are those of the fast kurtogram, halves and thirds in turn, each cut out of the spectrum of the
+    whole record in place of a tree of filters: J. Antoni, Mechanical Systems and Signal Processing 21 (2007)
+    108.
+    """
+    from scipy.fft import ifft, rfft
+
+    values, rate = checked_signal(signal, rate)
+    lines, rows = rfft(values), []
+    for count in SPLITS:
+        width = 0.5 * rate / count
+        if count > 1 and width < least_width:
+            break
+        for number in range(count):
+            first, last = (1 + (lines.size - 1) * each // count for each in (number, number + 1))
+            part = ifft(lines[first:last])  # at the rate that the band needs
+            power = np.abs(part) ** 2
+            share = 2.0 * power.sum() * power.size / ((values**2).sum() * values.size)
+            peaks = float((power**2).mean() / max(power.mean() ** 2, 1e-300) - 2.0)
+            rows.append((float(count), number * width, (number + 1) * width, peaks, float(share)))
+    return Kurtogram(*np.array(rows).T)
+
+
+def impulsive_band(signal: ArrayLike, rate: float, least_width: float = 0.0) -> tuple[float, float]:
+    """Band in which a signal is most impulsive: of the largest spectral kurtosis.
+
+    Parameters
+    ----------
+    signal : array_like (n,)
+        In any unit.
+    rate : float
+        Samples per second, Hz.
+    least_width : float
+        Width of the band, at least, Hz: an envelope holds frequencies up to it.
+
+    Returns
+    -------
+    low, high : float
+        Hz: of 1 to 16 equal bands those that hold at least 2 % of the mean square (`Kurtogram.best`).
+    """
+    return kurtogram(signal, rate, least_width).best

@@ -1,0 +1,150 @@
+"""How far the lines of a spectrum stand out, and which combs of harmonics they form."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.arguments import Array
+from asperity.diagnostics.envelopes import Spectrum, analytic_signal, envelope_spectrum
+from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN
+
+HARMONICS = 5
+"""Of a comb: what a resonance leaves of them differs, what most of them have counts."""
+LOWEST_PLACE = 3
+"""Of a spectrum: below, the window spreads the mean."""
+PER_STEP = 3
+"""Fundamentals that are tried in the width by which the last harmonic may be beside its place."""
+CANDIDATES = 5
+"""Combs that are looked at, the clearest first."""
+COMPARABLE = 0.3
+"""Share of the lines of a comb that those between them must have to be told as its true fundamental."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prominence:
+    """A spectrum by what its lines have over the median around them.
+
+    Attributes
+    ----------
+    step : float
+        Between places, Hz: half of what the record resolves.
+    amplitude, background : ndarray (f,)
+        In the unit of the signal, and the median around each place.
+    log_ratio : ndarray (f,)
+        Logarithm of the highest of them within one resolution, from 0 to ln 30: a line shall not stand for
+        all.
+    level : float
+        Mean of the envelope, in the unit of the signal; 1 of a spectrum that is none of an envelope.
+    """
+
+    step: float
+    amplitude: Array
+    background: Array
+    log_ratio: Array
+    level: float
+
+    @classmethod
+    def of(cls, spectrum: Spectrum, level: float = 1.0) -> "Prominence":
+        """How far the lines of a spectrum stand out."""
+        from scipy.ndimage import maximum_filter1d
+
+        frequency, amplitude = spectrum
+        centres = [float(LOWEST_PLACE)]
+        while centres[-1] < amplitude.size:
+            centres.append(centres[-1] + max(0.5 * AROUND * centres[-1], 4.0))
+        medians = []
+        for centre in centres:
+            half = max(AROUND * centre, FEWEST)
+            first, last = max(int(centre - half), LOWEST_PLACE - 1), int(centre + half)
+            medians.append(np.median(amplitude[min(first, amplitude.size - 1) : last]))
+        background = np.interp(np.arange(amplitude.size), centres, medians)
+        ratio = amplitude / np.maximum(background, 1e-300)
+        ratio[: LOWEST_PLACE - 1] = 0.0
+        highest = maximum_filter1d(ratio, 2 * WITHIN + 1)
+        log_ratio = np.log(np.clip(highest, 1.0, COUNTED))
+        return cls(float(frequency[1]), amplitude, background, log_ratio, level)
+
+    @classmethod
+    def of_envelope(cls, signal: Array, rate: float, band: tuple[float, float]) -> "Prominence":
+        """How far the lines of the envelope of a signal (n,) in a band, Hz, stand out."""
+        level = float(np.abs(analytic_signal(signal, rate, *band)).mean())
+        return cls.of(envelope_spectrum(signal, rate, band), level)
+
+    def at(self, frequency: Array) -> Array:
+        """Logarithms of ratios at frequencies of any shape, Hz; NaN beyond the spectrum."""
+        place = np.rint(frequency / self.step).astype(int)
+        inside = (place >= LOWEST_PLACE) & (place < self.log_ratio.size)
+        return np.where(inside, self.log_ratio[np.clip(place, 0, self.log_ratio.size - 1)], np.nan)
+
+    def standardised(self, frequency: Array, highest: float) -> Array:
+        """What `at` finds, by the median and deviation of all places up to a highest one."""
+        around = self.log_ratio[LOWEST_PLACE : max(int(highest / self.step), LOWEST_PLACE + 8)]
+        return np.asarray((self.at(frequency) - np.median(around)) / max(float(around.std()), 1e-3))
+
+    def combs(self, fundamental: Array, least: float = STANDS_OUT) -> Array:
+        """How clearly there is a comb of each fundamental (g,), Hz: 0, or the mean logarithm over harmonics.
+
+        It is there where its first line has `least` times the background, and three of five in all.
+        """
+        terms = self.at(fundamental[:, None] * np.arange(1, HARMONICS + 1))
+        held = np.isfinite(terms).sum(axis=1)
+        clear = terms >= np.log(least)
+        there = clear[:, 0] & (clear.sum(axis=1) >= np.clip(held, 1, 3))
+        return np.where(there, np.nansum(terms, axis=1) / np.maximum(held, 1), 0.0)
+
+    def lines_of(self, fundamental: float) -> tuple[NDArray[np.intp], Array]:
+        """Places and amplitudes (h,) of the highest lines within one resolution of the harmonics of a
+        comb."""
+        last = self.amplitude.size - WITHIN - 1
+        order = np.arange(1, HARMONICS + 1)
+        middle = np.rint(order * fundamental / self.step).astype(int)
+        middle = middle[(middle >= LOWEST_PLACE) & (middle <= last)]
+        around = middle[:, None] + np.arange(-WITHIN, WITHIN + 1)
+        place = np.take_along_axis(around, self.amplitude[around].argmax(axis=1)[:, None], axis=1)[:, 0]
+        return place, self.amplitude[place]
+
+    def refined(self, fundamental: float) -> float:
+        """Fundamental of a comb by all of its lines that stand out, the higher ones the more."""
+        place, amplitude = self.lines_of(fundamental)
+        order = np.rint(place * self.step / fundamental)
+        weight = np.log(np.maximum(amplitude / np.maximum(self.background[place], 1e-300), 1.0)) + 1e-9
+        return float((weight * order * place).sum() / (weight * order**2).sum() * self.step)
+
+    def true_fundamental(self, fundamental: float) -> float:
+        """Half or a third of a fundamental where lines as high lie between those of its comb."""
+        own = np.log(self.lines_of(fundamental)[1] + 1e-300).mean()
+        for share in (2, 3):
+            between = np.array([n for n in range(1, 2 * share) if n % share]) * fundamental / share
+            if np.nan_to_num(self.at(between)).mean() < np.log(STANDS_OUT):
+                continue
+            place = np.rint(between / self.step).astype(int)
+            around = place[:, None] + np.arange(-WITHIN, WITHIN + 1)
+            height = self.amplitude[np.clip(around, 0, self.amplitude.size - 1)].max(axis=1)
+            if np.log(height + 1e-300).mean() >= own + np.log(COMPARABLE):
+                return self.true_fundamental(fundamental / share)
+        return fundamental
+
+    def depth(self, fundamental: float) -> float:
+        """Share by which the envelope rises and falls with a comb: root of the squares of its lines over its
+        mean."""
+        place, amplitude = self.lines_of(fundamental)
+        beyond = np.maximum(amplitude**2 - (0.5 * STANDS_OUT * self.background[place]) ** 2, 0.0)
+        return float(np.sqrt(beyond.sum()) / self.level)
+
+    def strongest(self, low: float, high: float) -> tuple[float, float]:
+        """How clear the clearest deep comb with a fundamental in a range is, 0 for none, and its fundamental,
+        Hz."""
+        count = int(np.ceil((high - low) / self.step * HARMONICS / WITHIN * PER_STEP)) + 2
+        fundamental = np.linspace(low, high, count)
+        clear = self.combs(fundamental)
+        found: list[tuple[float, float, float]] = []
+        for _ in range(CANDIDATES):
+            at = int(np.argmax(clear))
+            if not clear[at]:
+                break
+            clear[np.abs(fundamental - fundamental[at]) <= 2 * LOWEST_PLACE * self.step] = 0.0
+            true = self.refined(self.true_fundamental(self.refined(float(fundamental[at]))))
+            likeness = float(self.combs(np.array([true]), 1.0)[0])
+            found.append((likeness + np.log(min(self.depth(true), 1.0) + 1e-3), likeness, true))
+        return max(found)[1:] if found else (0.0, 0.0)

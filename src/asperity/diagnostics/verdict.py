@@ -1,0 +1,99 @@
+"""The diagnosis in a sentence: the speed first where it is not confirmed, then the part, how sure, how
+resolved."""
+
+import math
+
+from asperity.diagnostics.decision import NAMES, Diagnosis
+from asperity.diagnostics.prominence import LOWEST_PLACE
+
+ASKED = "is the speed or the sampling rate wrong?"
+
+
+def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
+    """A diagnosis in words, of one line.
+
+    Parameters
+    ----------
+    found : Diagnosis
+        As `asperity.diagnostics.diagnose` finds it.
+    known : {"outer", "inner", "ball"}, optional
+        Part that is known to have a fault: where the record holds no sign of it, that is said.
+
+    Returns
+    -------
+    str
+        What is not confirmed of the speed comes first; each verdict has its confidence.
+    """
+    words = [*_of_speed(found), _of_parts(found)]
+    named = {each.part for each in (*found.parts, *found.alike)}
+    if known and known not in named:
+        words.append(
+            f"Of the fault of the {NAMES[known]} that is known to be there, the record holds no sign."
+        )
+    return " ".join(words)
+
+
+def turns(speed: float) -> str:
+    """A speed, Hz, in both units."""
+    return f"{speed:.4g} Hz ({60.0 * speed:.4g} 1/min)"
+
+
+def faint_lines(found: Diagnosis) -> str:
+    """What is said of lines that no fault is named for; empty where there are none."""
+    if found.faint is None:
+        return ""
+    tone, depth = _hertz(found.faint.tone, found), 100.0 * found.faint.depth
+    why = "too little for a fault"
+    if found.faint.part == "outer":
+        why = "a sound bearing has them, too, as its balls pass through the load"
+    where = f"Faint lines at {tone}, where the {NAMES[found.faint.part]} has them"
+    return f"{where}, move the envelope by {depth:.0f} %: {why}."
+
+
+def _hertz(frequency: float, found: Diagnosis) -> str:
+    """A frequency with as many digits as the record resolves."""
+    return f"{frequency:.{max(0, math.ceil(-math.log10(found.resolution)))}f} Hz"
+
+
+def _of_speed(found: Diagnosis) -> list[str]:
+    """What is said of the speed where its lines are not where it says."""
+    if found.speed_is == "contradicted":
+        where = f"not at {turns(found.told)}, as told, but at {turns(found.speed)}"
+        return [f"The line of the shaft is {where}: {ASKED}"]
+    if found.speed_is == "confirmed":
+        return []
+    needed = 2.0 * LOWEST_PLACE / found.told
+    if found.record.duration < needed:
+        short = f"The record of {found.record.duration:.3g} s is too short for the line of the shaft"
+        return [f"{short} at {turns(found.told)}, which takes {needed:.2g} s: the speed is not confirmed."]
+    missed = f"The line of the shaft is not found at {turns(found.told)}"
+    if found.blows:
+        return [f"{missed}: {ASKED}"]
+    return [f"{missed}: the speed is not confirmed."]
+
+
+def _of_parts(found: Diagnosis) -> str:
+    """What is said of the parts, and how sure that is."""
+    resolved = f"resolved to {found.resolution:.2g} Hz"
+    sure = f"{100.0 * found.confidence:.0f} % sure"
+    if found.alike:
+        both = " and the ".join(NAMES[each.part] for each in (found.parts[0], *found.alike))
+        lines = f"Lines at {_hertz(found.parts[0].tone, found)}, {resolved}"
+        likelier = f"the {NAMES[found.parts[0].part]} is likelier"
+        return f"{lines}, agree with more than one part, the {both}; {likelier}: {sure}."
+    if found.parts:
+        there = " and ".join(
+            f"lines of the {NAMES[each.part]} at {_hertz(each.tone, found)}" for each in found.parts
+        )
+        begin = {
+            "confirmed": "There are",
+            "unconfirmed": "If it is right, there are",
+            "contradicted": "At that speed there are",
+        }[found.speed_is]
+        return f"{begin} {there}, {resolved}: {sure}."
+    if found.blows and found.speed_is == "unconfirmed":
+        return (
+            f"Blows at {_hertz(found.blows, found)}, {resolved}, are those of no part at this speed: {sure}."
+        )
+    condition = "" if found.speed_is == "confirmed" else " if it is right"
+    return f"No lines of rings or balls stand out: no sign of a fault{condition}, {sure}."

@@ -1,0 +1,294 @@
+"""What is said of a bearing's record: which part, at which speed, how sure; on made signals and on measured
+ones."""
+
+import re
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from asperity.diagnostics import (
+    Hypothesis,
+    diagnose,
+    diagnosis_sentence,
+    impulsive_band,
+    kurtogram,
+    prewhitened,
+)
+from asperity.diagnostics.confidence import COEFFICIENTS, sure
+from asperity.diagnostics.decision import Diagnosis
+from asperity.structures.ball_bearing import BallBearing
+from faulty_signals import faulty_signal, orders
+
+RATE, SPEED = 12_000.0, 29.3
+B6205 = BallBearing.named("6205")
+PARTS = ("outer", "inner", "ball")
+MADE = {
+    "plain": {},
+    "slip and jitter of 2 %": {"slip": 0.01, "jitter": 0.02, "duration": 2.0},
+    "a foreign line near twice the speed, and hum": {
+        "foreign": ((2.03 * SPEED, 0.5),),
+        "hum": 0.3,
+        "seed": 1,
+    },
+    "an angle of 13 degrees and a foreign line": {
+        "angle": np.radians(13),
+        "foreign": ((2.03 * SPEED, 0.5),),
+        "seed": 2,
+    },
+}
+
+
+def made(part, **how):
+    """A made record of a second, and what is found in it."""
+    return faulty_signal(part, SPEED, RATE, **{"duration": 1.0, "noise": 0.15} | how)
+
+
+@cache
+def found(part, kind, factor=1.0):
+    return diagnose(made(part, **MADE[kind]), RATE, B6205.tones(), SPEED * factor)
+
+
+@pytest.mark.parametrize("kind", MADE)
+@pytest.mark.parametrize("part", PARTS)
+def test_the_part_that_is_struck_is_named_and_no_other_and_the_speed_is_by_its_lines(part, kind):
+    diagnosis = found(part, kind)
+    assert [each.part for each in diagnosis.parts] == [part]
+    assert not diagnosis.alike
+    assert diagnosis.speed == pytest.approx(SPEED, rel=0.005)
+    assert diagnosis.speed_is == "confirmed"
+    (lines,) = diagnosis.parts
+    assert lines.tone == pytest.approx(orders("6205")[part] * SPEED, rel=0.02)
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0])
+@pytest.mark.parametrize("part", PARTS)
+def test_at_a_wrong_speed_no_part_is_named_but_the_one_that_is_struck_at_the_speed_of_its_lines(part, factor):
+    diagnosis = found(part, "plain", factor)
+    assert diagnosis.speed_is != "confirmed"
+    assert [each.part for each in diagnosis.parts] in ([], [part])
+    if diagnosis.parts:
+        assert diagnosis.speed == pytest.approx(SPEED, rel=0.005)
+    assert diagnosis_sentence(diagnosis).startswith("The line of the shaft is not ")
+
+
+@pytest.mark.parametrize("deep", [0.1, 0.3])
+def test_varying_compliance_of_a_sound_bearing_is_no_fault(deep):
+    """Balls pass the load: the signal and the resonance rise and fall by so much with the tone of the outer
+    ring."""
+    diagnosis = diagnose(made(None, compliance=deep, duration=2.0, noise=0.05), RATE, B6205.tones(), SPEED)
+    assert diagnosis.speed_is == "confirmed"
+    assert diagnosis.parts == ()
+    assert diagnosis_sentence(diagnosis).startswith(
+        "No lines of rings or balls stand out: no sign of a fault, "
+    )
+
+
+@pytest.mark.parametrize("part", ["outer", "inner"])
+def test_a_second_ring_that_the_shaft_makes_of_the_first_is_not_named(part):
+    """f_o + f_i = Z f_r: where the load turns with the shaft each ring has lines at which the other would."""
+    time = np.arange(2 * int(RATE)) / RATE
+    turns = 1.0 + 0.9 * np.cos(2 * np.pi * SPEED * time) + 0.5 * np.cos(2 * np.pi * 9 * SPEED * time)
+    signal = made(part, duration=2.0, noise=0.02) * turns
+    diagnosis = diagnose(signal, RATE, B6205.tones(), SPEED)
+    assert [each.part for each in diagnosis.parts] == [part]
+
+
+def test_noise_says_nothing_of_speed_and_parts():
+    for seed in range(3):
+        diagnosis = diagnose(np.random.default_rng(seed).normal(size=12_000), RATE, B6205.tones(), SPEED)
+        assert (diagnosis.parts, diagnosis.blows, diagnosis.speed_is) == ((), 0.0, "unconfirmed")
+
+
+def test_parts_whose_lines_are_the_same_are_both_named_where_nothing_else_tells_them():
+    """Eight balls of a fifth of the pitch diameter: 2 f_b = f_i, as 2 (1 - γ) = Z γ there."""
+    bearing = BallBearing(8, 6e-3, 30e-3)
+    tones = bearing.tones()
+    assert tones["ball"].order == pytest.approx(tones["inner"].order)
+    signal = faulty_signal(
+        "outer", 162.0 / 3.2 * 1.0, RATE, 2.0, bearing=(8, 0.2), noise=0.1, shaft=0.0, slip=0.0
+    )
+    tone = orders((8, 0.2), np.radians(8.0))["outer"] * 162.0 / 3.2  # even blows without side bands
+    diagnosis = diagnose(signal, RATE, tones, tone / tones["inner"].order)
+    assert {each.part for each in (*diagnosis.parts, *diagnosis.alike)} == {"inner", "ball"}
+    assert "agree with more than one part, the " in diagnosis_sentence(diagnosis)
+
+
+def test_tones_allow_for_contact_angle_and_slip():
+    """Closed forms at 15 degrees and at a cage that lags by 1 %; nominal at 0, at the free angle of an axial
+    load."""
+    tones = B6205.tones()
+    for part, order in orders("6205").items():
+        if part != "cage":
+            assert tones[part].order == pytest.approx(order)
+            inclined = orders("6205", np.radians(15.0))[part]
+            assert (
+                tones[part].lowest - 1e-9
+                <= min(order, inclined)
+                <= max(order, inclined)
+                <= tones[part].highest + 1e-9
+            )
+    assert tones["outer"].lowest == pytest.approx(0.99 * orders("6205")["outer"])
+    assert tones["outer"].highest == pytest.approx(
+        orders("6205", max(np.radians(15.0), B6205.free_angle + np.radians(5.0)))["outer"]
+    )
+    inclined = BallBearing.named("6205", contact_angle=np.radians(40.0)).tones()
+    assert inclined["outer"].order == pytest.approx(orders("6205", np.radians(40.0))["outer"])
+
+
+# --- the sentence
+
+
+OUTER = Hypothesis("outer", 30.0, 107.66, 3.0, 40.0, 1.0)
+SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, 0.834, 0.25, SimpleNamespace(duration=4.0))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({}, "No lines of rings or balls stand out: no sign of a fault, 83 % sure."),
+        (
+            {"parts": (OUTER,)},
+            "There are lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure.",
+        ),
+        (
+            {"parts": (OUTER, replace(OUTER, part="ball", tone=142.0))},
+            "There are lines of the outer ring at 107.7 Hz and lines of the ball at 142.0 Hz, resolved to "
+            "0.25 Hz: 83 % sure.",
+        ),
+        (
+            {"parts": (OUTER,), "alike": (replace(OUTER, part="ball"),)},
+            "Lines at 107.7 Hz, resolved to 0.25 Hz, agree with more than one part, the outer ring and "
+            "the ball; "
+            "the outer ring is likelier: 83 % sure.",
+        ),
+        (
+            {"parts": (OUTER,), "speed_is": "unconfirmed"},
+            "The line of the shaft is not found at 30 Hz (1800 1/min): the speed is not confirmed. If it "
+            "is right, there are "
+            "lines of the outer ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure.",
+        ),
+        (
+            {"parts": (OUTER,), "speed_is": "contradicted", "told": 33.0, "blows": 107.7},
+            "The line of the shaft is not at 33 Hz (1980 1/min), as told, but at 30 Hz (1800 1/min): is "
+            "the speed or the "
+            "sampling rate wrong? At that speed there are lines of the outer ring at 107.7 Hz, resolved "
+            "to 0.25 Hz: 83 % sure.",
+        ),
+        (
+            {"speed_is": "unconfirmed", "blows": 35.9},
+            "The line of the shaft is not found at 30 Hz (1800 1/min): is the speed or the sampling rate "
+            "wrong? Blows at "
+            "35.9 Hz, resolved to 0.25 Hz, are those of no part at this speed: 83 % sure.",
+        ),
+        (
+            {"speed_is": "unconfirmed"},
+            "The line of the shaft is not found at 30 Hz (1800 1/min): the speed is not confirmed. No "
+            "lines of rings or "
+            "balls stand out: no sign of a fault if it is right, 83 % sure.",
+        ),
+        (
+            {"speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.1), "resolution": 10.0},
+            "The record of 0.1 s is too short for the line of the shaft at 30 Hz (1800 1/min), which "
+            "takes 0.2 s: the speed "
+            "is not confirmed. No lines of rings or balls stand out: no sign of a fault if it is right, "
+            "83 % sure.",
+        ),
+    ],
+)
+def test_each_kind_of_verdict_says_the_speed_first_then_the_part_and_how_sure(change, said):
+    diagnosis = replace(SOUND, **change)
+    assert diagnosis_sentence(diagnosis) == said
+    assert (
+        diagnosis_sentence(diagnosis, "inner")
+        == f"{said} Of the fault of the inner ring that is known to be there, the record holds no sign."
+    )
+    if diagnosis.parts:
+        assert diagnosis_sentence(diagnosis, "outer") == said
+
+
+def test_confidence_rises_with_what_speaks_for_it_and_is_never_all_or_nothing():
+    for kind in COEFFICIENTS:
+        told = [sure(kind, margin, margin) for margin in (0.0, 10.0, 40.0, 1e6)]
+        assert told == sorted(told)
+        assert 0.01 <= told[0] <= told[-1] <= 0.99
+
+
+# --- band and whitening
+
+
+def test_the_kurtogram_of_noise_is_zero_and_of_a_sine_minus_one():
+    noise = kurtogram(np.random.default_rng(0).normal(size=2**17), RATE)
+    assert np.abs(noise.kurtosis).max() < 0.15
+    assert noise.power[noise.count == 16] == pytest.approx(np.full(16, 1 / 16), rel=0.05)
+    sine = kurtogram(np.sin(2 * np.pi * 700.0 * np.arange(12_000) / RATE), RATE)
+    held = (sine.low < 700.0) & (sine.high > 700.0)
+    np.testing.assert_allclose(sine.kurtosis[held], -1.0, atol=0.02)
+    blows = made("outer", resonance=0.3, noise=0.1)
+    assert kurtogram(blows, RATE, 500.0).best == impulsive_band(blows, RATE, 500.0)
+    low, high = impulsive_band(blows, RATE, 500.0)
+    assert low < 0.3 * RATE < high
+
+
+def test_whitening_makes_lines_alike_and_leaves_blows():
+    """A tone a thousand times as strong as the blows holds no more than its share of the lines afterwards."""
+    time = np.arange(12_000) / RATE
+    blows = made("outer", noise=0.01, shaft=0.0, jitter=0.0)
+    white = prewhitened(blows + 1000.0 * np.sin(2 * np.pi * 400.0 * time), RATE)
+    size = np.abs(np.fft.rfft(white))[1:-1]
+    np.testing.assert_allclose(size, np.sqrt(12_000), rtol=1e-6)
+    assert (white**4).mean() / (white**2).mean() ** 2 > 5.0
+
+
+# --- measured records
+
+DATA = Path(__file__).parents[2] / "shared" / "data"
+FILES = {"cwru_6205_12k.npz": RATE, "mfpt_nice_48k.npz": 48_828.0, "hit_6205_51k.npz": 51_200.0}
+measured = pytest.mark.skipif(
+    not all((DATA / each).is_file() for each in FILES), reason="no measured bearings in shared/data"
+)
+
+
+def records():
+    """File, name, signal, rate, speed and part of every record."""
+    for file, rate in FILES.items():
+        with np.load(DATA / file) as data:
+            for name in data.files:
+                part = next(
+                    (
+                        part
+                        for part, mark in (("outer", "OR|outer"), ("inner", "IR|inner"))
+                        if re.search(mark, name)
+                    ),
+                    None,
+                )
+                digits = {"c": name.split("_")[0], "m": "1500", "h": name.split("_")[-1]}[file[0]]
+                yield file, name, data[name].astype(float), rate, float(digits) / 60.0, part
+
+
+def tones_of(file):
+    return BallBearing(8, 5.97e-3, 31.62e-3).tones() if file.startswith("mfpt") else B6205.tones()
+
+
+@measured
+def test_of_every_measured_record_the_part_is_named_and_of_a_sound_one_none():
+    for file, name, signal, rate, speed, part in records():
+        diagnosis = diagnose(signal, rate, tones_of(file), speed)
+        assert [each.part for each in diagnosis.parts] == ([part] if part else []), name
+        assert diagnosis.speed == pytest.approx(speed, rel=0.02), name
+
+
+@measured
+def test_no_measured_record_has_a_fault_at_a_wrong_speed_without_a_word_of_the_speed():
+    """One wrong speed each, in turn; what is named nevertheless is the part that is struck, at its true
+    speed."""
+    factors = (0.9, 1.3, 0.5, 1.1, 2.0, 0.7)
+    for n, (file, name, signal, rate, speed, part) in enumerate(records()):
+        diagnosis = diagnose(signal, rate, tones_of(file), speed * factors[n % len(factors)])
+        if diagnosis.parts:
+            assert diagnosis.speed_is == "contradicted", name
+            assert [each.part for each in diagnosis.parts] == [part], name
+            assert diagnosis.speed == pytest.approx(speed, rel=0.031), name
