@@ -242,7 +242,7 @@ def said_sure(row, coefficients) -> float:
     """Confidence of a row, as the package has it."""
     a, b, c = coefficients[row["kind"]]
     line = a + b * min(max(row["margin"], 0.0), 40.0) / 10.0 + c * min(max(row["support"], 0.0), 40.0) / 10.0
-    return min(max(1.0 / (1.0 + np.exp(-line)), 0.01), 0.99)
+    return min(max(1.0 / (1.0 + np.exp(-line)), 0.03), 0.97)
 
 
 def calibrate(rows) -> None:

@@ -214,7 +214,7 @@ def test_confidence_rises_with_what_speaks_for_it_and_is_never_all_or_nothing():
     for kind in COEFFICIENTS:
         told = [sure(kind, margin, margin) for margin in (0.0, 10.0, 40.0, 1e6)]
         assert told == sorted(told)
-        assert 0.01 <= told[0] <= told[-1] <= 0.99
+        assert 0.03 <= told[0] <= told[-1] <= 0.97
 
 
 # --- band and whitening

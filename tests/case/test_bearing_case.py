@@ -44,8 +44,8 @@ test_what_cannot_be_is_told = refusals(
     ({"fault": {"length": "0.2 mm"}}, r'fault\.on: received nothing; allowed: "outer", "inner", "ball"'),
     (
         {"fault": {"on": "outer"}},
-        r"fault\.length of a fault, a pit: received nothing; allowed: a length along the path, as 0.18 mm. Give its "
-        r"length",
+        r"fault\.length of a fault, a pit: received nothing; "
+        r"allowed: a length along the path, as 0.18 mm. Give its length",
     ),
     (
         {"fault": {"on": "outer", "shape": "map", "length": "1 mm"}},

@@ -159,6 +159,8 @@ def decided(
             bare, speed=record.speed(best.speed), speed_is="contradicted", confidence=confidence
         )
         return replace(elsewhere, parts=(best,), blows=best.tone)
+    if abs(best.tone - round(best.tone / told) * told) <= resolution:  # blows of the shaft, as of a coupling
+        return bare
     return replace(bare, blows=best.tone, confidence=sure("sound" if there else "blows"))
 
 
@@ -237,13 +239,15 @@ def _of_shaft(each: Hypothesis, best: Hypothesis, tones: Mapping[str, Tone], res
 
 
 def shaft_near(record: BearingRecord, told: float) -> tuple[float, float]:
-    """Where near a speed lines of the shaft are clearest, Hz, and how clear: 0 of twice or half the true
-    speed."""
+    """Where near a speed lines of the shaft are clearest, Hz, and how clear: 0 where twice or half of it is
+    clearer."""
     speeds = told * np.exp(np.arange(-APART, APART, FINE))
     support = record.supports(speeds)
     at = int(support.argmax())
     here = speeds[at : at + 1]
-    between = float(record.supports(here, offset=0.5)[0])
+    others = np.concatenate(
+        [share * speeds[np.abs(speeds / here - 1.0) <= NEAR / 4.0] for share in (0.5, 2.0)]
+    )
     odd = float(record.supports(2.0 * here, offset=0.5)[0])
-    alone = between < support[at] and odd >= ODD
+    alone = record.supports(others).max() <= support[at] and odd >= ODD
     return float(here[0]), float(support[at]) if alone else 0.0
