@@ -159,3 +159,15 @@ def test_lines_of_a_rail_are_held_against_the_limit_of_its_roughness():
     assert document["limit"][0] == 17.1
     assert document["wavelength"][0] == pytest.approx(0.4, rel=0.01)
     assert "ISO 3095" not in surface(lines[0]).stdout  # it is too short for its bands
+
+
+def test_scale_and_slope_are_told_and_a_wrong_unit_is_refused_with_its_cause():
+    said = words_of(surface(noise(40, 32)).stdout)
+    assert re.search(r"Slopes from point to point: 0\.\d+ \(3\d°\)\. Waves of 0\.08 mm to 4 µm pass", said)
+    assert "with 12.5 kHz to 250 kHz at 1 m/s" in said
+    np.save("rail.npy", 1e-6 * noise(2000))
+    said = words_of(call("surface", "rail.npy", "--height-unit", "m", "--pixel", "1 mm").stdout)
+    assert "Waves of 2 m to 2 mm pass with 13.9 Hz to 13.9 kHz at 100 km/h" in said
+    refused = call("surface", "map.npy", "--height-unit", "m", "--pixel", "2 um", code=2).stderr
+    assert "Were they in µm" in words_of(refused)
+    assert "Give --height-unit um." in words_of(refused)

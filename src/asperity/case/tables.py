@@ -38,7 +38,7 @@ LARGEST_TABLE = 32 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
 FEWEST_LINES = 10  # of a receptance
 _BAND = 0.1  # of a decade
-DECIMALS = 9
+DECIMALS = 14
 """Of an outline, m."""
 
 TableSource = Path | Array

@@ -23,6 +23,7 @@ from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
 from asperity.surfaces.readers import read_all
+from asperity.surfaces.readers.belief import typical_slope
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.spectra import psd_1d, psd_radial
 from asperity.terminal import say
@@ -33,6 +34,8 @@ Surfaces = Sequence[HeightMap | Profile]
 Spectra = dict[str, tuple[Array, Array]]
 """Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""
 AREAL = "areal"
+RAILS, KILOMETRES = 1e-4, 100.0 / 3.6
+"""Spacing of points, m, from which on they are those of a rail or a wheel, and the speed, m/s, of these."""
 
 
 def show_surface(
@@ -116,6 +119,8 @@ def _show(
 ) -> tuple[dict[str, Any], Spectra]:
     """Print what is in lines, or in the first of maps, and draw it; return numbers and spectra."""
     say(f"{title}: {described(surfaces)}")
+    if told := scale_in_words(surfaces[0]):
+        say(told)
     lines = [each.levelled() for each in surfaces if isinstance(each, Profile)]
     first, several, beside = surfaces[0].levelled(), len(surfaces) > 1, len(lines) > 1
     if beside and steps.lines is None:
@@ -197,6 +202,23 @@ def described(surfaces: Surfaces) -> str:
     points = " × ".join(map(str, first.shape))
     extent = f"{_lengths(sizes)}, {_lengths(spacings)} apart"
     return f"{many} {points} points, {extent}, {missing:.2%} without a height"
+
+
+def scale_in_words(surface: HeightMap | Profile) -> str:
+    """Slope from point to point, by which a wrong unit shows, and frequencies of the waves held."""
+    slope = typical_slope(surface)
+    if slope is None:
+        return ""
+    waves = float(np.max(surface.size)), 2.0 * float(np.min(surface.spacing))
+    speed, name = (KILOMETRES, "100 km/h") if waves[1] >= 2.0 * RAILS else (1.0, "1 m/s")
+    held = " to ".join(_lengths([float(f"{wave:.3g}")]) for wave in waves)
+    passed = " to ".join(_frequency(speed / wave) for wave in waves)
+    angle = f"{math.degrees(math.atan(slope)):.2g}°"
+    return f"Slopes from point to point: {slope:.2g} ({angle}). Waves of {held} pass with {passed} at {name}."
+
+
+def _frequency(hertz: float) -> str:
+    return f"{hertz / 1e3:.3g} kHz" if hertz >= 1e3 else f"{hertz:.3g} Hz"
 
 
 def _lengths(metres: Iterable[float]) -> str:

@@ -11,6 +11,7 @@ from asperity.arguments import require, shown, whole
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards, iso_25178, text
+from asperity.surfaces.readers.belief import judge_sizes
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.libraries import read_apart
 
@@ -147,12 +148,18 @@ def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
         require(content == extension, file.name, received, allowed, remedy)
     kind, reader = OWN[content] if content else TEXT if extension in READ_AS_TEXT else OTHER
     with guards.hostile(file.name, kind):
-        if reader is not OTHER[1] or not text.is_numeric(file):
-            return reader(file, hints)
-        try:
-            return reader(file, hints)
-        except InputError:  # no library knows it: numbers are numbers, whatever the name of their file
-            return text.read(file, hints)
+        surfaces = _read_by(reader, file, hints)
+    judge_sizes(surfaces[0], hints)
+    return surfaces
+
+
+def _read_by(reader: Reader, file: Path, hints: Hints) -> list[guards.Surface]:
+    if reader is not OTHER[1] or not text.is_numeric(file):
+        return reader(file, hints)
+    try:
+        return reader(file, hints)
+    except InputError:  # no library knows it: numbers are numbers, whatever the name of their file
+        return text.read(file, hints)
 
 
 def _by_content(file: Path, head: bytes) -> str | None:

@@ -1,0 +1,121 @@
+"""Sizes beyond belief: a unit that is wrong by thousands shows in the slopes and in the size of a field."""
+
+import math
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.errors import InputError, OutOfRangeWarning
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers.hints import Hints, advice, spell
+
+SLOPES, USUAL_SLOPES = (1e-8, 10.0), (1e-6, 2.0)
+"""Typical slopes from point to point: refused beyond the first, doubted beyond the second.
+
+Machined and rolled surfaces have rms slopes of 0.01 to 0.5, polished ones from 1e-3 on, and the limit
+spectrum of ISO 3095 has 1e-3. A slope of 2 is 63 degrees, more than most optical instruments follow; one of
+10 is 84 degrees. An optical flat of a twentieth of a wavelength over 100 mm has some 3e-7; 1e-8 are 10 nm
+over a metre, as the best straightedges have.
+"""
+FIELDS, USUAL_FIELDS = 10.0, 1.0
+"""Lesser side of a map, m: fields of microscopes are below 10 mm, stitched ones below some 0.3 m."""
+SPACINGS = (1e-11, 1.0)
+"""Distance of points, m: atoms are 1e-10 m apart, and roughness is shorter than a metre."""
+USUAL = 0.03
+"""Slope in the middle of usual ones, to which the units that were exchanged by thousands would come."""
+MOST_POINTS = 2**20
+"""Points of which slopes are taken."""
+FEWEST_POINTS = 30
+"""Points whose slopes prove nothing."""
+_NORMAL = 1.4826
+"""Standard deviation over the median size of normally distributed numbers."""
+_UNITS = {1.0: "m", 1e-3: "mm", 1e-6: "um", 1e-9: "nm"}
+
+
+def typical_slope(surface: HeightMap | Profile) -> float | None:
+    """Slope from point to point as most points have it; None of a plane.
+
+    Of a map it is that in the direction where it is less. The median of the sizes tells it, of those that are
+    not zero: spikes do not count, nor do heights that are rounded.
+    """
+    along = [
+        _slope_along(surface.heights, surface.spacing if isinstance(surface, Profile) else surface.spacing[0])
+    ]
+    if isinstance(surface, HeightMap):
+        along.append(_slope_along(surface.heights.T, surface.spacing[1]))
+    found = [slope for slope in along if slope]
+    return min(found) if found else None
+
+
+def _slope_along(heights: Array, spacing: float) -> float:
+    """Typical slope along the first axis; zero where all neighbours are alike, or none has a height."""
+    columns = heights.reshape(len(heights), -1)
+    columns = columns[:, :: max(1, math.ceil(columns.size / MOST_POINTS))]
+    steps = np.abs(np.diff(columns[: 2 * MOST_POINTS], axis=0))
+    steps = steps[steps > 0.0]
+    return _NORMAL * float(np.median(steps)) / spacing if steps.size else 0.0
+
+
+def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
+    """Refuse a surface whose sizes are beyond belief, with the likely cause, and warn of unusual ones."""
+    what, spacing = surface.source or "surface", float(np.max(surface.spacing))
+    slope = typical_slope(surface) if surface.heights.size >= FEWEST_POINTS else None
+    places = _of_places(spacing, _thousands((slope or 0.0) / USUAL))
+    if not SPACINGS[0] <= float(np.min(surface.spacing)) <= spacing <= SPACINGS[1]:
+        allowed = f"distances of {SPACINGS[0] * 1e9:g} nm to {SPACINGS[1]:g} m"
+        raise InputError(what, f"points {in_words(spacing)} apart", allowed, places)
+    field = float(np.min(surface.size)) if isinstance(surface, HeightMap) else 0.0
+    if field > FIELDS:
+        received = f"a map whose lesser side is {in_words(field)}"
+        raise InputError(what, received, f"maps of at most {FIELDS:g} m", places)
+    if field > USUAL_FIELDS:
+        OutOfRangeWarning.warn(f"{what}: a map of {in_words(field)} and more. {places}")
+    if slope is None:
+        return
+    rms = in_words(float(np.nanstd(surface.heights)))
+    found = f"heights of {rms} over {_extent(surface)}: slopes of {slope:.2g}"
+    steep = slope > USUAL_SLOPES[1]
+    remedy = _of_heights(surface, _thousands(slope / USUAL), hints) if steep else places
+    if not SLOPES[0] <= slope <= SLOPES[1]:
+        allowed = f"slopes of {SLOPES[0]:g} to {SLOPES[1]:g} from point to point"
+        raise InputError(what, found, allowed, remedy)
+    if not USUAL_SLOPES[0] <= slope <= USUAL_SLOPES[1]:
+        usual = "up to {1:g}" if steep else "from {0:g} on"
+        OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual.format(*USUAL_SLOPES)}. {remedy}")
+
+
+def _thousands(ratio: float) -> float:
+    """Ratio of units nearest to a ratio of lengths, or to its reciprocal: 1e3, 1e6 or 1e9."""
+    size = abs(math.log10(ratio)) if ratio else 6.0
+    return 1e3 ** float(np.clip(round(size / 3.0), 1, 3))
+
+
+def _of_heights(surface: HeightMap | Profile, factor: float, hints: Hints) -> str:
+    given = hints.height_unit or 1.0
+    while factor > 1e3 and given / factor < 0.9 * min(_UNITS):
+        factor /= 1e3
+    usual = in_words(float(np.nanstd(surface.heights)) / factor)
+    unit = _UNITS.get(float(f"{given / factor:.3g}"), "um")
+    lead = f"Were they in {unit.replace('u', 'µ')}, {usual}? Give"
+    return advice("height_unit", unit, lead, f"Were they {usual}? Correct their unit.")
+
+
+def _of_places(spacing: float, factor: float) -> str:
+    usual = in_words(spacing / factor)
+    given = spell("pixel", usual.replace("µ", "u"))
+    return f"Are points {usual} apart? Give {given}, or correct the unit of places."
+
+
+def in_words(metres: float) -> str:
+    """Length with three digits in the unit that suits it: ``"0.25 µm"``."""
+    unit, name = next((each for each in _NAMED if abs(metres) >= 0.1 * each[0]), _NAMED[-1])
+    return f"{metres / unit:.3g} {name}"
+
+
+_NAMED = ((1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1e-12, "pm"))
+
+
+def _extent(surface: HeightMap | Profile) -> str:
+    if isinstance(surface, Profile):
+        return f"a line of {in_words(surface.size)}"
+    return f"a field of {' × '.join(in_words(side) for side in surface.size)}"

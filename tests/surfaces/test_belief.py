@@ -1,0 +1,81 @@
+"""Sizes beyond belief are refused with the likely cause, unusual ones doubted, in every reader."""
+
+import numpy as np
+import pytest
+
+from asperity import HeightMap, Profile, read_surface
+from asperity.errors import InputError, OutOfRangeWarning
+from asperity.reference.cnossos import rail_roughness
+from asperity.surfaces.bands import from_bands
+from asperity.surfaces.readers.belief import SLOPES, USUAL_SLOPES, judge_sizes, typical_slope
+from asperity.surfaces.readers.hints import Hints
+
+ROUGH = np.random.default_rng(3).normal(size=(40, 30))
+ROUGH /= ROUGH.std()
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read(height_unit, pixel, kind="npy"):
+        file = tmp_path / f"a.{kind}"
+        np.save(file, ROUGH) if kind == "npy" else np.savetxt(file, ROUGH)
+        return read_surface(file, height_unit=height_unit, pixel=pixel)
+
+    return read
+
+
+@pytest.mark.parametrize("kind", ["npy", "txt"])
+@pytest.mark.parametrize(("height_unit", "pixel", "message"), [
+    ("m", "20 um", r'heights of 1 m over a field of 0.8 mm × 0.6 mm: .* in µm, 1 µm\? Give height_unit="um"'),
+    ("m", "20 mm", r'Were they in mm, 1 mm\? Give height_unit="mm"'),
+    ("mm", "20 um", r'Were they in µm, 1 µm\? Give height_unit="um"'),
+    ("um", "1 nm", r'Were they in nm, 1 nm\? Give height_unit="nm"'),
+    ("um", "20 m", r'points 20 m apart; allowed: .* to 1 m. Are points 20 µm apart\? Give pixel="20 um"'),
+    ("um", "0.4 m", r"a map whose lesser side is 12 m; allowed: .* at most 10 m. Are points 0.4 mm apart"),
+    ("pm", "1 mm", r"slopes of 1.\de-09; allowed: slopes of 1e-08 to 10 .*Are points 1 nm apart"),
+])  # fmt: skip
+def test_units_that_are_wrong_by_thousands(read, kind, height_unit, pixel, message):
+    with pytest.raises(InputError, match=message):
+        read(height_unit, pixel, kind)
+
+
+@pytest.mark.parametrize(("height_unit", "pixel", "message"), [
+    ("um", "0.3 um", r"slopes of 4\.\d, usual are up to 2"),
+    ("nm", "10 mm", "slopes of 1.4e-07, usual are from 1e-06 on"),
+    ("mm", "50 mm", "a map of 1.5 m and more"),
+])  # fmt: skip
+def test_what_is_unusual_is_doubted_and_read(read, height_unit, pixel, message):
+    with pytest.warns(OutOfRangeWarning, match=message):
+        assert read(height_unit, pixel).shape == (40, 30)
+
+
+def test_what_is_measured_is_believed():
+    """From atomic steps to a rail: no word of any of them."""
+    wavelength, level = (each[rail_roughness("iso3095")[0] > 3e-3] for each in rail_roughness("iso3095"))
+    rail = from_bands(20_000, 1e-3, wavelength, level, seed=1)
+    step = 2.0 * np.sin(np.pi * 1e-3 / wavelength) / 1e-3  # of neighbours, by a wave
+    slope = np.sqrt(np.sum(step**2 * 10.0 ** (level / 10.0) * 1e-12))
+    measured = [
+        (rail, slope),
+        (HeightMap(3e-10 * np.round(ROUGH), (1e-9, 1e-9)), None),  # atoms
+        (HeightMap(2e-10 * ROUGH, (1e-6, 1e-6)), None),  # a mirror
+        (HeightMap(0.7e-6 * ROUGH, (1.6e-6, 1.6e-6)), None),  # sheet
+        (Profile(30e-9 * ROUGH.ravel(), 1e-4), None),  # a raceway
+        (HeightMap(np.zeros((40, 30)), (1e-3, 1e-3)), None),
+    ]
+    for surface, slope in measured:
+        judge_sizes(surface, Hints())
+        assert slope is None or typical_slope(surface) == pytest.approx(slope, rel=0.1)
+
+
+def test_a_slope_is_typical_whatever_spikes_gaps_and_steps_there_are():
+    """Of normal heights without correlation, rms steps are √2 of their rms."""
+    heights = np.random.default_rng(1).normal(size=(300, 200))
+    assert typical_slope(HeightMap(heights, (2.0, 2.0))) == pytest.approx(np.sqrt(2) / 2, rel=0.02)
+    spiky = np.where(np.random.default_rng(2).random(heights.shape) < 0.02, 1e6, heights)
+    spiky[:40] = np.nan
+    assert typical_slope(HeightMap(spiky, (2.0, 2.0))) == pytest.approx(np.sqrt(2) / 2, rel=0.1)
+    line = np.arange(1000.0) // 5  # four of five neighbours are alike
+    assert typical_slope(Profile(line, 1.0)) == pytest.approx(1.4826)
+    assert typical_slope(HeightMap(np.ones((40, 30)), (1.0, 1.0))) is None
+    assert SLOPES[0] < USUAL_SLOPES[0] < USUAL_SLOPES[1] < SLOPES[1]
