@@ -376,5 +376,17 @@ test_what_has_no_meaning_is_refused = refusals(
 
 def test_large_creepages_are_warned_of_with_the_share_that_slips():
     contact, solver, *_ = ellipse(1.0, 0.3, 24)
-    with pytest.warns(OutOfRangeWarning, match=r"of 0\.2 is above 0\.05.*100 % of the contact slips"):
-        solver.roll(contact, (0.2, 0.0))
+    for creepage in ((0.2, 0.0), (0.0, -0.2)):
+        with pytest.warns(OutOfRangeWarning, match=r"of 0\.2 is above 0\.05.*100 % of the contact slips"):
+            solver.roll(contact, creepage)
+
+
+def test_a_contact_pivots_where_its_slip_is_none():
+    """At x = −η/φ and y = ξ/φ: told where that is inside of the contact, here off the middle of the grid."""
+    middle, solver, a, _ = ellipse(1.0, 0.3, 32, scale=2.0)
+    x0, y0 = (6 * d for d in solver.half_space.spacing)
+    contact = solver.half_space.solve(np.roll(middle.undeformed_gap, (6, 6), (0, 1)), load=middle.force)
+    assert math.hypot(x0, y0) > a
+    with pytest.warns(OutOfRangeWarning, match="pivot on a place inside of it"):
+        solver.shift(contact, (y0, -x0), 1.0)
+    assert solver.shift(contact, (-y0, x0), 1.0).stick_area == 0.0  # as far off on the other side, untold

@@ -104,6 +104,18 @@ def test_a_ball_that_is_lifted_off_turns_all_that_it_has_stored_into_heat():
     assert abs(missing[1]) < min(0.02, 0.5 * abs(missing[0]))
 
 
+def test_cells_that_leave_the_contact_slip_by_the_whole_of_what_is_shifted():
+    """Lifted off at once, shifted and turned meanwhile: under half of µ p, by all that it is moved."""
+    contact, solver, a, _ = ellipse(1.0, 0.3, 16)
+    state = solver.shift(contact, (2e-7, 1e-7), 2e-4)
+    apart = solver.half_space.solve(contact.undeformed_gap, approach=-1e-9)
+    off = solver.shift(apart, (1e-7, -3e-7), 5e-4, before=state)
+    slip = np.hypot(*(rigid(solver, off) - displaced(solver, state.traction)))
+    expected = float((0.5 * state.bound * slip).sum()) * solver.half_space.cell_area
+    assert off.work == pytest.approx(expected, rel=1e-9)
+    assert 5e-4 * a > 3e-7  # turning counts
+
+
 def test_a_transient_keeps_its_energy_and_ends_in_the_heat_of_steady_rolling():
     """From a shift, under a load that changes, forth and back; each step as a sum over cells."""
     smooth, solver, *_ = ellipse(0.7, 0.3, (20, 14), scale=1.4)

@@ -133,6 +133,18 @@ def test_the_spectrum_of_velocity_is_that_of_the_acceleration_over_the_angular_f
     assert in_band == pytest.approx(found[schema.VELOCITY_AMPLITUDE][0][at] / math.sqrt(2.0), rel=2e-3)
 
 
+def test_lines_are_looked_for_where_the_slip_of_the_cage_puts_them():
+    """Blows three per cent slower than pure rolling; the envelope reaches beyond five lines of every part."""
+    case = as_case(SMOOTH | {"duration": "2 s", "sampling_rate": "25.6 kHz", "cage_slip": [0.03, 0.03]})
+    time, slowed = np.arange(51_200) / 25_600.0, 0.97 * OUTER
+    since = np.mod(time, 1.0 / slowed)
+    blows = np.exp(-since / 1e-3) * np.sin(2.0 * np.pi * 5e3 * since)
+    found = heard_group(case, {"hertz": SimpleNamespace(acceleration=blows[None])})
+    assert found[schema.LINES_FOUND] == [[1.0, 0.0, 0.0]]
+    assert found[schema.LINE_FREQUENCY][0][0] == pytest.approx(slowed * np.arange(1, 6), abs=0.5)
+    assert found[schema.ENVELOPE_FREQUENCY][-1] > 5.0 * INNER
+
+
 def test_thinned_signals_hold_what_fewer_samples_hold_and_nothing_more():
     time = np.arange(80_000) / 400e3
     kept, lost = (np.sin(2.0 * np.pi * frequency * time) for frequency in (5e3, 36e3))
