@@ -114,7 +114,9 @@ def test_no_file_takes_the_number_of_a_closed_stream(tmp_path):
 
 
 @full
-@pytest.mark.parametrize("words", ["new ball-on-beam", "check absent.toml --json"])
+@pytest.mark.parametrize(
+    "words", ["new ball-on-beam", "check absent.toml --json", "--help", "wheel --help", "--version"]
+)
 def test_standard_output_on_a_full_disk_is_a_failure(tmp_path, words):
     """Of a document too, whether the command has done its work, failed, or was called wrongly."""
     told = run(f"asperity {words} > /dev/full", tmp_path, code=3)

@@ -1,6 +1,7 @@
 """Quantities with units: what is understood, and what each misunderstanding is answered."""
 
 import math
+from contextlib import suppress
 
 import pint
 import pytest
@@ -49,6 +50,24 @@ def test_quantities(text, dimension, value):
 def test_every_number_keeps_its_value(number, unit, gap):
     name, si = unit
     assert quantity(f"{number!r}{gap}{name}", "m") == pytest.approx(number * si, rel=1e-14)
+
+
+DIMENSIONS = ("", "m", "Hz", "N", "N/m", "m/N", "dB", "dB/m", "kg", "rad", "s", "Pa s/m^2", "N s/m", "kg/m^3")
+WORDS = st.text("dBmMkKuµ/°% ^*²·()1pchNPC", max_size=8) | st.sampled_from(
+    ["dBm", "dbm", "DBM", "dB m", "dBm/Hz", "dBu", "dB/km", "Np", "degC", "delta_degC", "octave", "ppm", "B"]
+)
+
+
+@given(WORDS, st.sampled_from(DIMENSIONS))
+def test_any_word_in_the_place_of_a_unit_is_one_or_a_clear_error(word, dimension):
+    """Levels too, of which the unit library makes quantities of another kind."""
+    with suppress(InputError):
+        assert factor(word, dimension) > 0.0
+
+
+def test_levels_by_length_are_recognised():
+    with pytest.raises(InputError, match='Did you mean "dB/m"'):
+        factor("dBm", "dB/m")
 
 
 @given(st.text(max_size=60))

@@ -169,6 +169,12 @@ def standard_streams() -> Iterator[None]:
         sys.stdout, sys.stderr = before
 
 
+def require_output() -> None:
+    """Refuse to say that all is done where standard output could not be written."""
+    if isinstance(sys.stdout, _Patient):
+        sys.stdout.require_written()
+
+
 _IN_ASCII = "asperity-ascii"
 """Name of the handler of characters that an encoding lacks."""
 _ALIKE = {
@@ -217,6 +223,7 @@ class _Patient:
 
     def __init__(self, stream: TextIO, name: str) -> None:
         self._stream, self._name = stream, name
+        self._failure: ComputationError | None = None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -240,7 +247,14 @@ class _Patient:
                 os.dup2(null, self._stream.fileno())
             os.close(null)
             if self._name == "stdout" and error.errno not in _NOBODY_LISTENS:
-                raise ComputationError(
+                self._failure = ComputationError(
                     f"standard output could not be written ({error.strerror or error})",
                     "another place for it, or free space on its disk",
-                ) from error
+                )
+                raise self._failure from error
+
+    def require_written(self) -> None:
+        """Hand over what is written; a `ComputationError` if any of it was not, whoever did not listen."""
+        self.flush()
+        if self._failure:
+            raise self._failure

@@ -86,9 +86,15 @@ def _meant(unit: str, dimension: str) -> str:
     prefixes = (*_PREFIXES, "") if dimension in _PREFIXED else ("",)
     letters = _letters(unit)
     alike = [each for each in (*_WRITTEN, *(p + dimension for p in prefixes)) if _letters(each) == letters]
-    one = _registry().Quantity
-    found = [f'"{each}"' for each in dict.fromkeys(alike) if one(1.0, each).is_compatible_with(dimension)]
+    found = [f'"{each}"' for each in dict.fromkeys(alike) if _converts(each, dimension)]
     return f"Did you mean {' or '.join(found)}?" if found else ""
+
+
+def _converts(unit: str, dimension: str) -> bool:
+    """Whether a unit is one of a dimension; the unit library knows another kind of levels."""
+    if "dB" in dimension:
+        return unit == dimension
+    return bool(_registry().Quantity(1.0, unit).is_compatible_with(dimension))
 
 
 def _letters(unit: str) -> str:

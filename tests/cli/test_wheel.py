@@ -55,3 +55,8 @@ def test_an_outline_of_diameters_or_with_its_flange_on_the_field_side_is_told():
     np.savetxt("mirrored.csv", rows, delimiter=",", header="radius (mm), axial place (mm)", comments="")
     refused = call("wheel", "mirrored.csv", *LOW, code=2)
     assert "allowed: places positive away from the flange. Change their sign" in refused.stderr
+
+
+def test_a_wheel_without_a_mode_below_the_highest_frequency_is_refused():
+    told = call("wheel", "straight-web", "--highest", "1 Hz", code=2).stderr
+    assert "highest frequency: received 1 Hz; allowed: one with a mode below it. Raise it" in told

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import struct
 import tomllib
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from asperity.case.cases import as_case, parse_case
 from asperity.case.toml import toml_text
 from asperity.reporting.study_figures import key_figure
 from asperity.studies.axes import AS_IT_IS
-from asperity.studies.signals import SignalSet, through_path, with_noise
+from asperity.studies.signals import SignalSet, read_signal, through_path, with_noise
 from command_line import call
 from refusals import refusals
 from small_cases import BEARING
@@ -243,6 +244,43 @@ test_wrong_paths_and_levels = refusals(
     (path([1.0, np.nan]), "impulse response: received nan"),
     (lambda: with_noise(TIME, 1, below=1.0, rms=1.0), "noise: received both or none"),
     (lambda: with_noise(TIME, 1), "allowed: one of below and rms"),
+)
+
+
+SAMPLES = np.arange(-300, 300, dtype="<i2")
+
+
+def wav(samples=SAMPLES, **fields):
+    """A WAV file of 12 kHz, whose head may tell other sizes of RIFF and data."""
+    sizes = {"riff": 36 + samples.nbytes, "data": samples.nbytes} | fields
+    kind = struct.pack("<HHIIHH", 1, 1, 12_000, 24_000, 2, 16)
+    chunks = b"fmt " + struct.pack("<I", 16) + kind + b"data" + struct.pack("<I", sizes["data"])
+    return b"RIFF" + struct.pack("<I", sizes["riff"]) + b"WAVE" + chunks + samples.tobytes()
+
+
+def recorded(name, contents, tmp_path):
+    file = tmp_path / name
+    if isinstance(contents, bytes):
+        file.write_bytes(contents)
+    else:
+        np.save(file, contents)
+    return read_signal(file, 12e3)[0]
+
+
+def test_a_wav_file_is_read_in_shares_of_full_scale(tmp_path):
+    np.testing.assert_array_equal(recorded("a.wav", wav(), tmp_path), SAMPLES / 2**15)
+
+
+test_signals_that_are_none = refusals(
+    ("a.wav", wav(data=2**32 - 1, riff=2**32 - 1), "4294967295 bytes of samples, by its head, in 1200"),
+    ("a.wav", wav()[:-7], r"1200 bytes of samples, by its head, in 1193; .*truncated"),
+    (
+        "a.npy",
+        1e308 * np.sin(np.arange(9.0)),
+        r"values of up to 9.89e\+307; allowed: 1e-60 to 1e\+60 at most",
+    ),
+    ("a.npy", 1e-300 * np.sin(np.arange(9.0)), "values of up to 9.89e-301"),
+    of=recorded,
 )
 
 

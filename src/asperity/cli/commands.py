@@ -19,7 +19,16 @@ from asperity import __version__, errors
 from asperity.case import PRESETS
 from asperity.errors import InputError, printable
 from asperity.interrupts import interruptible, was_interrupted
-from asperity.terminal import Manner, change_manner, manner, say, say_document, speaking, standard_streams
+from asperity.terminal import (
+    Manner,
+    change_manner,
+    manner,
+    require_output,
+    say,
+    say_document,
+    speaking,
+    standard_streams,
+)
 
 PATH = click.Path(path_type=Path)
 PICTURES = (".svg", ".pdf", ".png")
@@ -103,6 +112,8 @@ class Program(Command, click.Group):
             try:
                 content = super().main(args, standalone_mode=False, **extra)
                 code = content if isinstance(content, int) else 0
+                if code == 0:
+                    require_output()
                 if isinstance(content, Mapping) and manner().document:
                     met = [{"grade": "warning", "message": message} for message in warned]
                     told = {**content, "warnings": [*content.get("warnings", ()), *met]}

@@ -11,7 +11,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.hertz import Hertz, check_half_space
-from asperity.errors import ComputationError, Grade, OutOfRangeWarning
+from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning
 from asperity.structures.ball_bearing import STATIC_PRESSURE, BallBearing
 
 STEPS = 24
@@ -134,8 +134,15 @@ def load_distribution(
     if cage_angles is None:
         cage_angles = 2.0 * math.pi / bearing.balls * np.arange(STEPS) / STEPS
     angles = finite_array("angles of the cage (rad)", np.atleast_1d(np.asarray(cage_angles)), shape=(None,))
-    found = _solved(bearing, radial, preloaded, speed, angles)
-    _doubt(found)
+    try:
+        found = _solved(bearing, radial, preloaded, speed, angles)
+        _doubt(found)
+    except ComputationError as error:
+        lift = bearing.centrifugal_force(speed)
+        received = f"{radial:.4g} N radial and {preloaded:.4g} N axial at {60.0 * speed:.5g} 1/min"
+        received += f", with {lift:.3g} N of each ball outwards" * (lift > 0.0)
+        remedy = f"Try {error.remedy}."
+        raise InputError("load", f"{received}: {error.what}", "what the balls carry", remedy) from error
     return found
 
 

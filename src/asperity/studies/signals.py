@@ -11,7 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import ceil
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import xarray
@@ -53,6 +53,10 @@ FAULT: dict[str, Any] = {
 FULL = 32_767
 """Number of a WAV file, of 16 bits, that stands for full scale."""
 MOST_LEVEL = 200.0  # dB
+LEAST_PEAK = 1e-60
+"""Largest value of a signal, in whatever unit, and …"""
+MOST_PEAK = 1e60
+"""… where it is no signal any more: powers of it are taken, and their products."""
 MOST_TERMS = 10_000
 """Largest number in the ratio of two sampling rates, which is taken as one of whole numbers."""
 LARGEST_TEXT = 64 * 2**20  # bytes
@@ -266,7 +270,15 @@ def read_signal(
         values = values[:, _column(column, values.shape[1], clock, file.name)]
     require(rate, "sampling rate", "nothing", "samples per second", 'Give it, as in --rate "12 kHz".')
     require(values.ndim == 1, file.name, f"an array of shape {values.shape}", "a signal, or columns of them")
+    _check_size(values, file.name)
     return values, float(rate or 0.0)
+
+
+def _check_size(values: Array, source: str) -> None:
+    """Refuse a signal whose squares no number holds."""
+    largest = float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
+    held, allowed = largest == 0.0 or LEAST_PEAK < largest < MOST_PEAK, f"{LEAST_PEAK:g} to {MOST_PEAK:g}"
+    require(held, source, f"values of up to {largest:.3g}", f"{allowed} at most", "Is its type right?")
 
 
 def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None]:
@@ -298,8 +310,10 @@ def _column(chosen: int | None, count: int, clock: tuple[int, float | None] | No
 
 
 def _of_wav(file: Path) -> tuple[float, Any]:
+    """Sampling rate, Hz, and samples in shares of full scale; the pieces of the file are all there."""
     from scipy.io import wavfile
 
+    _check_pieces(file)
     with warnings.catch_warnings(action="ignore"):  # of pieces that it does not know
         rate, values = wavfile.read(file)
     if values.dtype.kind == "u":
@@ -307,6 +321,28 @@ def _of_wav(file: Path) -> tuple[float, Any]:
         return float(rate), values / 128.0
     full = float(np.iinfo(values.dtype).max) + 1.0 if values.dtype.kind == "i" else 1.0
     return float(rate), values / full
+
+
+def _check_pieces(file: Path) -> None:
+    """Refuse a WAV file whose samples are more, by its own words, than it holds.
+
+    What writes to a pipe does not know their number, and writes the largest there is, or none.
+    """
+    with open(file, "rb") as opened:
+        head = opened.read(12)
+        order: Literal["big", "little"] = "big" if head[:4] in (b"RIFX", b"FFIR") else "little"
+        place, size, long = len(head), file.stat().st_size, 0
+        while place + 8 <= size:
+            opened.seek(place)
+            name, told = opened.read(4), int.from_bytes(opened.read(4), order)
+            left = size - place - 8
+            if name == b"ds64":  # of a file beyond 4 GiB
+                long = int.from_bytes(opened.read(16)[8:], order)
+            if name == b"data":
+                told = long or told
+                received, allowed = f"{told} bytes of samples, by its head, in {left}", "all of them"
+                require(told <= left, file.name, received, allowed, "The file is truncated; copy it again.")
+            place += 8 + told + told % 2
 
 
 def _of_text(file: Path) -> tuple[Array, list[str]]:
