@@ -96,12 +96,18 @@ def test_said_whether_it_is_met_and_what_decides():
     louder = 100.0 + 80.0 - level  # exactly the limit
     below, within, above = "3.0 dB below the 80 dB(A)", "met as a whole", "2.0 dB over the 80 dB(A)"
     for change, words in ((-3.0, below), (0.3, within), (2.0, above)):
-        sentence, table = told(power=louder + change)
+        sentence, table = told(power=louder + change, wheel=0.0)
         assert words in sentence
-        assert "TSI Noise, EMU: rolling noise without the wheel has" in sentence
+        assert "TSI Noise, EMU: rolling noise alone has" in sentence
         assert sentence.endswith("at 80 km/h, " + table.rows[0][2].text + "; the rail decides.")
         assert table.rows[0][3].text == ("no" if words == above else "yes")
         assert [row[3].text for row in table.rows[1:]] == ["yes"] * 4
+    unknown = "3.0 dB below the 80 dB(A) allowed without the wheel's part, so that it is not known whether"
+    for change, words, met in ((-3.0, unknown, "–"), (2.0, f"{above} allowed even without the wheel", "no")):
+        sentence, table = told(power=louder + change)
+        assert words in sentence
+        assert "TSI Noise, EMU: rolling noise without the wheel has" in sentence
+        assert table.rows[0][3].text == met
     sentence, table = told(wheel=110.0)
     assert "rolling noise alone has" in sentence
     assert "; the wheel decides." in sentence
@@ -122,7 +128,7 @@ def test_fast_trains_are_held_to_the_limit_at_the_additional_place_too():
         assert "normalised_level_above" not in without
     level = float(fast["normalised_level_above"].sel(radiator="total").item())
     sentence, table = told(300.0, power=100.0 + 97.0 - level, **ground)
-    assert "At 3.5 m height it has 97.0 dB(A), 2.0 dB over the 95 dB(A) allowed." in sentence
+    assert "At 3.5 m height it has 97.0 dB(A), 2.0 dB over the 95 dB(A) allowed even without" in sentence
     assert table.rows[1][0].text == "L_pAeq,Tp at 250 km/h, 3.5 m high"
     assert [row[3].text for row in table.rows[1:3]] == ["no", "yes"]
 

@@ -112,7 +112,9 @@ def test_the_report_shows_both(damped):
     assert computed > measured + 1.0
     card = noise_answers(damped).numbers[0]
     assert card.value == f"{measured:.1f} dB(A)"
-    assert f"track as measured, {computed:.1f} dB(A) if all is computed" in card.note
+    exactly = [float(damped[f"spectra/{name}_power_level_a"][0, -1]) for name in ("unmeasured", "radiated")]
+    change = f"+{exactly[0] - exactly[1]:.1f} dB if all is computed: {computed:.1f} dB(A)"
+    assert f"track as measured, {change}" in card.note
     marks = radiated_power_bands.drawn(damped).chart.panels[0].marks
     assert "rail, nothing measured" in {getattr(mark, "label", "") for mark in marks}
     beside = measured_table(damped)

@@ -125,7 +125,8 @@ def test_cnossos_is_told_whatever_laws_are_rolled(runs):
 
 
 def levels(tree, name="radiated_power_level"):
-    return dict(zip(RADIATORS, tree["spectra"][name].values[0], strict=True))
+    found = tree["spectra"][name][0]
+    return dict(zip(found["radiator"].values.tolist(), found.values, strict=True))
 
 
 def spread(track, lines):

@@ -56,6 +56,10 @@ def by_places(case, frequency, modes=None, head=PLACE):
     return places, np.stack(shares), np.stack(squares) / np.mean(squares, axis=0)
 
 
+def of_part(spectra, name):
+    return spectra["radiated_power_level"].sel(radiator=name).values[0]
+
+
 def assert_levels(found, frequency, density, band, low=180.0):
     inside = (band > low) & (band < 3500.0)
     expected = 10.0 * np.log10(band_energies(frequency, density, band / HALF_BAND, band * HALF_BAND))
@@ -75,7 +79,7 @@ def test_the_lateral_force_and_the_rail_are_those_of_both_forces_at_every_place(
     forms = squared_lateral_mobility(track, frequency, places, head)
     moved = np.mean(spread * np.einsum("xmf,xmnf,xnf->xf", both.conj(), forms, both).real, axis=0)
     power = 2.0 * SideOfRail(0.172, 0.15, 0.072).power(frequency, moved * force[0]) / 1e-12
-    assert_levels(side["lateral_power_level"].values[0, 0], frequency, power, band)
+    assert_levels(of_part(spectra, "rail sideways"), frequency, power, band)
 
 
 def test_modes_of_the_wheel_follow_both_forces(runs):
@@ -93,7 +97,7 @@ def test_modes_of_the_wheel_follow_both_forces(runs):
     parts = ([1, 0], modes.nodal_diameters), ([0.0, 1.0], modes.disc), ([math.sqrt(0.5), 0.0], modes.tread)
     wheel = RadiatingWheel(0.46, 0.135, *(np.append(*each) for each in parts))
     power = 2.0 * wheel.power(frequency, np.abs(answers) ** 2 * moved).sum(axis=0) * force[0] / 1e-12
-    assert_levels(tree["sideways"]["lateral_power_level"].values[0, 1], frequency, power, band, 350.0)
+    assert_levels(of_part(tree["spectra"], "wheel"), frequency, power, band, 350.0)
 
 
 def test_twice_as_far_off_on_the_other_side_it_is_twice_as_much_and_slips_on_ice(runs, off):
@@ -103,7 +107,8 @@ def test_twice_as_far_off_on_the_other_side_it_is_twice_as_much_and_slips_on_ice
     near, far, spectra, twice = off["sideways"], tree["sideways"], tree["spectra"], 20.0 * math.log10(2.0)
     change = far["lateral_force_level"] - near["lateral_force_level"]
     np.testing.assert_allclose(change, twice, atol=1e-6)
-    louder = (far["lateral_power_level_a"] - near["lateral_power_level_a"]).sel(radiator="rail sideways")
+    power = [each["spectra/radiated_power_level_a"] for each in (tree, off)]
+    louder = (power[0] - power[1]).sel(radiator="rail sideways")
     assert float(louder[0]) == pytest.approx(twice, abs=1e-6)
     density, step = spectra["lateral_force_psd"].values[0], np.diff(spectra["frequency"].values)[0]
     rms = float(far["lateral_force_rms"][0])
@@ -154,17 +159,26 @@ def passing(runs):
     return case, runs(case)
 
 
-def test_power_and_pass_by_have_what_moves_sideways_beside_what_they_had(passing):
+def test_the_total_is_that_of_all_motion_and_what_one_force_alone_would_make_stands_beside_it(passing):
+    """Under both forces, the wheel's power is neither that of one nor of both apart."""
+    _, tree = passing
+    held = tree["spectra"]
+    assert held["radiator"].values.tolist() == ["rail", "rail sideways", "sleepers", "wheel", "total"]
+    sent, alone = held["radiated_power_level"].values[0], held["single_force_power_level"].values[0]
+    np.testing.assert_allclose(sent[4], energy_sum(sent[:4], axis=0), atol=1e-9)
+    np.testing.assert_allclose(alone[2], energy_sum([sent[0], sent[2], alone[0]], axis=0), atol=1e-9)
+    apart = energy_sum(alone[:2], axis=0)
+    assert (np.abs(apart - sent[3]) > 0.5).any()
+
+
+def test_parts_of_one_place_are_heard_by_their_power_alone(passing):
     """From the same height at the same place the exposure of two parts differs by their power alone."""
-    case, tree = passing
-    found, up, side = tree["pass_by"], tree["spectra"], tree["sideways"]["lateral_power_level"].values[0]
-    for entry, alone in pass_by_group(case, up.to_dataset()).items():
-        if getattr(entry, "dims", ())[:2] == ("law", "radiator"):
-            np.testing.assert_array_equal(found[entry.name].values[:, :4], alone)
-    sent, heard = up["radiated_power_level"].values[0], found["sound_exposure_level"].values[0]
-    np.testing.assert_allclose(heard[[4, 5]] - heard[[0, 2]], side[:2] - sent[[0, 2]], atol=1e-9)
-    np.testing.assert_allclose(side[2], energy_sum([*sent[:2], *side[:2]], axis=0), atol=1e-9)
-    np.testing.assert_allclose(heard[6], energy_sum(heard[[0, 1, 4, 5]], axis=0), atol=1e-9)
+    _, tree = passing
+    found = tree["pass_by"]
+    assert found["radiator"].values.tolist() == tree["spectra"]["radiator"].values.tolist()
+    sent, heard = tree["spectra"]["radiated_power_level"].values[0], found["sound_exposure_level"].values[0]
+    np.testing.assert_allclose(heard[1] - heard[0], sent[1] - sent[0], atol=1e-9)
+    np.testing.assert_allclose(heard[4], energy_sum(heard[:4], axis=0), atol=1e-9)
 
 
 @pytest.mark.parametrize(("rate", "least"), [(8.0, 1.0), (1e-3, 8.0)])
@@ -176,34 +190,35 @@ def test_with_the_same_power_and_decay_the_rail_is_heard_as_up_and_down(passing,
         least,
         np.nan,
     )
-    beside = {schema.LATERAL_POWER_LEVEL: up["radiated_power_level"].values[:, [0, 2, 3]]}
+    up["radiated_power_level"][:, 1] = up["radiated_power_level"][:, 0]
     edge = math.sqrt(up["band"][0] * up["band"][1]) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
-    beside |= {schema.SIDEWAYS_FREQUENCY: edge, schema.LATERAL_DECAY_RATE: np.minimum(rate, [least, rate])}
+    beside = {schema.SIDEWAYS_FREQUENCY: edge, schema.LATERAL_DECAY_RATE: np.minimum(rate, [least, rate])}
     level = pass_by_group(case, up, beside)[schema.PASS_BY_LEVEL][0]
-    np.testing.assert_allclose(level[[4, 5]], level[[0, 2]], rtol=1e-12)
+    np.testing.assert_allclose(level[1], level[0], rtol=1e-12)
 
 
-def test_power_and_pass_by_say_the_vertical_part_the_sideways_part_and_the_sum(passing):
+def test_what_is_said_first_is_the_total_and_its_parts_beneath_it(passing):
     _, tree = passing
     sent, heard = tree["spectra"]["radiated_power_level_a"].values[0], tree["pass_by"]
-    side, level = (
-        tree["sideways"]["lateral_power_level_a"].values[0],
-        heard["transit_exposure_level"].values[0],
-    )
+    alone = tree["spectra"]["single_force_power_level_a"].values[0]
+    level = heard["transit_exposure_level"].values[0]
     said, beside = noise.noise_answers(tree), noise.pass_by_answers(tree)
-    assert f"With motion sideways it is {side[2]:.1f} dB(A): rail sideways {side[0]:.1f}; wheel" in said.more
-    for (card, *_), alone, whole in ((said.numbers, *sent[3:], side[2]), (beside.numbers, *level[[3, 6]])):
-        assert card.value == f"{whole:.1f} dB(A)"
-        assert f"vertical motion alone {alone:.1f} dB(A)" in card.note
-    rail, sleepers, *_, lateral, wheel, whole = heard["normalised_level"].values[0].round(1)
-    parts = f"rail {rail}, sleepers {sleepers}, rail sideways {lateral}, wheel {wheel}"
+    for (card, *_), each in ((said.numbers, sent), (beside.numbers, level)):
+        assert card.value == f"{each[-1]:.1f} dB(A)"
+        parts = zip(("rail", "rail sideways", "sleepers", "wheel"), each, strict=False)
+        assert ", ".join(f"{name} {part:.1f}" for name, part in parts) in card.note
+    assert f"vertical motion alone {alone[2]:.1f} dB(A)" in said.numbers[0].note
+    assert f" of {sent[4]:.1f} dB(A) of sound power" in said.lead
+    rail, lateral, sleepers, wheel, whole = heard["normalised_level"].values[0].round(1)
+    parts = f"rail {rail}, rail sideways {lateral}, sleepers {sleepers}, wheel {wheel}"
     assert limits_table(tree).rows[0][1].text == f"{whole} dB(A): {parts}"
     table = noise.sound_power_table(tree)
     row = {head: cell.text for head, cell in zip(table.head, table.rows[0], strict=True)}
-    names = ("rail", "sleepers", "wheel", "total", *schema.SIDEWAYS_RADIATORS)
-    assert [row[name] for name in names] == [f"{each:.1f}" for each in (*sent, *side)]
+    names = ("rail", "rail sideways", "sleepers", "wheel", "total", *schema.SINGLE_FORCES)
+    assert [row[name] for name in names] == [f"{each:.1f}" for each in (*sent, *alone)]
+    assert "no parts of it" in table.note
     for figure in (noise.radiated_power_bands, noise.pass_by_level):
-        assert "total with sideways" in str(figure.drawn(tree).chart)
+        assert "rail sideways" in str(figure.drawn(tree).chart)
 
 
 ONE = {"radius": 0.46, "mass": 600.0, "load": 65e3, "transverse_radius": "inf", "section": "straight-web"}
@@ -222,7 +237,10 @@ def test_a_bogie_on_two_equal_wheels_far_apart_is_twice_as_loud_as_one(runs):
     heights = 2e-6 * np.random.default_rng(3).normal(size=3000)
     line = {"line": Profile(heights, 1e-3), "continuation": "repeat"}
     one, two = (runs(bodies(ONE | more, line)) for more in ({}, BOGIE))
-    change = two["sideways"]["lateral_power_level"] - one["sideways"]["lateral_power_level"]
+    power = [
+        each["spectra/radiated_power_level"].sel(radiator=["rail sideways", "wheel"]) for each in (one, two)
+    ]
+    change = power[1] - power[0]
     louder, twice = change.values[0][:, change["band"] > 500.0], 10.0 * math.log10(2.0)
     np.testing.assert_allclose(louder, twice, atol=0.02)
     alone, both = (each["sideways"] for each in (one, two))

@@ -91,6 +91,37 @@ def test_measured_rails_have_no_level():
     assert values_of(case, {"surface.level": "minus 5 dB"}) == [reason]
 
 
+BOTH = {"surface.level": "minus 5 dB", "wheel.roughness_level": "minus 5 dB"}
+LINE = asperity.Profile(1e-6 * np.sin(np.arange(50_000.0)), 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("keys", "reason"),
+    [
+        (
+            {"wheel": {"line": LINE}, "surface": {"spectrum": "iso3095"}},
+            "the case has no wheel.roughness_level, which goes with roughness",
+        ),
+        (
+            {"surface": {"line": LINE, "continuation": "repeat"}, "wheel": {"roughness": "disc"}},
+            "the case has no surface.level, which goes with spectrum",
+        ),
+        (
+            {"surface": {"spectrum": "iso3095"}},
+            "the case has no wheel.roughness_level, which goes with roughness",
+        ),
+    ],
+)
+def test_what_a_variant_says_is_made_as_a_whole_or_left_out(keys, reason):
+    """Neither "both smoother" that smooths one, nor a change of a track that was measured beside another."""
+    case = asperity.WheelOnRail(**keys, duration="0.1 s")
+    assert values_of(case, BOTH) == [reason]
+    measured = RAIL.with_(track={"decay_rates": np.array([[100.0, 5.0], [125.0, 5.0], [160.0, 5.0]])})
+    (why,) = values_of(measured, {"track.pad_stiffness": "times 0.5", "speed": "times 0.8"})
+    assert "was measured on the track as it is" in why
+    assert values_of(RAIL, BOTH, "surface.level", "wheel.roughness_level") == [-5.0, -5.0]
+
+
 def test_a_measured_track_is_that_track():
     rates = np.array([[100.0, 5.0], [125.0, 5.0], [160.0, 5.0]])
     case = RAIL.with_(track={"decay_rates": rates})
@@ -225,12 +256,14 @@ def test_the_quietest_comes_first_and_what_is_left_out_last(table):
     assert found["variant"].values.tolist() == ["smooth", "slow", "soft", "discs"]
     assert found["left_out"].values.tolist() == ["", "", "", "wheel.roughness is disc, not cast-iron"]
     of = Effects(found)
-    assert of.parts == ["total", "rail", "sleepers"]  # the wheel is rigid, and silent
+    assert of.parts == ["total", "rail", "rail sideways", "sleepers"]  # the wheel is rigid, and silent
     rows = [[cell.text for cell in row] for row in effects_table(of).rows]
     assert [row[0] for row in rows] == ["as it is", "smooth", "slow", "soft", "discs"]
     assert rows[0][-1] == "Loudest: rail."
-    assert rows[-1][1:] == ["–", "–", "–", "Left out: wheel.roughness is disc, not cast-iron."]
-    assert of.best == f"Helps most: smooth, −5.0 dB(A). {rows[1][-1]}"
+    assert rows[-1][1:] == ["–", "–", "–", "–", "Left out: wheel.roughness is disc, not cast-iron."]
+    silent = "The total is without the wheel: of this wheel it is not known how its disc and tread vibrate."
+    assert of.best == f"Helps most: smooth, −5.0 dB(A). {rows[1][-1]} {silent}"
+    assert effects_table(of).note.endswith(silent)
     assert Effects(found.isel(variant=[2, 3])).best == ""
 
 

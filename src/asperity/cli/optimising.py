@@ -19,6 +19,7 @@ from asperity.optimising.running import Optimised, optimised
 from asperity.progress import progress_bar
 from asperity.reporting import data, page, study_figures
 from asperity.reporting.figure import PageFigure
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
@@ -66,6 +67,8 @@ def run_optimisation(
         "units": found.measure.units,
         "settled": found.settled,
         "changes": found.changes,
+        "levels": {law: list(levels) for law, levels in found.levels.items()},
+        "limit": found.aim.limit,
         "limits": found.active,
         "columns": list(columns),
         "rows": rows,
@@ -130,4 +133,21 @@ def _page(found: Optimised, columns: dict[str, Array], *, report: bool) -> str:
     if report:
         links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
     summary = f"{found.sentence[:1].upper()}{found.sentence[1:]}"
-    return page.figures_page("Optimised texture", summary, [figure], links)
+    return page.figures_page("Optimised texture", summary, [_levels_table(found), figure], links)
+
+
+def _levels_table(found: Optimised) -> ReportTable:
+    """Level of the quantity before and after, by law, and the limit that was asked for."""
+    before, after = zip(*found.levels.values(), strict=True)
+    columns = {
+        "law": text_cells(found.levels, "name"),
+        "before": number_cells(before, "{:.1f}"),
+        "after": number_cells(after, "{:.1f}"),
+        "change / dB": number_cells(found.changes.values(), data.signed),
+    }
+    limit = found.aim.limit
+    if limit is not None:
+        columns["limit"] = number_cells([limit] * len(before), "{:.1f}")
+        columns["after less limit / dB"] = number_cells([each - limit for each in after], data.signed)
+    note = f"In {found.measure.units}: all waves of the texture, and what other bodies add."
+    return table("levels", f"{found.measure.meaning[:1].upper()}{found.measure.meaning[1:]}", columns, note)

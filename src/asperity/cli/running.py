@@ -28,7 +28,7 @@ from asperity.threads import THREADS, processors
 from asperity.written_numbers import between, counted, rounded
 
 if TYPE_CHECKING:
-    from xarray import DataTree
+    from xarray import DataArray, DataTree
 
     from asperity.scenarios.law_choice import LawChoice
     from asperity.scenarios.preparing import ScanSize, Work
@@ -220,15 +220,23 @@ def _warn(warnings: Iterable[dict[str, Any]]) -> None:
 def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
     """Numbers of each law's force, in SI: mean, rms about it, largest, and losses of contact.
 
-    Of a bearing the rms velocities, m/s, in the bands in which it is judged, at the first accelerometer.
+    Over a track the totals of its sound, dB(A), and the parts of its sound power. Of a bearing the rms
+    velocities, m/s, in the bands in which it is judged, at the first accelerometer.
     """
+    from asperity.scenes import schema
     from asperity.studies.member import kept
 
     found, velocity = kept(tree), bearing.BAND_VELOCITY.name
-    names = [*rolling.FORCES, *(entry.name for entry in rolling.LOSSES)]
+    names = [*rolling.FORCES, *(entry.name for entry in (*rolling.LOSSES, *schema.TOTALS))]
     told = [velocity] if velocity in found else [name for name in names if name in found]
+    parts = schema.RADIATOR.name
+
+    def numbers(of: DataArray) -> Any:
+        values = of.values.tolist()
+        return dict(zip(of[parts].values.tolist(), values, strict=True)) if parts in of.dims else values
+
     return [
-        {"law": law} | {name: found[name].sel(law=law).values.tolist() for name in told}
+        {"law": law} | {name: numbers(found[name].sel(law=law)) for name in told}
         for law in found["law"].values.tolist()
     ]
 

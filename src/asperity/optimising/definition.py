@@ -12,11 +12,11 @@ from xarray import DataTree
 from asperity.arguments import Array, NDArray
 from asperity.case import any_case, cases, form, rolled_over, scene
 from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
-from asperity.errors import ComputationError, InputError
+from asperity.errors import InputError
 from asperity.optimising.allocation import Limits
 from asperity.parameters import Choice, ListOf, Number, Origin, Quantity, key, optional
 from asperity.scenarios import preparing, records
-from asperity.scenes import schema
+from asperity.scenes import noise, schema
 from asperity.schema import Entry, spectra
 from asperity.spectra import HALF_BAND, a_weighting, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
@@ -42,8 +42,7 @@ class Measure:
     units: str  # of the level
     # its energy per Hz (f,) relative to the square of its reference, of a law in a result
     energy: Callable[[DataTree, str], Array]
-    weighted: bool = True  # as the ear does
-    beside: tuple[str, ...] = ()  # laws without which it is not known
+    weighted: bool = True  # as the ear does, line by line
 
     def density(self, tree: DataTree, law: str) -> Array:
         """Energy per Hz (f,) relative to the square of its reference, weighted."""
@@ -54,10 +53,11 @@ class Measure:
 def measures_of(case: scene.Case) -> dict[str, Measure]:
     """What textures of a case are judged by, by name: sound where a track is rolled over, else motion."""
     if isinstance(case.rolled_over, rolled_over.TrackKeys):
-        power = "sound power level of rolling, A-weighted"
+        without = ", without the wheel" if noise.silent_wheel(case) else ""
+        power = f"sound power level from vibration, A-weighted{without}"
         at_points = "acceleration level of the rail at the points passed by, energy mean"
         return {
-            A_WEIGHTED: Measure(power, "dB(A) re 1 pW", _sound_power, beside=("linear",)),
+            A_WEIGHTED: Measure(power, "dB(A) re 1 pW", _sound_power, weighted=False),
             ACCELERATION: Measure(at_points, "dB re 1e-6 m/s²", _of_points, weighted=False),
         }
     if case.rolled_over.sensor_positions:
@@ -92,19 +92,16 @@ def _of_points(tree: DataTree, law: str) -> Array:
 
 
 def _sound_power(tree: DataTree, law: str) -> Array:
-    """Energy of a band, shared out over its lines as the force is: it has no finer spectrum."""
-    held = tree[schema.SOUND_POWER_LEVEL.group].to_dataset()
-    if schema.SOUND_POWER_LEVEL.name not in held:
-        what = "the sound power of rolling is not known"
-        raise ComputationError(what, "a rough rail, and bands between 50 Hz and 10 kHz")
-    power = held[schema.SOUND_POWER_LEVEL.name].sel(law=law, source="total").values
-    centre, frequency = held[schema.NOISE_BAND.name].values, line_frequencies(tree)
+    """The total of a run, A-weighted by bands as its page tells it, shared over lines as the force is."""
+    held = tree[schema.RADIATED_POWER_LEVEL.group].to_dataset()
+    power = held[schema.RADIATED_POWER_LEVEL.name].sel(law=law, radiator="total").values
+    centre, frequency = held[spectra.BAND.name].values, line_frequencies(tree)
     force = _psd(spectra.FORCE_PSD, tree, law)
     step = frequency[1] - frequency[0]
     density = np.zeros_like(force)
-    for middle, level in zip(centre, power, strict=True):
+    for middle, level in zip(centre, power + a_weighting(centre), strict=True):
         inside = np.abs(np.log10(frequency / middle)) <= 0.05
-        if inside.any() and force[inside].sum() > 0.0 and np.isfinite(level):
+        if force[inside].sum() > 0.0 and np.isfinite(level):
             density[inside] = 10.0 ** (level / 10.0) * force[inside] / (force[inside].sum() * step)
     return density
 

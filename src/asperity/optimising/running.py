@@ -33,7 +33,7 @@ from asperity.written_numbers import between, rounded
 if TYPE_CHECKING:
     from asperity.scenes.report import Result
 
-FORMAT = 1
+FORMAT = 2
 """Raise it when what is kept of a trial no longer means what it meant."""
 AT_A_BOUND = 0.05
 """A level so near to its bound lies on it, dB."""
@@ -89,10 +89,27 @@ class Optimised:
         return level_of(band_energies(line_frequencies(tree), density, *edges))
 
     @property
+    def levels(self) -> dict[str, tuple[float, float]]:
+        """Level of the quantity before and after, dB, by law: that of the check, then that of the search."""
+        laws = dict.fromkeys((self.aim.verify, self.aim.law))
+        return {law: (self.level(False, law), self.level(True, law)) for law in laws}
+
+    @property
     def changes(self) -> dict[str, float]:
         """By how much the level of the quantity changes, dB, by law."""
-        laws = dict.fromkeys((self.aim.verify, self.aim.law))
-        return {law: self.level(True, law) - self.level(False, law) for law in laws}
+        return {law: after - before for law, (before, after) in self.levels.items()}
+
+    @property
+    def of_limit(self) -> str:
+        """Say whether the texture found keeps the limit, by each law; nothing where none was asked for."""
+        if (limit := self.aim.limit) is None:
+            return ""
+        told = []
+        for law, (_, after) in self.levels.items():
+            over = after - limit
+            kept = f"{over:.1f} dB over it" if over > 2 * AT_A_BOUND else f"kept ({after:.1f})"
+            told.append(f"by {law} {kept}")
+        return f"Limit {limit:g} {self.measure.units}: {', '.join(told)}."
 
     @property
     def active(self) -> list[str]:
@@ -117,11 +134,15 @@ class Optimised:
         """What came of it, for people."""
         aim, (first, last) = self.aim, (self.before, self.after)
         rms = [1e6 * rms_of(bands.levels[bands.changed]) for bands in (first, last)]
-        told = [f"{law} {change:+.1f} dB" for law, change in self.changes.items()]
+        told = [
+            f"{law} {before:.1f} to {after:.1f} {self.measure.units}, {after - before:+.1f} dB"
+            for law, (before, after) in self.levels.items()
+        ]
         lay = f", lay {first.lateral:.3g} to {last.lateral:.3g}" if aim.lateral and first.lateral else ""
         words = [
-            f"{self.measure.meaning}: {', '.join(told)}; "
+            f"{self.measure.meaning}: {'; '.join(told)}; "
             f"rms of the bands {between(*map(rounded, rms))} µm{lay}.",
+            *([self.of_limit] if self.of_limit else []),
             f"On its limits: {'; '.join(self.active) or 'none'}.",
         ]
         if not self.settled:
@@ -202,7 +223,7 @@ def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
     lay = None if aim.lateral is None else (aim.lateral[0], aim.lateral[1])
     trials, settled = search(roll, start, limits, aim.limit, lay, report)
     after = before.with_changed(trials[-1].levels, trials[-1].lateral)
-    laws = tuple(dict.fromkeys((aim.verify, aim.law, *measure.beside)))
+    laws = tuple(dict.fromkeys((aim.verify, aim.law)))
     found = with_texture(case, after)
     results = [run(each.with_(laws=laws), progress) for each in (with_texture(case, before), found)]
     return Optimised(aim, measure, limits, before, after, tuple(trials), settled, found, *results)
@@ -210,8 +231,7 @@ def optimised(case: scene.Case, aim: Aim, progress: Progress) -> Optimised:
 
 def _rolled(base: scene.Case, aim: Aim, measure: Measure, bands: Bands, progress: Progress) -> Trial:
     """Roll over a texture with the law of the search; what came of it is kept by all that it depends on."""
-    laws = tuple(dict.fromkeys((aim.law, *measure.beside)))
-    case = with_texture(base, bands).with_(laws=laws)
+    case = with_texture(base, bands).with_(laws=(aim.law,))
 
     def rolled() -> dict[str, Array]:
         # those of the texture found are told

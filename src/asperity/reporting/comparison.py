@@ -17,6 +17,10 @@ POINTS_PER_DECADE = 40
 """Wavenumbers at which filters are compared."""
 NO_VALUE = "the run does not have it"
 ALL_BANDS = ", all bands of the run"
+HARD_TO_KNOW = ("wheel",)
+"""Sources of a total of which it may be unknown how they radiate."""
+UNLIKE, UNLIKE_RUNS = "the total of one of both is without its wheel", "without_wheel"
+"""Why totals are not compared, and the attribute that names the runs."""
 DEVIATION = "level_deviation"
 MAIN = "main law"
 """Stands for the first law of each run where those differ."""
@@ -86,6 +90,7 @@ def compared(runs: Sequence[NamedRun], levels: Sequence[Entry]) -> ComparedRuns:
     told = {str(name): values.attrs for piece in pieces for name, values in piece.data_vars.items()}
     table = xarray.concat(pieces, "run", data_vars="all", join="outer", combine_attrs="drop")
     found = _with_differences(table.reindex(law=laws)[list(told)].assign(run=[r.name for r in runs]), told)
+    found = found.assign({n: each for entry in levels for n, each in _unlike(found, entry).items()})
     found.attrs["cases"] = json.dumps(_differing_keys(runs), ensure_ascii=False)
     own = {
         entry: [n for n in told if f"{n}_a" in told and (n == entry.name or n.startswith(f"{entry.name}_"))]
@@ -93,6 +98,30 @@ def compared(runs: Sequence[NamedRun], levels: Sequence[Entry]) -> ComparedRuns:
     }
     shown = {each[-1]: str(told[each[-1]]["long_name"]) for each in own.values() if each}
     return ComparedRuns(runs, found, {n: what.partition(", energy mean")[0] for n, what in shown.items()})
+
+
+def _unlike(table: xarray.Dataset, entry: Entry) -> Variables:
+    """Differences of a total of several sources without those of runs of which alone, or not, all is known.
+
+    A total that lacks its wheel, say, is no quieter than one that has it: it is another quantity.
+    """
+    whole, *parts = (f"{entry.name}_{word}" for word in ("total", *HARD_TO_KNOW))
+    known = [table[part].notnull().any(("law", "band")).values for part in parts if part in table]
+    if whole not in table or not known:
+        return {}
+    all_known = np.all(known, axis=0)
+    has_total = table[whole].notnull().any(("law", "band")).values
+    unlike = has_total & (all_known != all_known[0])
+    if not unlike.any():
+        return {}
+    found = {}
+    without = ", ".join(table["run"].values[has_total & ~all_known].tolist())
+    for name in (f"{whole}_difference", f"{whole}_a_difference"):
+        kept = table[name].where(xarray.DataArray(~unlike, dims="run"))
+        told = {"missing": f"{NO_VALUE}; or {UNLIKE}", UNLIKE_RUNS: without}
+        found[name] = kept.transpose(*table[name].dims).variable.copy()
+        found[name].attrs = table[name].attrs | told
+    return found
 
 
 def _differing_keys(runs: Sequence[NamedRun]) -> list[dict[str, Any]]:
@@ -214,7 +243,8 @@ def _pieces(tree: xarray.DataTree, entry: Entry) -> Iterator[tuple[str, str, xar
     others = [dim for dim in found.dims if dim not in ("law", "place")]
     for dim in (dim for dim in others if found[dim].dtype.kind == "U"):
         for word in map(str, found[dim].values):
-            yield f"{entry.name}_{word}", f"{entry.long_name}, {word}", found.sel({dim: word})
+            name = f"{entry.name}_{word.replace(' ', '_')}"
+            yield name, f"{entry.long_name}, {word}", found.sel({dim: word})
         return
     if others:
         mean = (10.0 ** (found / 10.0)).mean(others).transpose("law", "place")

@@ -7,7 +7,7 @@ import xarray
 
 from asperity.reporting import chart, data, headline, page, panels, tables
 from asperity.reporting.chart import INK, MUTED, Axis, Flags, Line, Numbers, Panel
-from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, ComparedRuns
+from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, UNLIKE_RUNS, ComparedRuns
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
@@ -75,7 +75,10 @@ def summary(of: ComparedRuns) -> str:
 
 def _level_words(of: ComparedRuns, name: str, run: int) -> str:
     """Range of the differences of a level over the bands that say something, and dB(A)."""
-    change, title = of.table[f"{name}_difference"][run, 0].values, of.levels[name]
+    difference, title = of.table[f"{name}_difference"], of.levels[name]
+    change, without = difference[run, 0].values, difference.attrs.get(UNLIKE_RUNS, "")
+    if without and not np.isfinite(change).any():
+        return f"{title} not compared, for that of {without} is without its wheel"
     weighted = float(of.table[f"{name}_a_difference"][run, 0])
     told = np.flatnonzero(np.isfinite(change) & _sure(of.table, run))
     if not told.size:

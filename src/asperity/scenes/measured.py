@@ -252,6 +252,7 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Rece
         schema.REFERENCE_CONDITIONS: [
             _condition("receiver", told, f"{wanted} (TSI Noise)", there),
             _condition("speed", f"{3.6 * passage.speed:.4g} km/h", of_speed, slow_enough),
+            *_of_sources(over_frequency),
             *_of_roughness(over_frequency),
             _of_decay(over_frequency),
         ],
@@ -265,6 +266,14 @@ def held_to_limits(case: Any, over_frequency: xarray.Dataset, at: Callable[[Rece
 
 def _condition(name: str, here: str, asked: str, met: bool) -> Condition:
     return {"condition": name, "here": here, "asked": asked, "met": met}
+
+
+def _of_sources(over_frequency: xarray.Dataset) -> list[Condition]:
+    """That nothing which rolls is left out of the level; nothing where all is in it."""
+    reason = over_frequency[schema.RADIATED_POWER_LEVEL.name].attrs.get("wheel", "computed")
+    if reason == "computed":
+        return []
+    return [_condition("sources", f"rail and sleepers alone: {reason}", "rail, sleepers and wheel", False)]
 
 
 def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:

@@ -1,7 +1,6 @@
 """Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
 
 import math
-from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -20,7 +19,16 @@ from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, measured, schema
 from asperity.scenes.measured import measured_passage
 from asperity.schema import Entry, Values, spectra
-from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum, level_of
+from asperity.spectra import (
+    HALF_BAND,
+    a_weighted_total,
+    a_weighting,
+    averaging_time,
+    band_energies,
+    energy_sum,
+    level_deviation,
+    level_of,
+)
 from asperity.structures.track import Track, decay_rate
 from asperity.surfaces import bands, heightmap
 
@@ -173,6 +181,8 @@ def _roughness(line: Array, spacing: float) -> Table | None:
 # --- from the vibration itself
 
 RADIATORS = ("rail", "sleepers", "wheel", "total")
+WITH_SIDEWAYS = ("rail", schema.RAIL_SIDEWAYS, "sleepers", "wheel", "total")
+"""Where something moves sideways: the rail up and down, then sideways; the wheel under both forces."""
 WITHIN = 10.0 ** (0.1 * (np.arange(9) - 4.0) / 9.0)
 """Frequencies in a band over its centre, over which lengths are averaged."""
 PICOWATT = 1e-12
@@ -214,62 +224,124 @@ def silent_wheel(case: Any) -> str:
 
 
 def warn_of_silence(case: Any) -> None:
-    """Note that the sound power from vibration lacks the wheel's part, where it does."""
+    """Note that the sound power from vibration lacks the wheel's part, where it does.
+
+    It is no mere note where a level is held to a limit.
+    """
     if reason := silent_wheel(case):
+        limited = case.noise.vehicle is not None
+        told = "; no limit of TSI Noise can be met by it" if limited else ""
         MissingSourceWarning.warn(
-            f"the sound power from vibration is that of rail and sleepers alone: {reason}. Above about 2 kHz "
-            f"the wheel is the loudest. Give {case.ROLLING}.section, or {case.ROLLING}.modes with how they "
-            "move the wheel.",
-            Grade.NOTE,
+            f"the sound power from vibration is that of rail and sleepers alone{told}: {reason}. Above about "
+            f"2 kHz the wheel is the loudest. Give {case.ROLLING}.section, or {case.ROLLING}.modes with how "
+            "they move the wheel.",
+            Grade.WARNING if limited else Grade.NOTE,
         )
 
 
-def radiation(computed: compute.Computed) -> Values:
-    """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels.
+def radiation(computed: compute.Computed, values: Array, side: Array | None) -> Values:
+    """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels: one total.
 
     What was rolled on one rail stands for axles, each with two wheels, on two rails. The total
-    holds what is known: without a wheel that says how its modes move it, rail and sleepers. What was measured
-    on the track changes the power of both, and the length that radiates, band by band.
+    holds all that is known: without a wheel that says how its modes move it, rail and sleepers. What was
+    measured on the track changes the power of both up and down, and the length that radiates, band by band.
+
+    Parameters
+    ----------
+    values : ndarray (b,)
+        Independent values that the record holds in each band.
+    side : ndarray (laws, 3, f) or None
+        Sound power of what moves sideways on one rail, W/Hz: of the rail, which adds to the total, of the
+        wheels under both forces, which stands there in place of that under the vertical one, and under the
+        lateral one alone.
     """
     case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
     edges = band / HALF_BAND, band * HALF_BAND
     density, of_modes = _radiated(computed)
-    power = np.maximum(band_energies(computed.frequency, density, *edges), 0.0)
+
+    def in_bands(density: Array) -> Array:
+        return np.maximum(band_energies(computed.frequency, density, *edges), 0.0)
+
+    power = in_bands(density)
+    beside = None if side is None else in_bands(side)
+
+    def level(power: Array) -> Array:
+        return level_of(2.0 * power / PICOWATT)  # of two rails
 
     def laid_out(power: Array, levels: Entry, totals: Entry) -> Values:
-        whole = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
+        parts = _all_parts(power, beside)
+        whole = np.concatenate([parts, parts.sum(axis=1, keepdims=True)], axis=1)
         if silent != "computed":
-            whole[:, 2] = np.nan
-        level = level_of(2.0 * whole / PICOWATT)  # of two rails
+            whole[:, -2] = np.nan
         said = {"wheel": silent}
         if not power[:, 1].any():
             of_wheel = () if silent == "computed" else (schema.SILENT,)
             said["missing"] = "; ".join((schema.STILL, *of_wheel))
+        found = level(whole)
         return {
-            levels: levels.variable(level, **said),
-            totals: totals.variable(a_weighted_total(level, band), **said),
+            levels: levels.variable(found, **said),
+            totals: totals.variable(a_weighted_total(found, band), **said),
         }
 
-    beside: Values = {}
+    more: Values = {}
     longer: ArrayLike = 1.0
     if (found := measured.measured_track(computed)) is not None:
-        beside = laid_out(power, schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWER_LEVEL_A)
+        more = laid_out(power, schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWER_LEVEL_A)
         own, louder, longer = found
-        beside |= own
+        more |= own
         power[:, :2] *= louder
+    if beside is not None:
+        alone = level(np.stack([power[:, 2], beside[:, 2], power.sum(axis=1)], axis=1))
+        more[schema.SINGLE_FORCE] = schema.SINGLE_FORCES
+        more[schema.SINGLE_FORCE_POWER_LEVEL] = alone
+        more[schema.SINGLE_FORCE_POWER_LEVEL_A] = a_weighted_total(alone, band)
     rung: Values = {}
     if of_modes.shape[1]:
-        energy = np.maximum(band_energies(computed.frequency, of_modes, *edges), 0.0)
-        rung = mode_by_mode(case, 2.0 * energy, band)
+        rung = mode_by_mode(case, 2.0 * in_bands(of_modes), band)
     # the length 8.686/Δ of the decay is the mean of those over a band
     lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * WITHIN)
+    radiated = laid_out(power, schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A)
+    deviation = _deviation(computed, _all_parts(density, side), _all_parts(power, beside), values)
+    said = radiated[schema.RADIATED_POWER_LEVEL_A].attrs
+    told = {name: said[name] for name in ("wheel", "missing") if name in said}
     return {
-        schema.RADIATOR: RADIATORS,
-        **laid_out(power, schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A),
+        schema.RADIATOR: RADIATORS if side is None else WITH_SIDEWAYS,
+        **radiated,
+        schema.RADIATED_POWER_DEVIATION: schema.RADIATED_POWER_DEVIATION.variable(deviation, **told),
         schema.BAND_DECAY_RATE: 1.0 / np.mean(lengths, axis=1) / longer,
-        **beside,
+        **more,
         **rung,
     }
+
+
+def _all_parts(up: Array, side: Array | None) -> Array:
+    """All that radiates (laws, n, ...), as the result orders it, of what moves up and down and sideways."""
+    return up if side is None else np.stack([up[:, 0], side[:, 0], up[:, 1], side[:, 1]], axis=1)
+
+
+def _deviation(computed: compute.Computed, density: Array, power: Array, values: Array) -> Array:
+    """Standard deviation of A-weighted levels by chance (laws, n), dB, of parts and, last, of their sum.
+
+    A part whose power in a band is that of few lines, as of a wheel that rings, holds fewer independent
+    values there than the force does: of lines e, Hz apart by Δf, over a time T it is (Σe)²/Σe² Δf T. Bands
+    count by their share of the power. Densities (laws, n, f) on all lines, powers (laws, n, b); NaN of what
+    does not radiate.
+    """
+    case, band, frequency = computed.case, computed.band, computed.frequency
+    time = averaging_time(len(computed.first.time), case.time_step, segment=computed.segment)
+    density = np.concatenate([density, density.sum(axis=1, keepdims=True)], axis=1)
+    weighted = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
+    weighted = weighted * 10.0 ** (a_weighting(band) / 10.0)
+    variance = np.zeros(weighted.shape)
+    for b, centre in enumerate(band):
+        inside = density[..., (frequency >= centre / HALF_BAND) & (frequency < centre * HALF_BAND)]
+        square = np.maximum(np.sum(inside**2, axis=-1), np.finfo(float).tiny)
+        lines = np.sum(inside, axis=-1) ** 2 / square
+        held = np.minimum(values[b], lines * float(frequency[1] - frequency[0]) * time)
+        variance[..., b] = level_deviation(held) ** 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = weighted / weighted.sum(axis=-1, keepdims=True)
+    return np.asarray(np.sqrt(np.sum(share**2 * variance, axis=-1)))
 
 
 def mode_by_mode(case: Any, power: Array, band: Array) -> Values:
@@ -346,38 +418,26 @@ def sources_of(case: Any) -> tuple[str, ...]:
 def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | None = None) -> Values:
     """Lay out levels beside the track, from the sound power and the decay rates that the spectra hold.
 
-    All axles radiate alike: where several were rolled, as their mean. Where something moves sideways, that
-    and the sum with it stand `beside` what moves up and down alone, and last.
+    All axles radiate alike: where several were rolled, as their mean. What moves sideways decays along the
+    rail as its own waves do, of which the group `beside` tells.
     """
     keys, passage, band = case.noise, case.passage, over_frequency[spectra.BAND.name].values
-    sources, weights = _sources(case, over_frequency), 10.0 ** (a_weighting(band) / 10.0)
+    sources = _sources(case, over_frequency, beside or {})
+    weights = 10.0 ** (a_weighting(band) / 10.0)
     length = max(float(np.max(source.length)) for source in sources)
-    radiators, whole = over_frequency[schema.RADIATOR.name].values.tolist(), range(len(sources))
-    if beside:
-        sources += _sideways(case, band, beside, length)
-        radiators += schema.SIDEWAYS_RADIATORS
 
     @cache
     def heard(at: pass_by.Receiver) -> tuple[Array, ...]:
         """Times, squared pressure and exposure (laws, radiators, …), and the single numbers of both."""
         path, time = keys.sound_path(band, at), passage.times(at, length)
-        parts = (
-            [weights @ path.squared_pressure(each, passage, time) for each in sources],
-            [path.exposure(each, passage) for each in sources],
-        )
 
-        def of(numbers: Sequence[int]) -> list[Array]:
-            """These of some sources and, last, of their sum."""
-            chosen = ([every[n] for n in numbers] for every in parts)
-            squared, exposed = (np.stack([*each, np.sum(each, axis=0)], axis=1) for each in chosen)
-            levels = [pass_by.pass_by_levels(time, law, passage.passed) for law in squared]
-            return [squared, exposed, *np.stack(levels, axis=1)]
+        def with_sum(each: list[Array]) -> Array:
+            return np.stack([*each, np.sum(each, axis=0)], axis=1)
 
-        found = of(whole)
-        if beside:  # rail and sleepers up and down, too, but not the wheel
-            more = of([0, 1, 3, 4])
-            found = [np.append(own, each[:, 2:], axis=1) for own, each in zip(found, more, strict=True)]
-        return time, *found
+        squared = with_sum([weights @ path.squared_pressure(each, passage, time) for each in sources])
+        exposed = with_sum([path.exposure(each, passage) for each in sources])
+        levels = [pass_by.pass_by_levels(time, law, passage.passed) for law in squared]
+        return time, squared, exposed, *np.stack(levels, axis=1)
 
     receiver = keys.receiver
     time, squared, exposed, maximum, equivalent, transit_exposure = heard(receiver)
@@ -385,7 +445,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
     kept = slice(None, None, max(1, math.floor(KEPT_STEP / step)))
     laid_out: Values = {
         schema.PASS_BY_LAW: over_frequency[spectra.LAW.name].values,
-        schema.PASS_BY_RADIATOR: radiators,
+        schema.PASS_BY_RADIATOR: over_frequency[schema.RADIATOR.name].values.tolist(),
         schema.PASS_BY_BAND: band,
         schema.PASS_BY_TIME: time[kept],
         schema.AXLE: 1 + np.arange(len(passage.axles)),
@@ -408,27 +468,25 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
     return laid_out | measured_passage(case.noise, band)
 
 
-def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSource]:
-    """What one axle makes radiate: a wheel from its axle, the others along the rail as its waves decay."""
-    level = over_frequency[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
-    decay = over_frequency[schema.BAND_DECAY_RATE.name].values
-    length = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
-    parts = zip(level["radiator"].values.tolist(), np.moveaxis(level.values, 1, 0), strict=True)
-    return [_source(case, name, of_part, length) for name, of_part in parts if name != "total"]
+def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[pass_by.AxleSource]:
+    """What one axle makes radiate: a wheel from its axle, the others along the rail as its waves decay.
 
-
-def _source(case: Any, name: str, level: Array, length: Array) -> pass_by.AxleSource:
-    """One of them by its sound power level (laws, b), dB re 1 pW, and the length of waves in the rail, m."""
-    power = PICOWATT * np.nan_to_num(10.0 ** (level / 10.0)) / len(case.contacts_behind)
-    if name.startswith("wheel"):
-        return pass_by.AxleSource(power, 0.0, case.rolling.radius)
-    return pass_by.AxleSource(power, length)
-
-
-def _sideways(case: Any, band: Array, beside: Values, longest: float) -> list[pass_by.AxleSource]:
-    """What radiates sideways of one axle; waves reach no farther than the `longest` up and down, m."""
-    frequency, decay = beside[schema.SIDEWAYS_FREQUENCY], beside[schema.LATERAL_DECAY_RATE]
-    length = np.mean(ONE_WAVE / np.interp(band[:, None] * WITHIN, frequency, decay), axis=1)
-    of_rail, of_wheel, _ = np.moveaxis(beside[schema.LATERAL_POWER_LEVEL], 1, 0)
-    parts = (schema.RAIL_SIDEWAYS, of_rail), (schema.WHEEL_BOTH, of_wheel)
-    return [_source(case, *part, np.minimum(length, longest)) for part in parts]
+    Waves sideways reach no farther than the longest of those up and down.
+    """
+    power = over_frequency[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
+    band, decay = power["band"].values, over_frequency[schema.BAND_DECAY_RATE.name].values
+    up = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
+    found = []
+    for name, level in zip(power["radiator"].values.tolist(), np.moveaxis(power.values, 1, 0), strict=True):
+        sent = PICOWATT * np.nan_to_num(10.0 ** (level / 10.0)) / len(case.contacts_behind)
+        if name == "wheel":
+            found.append(pass_by.AxleSource(sent, 0.0, case.rolling.radius))
+        elif name == schema.RAIL_SIDEWAYS:
+            rate = np.interp(
+                band[:, None] * WITHIN, beside[schema.SIDEWAYS_FREQUENCY], beside[schema.LATERAL_DECAY_RATE]
+            )
+            lateral = np.mean(ONE_WAVE / rate, axis=1)
+            found.append(pass_by.AxleSource(sent, np.minimum(lateral, float(np.max(up)))))
+        elif name != "total":
+            found.append(pass_by.AxleSource(sent, up))
+    return found

@@ -56,7 +56,8 @@ def computed_result(
     where nothing depends on it.
     """
     computed = compute(prepared, progress)
-    case, scene, over_frequency = computed.case, computed.scene, spectra_group(computed)
+    case, scene, side = computed.case, computed.scene, sideways.sideways_of(computed)
+    over_frequency = spectra_group(computed, None if side is None else side.power)
     choice, population = validity.choice_of(computed, brief=brief), answers(computed)
     found, own = validity.findings(computed, population, choice), Values()
     in_bands = group(over_frequency)
@@ -69,7 +70,7 @@ def computed_result(
         if schema.SOUND_POWER_LEVEL_A in over_frequency:
             found += noise.findings_of_labels(case)
         found += measured.findings_of_measured(case.track, computed.track.nominal, computed.band)
-        beside = sideways.sideways_group(computed, in_bands)
+        beside = {} if side is None else sideways.sideways_group(side)
         own = track.track_group(computed, losses) | noise.pass_by_group(case, in_bands, beside)
         creeps = creep.creep_group(computed)
         own |= beside | creeps
@@ -213,10 +214,11 @@ def _motion(computed: Computed) -> Array:
     return np.stack([-levers * np.concatenate(run.degrees_of_freedom) for run in computed.runs.values()])
 
 
-def spectra_group(computed: Computed) -> Values:
+def spectra_group(computed: Computed, side: Array | None = None) -> Values:
     """Lay out PSDs and one-third octaves of force and motion, and what follows from them for sound.
 
-    With how sure the levels are, and how far the laws are from each other.
+    With how sure the levels are, and how far the laws are from each other. The sound power of what moves
+    sideways, where something does, is that of `asperity.scenes.sideways.Sideways.power`.
     """
     scene, forces, shown = computed.scene, computed.stacked("contact_force"), computed.shown
     density = computed.force_psd.mean(axis=1)
@@ -230,7 +232,10 @@ def spectra_group(computed: Computed) -> Values:
         spectra.FORCE_LEVEL: level,
         spectra.CONTACT_FORCE_LEVEL: computed.force_levels,
     }
-    laid_out |= sureness(computed) | level_differences(list(computed.runs), level) | _bodies(computed)
+    product, start, values = held_values(computed)
+    laid_out |= (
+        sureness(product, start, values) | level_differences(list(computed.runs), level) | _bodies(computed)
+    )
     if forces.shape[1] > 1:
         tones = passing_frequencies(
             scene.offsets, computed.case.speed, computed.case.numerics.highest_frequency
@@ -242,7 +247,7 @@ def spectra_group(computed: Computed) -> Values:
         laid_out[schema.ACCELERATION_PSD] = density[..., shown]
         laid_out[schema.ACCELERATION_LEVEL] = computed.levels(density, schema.ACCELERATION_REFERENCE)
     if isinstance(scene.over, Track):
-        laid_out |= track.track_spectra(computed) | track.tones(computed)
+        laid_out |= track.track_spectra(computed, values, side) | track.tones(computed)
     return laid_out
 
 
@@ -250,8 +255,8 @@ PLACES = 8
 """Places along the record at which the linear contact is looked at."""
 
 
-def sureness(computed: Computed) -> Values:
-    """Lay out how sure the levels of bands are: B T, chance, and start.
+def held_values(computed: Computed) -> tuple[Array, Array, Array]:
+    """B T of the bands (b,), the share of their level that the start makes, and the independent values held.
 
     By the first contact: others of one path hold much the same.
     """
@@ -263,7 +268,11 @@ def sureness(computed: Computed) -> Values:
     of = (computed.scene.first, computed.scene, computed.stiffness, places)
     product = bands.band_product(band, time)
     held, start = bands.chance_and_start(lambda f: force_transfer(f, *of), band, case.settled_time, record)
-    values = np.minimum(product * seen, held * time / record)
+    return product, start, np.minimum(product * seen, held * time / record)
+
+
+def sureness(product: Array, start: Array, values: Array) -> Values:
+    """Lay out how sure the levels of bands are: B T, chance, and start, from `held_values`."""
     return {
         spectra.START_SHARE: spectra.START_SHARE.variable(start, most=bands.MOST_START),
         spectra.BAND_TIME_PRODUCT: spectra.BAND_TIME_PRODUCT.variable(product, least=bands.LEAST_PRODUCT),

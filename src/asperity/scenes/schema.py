@@ -153,14 +153,14 @@ NOISE_BAND = _noise("noise_band", "Hz", _BAND)
 SOUND_POWER_LEVEL = _noise(
     "sound_power_level(law, source, noise_band)",
     "dB re 1 pW",
-    "sound power level of rolling",
+    "sound power level of rolling by CNOSSOS-EU",
     missing="this source radiates nothing in these bands, or its method does not reach them",
     attributes=("reference",),
 )
 SOUND_POWER_LEVEL_A = _noise(
     "sound_power_level_a(law, source)",
     "dB(A) re 1 pW",
-    "A-weighted sound power level of rolling, over the bands computed",
+    "A-weighted sound power level of rolling by CNOSSOS-EU, over the bands computed",
     missing=NO_SIGNAL,
 )
 CNOSSOS_SOUND_POWER_LEVEL_A = _noise(
@@ -179,6 +179,23 @@ _POWER = "sound power level from the vibration itself, of all axles"
 RADIATED_POWER_LEVEL = _radiated("radiated_power_level(law, radiator, band)", "dB re 1 pW", _POWER)
 _POWER = "A-weighted sound power level from the vibration itself, over the bands computed"
 RADIATED_POWER_LEVEL_A = _radiated("radiated_power_level_a(law, radiator)", "dB(A) re 1 pW", _POWER)
+_POWER = "standard deviation of the A-weighted sound power level by the chance of one record"
+RADIATED_POWER_DEVIATION = _radiated("radiated_power_deviation(law, radiator)", "dB", _POWER)
+
+SIDE = "where the contact of a wheel and a rail is off the middle, or the wheel is drawn"
+RAIL_SIDEWAYS = "rail sideways"
+"""The further radiator of a run in which something moves sideways; the wheel is that under both forces."""
+SINGLE_FORCES = "wheel, vertical force alone", "wheel, lateral force alone", "vertical motion alone"
+BY_VERTICAL, BY_LATERAL, VERTICAL_MOTION = SINGLE_FORCES
+_alone = partial(_spectra, condition=SIDE, missing=SILENT)
+SINGLE_FORCE = _alone("single_force", "1", "what would radiate if one force alone acted on the contact")
+_POWER = "sound power level of what a single force would make radiate, of all axles"
+SINGLE_FORCE_POWER_LEVEL = _alone("single_force_power_level(law, single_force, band)", "dB re 1 pW", _POWER)
+SINGLE_FORCE_POWER_LEVEL_A = _alone(
+    "single_force_power_level_a(law, single_force)",
+    "dB(A) re 1 pW",
+    f"A-weighted {_POWER}, over the bands computed",
+)
 _DECAY = "decay rate of the rail, of the mean length in the band"
 BAND_DECAY_RATE = _rail_spectra("band_decay_rate(band)", "dB/m", _DECAY)
 
@@ -292,6 +309,8 @@ EFFECT_RADIATOR = _effects("radiator", "1", "what radiates by its vibration")
 _A, _OF_A = RADIATED_POWER_LEVEL_A, "level with the change less that of the case as it is"
 EFFECT_LEVEL = _changed("level(radiator)", _A.units, _A.long_name)
 EFFECT = _changed("effect(variant, radiator)", "dB", _OF_A)
+_CHANCE = "standard deviation of the level by the chance of its records"
+EFFECT_LEVEL_DEVIATION = _changed("level_deviation(radiator)", "dB", _CHANCE)
 _HALF = "half the 95 % confidence interval of the effect, by its scatter over the seeds"
 EFFECT_ERROR = _effects(
     "effect_error(variant, radiator)", "dB", _HALF, missing="it has fewer than two seeds, or no effect"
@@ -315,16 +334,11 @@ _ISO = "of a test by TSI Noise and ISO 3095: condition, what is here, what is as
 REFERENCE_CONDITIONS = _place("reference_conditions", "JSON", _ISO, _ASKED)
 # --- what moves sideways
 
-_SIDE = "where the contact of a wheel and a rail is off the middle, or the wheel is drawn"
-_side = partial(Entry, "sideways", condition=_SIDE)
-_side_fact = partial(Attribute, "sideways", condition=_SIDE)
+_side = partial(Entry, "sideways", condition=SIDE)
+_side_fact = partial(Attribute, "sideways", condition=SIDE)
 SIDEWAYS_LAW = _side("law", "1", "contact law")
 SIDEWAYS_FREQUENCY = _side("frequency", "Hz", "frequency")
 SIDEWAYS_BAND = _side("band", "Hz", _BAND)
-SIDEWAYS_RADIATORS = "rail sideways", "wheel, both forces", "total with sideways"
-"""The last: of rail and sleepers up and down, of the rail sideways, and of the wheel under both forces."""
-RAIL_SIDEWAYS, WHEEL_BOTH, WITH_SIDEWAYS = SIDEWAYS_RADIATORS
-SIDEWAYS_RADIATOR = _side("radiator", "1", "what radiates by which motion")
 _RAIL = "receptance of the rail head at mid-span, sideways per force"
 RAIL_LATERAL_RECEPTANCE = _side("rail_lateral_receptance(frequency)", "m/N", f"{_RAIL} sideways")
 RAIL_CROSS_RECEPTANCE = _side("rail_cross_receptance(frequency)", "m/N", f"{_RAIL} downwards")
@@ -335,16 +349,10 @@ _DECAY = "decay rate of the rail sideways, eigenvalue"
 LATERAL_DECAY_RATE = _side("lateral_decay_rate(frequency)", "dB/m", _DECAY)
 _FORCE = "lateral contact force in stick, mean of the contacts"
 LATERAL_FORCE_PSD = _spectra(
-    "lateral_force_psd(law, frequency)", "N2/Hz", f"PSD of the {_FORCE}, one-sided", _SIDE
+    "lateral_force_psd(law, frequency)", "N2/Hz", f"PSD of the {_FORCE}, one-sided", SIDE
 )
 LATERAL_FORCE_LEVEL = _side(
     "lateral_force_level(law, band)", "dB re 1 N", f"level of the {_FORCE}", missing=NO_SIGNAL
-)
-_POWER = "sound power level of motion that the lateral force makes, or takes part in, of all axles"
-_NONE = "nothing radiates, or it is not known how the disc and tread of this wheel vibrate"
-LATERAL_POWER_LEVEL = _side("lateral_power_level(law, radiator, band)", "dB re 1 pW", _POWER, missing=_NONE)
-LATERAL_POWER_LEVEL_A = _side(
-    "lateral_power_level_a(law, radiator)", "dB(A) re 1 pW", f"A-weighted {_POWER}", missing=_NONE
 )
 _CHANGE = "level of the linear vertical force with the lateral one over that without, which runs leave out"
 VERTICAL_FORCE_CHANGE = _side("vertical_force_change(band)", "dB", _CHANGE)
@@ -434,10 +442,20 @@ KEPT: dict[Entry, dict[str, str]] = {
     SOUND_POWER_LEVEL_A: {"source": "total"},
     RADIATED_POWER_LEVEL: {},
     RADIATED_POWER_LEVEL_A: {},
+    RADIATED_POWER_DEVIATION: {},
     FULL_SLIP_SHARE: {},
     MEAN_FRICTION_POWER: {},
 }
 """What a study keeps of it, where a result has it, and where of it."""
+TOTALS = (
+    RADIATED_POWER_LEVEL_A,
+    SOUND_EXPOSURE_LEVEL_A,
+    PASS_BY_MAXIMUM_LEVEL,
+    PASS_BY_EQUIVALENT_LEVEL,
+    TRANSIT_EXPOSURE_LEVEL,
+    NORMALISED_LEVEL,
+)
+"""Single numbers of what is heard of it: totals, the first with its parts."""
 SHOWN = (
     f"{ACCELERATION_LEVEL.name}_a",
     RADIATED_POWER_LEVEL_A.name,

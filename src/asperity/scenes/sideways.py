@@ -6,7 +6,6 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-import xarray
 
 from asperity.arguments import Array, Complex, NDArray
 from asperity.contact.hertz import stick_stiffness
@@ -16,14 +15,12 @@ from asperity.scenarios.scene import force_transfer
 from asperity.scenes import compute, schema
 from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
 from asperity.schema import Values
-from asperity.spectra import a_weighted_total, energy_sum
 from asperity.structures import lateral_rail, modal
+from asperity.structures.track import Track
 from asperity.structures.wheel_modes import WheelModes
 
 PLACES = 12
 """Of the contact in a bay, over which squares are averaged."""
-PICOWATT = 1e-12
-"""Of sound power levels, W."""
 
 SOURCES = (
     "sideways: the rail as in D. Kostovasilis, D. J. Thompson and M. F. M. Hussein, J. Sound Vib. 2017, doi "
@@ -145,38 +142,56 @@ class Sideways:
         return side.power(self.lines, square)
 
     def wheel_power(self) -> Array:
-        """Sound power of the wheels under both forces (laws, f), W/Hz.
+        """Sound power of the wheels under both forces, and under the lateral one alone (2, laws, f), W/Hz.
 
         Zero of a wheel whose modes are unknown. Rigid motion up and down is one nodal diameter around the
         tread, along the axle that of a rigid disc.
         """
         modes, case, fine = self.computed.scene.modes, self.computed.case, self.fine[0]
         if modes is None:
-            return np.zeros_like(self.seen_of_all)
+            return np.zeros((2, *self.seen_of_all.shape))
         spread = self.between(self.spread) / PLACES
         share = np.sum(spread * self.shares, axis=0).real
         square = np.sum(spread * np.abs(self.shares) ** 2, axis=0)
         omega, (place, _) = 2.0 * np.pi * fine, case.contact_places
         radial, axial = (each[:, None] for each in modes.at(place))
         answers = modal.modal_answers(fine, modes.natural_frequencies, modes.damping_ratios).T
-        moved = radial**2 + 2.0 * radial * axial * share + axial**2 * square
         rigid = 1.0 / (case.rolling.contact_mass * omega) ** 2
-        velocity = np.vstack([rigid, rigid * square, np.abs(omega * answers) ** 2 * moved])
         numbers = np.concatenate([[1, 0], modes.nodal_diameters])
         disc, tread = np.append([0.0, 1.0], modes.disc), np.append([math.sqrt(0.5), 0.0], modes.tread)
         radiator = RadiatingWheel(case.rolling.radius, case.noise.wheel_width, numbers, disc, tread)
-        return radiator.power(self.lines, self.means(velocity)).sum(axis=0) * self.seen_of_all
+
+        def radiated(radially: float) -> Array:
+            """Of this part of the vertical force together with the lateral one."""
+            moved = radially * (radial**2 + 2.0 * radial * axial * share) + axial**2 * square
+            velocity = np.vstack([radially * rigid, rigid * square, np.abs(omega * answers) ** 2 * moved])
+            return radiator.power(self.lines, self.means(velocity)).sum(axis=0) * self.seen_of_all
+
+        return np.stack([radiated(1.0), radiated(0.0)])
+
+    @cached_property
+    def power(self) -> Array:
+        """Sound power of what was rolled on one rail (laws, 3, f), W/Hz, on all lines of the spectra.
+
+        Of the rail sideways, of the wheels under both forces, and under the lateral one alone.
+        """
+        parts = np.stack([self.rail_power(), *self.wheel_power()], axis=1)
+        whole = np.zeros((*parts.shape[:-1], len(self.computed.frequency)))
+        whole[..., self.computed.shown] = parts
+        return whole
 
 
-def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -> Values:
-    """Lay out receptances and decay sideways, the lateral force of each law, its grip and its sound power.
+def sideways_of(computed: compute.Computed) -> Sideways | None:
+    """What moves sideways: nothing off a track, or where a contact in the middle bends no web of a wheel."""
+    case = computed.case
+    moves = "sideways" in case.inner and (any(case.contact_places) or case.rolling.is_drawn)
+    return Sideways(computed) if moves and isinstance(computed.scene.over, Track) else None
 
-    Nothing moves where the contact is in the middle, and no web of a drawn wheel may be bent. The sound power
-    of all together takes that of rail and sleepers from the spectra.
-    """
-    found, case, band = Sideways(computed), computed.case, computed.band
-    if "sideways" not in case.inner or not (any(case.contact_places) or case.rolling.is_drawn):
-        return {}
+
+def sideways_group(found: Sideways) -> Values:
+    """Lay out receptances and decay sideways, the lateral force of each law, and its grip."""
+    computed = found.computed
+    case, band = computed.case, computed.band
     contacts, limit = len(computed.scene.offsets), case.sideways.friction * computed.shape.load
     step = found.lines[1] - found.lines[0]
 
@@ -186,10 +201,6 @@ def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -
         whole[..., computed.shown] = density
         return computed.levels(whole)
 
-    power = levels(2.0 / PICOWATT * np.stack([found.rail_power(), found.wheel_power()], axis=1))
-    up = over_frequency[schema.RADIATED_POWER_LEVEL.name].sel(radiator=["rail", "sleepers"]).values
-    together = np.concatenate([np.nan_to_num(up, nan=-np.inf), power], axis=1)
-    power = np.append(power, energy_sum(together, axis=1)[:, None], axis=1)
     density = np.mean(found.spread * found.squares, axis=0) * found.seen[1]  # of each contact, N²/Hz
     lateral, of_each = density.sum(axis=1) / contacts, np.sqrt(density.sum(axis=-1) * step)
     with np.errstate(divide="ignore"):
@@ -203,7 +214,6 @@ def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -
         schema.SIDEWAYS_LAW: list(computed.runs),
         schema.SIDEWAYS_FREQUENCY: frequency,
         schema.SIDEWAYS_BAND: band,
-        schema.SIDEWAYS_RADIATOR: schema.SIDEWAYS_RADIATORS,
         schema.RAIL_LATERAL_RECEPTANCE: np.abs(rail[1, 1]),
         schema.RAIL_CROSS_RECEPTANCE: np.abs(rail[1, 0]),
         schema.WHEEL_LATERAL_RECEPTANCE: np.abs(wheel[1, 1]),
@@ -211,8 +221,6 @@ def sideways_group(computed: compute.Computed, over_frequency: xarray.Dataset) -
         schema.LATERAL_DECAY_RATE: found.track.decay_rate(frequency),
         schema.LATERAL_FORCE_PSD: lateral,
         schema.LATERAL_FORCE_LEVEL: levels(lateral),
-        schema.LATERAL_POWER_LEVEL: power,
-        schema.LATERAL_POWER_LEVEL_A: a_weighted_total(power, band),
         schema.VERTICAL_FORCE_CHANGE: coupling,
         schema.SLIP_SHARE: slips,
         schema.LATERAL_FORCE_SPREAD: np.sqrt(lateral.sum(axis=-1) * step),

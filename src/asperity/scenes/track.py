@@ -22,8 +22,12 @@ from asperity.surfaces.heightmap import Profile
 from asperity.written_numbers import between, rounded
 
 
-def track_spectra(computed: compute.Computed) -> Values:
-    """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track."""
+def track_spectra(computed: compute.Computed, values: Array, side: Array | None) -> Values:
+    """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track.
+
+    With the independent values that the record holds in each band (b,), and the sound power of what moves
+    sideways, if something does.
+    """
     shown = computed.shown
     reference, texture = linear_reference(computed)
     velocity = computed.psd(computed.points[1])
@@ -36,7 +40,7 @@ def track_spectra(computed: compute.Computed) -> Values:
         schema.POINT_VELOCITY_LEVEL: computed.levels(velocity, schema.VELOCITY_REFERENCE),
         **_roughness(computed),
         **noise.noise(computed),
-        **noise.radiation(computed),
+        **noise.radiation(computed, values, side),
     }
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike
 
-VERSION = 2
+VERSION = 3
 """Of the schema, in every result. Raise it where a name, dimension, unit or meaning changes or goes."""
 UNKNOWN = "no reason is known"
 

@@ -86,6 +86,10 @@ class Unfit(Exception):
     """Why a change does not apply to a case."""
 
 
+class Nothing(Unfit):
+    """What a change would change is not there: any part of it is none, either."""
+
+
 def _refuse_measured(case: AnyCase, entry: CaseKey) -> None:
     """What was measured on a track holds for that track alone, whose sound power it decides."""
     if entry.section != "track" or entry.name not in keys_of(Track, ""):
@@ -125,6 +129,11 @@ class Change:
             return cls(entry, written, value, content(entry.read(former, origin)))
         return cls(entry, written, as_in_toml(written, entry.read(written, origin), entry))
 
+    @property
+    def is_part(self) -> bool:
+        """Whether it takes a multiple of what the case has."""
+        return self.factor is not None and not self.added
+
     def applied(self, case: AnyCase) -> Any:
         """The value that the key gets in a case, as it stands in TOML; `Unfit` says why there is none."""
         _refuse_measured(case, self.entry)
@@ -145,11 +154,13 @@ def _value_of(case: AnyCase, entry: CaseKey) -> Any:
     section: Section = getattr(case, entry.section) if entry.section else case
     companion = entry.key.goes_with
     if (entry.section and entry.section not in case.section_names) or not section.is_active(entry.name):
-        raise Unfit(f"the case has no {entry.dotted}{f', which goes with {companion}' if companion else ''}")
+        raise Nothing(
+            f"the case has no {entry.dotted}{f', which goes with {companion}' if companion else ''}"
+        )
     now = getattr(section, entry.name)
     now = section.default_of(entry.name) if now is None else now
     if now is None:
-        raise Unfit(f"the case has no {entry.dotted}")
+        raise Nothing(f"the case has no {entry.dotted}")
     return now
 
 
@@ -168,17 +179,19 @@ class VariantAxis(SweptAxis):
         }
 
     def keys(self, name: str, case: AnyCase) -> dict[str, Any]:
-        """Keys that a variant changes in a case, with their values; an error says why it changes none.
+        """Keys that a variant changes in a case, with their values; an error says why it cannot be made.
 
-        What a case does not have is not changed: half of no damping is none.
+        What it says is made as a whole, or not at all. But half of no damping is none: a part of what a case
+        does not have changes nothing.
         """
-        found, reasons = {}, []
+        found, reasons, whole = {}, list[str](), True
         for change in self.changes[name]:
             try:
                 found[change.entry.dotted] = change.applied(case)
             except Unfit as reason:
                 reasons.append(str(reason))
-        if reasons and not found:
+                whole = whole and isinstance(reason, Nothing) and change.is_part
+        if reasons and not (whole and found):
             raise CaseError(name, reasons)
         return found
 

@@ -150,6 +150,15 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
         attrs={schema.EFFECT_LAW.name: law, schema.EFFECT_SEEDS.name: table.sizes.get(SEED, 1)},
     )
     told[schema.EFFECT_LEVEL.name] = level.assign_attrs(_attributes(schema.EFFECT_LEVEL) | held.attrs)
+    if held.name == usual == schema.RADIATED_POWER_LEVEL_A.name:
+        by_chance = table[schema.RADIATED_POWER_DEVIATION.name].sel(
+            {VARIANT: AS_IT_IS, "law": law}, drop=True
+        )
+        count = by_chance.sizes[SEED] if several else 1
+        mean = ((by_chance**2).mean(several) / count) ** 0.5
+        told[schema.EFFECT_LEVEL_DEVIATION.name] = mean.assign_attrs(
+            _attributes(schema.EFFECT_LEVEL_DEVIATION)
+        )
     return told.isel({VARIANT: _order(effect, json.loads(table.attrs["sweep"]))})
 
 
@@ -170,6 +179,8 @@ def _left_out(table: xarray.Dataset, effect: xarray.DataArray) -> xarray.DataArr
 
 
 def _order(effect: xarray.DataArray, sweep: Collection[str]) -> NDArray[np.int64]:
-    """Places of the variants by what they do to the whole, the last of the parts; mean over other keys."""
-    whole = effect.isel({dim: -1 for dim in effect.dims if dim not in sweep})
+    """Places of the variants by what they do to the whole, of several parts; mean over other keys."""
+    parts = schema.EFFECT_RADIATOR.name
+    whole = effect.sel({parts: "total"}) if parts in effect.coords else effect
+    whole = whole.isel({dim: -1 for dim in whole.dims if dim not in sweep})
     return np.argsort(whole.mean([dim for dim in whole.dims if dim != VARIANT]).values, kind="stable")

@@ -6,7 +6,7 @@ import xarray
 from asperity.reporting import data, headline, tables
 from asperity.reporting.chart import Numbers
 from asperity.scenes import schema
-from asperity.scenes.figures.noise import WHOLE
+from asperity.scenes.figures.sources import WHOLE, Sources
 
 HEARD = 0.05
 """Change of a level, dB, below which none is told."""
@@ -15,23 +15,26 @@ HEARD = 0.05
 class Effects:
     """Effects of variants on the parts of what is heard, from `asperity.effects`.
 
-    By variant (v) and part (p), the whole first: `level` of the case as it is (p,), `effect` and `error`,
-    half of its confidence interval, dB (v, p), and why a variant was `left_out`. What is unknown goes; any
-    other level has one part without a name.
+    By variant (v) and part (p), the whole first: `level` of the case as it is and its `deviation` by chance
+    (p,), `effect` and `error`, half of its confidence interval, dB (v, p), and why a variant was `left_out`.
+    What is unknown goes; any other level has one part without a name.
     """
 
     def __init__(self, found: xarray.Dataset) -> None:
-        named = (schema.EFFECT_LEVEL.name, schema.EFFECT.name, schema.EFFECT_ERROR.name)
-        level = found[named[0]]
+        level, chance = found[schema.EFFECT_LEVEL.name], found.get(schema.EFFECT_LEVEL_DEVIATION.name)
         names = list(map(str, found[level.dims[0]].values)) if level.dims else [""]
-        numbers = [np.atleast_1d(found[name].values).reshape(-1, len(names)) for name in named]
-        known = np.isfinite(numbers[0][0])
-        order = [n for n in (-1, *range(len(names) - 1)) if known[n]]  # the whole is the last
-        (self.level,), self.effect, self.error = (each[:, order] for each in numbers)
+        chance = level * 0.0 if chance is None else chance
+        named = (level, chance, found[schema.EFFECT.name], found[schema.EFFECT_ERROR.name])
+        numbers = [np.atleast_1d(each.values).reshape(-1, len(names)) for each in named]
+        known = np.flatnonzero(np.isfinite(numbers[0][0])).tolist()
+        order = sorted(known, key=lambda n: names[n] != WHOLE)  # the whole first
+        (self.level,), (self.deviation,), self.effect, self.error = (each[:, order] for each in numbers)
         self.parts = [names[n] for n in order]
         self.variants = list(map(str, found[schema.EFFECT_VARIANT.name].values))
         self.left_out = list(map(str, found[schema.LEFT_OUT.name].values))
         self.what, self.units = str(level.attrs["long_name"]), data.written_units(str(level.attrs["units"]))
+        reason = str(level.attrs.get("wheel", "computed"))
+        self.silent = "" if reason == "computed" else f"The {WHOLE} is without the wheel: {reason}."
         self.law = str(found.attrs[schema.EFFECT_LAW.name])
         self.seeds = int(found.attrs[schema.EFFECT_SEEDS.name])
 
@@ -50,8 +53,8 @@ class Effects:
         """What helps most; empty where nothing surely helps."""
         helps = self.effect[0, 0] < -np.nan_to_num(self.error[0, 0])
         how = f"{data.signed(self.effect[0, 0])} dB(A)"
-        words = f"Helps most: {self.variants[0]}, {how}. {self.in_words[self.variants[0]]}"
-        return words if helps else ""
+        words = f"Helps most: {self.variants[0]}, {how}. {self.in_words[self.variants[0]]} {self.silent}"
+        return words.rstrip() if helps else ""
 
     def _words(self, effect: Numbers, error: Numbers) -> str:
         own = np.array([part != WHOLE for part in self.parts])
@@ -66,9 +69,14 @@ class Effects:
         return f"{sentence[:1].upper()}{sentence[1:]}{f'; loudest then: {after}' if after != before else ''}."
 
     def loudest(self, effect: Numbers | float = 0.0) -> str:
-        """The loudest part, with an effect; nothing where parts are not told apart."""
-        level = self.level + np.nan_to_num(effect)
-        return max(zip(level, self.parts, strict=True), key=lambda pair: (pair[1] != WHOLE, pair[0]))[1]
+        """The loudest body, or those about equal, with an effect; nothing where parts are not told apart."""
+        level = (self.level + np.nan_to_num(effect)).tolist()
+        parts = {part: each for part, each in zip(self.parts, level, strict=True) if part not in ("", WHOLE)}
+        chance = dict(zip(self.parts, np.nan_to_num(self.deviation).tolist(), strict=True))
+        names = Sources(0.0, parts, chance).loudest
+        return (
+            names[0] if len(names) < 2 and names else f"{' and '.join(names)}, about equal" if names else ""
+        )
 
 
 def effects_table(of: Effects) -> tables.ReportTable:
@@ -84,6 +92,7 @@ def effects_table(of: Effects) -> tables.ReportTable:
         sure = f": means over {of.seeds} seeds, each within one texture, ± confidence interval of 95 %."
     note = f"{of.what}, by {of.law}, as it is, in {of.units}; below, differences in dB{sure}"
     note += " In grey and in brackets: not surely any change." * (of.seeds > 1)
+    note += f" {of.silent}" if of.silent else ""
     return tables.table("effects", "What each change does, the quietest first", columns, note)
 
 

@@ -10,6 +10,7 @@ from asperity.reference.railways import PassByLimit
 from asperity.reporting import chart, data, figure, panels, tables
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema
+from asperity.scenes.figures.sources import WHOLE, Sources, decides, sources_of
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting
 
@@ -98,10 +99,11 @@ LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of eac
     "rail": (chart.VERMILLION, (1.5, 1.5), 1.3, "o"),
     "sleepers": (chart.GREEN, (4.0, 1.5), 1.3, "s"),
     "wheel": (chart.BLUE, (6.0, 1.5, 1.5, 1.5), 1.3, "^"),
-    "total": (chart.INK, (), 1.8),
+    WHOLE: (chart.INK, (), 1.8),
     schema.RAIL_SIDEWAYS: (chart.VERMILLION, (6.0, 1.5), 1.3),
-    schema.WHEEL_BOTH: (chart.BLUE, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5), 1.3),
-    schema.WITH_SIDEWAYS: (chart.INK, (6.0, 1.5), 1.8),
+    schema.BY_VERTICAL: (chart.BLUE, (6.0, 1.5, 1.5, 1.5, 1.5, 1.5), 1.3),
+    schema.BY_LATERAL: (chart.BLUE, (1.5, 1.5), 1.3),
+    schema.VERTICAL_MOTION: (chart.INK, (6.0, 1.5), 1.3),
     "measured": ("#a8458f", (), 2.2, "s"),
 }
 
@@ -114,7 +116,7 @@ LOOKS: dict[str, tuple[Any, ...]] = {  # colour, dashes, width and marker of eac
 def pass_by_bands(tree: DataTree, lines: figure.Lines) -> Iterator[chart.Panel | str]:
     """Levels by what radiates, of all of it, and those measured."""
     drawn = [chart.Line(lines.at, s.values, s.label, *LOOKS.get(s.label, ())) for s in lines.lines]
-    told = [line.y for line in drawn if line.label in ("total", schema.WITH_SIDEWAYS, "measured")]
+    told = [line.y for line in drawn if line.label in (WHOLE, "measured")]
     axis = panels.levels_axis("sound pressure level / dB(A) re 20 µPa", told, span=50.0)
     yield chart.Panel(panels.band_axis(lines.at), axis, tuple(drawn), height=4.0)
     yield (
@@ -135,29 +137,17 @@ def _vehicle(tree: DataTree) -> str:
     return told.upper() if told in _ABBREVIATED else told.replace("-", " ")
 
 
-def _levels(tree: DataTree, entry: Entry = schema.NORMALISED_LEVEL) -> dict[str, float]:
-    """Normalised levels of the main law by what radiates, as far as they are known; the whole last.
-
-    Where something moves sideways, that is of the whole, and the wheel under both forces.
-    """
-    found = data.stored_variable(tree, entry)
-    if found is None or not (laws := data.laws(tree, entry)):
-        return {}
-    of_law = data.of_law(tree, entry, laws[0])
-    levels = zip(map(str, found["radiator"].values), of_law.tolist(), strict=True)
-    known = {name: level for name, level in levels if np.isfinite(level)}
-    if schema.WITH_SIDEWAYS in known:
-        known = {n: each for n, each in known.items() if n not in ("total", "wheel")}
-        known = {"wheel" if n == schema.WHEEL_BOTH else n: each for n, each in known.items()}
-    return known
-
-
-def _result(tree: DataTree, level: float) -> tuple[str, bool | None]:
+def _result(tree: DataTree, of: Sources) -> tuple[str, bool | None]:
     """Whether the limit is met, and by how much; None where nothing can be said."""
     limit = data.number(tree, schema.TSI_LIMIT)
     if limit is None:
         return "no limit holds for this receiver and speed", None
-    met, margin = PassByLimit(limit, 0.0, 0.0).met(level), limit - level
+    met, margin = PassByLimit(limit, 0.0, 0.0).met(of.whole), limit - of.whole
+    if "wheel" not in of.parts:
+        short = f"{abs(margin):.1f} dB {'below' if margin >= 0.0 else 'over'} the {limit:g} dB(A) allowed"
+        if met:
+            return f"{short} without the wheel's part, so that it is not known whether the limit is met", None
+        return f"{short} even without the wheel's part", False
     if met and margin < 0.0:
         return f"met as a whole decibel, {-margin:.1f} dB over the {limit:g} dB(A) allowed", met
     return f"{abs(margin):.1f} dB {'below' if met else 'over'} the {limit:g} dB(A) allowed", met
@@ -165,20 +155,17 @@ def _result(tree: DataTree, level: float) -> tuple[str, bool | None]:
 
 def limit_sentence(tree: DataTree) -> str:
     """Say whether the rolling noise of the vehicle is within its limit; nothing without a type of vehicle."""
-    *parts, whole = _levels(tree).items() or [("", np.nan)]
-    speed = data.number(tree, schema.REFERENCE_SPEED)
-    if not parts or speed is None:
+    speed, of = data.number(tree, schema.REFERENCE_SPEED), sources_of(tree, schema.NORMALISED_LEVEL)
+    if of is None or speed is None:
         return ""
-    alone = "alone" if "wheel" in dict(parts) else "without the wheel"
-    most = max(parts, key=lambda part: part[1])[0]
+    alone = "alone" if "wheel" in of.parts else "without the wheel"
     failed = [str(each.get("condition")) for each in _conditions(tree) if not each.get("met")]
     told = f" Not as a test asks: {', '.join(failed)}." if failed else ""
-    if above := list(_levels(tree, schema.NORMALISED_LEVEL_ABOVE).values()):
-        told = f" At 3.5 m height it has {above[-1]:.1f} dB(A), {_result(tree, above[-1])[0]}.{told}"
-    result, verb = _result(tree, whole[1])[0], "decide" if most.endswith("s") else "decides"
+    if (above := sources_of(tree, schema.NORMALISED_LEVEL_ABOVE)) is not None:
+        told = f" At 3.5 m height it has {above.whole:.1f} dB(A), {_result(tree, above)[0]}.{told}"
     return (
-        f"TSI Noise, {_vehicle(tree)}: rolling noise {alone} has {whole[1]:.1f} dB(A) at "
-        f"{3.6 * speed:.0f} km/h, {result}; the {most} {verb}.{told}"
+        f"TSI Noise, {_vehicle(tree)}: rolling noise {alone} has {of.whole:.1f} dB(A) at "
+        f"{3.6 * speed:.0f} km/h, {_result(tree, of)[0]}; {decides(of.loudest)}.{told}"
     )
 
 
@@ -195,10 +182,9 @@ def limits_table(tree: DataTree) -> ReportTable | None:
     conditions, speed = _conditions(tree), data.number(tree, schema.REFERENCE_SPEED)
     rows: list[dict[str, Any]] = []
     for place, entry in _PLACES.items():
-        if speed is not None and (levels := _levels(tree, entry)):
-            *parts, (_, whole) = levels.items()
-            told, met = _result(tree, whole)
-            here = f"{whole:.1f} dB(A): {', '.join(f'{name} {level:.1f}' for name, level in parts)}"
+        if speed is not None and (of := sources_of(tree, entry)) is not None:
+            told, met = _result(tree, of)
+            here = f"{of.whole:.1f} dB(A): {of.in_words}"
             what = f"L_pAeq,Tp at {3.6 * speed:.0f} km/h{place}"
             rows.append({"condition": what, "here": here, "asked": told, "met": met})
     if not rows:

@@ -1,6 +1,6 @@
 """Rolling noise: sound power from the vibration itself and by CNOSSOS-EU, and the pass-by."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +14,7 @@ from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import LOOKS, limit_sentence
+from asperity.scenes.figures.sources import BODIES, WHOLE, Sources, decides, sources_of
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -24,10 +25,10 @@ UNMEASURED, UNMEASURED_A = schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWE
 """The same without what was measured on the track, where something was."""
 STANDARD, STANDARD_A = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A
 """The same by CNOSSOS-EU, from tables by label, by source."""
-SIDE, SIDE_A = schema.LATERAL_POWER_LEVEL, schema.LATERAL_POWER_LEVEL_A
-"""The same of what moves sideways, and with it."""
+ALONE, ALONE_A = schema.SINGLE_FORCE_POWER_LEVEL, schema.SINGLE_FORCE_POWER_LEVEL_A
+"""The same of what would radiate under one force alone, where something moves sideways."""
 PASSING = schema.PASS_BY_LEVEL
-WHOLE, TRACK, BOTH = "total", "rail and sleepers", ("rail", "sleepers")
+TRACK, OF_TRACK = "rail and sleepers", ("rail", schema.RAIL_SIDEWAYS, "sleepers")
 _POWER = "sound power level / dB(A) re 1 pW"
 _OF_STANDARD = {"track": (1.5, 1.5), "wheel": (6, 1.5, 1.5, 1.5)}
 """Dashes of its sources, in grey."""
@@ -70,12 +71,13 @@ def _of_parts(
 
 
 def with_sideways(tree: DataTree) -> str:
-    """Say what the total with sideways holds; nothing where nothing moves so."""
-    if not data.laws(tree, SIDE_A):
+    """Say what the parts of the total are where something moves sideways; nothing where nothing does."""
+    if not data.laws(tree, ALONE_A):
         return ""
     return (
-        f"The {WHOLE} is that of vertical motion; in the {schema.WITH_SIDEWAYS} the rail radiates sideways, "
-        "too, and the wheel answers to both forces instead of the vertical one, which damps its axial modes."
+        f"The {WHOLE} holds all motion: the rail up and down and sideways, the sleepers, and the wheel under "
+        "both forces at once. Beside it stands what would radiate if one force alone acted: these are no "
+        "parts of it, for both forces move the same modes, and the lateral one damps the axial ones."
     )
 
 
@@ -115,7 +117,7 @@ def _standard_there(tree: DataTree) -> Iterator[Series]:
     panels.products(BAND_TIME_PRODUCT),
     Of(OWN, "{radiator}, {law}", "{radiator}"),
     Of(UNMEASURED, "{radiator} without what was measured, {law}", "{radiator}", optional=True),
-    Of(SIDE, "{radiator}, {law}", "{radiator}", optional=True),
+    Of(ALONE, "{single_force}, {law}", "{single_force}", optional=True),
     _standard_there,
 )
 def radiated_power_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
@@ -123,7 +125,7 @@ def radiated_power_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     main, (weighting,) = data.main_law(tree, OWN), (series.values for series in lines.of(BAND))
     own = [
         Line(lines.at, series.values + weighting, series.label, *LOOKS.get(series.label, ()))
-        for series in lines.of(OWN, SIDE, law=main)
+        for series in lines.of(OWN, ALONE, law=main)
     ]
     for series in lines.of(UNMEASURED, law=main, radiator="rail"):
         look = chart.VERMILLION, (9.0, 1.5), 1.3
@@ -132,7 +134,7 @@ def radiated_power_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     own += [replace(line, width=1.6 if line.label.startswith(WHOLE) else 1.3) for line in standard]
     yield panels.band_panel(tree, lines, _POWER, own)
     yield (
-        f"A-weighted one-third octaves of {main}, vertical motion: the contact force on two rails moves them "
+        f"A-weighted one-third octaves of {main}: the contact force on two rails moves them "
         "and their sleepers along the whole track, and each part radiates by its radiation ratio."
     )
     yield from (silence(tree), with_measured(tree), with_sideways(tree))
@@ -144,7 +146,7 @@ def radiated_power_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     yield panels.shaded_words(tree)
 
 
-_PARTS = (*BOTH, TRACK, "wheel", WHOLE, schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH, schema.WITH_SIDEWAYS)
+_PARTS = (*OF_TRACK, TRACK, "wheel", WHOLE, *schema.SINGLE_FORCES)
 _MODELS = {"by vibration": OWN_A, "nothing measured": UNMEASURED_A, "by CNOSSOS-EU": STANDARD_A}
 
 
@@ -153,9 +155,9 @@ def _powers(tree: DataTree) -> dict[tuple[str, str], dict[str, float]]:
     found = {}
     for model, entry in _MODELS.items():
         for law in data.laws(tree, entry):
-            beside = entry is OWN_A and law in data.laws(tree, SIDE_A)
-            levels = _of_law(tree, entry, law) | (_of_law(tree, SIDE_A, law) if beside else {})
-            both = levels.get("track") or energy_sum([levels[part] for part in BOTH])
+            beside = entry is OWN_A and law in data.laws(tree, ALONE_A)
+            levels = _of_law(tree, entry, law) | (_of_law(tree, ALONE_A, law) if beside else {})
+            both = levels.get("track") or energy_sum([levels[part] for part in OF_TRACK if part in levels])
             found[law, model] = {TRACK: float(both)} | levels
     standard = data.stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
     if standard is not None:
@@ -281,50 +283,50 @@ def noise_answers(tree: DataTree) -> headline.Answers | None:
     """Sound power of the main law by both models, and what decides it."""
     if (powers := sound_power_table(tree, main=True)) is None:
         return None
-    own, standard, side = (by_part(tree, entry) for entry in (OWN_A, STANDARD_A, SIDE_A))
-    whole = own
-    lead, more = _by_vibration(tree, own, side)
-    held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
-    plain = by_part(tree, UNMEASURED_A).get(WHOLE)
-    beside = "" if plain is None else f"; track as measured, {plain:.1f} dB(A) if all is computed"
-    if schema.WITH_SIDEWAYS in side and WHOLE in own:
-        whole = {WHOLE: side[schema.WITH_SIDEWAYS]}
-        beside += f"; vertical motion alone {own[WHOLE]:.1f} dB(A)"
-    by_tables = "re 1 pW; track and wheel by its tables, from the computed contact force"
-    models = (
-        ("own radiation model", whole, f"re 1 pW; {held}, from their computed vibration{beside}"),
-        ("CNOSSOS-EU", standard, by_tables),
-    )
-    cards = tuple(
-        headline.HeadlineNumber(f"sound power, {how}", f"{of[WHOLE]:.1f} dB(A)", note)
-        for how, of, note in models
-        if WHOLE in of
-    )
-    return headline.Answers(lead, more, cards, (powers,))
+    of, by_tables = sources_of(tree, OWN_A), by_part(tree, STANDARD_A)
+    cards = []
+    if of is not None:
+        held = "from vibration" if "wheel" in of.parts else "from vibration, without the wheel"
+        note = f"re 1 pW; {held}: {of.in_words}{_otherwise(tree, of.whole)}"
+        cards.append(headline.HeadlineNumber("sound power, own radiation model", _written(of.whole), note))
+    if WHOLE in by_tables:
+        note = "re 1 pW; track and wheel by its tables, from the computed contact force"
+        cards.append(headline.HeadlineNumber("sound power, CNOSSOS-EU", _written(by_tables[WHOLE]), note))
+    return headline.Answers(_by_vibration(tree, of), silence(tree), tuple(cards), (powers,))
 
 
-def _by_vibration(tree: DataTree, own: Mapping[str, float], side: Mapping[str, float]) -> tuple[str, str]:
-    """Say what radiates most by its own vibration, and in which bands; then what is beside it."""
-    parts = {name: level for name, level in own.items() if name != WHOLE}
-    if not parts:
-        return "", ""
-    most = max(parts, key=lambda name: parts[name])
-    verb, with_side = "decide" if most == "sleepers" else "decides", ""
-    if schema.WITH_SIDEWAYS in side:
-        told = [f"{n} {side[n]:.1f}" for n in (schema.RAIL_SIDEWAYS, schema.WHEEL_BOTH) if n in side]
-        with_side = f"With motion sideways it is {side[schema.WITH_SIDEWAYS]:.1f} dB(A): {'; '.join(told)}."
-    lead = (
-        f"By vibration the {most} {verb}: {parts[most]:.1f} of {own.get(WHOLE, parts[most]):.1f} dB(A) of "
-        f"sound power, half of it in the bands of {_bands(tree, most)}."
-    )
-    return lead, " ".join(filter(None, [with_side, silence(tree)]))
+def _written(level: float) -> str:
+    return f"{level:.1f} dB(A)"
 
 
-def _bands(tree: DataTree, part: str) -> str:
-    """Bands that hold half the A-weighted sound power of what radiates, by the main law."""
-    band = data.values(tree, BAND)
-    level = data.of_law(tree, OWN, data.main_law(tree, OWN))[parts_of(tree, OWN).index(part)]
-    return headline.deciding_bands(band, level + a_weighting(band))
+def _otherwise(tree: DataTree, whole: float) -> str:
+    """What the total would be without what was measured on the track, and without motion sideways."""
+    told = ""
+    if (plain := by_part(tree, UNMEASURED_A).get(WHOLE)) is not None:
+        told += f"; track as measured, {data.signed(plain - whole)} dB if all is computed: {_written(plain)}"
+    if (vertical := by_part(tree, ALONE_A).get(schema.VERTICAL_MOTION)) is not None:
+        told += f"; {schema.VERTICAL_MOTION} {_written(vertical)}"
+    return told
+
+
+def _by_vibration(tree: DataTree, of: Sources | None) -> str:
+    """Say what radiates most by its own vibration, or what is about equal, and in which bands."""
+    if of is None or not of.bodies:
+        return ""
+    names, without = of.loudest, "" if "wheel" in of.parts else " without the wheel"
+    levels = " and ".join(f"{of.bodies[name][0]:.1f}" for name in names)
+    of_whole = f"{levels} of {_written(of.whole)} of sound power{without}"
+    share, parts = "half of it", [part for name in names for part in BODIES[name] if part in of.parts]
+    if len(names) > 1:
+        share = "half of these"
+    return f"By vibration {decides(names)}: {of_whole}, {share} in the bands of {_bands(tree, parts)}."
+
+
+def _bands(tree: DataTree, parts: Sequence[str]) -> str:
+    """Bands that hold half the A-weighted sound power of what radiates together, by the main law."""
+    band, names = data.values(tree, BAND), parts_of(tree, OWN)
+    levels = data.of_law(tree, OWN, data.main_law(tree, OWN))[[names.index(part) for part in parts]]
+    return headline.deciding_bands(band, energy_sum(levels, axis=0) + a_weighting(band))
 
 
 _HEADLINES = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_MAXIMUM_LEVEL}
@@ -333,26 +335,18 @@ _HEADLINES = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_M
 
 def pass_by_answers(tree: DataTree) -> headline.Answers | None:
     """Level beside the track by the main law."""
-    levels = {
-        name: float(data.of_law(tree, entry, data.laws(tree, entry)[0])[-1])
-        for name, entry in _HEADLINES.items()
-        if data.present(tree, entry)
-    }
-    if not levels:
+    found = {name: of for name, entry in _HEADLINES.items() if (of := sources_of(tree, entry)) is not None}
+    if not found:
         return None
-    (first, level), *others = levels.items()
+    (first, of), *others = found.items()
     away = data.number(tree, schema.RECEIVER_DISTANCE)
     where = "" if away is None else f", {away:g} m from the track"
-    told = "".join(f"; {name} {other:.1f} dB(A)" for name, other in others)
-    held = "" if "wheel" in _passing_parts(tree) else ", without the wheel"
+    told = "".join(f"; {name} {_written(other.whole)}" for name, other in others)
+    held = "" if "wheel" in of.parts else ", without the wheel"
     heard = data.number(tree, MEASURED[f"{first} / dB(A)"])
-    measured = "" if heard is None else f"; {first} measured {heard:.1f} dB(A)"
-    if schema.WITH_SIDEWAYS in (parts := parts_of(tree, _HEADLINES[first])):
-        entry = _HEADLINES[first]
-        own = data.of_law(tree, entry, data.laws(tree, entry)[0])[parts.index(WHOLE)]
-        told += f"; vertical motion alone {own:.1f} dB(A)"
-    note = f"re 20 µPa{where}{told}{measured}; own radiation model{held}"
-    number = headline.HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note)
+    measured = "" if heard is None else f"; {first} measured {_written(heard)}"
+    note = f"re 20 µPa{where}{told}{measured}; own radiation model{held}: {of.in_words}"
+    number = headline.HeadlineNumber(f"pass-by, {first}", _written(of.whole), note)
     return headline.Answers(more=limit_sentence(tree), numbers=(number,))
 
 
