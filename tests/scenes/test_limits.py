@@ -13,8 +13,11 @@ from asperity.reference.cnossos import rail_roughness
 from asperity.reference.railways import pass_by_limit
 from asperity.scenes.figures.measured import limit_sentence, limits_table
 from asperity.scenes.figures.noise import pass_by_answers
+from asperity.scenes.measured import _of_roughness
 from asperity.scenes.noise import pass_by_group, sources_of
+from asperity.scenes.track import stated_levels
 from asperity.schema import group
+from asperity.surfaces.heightmap import Profile
 from refusals import refusals
 
 BAND = 1000.0 * 10.0 ** (np.arange(-7, 8) / 10.0)
@@ -131,6 +134,59 @@ def test_fast_trains_are_held_to_the_limit_at_the_additional_place_too():
     assert "At 3.5 m height it has 97.0 dB(A), 2.0 dB over the 95 dB(A) allowed even without" in sentence
     assert table.rows[1][0].text == "L_pAeq,Tp at 250 km/h, 3.5 m high"
     assert [row[3].text for row in table.rows[1:3]] == ["no", "yes"]
+
+
+STATED = {"vehicle": "coach", "vehicle_length": "26 m", "axle_positions": ["0 m", "2.5 m"]}
+AT = np.array([1.0, 0.4, 0.1, 0.01, 0.00315])  # m
+TABLE = np.transpose(rail_roughness("iso3095"))
+TABLE[np.argmin(np.abs(TABLE[:, 0] - 0.1)), 1] += 2.0
+
+
+@pytest.mark.parametrize(
+    ("surface", "here", "rail"),
+    [
+        ({"spectrum": "iso3095"}, "so in all 22 bands, by the spectrum", [17.1, 17.1, 4.9, -8.0, -11.0]),
+        (
+            {"spectrum": "iso3095", "level": "1 dB"},
+            "above it in 22 bands, by up to 1.0 dB at",
+            [18.1, 18.1, 5.9, -7.0, -10.0],
+        ),
+        (
+            {"spectrum": TABLE},
+            "above it in 1 bands, by up to 2.0 dB at 100 mm",
+            [17.1, 17.1, 6.9, -8.0, -11.0],
+        ),
+    ],
+)
+def test_a_spectrum_is_judged_as_what_it_states(surface, here, rail):
+    """By name, with a level, or from a table, whatever one texture of it happens to have: EN ISO 3095."""
+    case = WheelOnRail(surface=surface, noise=STATED, wheel={"section": "rigid"}, track={"name": "uic60"})
+    stated = stated_levels(case, ["rail", "wheel", "combined"], AT)
+    assert_allclose(stated[0], rail, atol=0.051)
+    assert_allclose(stated[2], stated[0])  # the wheel is smooth
+    assert np.isnan(stated[1]).all()
+    wavelength, limit = rail_roughness("iso3095")
+    told = stated_levels(case, ["rail", "wheel"], wavelength)
+    one_texture = limit + np.where(np.arange(len(limit)) % 2, 1.7, -1.7)
+    levels = np.stack([one_texture, np.full(len(limit), -20.0)])
+    names = {"part": ["rail", "wheel"], "surface_band": wavelength}
+    of = {"roughness_level": levels, "stated_roughness_level": told}
+    held = xarray.Dataset({name: (("part", "surface_band"), each) for name, each in of.items()}, names)
+    assert _of_roughness(held)[0]["here"].startswith(here)
+    measured = _of_roughness(held.drop_vars("stated_roughness_level"))
+    assert measured[0]["here"].startswith("above it in 11 bands, by up to 1.7 dB")
+
+
+def test_what_was_measured_or_corrugated_is_judged_as_it_is():
+    rough = {"spectrum": "iso3095", "corrugation": "20 um", "corrugation_wavelength": "0.1 m"}
+    case = WheelOnRail(surface=rough, wheel={"roughness": "disc", "section": "rigid"})
+    rail, combined = stated_levels(case, ["rail", "combined"], AT)
+    assert np.isnan(rail).tolist() == [False, False, True, False, False]
+    assert np.isnan(combined[2])
+    assert combined[3] > rail[3]  # with the wheel's
+    line = Profile(1e-6 * np.sin(np.arange(50_000.0)), 1e-3)
+    case = WheelOnRail(surface={"line": line, "continuation": "repeat"}, duration="0.1 s")
+    assert np.isnan(stated_levels(case, ["rail", "combined"], AT)).all()
 
 
 def test_conditions_that_are_not_met_are_named():

@@ -277,18 +277,27 @@ def _of_sources(over_frequency: xarray.Dataset) -> list[Condition]:
 
 
 def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
-    """Rail roughness against its limit, where it is known."""
+    """Rail roughness against its limit, where it is known: as a spectrum states it, else as it was rolled.
+
+    One texture of a spectrum is above it in some bands, and below it in others.
+    """
     if schema.ROUGHNESS_LEVEL.name not in over_frequency:
         return []
     levels = over_frequency[schema.ROUGHNESS_LEVEL.name]
-    of_rail = levels.sel(part="rail" if "rail" in levels["part"] else "combined").values
+    at = {"part": "rail" if "rail" in levels["part"] else "combined"}
+    of_rail, how = levels.sel(at).values, ""
+    if schema.STATED_ROUGHNESS_LEVEL.name in over_frequency:
+        stated = over_frequency[schema.STATED_ROUGHNESS_LEVEL.name].sel(at).values
+        of_rail = np.where(np.isfinite(stated), stated, of_rail)
+        how = ", by the spectrum that the case states" if np.isfinite(stated).any() else ""
     wavelength, limit = cnossos.rail_roughness("iso3095")
     wavelength, limit = wavelength[likely_band(wavelength)], limit[likely_band(wavelength)]
     apart = np.abs(np.log10(levels["surface_band"].values[:, None] / wavelength))
     known = apart.min(axis=0) < 0.03
     over = np.nan_to_num(of_rail[apart.argmin(axis=0)] - limit, nan=-np.inf)[known]
     names, asked = [f"{1e3 * w:.3g} mm" for w in wavelength[known]], f"in {known.sum()} of {len(limit)} bands"
-    return [_banded("rail roughness", over, names, ("above", "dB"), f"at most the limit {asked}")]
+    condition = _banded("rail roughness", over, names, ("above", "dB"), f"at most the limit {asked}")
+    return [condition | {"here": f"{condition['here']}{how}"}]
 
 
 def _of_decay(over_frequency: xarray.Dataset) -> Condition:

@@ -145,6 +145,13 @@ ROUGHNESS_LEVEL = _rail_spectra(
     "roughness level of the line rolled over",
     missing="this part has no roughness of these wavelengths",
 )
+STATED_ROUGHNESS_LEVEL = _rail_spectra(
+    "stated_roughness_level(part, surface_band)",
+    "dB re 1 um",
+    "roughness level that the spectrum of the case states, of which the line rolled over is one texture",
+    condition=f"{_TRACK}, where a spectrum is named or given",
+    missing="no spectrum states the level of this part in these bands",
+)
 
 _NOISE = "where a wheel or a rail is rough"
 _noise = partial(_spectra, condition=_NOISE)

@@ -1,7 +1,8 @@
 """What is looked at where a track is rolled over: texture, linear reference, the rail and its losses."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from asperity.reduction.texture import along_path
 from asperity.reference.railways import iso_3095_decay_rate
 from asperity.reporting import data
 from asperity.scenarios.laws import working_point
+from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.scene import PreparedCase, Receptance, Scene, mean_square_transfer
 from asperity.scenes import compute, measured, noise, schema
 from asperity.schema import Values
@@ -113,12 +115,50 @@ def _roughness(computed: compute.Computed) -> Values:
     wavelength = bands["combined"][0]
     averaged, entry = spectra.averaging_time(len(textures.line), spacing), schema.SURFACE_BAND_LENGTH_PRODUCT
     product = spectra.band_product(1.0 / wavelength, averaged)
-    return {
+    stated = stated_levels(computed.case, list(bands), wavelength)
+    said: Values = {schema.STATED_ROUGHNESS_LEVEL: stated} if np.isfinite(stated).any() else {}
+    return said | {
         schema.PART: list(bands),
         schema.SURFACE_BAND: wavelength,
         entry: entry.variable(product, least=spectra.LEAST_PRODUCT),
         schema.ROUGHNESS_LEVEL: np.stack([level for _, level in bands.values()]),
     }
+
+
+NEAR = 0.03
+"""Distance in lg λ within which two wavelengths are those of one band."""
+
+
+def stated_levels(case: Any, parts: Sequence[str], wavelength: Array) -> Array:
+    """Levels that spectra of a case state of parts of the texture (n, b), dB re 1 µm.
+
+    At wavelengths (b,), m, by name or from a table, with the level added. NaN where none does: of what was
+    measured, in the bands of a corrugation on top, and of the combined texture where it is not stated of all
+    that is rough.
+    """
+    surface, rolling = case.surface, case.rolling
+    found = {"rail": _stated(surface.spectrum, surface.level, wavelength)}
+    found["wheel"] = _stated(rolling.roughness, rolling.roughness_level, wavelength)
+    if surface.corrugation is not None:
+        half = 2.0 ** (0.5 * (surface.corrugation_bandwidth or 0.0)) * spectra.HALF_BAND
+        apart = np.maximum(
+            wavelength / surface.corrugation_wavelength, surface.corrugation_wavelength / wavelength
+        )
+        found["rail"][apart < half] = np.nan
+    smooth_wheel = rolling.roughness is None and rolling.line is None
+    rough = ["rail"] if smooth_wheel else ["rail", "wheel"]
+    with np.errstate(invalid="ignore"):
+        found["combined"] = spectra.energy_sum([found[name] for name in rough], axis=0)
+    return np.stack([found.get(part, np.full(len(wavelength), np.nan)) for part in parts])
+
+
+def _stated(spectrum: Any, level: float, wavelength: Array) -> Array:
+    """Levels of a spectrum at wavelengths (b,), where it has these bands."""
+    if spectrum is None:
+        return np.full(len(wavelength), np.nan)
+    own, levels, _ = spectrum_levels(spectrum)
+    apart = np.abs(np.log10(wavelength[:, None] / own))
+    return np.where(apart.min(axis=1) < NEAR, levels[apart.argmin(axis=1)] + level, np.nan)
 
 
 def tones(computed: compute.Computed) -> Values:

@@ -225,6 +225,7 @@ def _millimetres(wavelength: float) -> str:
     Of(schema.SURFACE_BAND, "wavelength"),
     panels.products(PRODUCT),
     Of(schema.ROUGHNESS_LEVEL, "{part}"),
+    Of(schema.STATED_ROUGHNESS_LEVEL, "{part} as stated", optional=True),
 )
 def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Roughness levels per one-third octave of wavelength, long waves on the left."""
@@ -237,6 +238,12 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         Line(wavelength, level[kept], series.name, *_LOOKS.get(series.name, (MUTED, (), 1.4, "^")))
         for series, level in zip(parts, levels, strict=True)
     ]
+    stated = [
+        Line(wavelength, series.values[kept], series.name, _LOOKS[part][0], (1.5, 2.5), 1.0)
+        for series in lines.of(schema.STATED_ROUGHNESS_LEVEL)
+        if (part := series.name.removesuffix(" as stated")) != "combined" and part in _LOOKS
+    ]
+    drawn += [line for line in stated if np.isfinite(line.y).any()]
     axis = panels.levels_axis(
         "roughness level / dB re 1 µm", [line.y for line in drawn], span=100.0, step=5.0
     )
@@ -248,6 +255,8 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         "Roughness levels per one-third octave of wavelength, re 1 µm, of the textures that were rolled, "
         "before any contact filter."
     )
+    if stated:
+        yield "Dotted: as the spectrum of the case states it, of which this is one texture."
     if any(series.name == "combined" for series in parts):
         yield "Combined: rail and wheel as they meet in the contact."
     yield (
