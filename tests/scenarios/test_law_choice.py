@@ -212,9 +212,12 @@ RAIL = {"kind": "wheel-on-rail", "duration": "0.1 s", "wheel": {"section": "rigi
         RAIL | {"surface": {"joint_depth": "1 mm"}},
     ],
 )
-def test_nothing_is_said_where_the_map_knows_nothing(case):
-    """Of lines, of what is smooth, and of defects, where the law to take is the default."""
+def test_why_nothing_is_said_is_said_where_the_map_knows_nothing(case):
+    """Of lines, and of defects, where the law to take is the default; what is smooth has none to take."""
     prepared = prepare_case(as_case(case))
     assert law_choice.law_choice(prepared) is None
-    assert "law to take" not in dict(plan(prepared, NO_WORK))
+    told, smooth = dict(plan(prepared, NO_WORK)), "smooth" in case["surface"]
+    assert ("law to take" in told) == (not smooth)
+    if not smooth:
+        assert told["law to take"].startswith("not told by the map of law errors: it holds")
     assert law_choice.UNMAPPED == WheelOnRail(surface={"joint_depth": "1 mm"}).laws[0] == "direct"

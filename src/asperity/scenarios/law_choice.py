@@ -234,14 +234,38 @@ class LawChoice:
         return text
 
 
+def unmapped(prepared: PreparedCase) -> str:
+    """Say why the map of law errors cannot know of a case; empty where nothing keeps it from that."""
+    case, textures = prepared.case, prepared.textures
+    if textures.path is None:
+        return "it holds textures, and of a line nothing is known beside it"
+    seen = f"{UNMAPPED} solves the contact as it is"
+    if textures.defects is not None:
+        return f"it holds no flats and no joints; {seen}"
+    if textures.areal or not np.ptp(textures.line):
+        return ""
+    names = {"rail": case.over_name, "wheel": case.ROLLING}
+    if measured := " and ".join(names[body] for body in textures.lines):
+        how = f"heights beside the measured lines of the {measured} are carried over from these"
+        return f"it holds textures that are rough across, too, and {how}; {seen}"
+    return f"it holds textures that are rough across, too, and this one is alike all across; {seen}"
+
+
+def advice(prepared: PreparedCase, choice: LawChoice | None) -> Iterator[tuple[str, str]]:
+    """Say which law to take, or why the map does not say it: names and values."""
+    if choice is not None:
+        yield from choice.rows()
+    elif reason := unmapped(prepared):
+        yield "law to take", f"not told by the map of law errors: {reason}"
+
+
 def law_choice(prepared: PreparedCase) -> LawChoice | None:
     """Ask the map about a case; it knows nothing of lines alone, smooth paths and defects.
 
     It holds wheels on rails, which stand for all that rolls over a track, and balls on beams, for all else.
     """
-    case, scene, textures = prepared.case, prepared.scene, prepared.textures
-    path = textures.path
-    if path is None or textures.defects is not None or not textures.areal:
+    case, scene, path = prepared.case, prepared.scene, prepared.textures.path
+    if path is None or unmapped(prepared):
         return None
     kind = "wheel-on-rail" if isinstance(scene.over, Track) else "ball-on-beam"
     place = place_of(path, prepared.shape, case.speed, scene.square_transfer)

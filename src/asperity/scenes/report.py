@@ -72,7 +72,7 @@ CHAPTERS = (
     Chapter(
         "texture",
         "Texture",
-        (track.roughness, *texture_figures.TEXTURE),
+        (track.roughness, track.out_of_round, *texture_figures.TEXTURE),
         (tables.statistics_table, tables.homogeneity_table),
     ),
     Chapter(

@@ -17,9 +17,9 @@ from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning, warn_of_findings
 from asperity.progress import Progress
 from asperity.reference import cnossos
-from asperity.scenarios.law_choice import LawChoice
+from asperity.scenarios.law_choice import LawChoice, advice
 from asperity.scenarios.scene import PreparedCase, force_transfer
-from asperity.scenes import creep, measured, noise, schema, sideways, track, validity
+from asperity.scenes import creep, measured, noise, roundness, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
 from asperity.scenes.population import answers
@@ -148,8 +148,9 @@ def _numerics(computed: Computed, choice: LawChoice | None, losses: Values) -> I
     if len(computed.scene.offsets) > 1:
         yield "contacts", f"{len(computed.scene.offsets)}"
     yield from _of_structure(computed)
+    yield from roundness.planned_roundness(computed)
     yield from track.described_losses(losses)
-    yield from choice.rows() if choice else ()
+    yield from advice(computed, choice)
     for part, seconds in computed.seconds.items():
         yield f"wall time, {part}", f"{seconds:.2f} s"
 
@@ -246,6 +247,7 @@ def spectra_group(computed: Computed, side: Array | None = None) -> Values:
         laid_out[schema.SPECTRA_SENSOR] = sensors
         laid_out[schema.ACCELERATION_PSD] = density[..., shown]
         laid_out[schema.ACCELERATION_LEVEL] = computed.levels(density, schema.ACCELERATION_REFERENCE)
+    laid_out |= roundness.orders_group(computed)
     if isinstance(scene.over, Track):
         laid_out |= track.track_spectra(computed, values, side) | track.tones(computed)
     return laid_out

@@ -40,6 +40,18 @@ BODY_ACCELERATION_PSD = _spectra("body_acceleration_psd(law, degree, frequency)"
 _PASSING = "frequency at which contacts at equal distances pass a place, and its multiples"
 PASSING_FREQUENCY = _spectra("passing_frequency", "Hz", _PASSING, "contacts at equal distances")
 
+_AROUND = "where a line around what rolls was measured, of a turn or more"
+_round = partial(_spectra, condition=_AROUND)
+ORDER = _round("order", "1", "order of what is out of round: waves around what rolls")
+ORDER_FREQUENCY = _round("order_frequency(order)", "Hz", "frequency at which they pass the contact")
+ORDER_LEVEL = _round(
+    "order_level(order)",
+    "dB re 1 um",
+    "level of the rms height of an order",
+    missing="no height of this order",
+)
+RUN_OUT = Attribute("spectra", "run_out", "m", "highest less lowest point around what rolls", _AROUND)
+
 ACCELERATION_REFERENCE = 1e-6
 """Of acceleration levels, m/s²."""
 _SENSED, _OVER = "where there are accelerometers", "acceleration of what is rolled over"

@@ -206,6 +206,8 @@ def loss_factors(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 # --- roughness, on the axes that rail acoustics uses
 
 PRODUCT = schema.SURFACE_BAND_LENGTH_PRODUCT
+NAMED = 3
+"""Orders that are named in words."""
 SPAN = 60.0
 """Levels, dB, that are drawn below the highest: a texture without waves leaves rounding errors."""
 _LOOKS = {
@@ -264,6 +266,36 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         f"{SPAN:.0f} dB below the highest."
     )
     yield panels.shaded_words(tree, PRODUCT).replace("time B T", "length B T")
+
+
+@figure(
+    "Out of round, by orders",
+    Of(schema.ORDER, "order"),
+    Of(schema.ORDER_FREQUENCY, "frequency"),
+    Of(schema.ORDER_LEVEL, "level"),
+)
+def out_of_round(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
+    """Level of each order of what rolls, and the frequency at which it passes the contact."""
+    (level,) = (series.values for series in lines.of(schema.ORDER_LEVEL))
+    (frequency,) = (series.values for series in lines.of(schema.ORDER_FREQUENCY))
+    order = lines.at
+    axis = panels.levels_axis("level of the rms height / dB re 1 µm", [level], span=SPAN)
+    second = chart.Second("frequency / Hz", scale=float(frequency[0] / order[0]))
+    along = chart.Axis("order: waves around", 0.0, float(order[-1]) + 1.0, second=second)
+    base = np.full(len(level), axis.low if axis.low is not None else float(np.nanmin(level)))
+    half = np.full(len(level), 0.35)
+    bars = chart.Boxes(order - half, order + half, base, np.fmax(level, base), colour=VERMILLION)
+    yield Panel(along, axis, (bars,), height=3.0)
+    run_out = data.number(tree, schema.RUN_OUT)
+    amplitude = np.sqrt(2.0) * 1e-6 * 10.0 ** (level / 20.0)
+    largest = np.argsort(-np.nan_to_num(amplitude), kind="stable")[:NAMED].tolist()
+    told = ", ".join(
+        f"{order[n]:.0f} with {data.engineering(float(amplitude[n]), 'm')} at {frequency[n]:.3g} Hz"
+        for n in largest
+        if level[n] > np.nanmax(level) - SPAN
+    )
+    swing = "" if run_out is None else f"Run-out {data.engineering(run_out, 'm')}. "
+    yield f"{swing}The largest orders, by their amplitude: {told}; an order n passes n times in each turn."
 
 
 def _contact(tree: DataTree, wavelength: Numbers) -> list[Mark]:
