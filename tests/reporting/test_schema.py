@@ -84,6 +84,8 @@ def test_conditions_of_small_runs_cover_the_schema(real_runs):
     homogeneity |= {"surface/tile_variation_expected"}  # of measured maps
     asked = {entry.path for entry in contents_of(convergence)[0]}  # written by tests/test_convergence.py
     asked |= {e.path for e in contents_of(schema)[0] if e.group == schema.EFFECT.group}  # by tests/studies
+    around = {f"spectra/{name}" for name in ("order", "order_level", "order_frequency")}
+    asked |= around  # of measured lines around, written by tests/scenes/test_roundness.py
     assert absent["ball-on-beam"] == homogeneity | asked
     absent_of_wheel = {"spectra/force_level_difference_to_reference"}
     absent_of_wheel |= {f"pass_by/{name}" for name in ("pass_by_equivalent_level", "transit_exposure_level")}
@@ -135,7 +137,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
             elsewhere = chapter.name == "acceleration" if track else any(word in told for word in ON_TRACK)
             elsewhere |= chapter.name == "contacts" and not several
             elsewhere |= chapter.name in (*OF_BEARINGS, "creep")  # of a wheel that is said to creep
-            elsewhere |= part.name == "pass_by_bands"  # of what was measured
+            elsewhere |= part.name in ("pass_by_bands", "out_of_round")  # of what was measured
             assert (part.name in drawn) != elsewhere, part.name
 
 

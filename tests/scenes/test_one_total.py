@@ -63,6 +63,16 @@ def own_parts(tree):
     return {name: level for name, level in parts.items() if np.isfinite(level)}
 
 
+@pytest.mark.parametrize("kind", ["sideways", "bogie"])
+def test_modes_of_the_wheel_add_up_to_its_part_of_the_total(kind, runs):
+    """Both forces move them, and those too that answer the lateral one alone."""
+    held = runs(CASES[kind])["spectra"].to_dataset()
+    summed = energy_sum(np.nan_to_num(held["wheel_mode_power_level_a"].values[0], nan=-np.inf))
+    assert float(summed) == pytest.approx(own_parts(runs(CASES[kind]))["wheel"], abs=1e-9)
+    assert held["wheel_mode_diameters"].size == held["wheel_mode_power_level_a"].shape[1]
+    assert held["wheel_mode_frequency"].values[0] == 0.0
+
+
 def cells(table, row=0):
     return {head: cell.text for head, cell in zip(table.head, table.rows[row], strict=True)}
 

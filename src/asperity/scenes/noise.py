@@ -1,6 +1,7 @@
 """Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
 
 import math
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -239,7 +240,24 @@ def warn_of_silence(case: Any) -> None:
         )
 
 
-def radiation(computed: compute.Computed, values: Array, side: Array | None) -> Values:
+@dataclass(frozen=True, eq=False)
+class SidewaysPower:
+    """Sound power of what moves sideways, or also, of what was rolled on one rail, on all lines.
+
+    Parameters
+    ----------
+    parts : ndarray (laws, 3, f)
+        W/Hz, of the rail, which adds to the total, of the wheels under both forces, which stands there in
+        place of that under the vertical one, and under the lateral one alone.
+    of_modes : ndarray (laws, modes, f)
+        W/Hz, of each mode of the wheels under both forces, the rigid motion first.
+    """
+
+    parts: Array
+    of_modes: Array
+
+
+def radiation(computed: compute.Computed, values: Array, side: SidewaysPower | None) -> Values:
     """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels: one total.
 
     What was rolled on one rail stands for axles, each with two wheels, on two rails. The total
@@ -250,10 +268,8 @@ def radiation(computed: compute.Computed, values: Array, side: Array | None) -> 
     ----------
     values : ndarray (b,)
         Independent values that the record holds in each band.
-    side : ndarray (laws, 3, f) or None
-        Sound power of what moves sideways on one rail, W/Hz: of the rail, which adds to the total, of the
-        wheels under both forces, which stands there in place of that under the vertical one, and under the
-        lateral one alone.
+    side : SidewaysPower or None
+        That of what moves sideways, if something does.
     """
     case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
     edges = band / HALF_BAND, band * HALF_BAND
@@ -263,7 +279,7 @@ def radiation(computed: compute.Computed, values: Array, side: Array | None) -> 
         return np.maximum(band_energies(computed.frequency, density, *edges), 0.0)
 
     power = in_bands(density)
-    beside = None if side is None else in_bands(side)
+    beside = None if side is None else in_bands(side.parts)
 
     def level(power: Array) -> Array:
         return level_of(2.0 * power / PICOWATT)  # of two rails
@@ -297,11 +313,14 @@ def radiation(computed: compute.Computed, values: Array, side: Array | None) -> 
         more[schema.SINGLE_FORCE_POWER_LEVEL_A] = a_weighted_total(alone, band)
     rung: Values = {}
     if of_modes.shape[1]:
-        rung = mode_by_mode(case, 2.0 * in_bands(of_modes), band)
+        each = 2.0 * in_bands(of_modes if side is None else side.of_modes)
+        rung = mode_by_mode(case, each, band, every=side is not None)
     # the length 8.686/Δ of the decay is the mean of those over a band
     lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * WITHIN)
     radiated = laid_out(power, schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A)
-    deviation = _deviation(computed, _all_parts(density, side), _all_parts(power, beside), values)
+    deviation = _deviation(
+        computed, _all_parts(density, None if side is None else side.parts), _all_parts(power, beside), values
+    )
     said = radiated[schema.RADIATED_POWER_LEVEL_A].attrs
     told = {name: said[name] for name in ("wheel", "missing") if name in said}
     return {
@@ -344,13 +363,18 @@ def _deviation(computed: compute.Computed, density: Array, power: Array, values:
     return np.asarray(np.sqrt(np.sum(share**2 * variance, axis=-1)))
 
 
-def mode_by_mode(case: Any, power: Array, band: Array) -> Values:
+def mode_by_mode(case: Any, power: Array, band: Array, *, every: bool) -> Values:
     """Lay out the modes of the wheels with their A-weighted sound power, of powers (laws, modes, b), W.
 
-    The rigid motion comes first; of the two waves in which turning splits a mode the powers are added.
+    The rigid motion comes first; of the two waves in which turning splits a mode the powers are added. Powers
+    of `every` mode, or of those alone that answer a vertical force.
     """
-    modes = case.rolling.standing_modes(case.numerics.highest_frequency).table(case.contact_places[0])
-    frequency, damping, _, diameters, *_ = np.vstack([[0.0, 0.0, 1.0, 1.0, 0.0, 0.0], modes]).T
+    modes = case.rolling.standing_modes(case.numerics.highest_frequency)
+    if every:
+        own = np.stack([modes.natural_frequencies, modes.damping_ratios, modes.nodal_diameters])
+    else:
+        own = modes.table(case.contact_places[0]).T[[0, 1, 3]]
+    frequency, damping, diameters = np.hstack([np.array([[0.0], [0.0], [1.0]]), own])
     number = np.arange(len(diameters))
     mode = np.append(0, np.repeat(number[1:], np.where(diameters[1:] > 0.0, 2, 1)))
     weighted = power @ 10.0 ** (a_weighting(band) / 10.0)

@@ -215,7 +215,7 @@ def _motion(computed: Computed) -> Array:
     return np.stack([-levers * np.concatenate(run.degrees_of_freedom) for run in computed.runs.values()])
 
 
-def spectra_group(computed: Computed, side: Array | None = None) -> Values:
+def spectra_group(computed: Computed, side: noise.SidewaysPower | None = None) -> Values:
     """Lay out PSDs and one-third octaves of force and motion, and what follows from them for sound.
 
     With how sure the levels are, and how far the laws are from each other. The sound power of what moves

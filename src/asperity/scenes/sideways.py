@@ -12,7 +12,7 @@ from asperity.contact.hertz import stick_stiffness
 from asperity.radiation.track import SideOfRail, squared_lateral_mobility
 from asperity.radiation.wheel import RadiatingWheel, fine_lines, line_means
 from asperity.scenarios.scene import force_transfer
-from asperity.scenes import compute, schema
+from asperity.scenes import compute, noise, schema
 from asperity.scenes.track import FREQUENCIES, LOWEST_FREQUENCY
 from asperity.schema import Values
 from asperity.structures import lateral_rail, modal
@@ -141,15 +141,17 @@ class Sideways:
         side = SideOfRail(self.track.height, case.track.rail_foot_width, case.track.rail_head_width)
         return side.power(self.lines, square)
 
-    def wheel_power(self) -> Array:
-        """Sound power of the wheels under both forces, and under the lateral one alone (2, laws, f), W/Hz.
+    @cached_property
+    def mode_power(self) -> Array:
+        """Sound power of each mode of the wheels (2, laws, modes, f), W/Hz, the rigid motion first.
 
-        Zero of a wheel whose modes are unknown. Rigid motion up and down is one nodal diameter around the
-        tread, along the axle that of a rigid disc.
+        Under both forces, and under the lateral one alone. None of a wheel whose modes are unknown. Rigid
+        motion up and down is one nodal diameter around the tread, along the axle that of a rigid disc.
         """
         modes, case, fine = self.computed.scene.modes, self.computed.case, self.fine[0]
+        laws, lines = self.seen_of_all.shape
         if modes is None:
-            return np.zeros((2, *self.seen_of_all.shape))
+            return np.zeros((2, laws, 0, lines))
         spread = self.between(self.spread) / PLACES
         share = np.sum(spread * self.shares, axis=0).real
         square = np.sum(spread * np.abs(self.shares) ** 2, axis=0)
@@ -165,20 +167,24 @@ class Sideways:
             """Of this part of the vertical force together with the lateral one."""
             moved = radially * (radial**2 + 2.0 * radial * axial * share) + axial**2 * square
             velocity = np.vstack([radially * rigid, rigid * square, np.abs(omega * answers) ** 2 * moved])
-            return radiator.power(self.lines, self.means(velocity)).sum(axis=0) * self.seen_of_all
+            power = radiator.power(self.lines, self.means(velocity))
+            each = np.vstack([power[:2].sum(axis=0, keepdims=True), power[2:]])
+            return each * self.seen_of_all[:, None]
 
         return np.stack([radiated(1.0), radiated(0.0)])
 
-    @cached_property
-    def power(self) -> Array:
-        """Sound power of what was rolled on one rail (laws, 3, f), W/Hz, on all lines of the spectra.
-
-        Of the rail sideways, of the wheels under both forces, and under the lateral one alone.
-        """
-        parts = np.stack([self.rail_power(), *self.wheel_power()], axis=1)
-        whole = np.zeros((*parts.shape[:-1], len(self.computed.frequency)))
-        whole[..., self.computed.shown] = parts
+    def on_all_lines(self, density: Array) -> Array:
+        """A density on the lines (..., f) on all lines of the spectra, from zero."""
+        whole = np.zeros((*density.shape[:-1], len(self.computed.frequency)))
+        whole[..., self.computed.shown] = density
         return whole
+
+    @property
+    def power(self) -> noise.SidewaysPower:
+        """Sound power of what was rolled on one rail, on all lines of the spectra."""
+        both, lateral = self.mode_power
+        parts = np.stack([self.rail_power(), both.sum(axis=1), lateral.sum(axis=1)], axis=1)
+        return noise.SidewaysPower(self.on_all_lines(parts), self.on_all_lines(both))
 
 
 def sideways_of(computed: compute.Computed) -> Sideways | None:
@@ -197,9 +203,7 @@ def sideways_group(found: Sideways) -> Values:
 
     def levels(density: Array) -> Array:
         """Levels in bands (..., b), dB, of densities on the lines (..., f)."""
-        whole = np.zeros((*density.shape[:-1], len(computed.frequency)))
-        whole[..., computed.shown] = density
-        return computed.levels(whole)
+        return computed.levels(found.on_all_lines(density))
 
     density = np.mean(found.spread * found.squares, axis=0) * found.seen[1]  # of each contact, N²/Hz
     lateral, of_each = density.sum(axis=1) / contacts, np.sqrt(density.sum(axis=-1) * step)

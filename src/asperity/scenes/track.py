@@ -24,7 +24,7 @@ from asperity.surfaces.heightmap import Profile
 from asperity.written_numbers import between, rounded
 
 
-def track_spectra(computed: compute.Computed, values: Array, side: Array | None) -> Values:
+def track_spectra(computed: compute.Computed, values: Array, side: noise.SidewaysPower | None) -> Values:
     """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track.
 
     With the independent values that the record holds in each band (b,), and the sound power of what moves

@@ -14,7 +14,7 @@ from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import LOOKS, limit_sentence
-from asperity.scenes.figures.sources import BODIES, WHOLE, Sources, decides, sources_of
+from asperity.scenes.figures.sources import BODIES, RAIL, WHOLE, Sources, decides, sources_of
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -76,8 +76,8 @@ def with_sideways(tree: DataTree) -> str:
         return ""
     return (
         f"The {WHOLE} holds all motion: the rail up and down and sideways, the sleepers, and the wheel under "
-        "both forces at once. Beside it stands what would radiate if one force alone acted: these are no "
-        "parts of it, for both forces move the same modes, and the lateral one damps the axial ones."
+        "both forces at once. What would radiate if one force alone acted is no part of it: both move the "
+        "same modes, and the lateral one damps the axial ones."
     )
 
 
@@ -146,7 +146,7 @@ def radiated_power_bands(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     yield panels.shaded_words(tree)
 
 
-_PARTS = (*OF_TRACK, TRACK, "wheel", WHOLE, *schema.SINGLE_FORCES)
+_PARTS = (*OF_TRACK, TRACK, "wheel", WHOLE)
 _MODELS = {"by vibration": OWN_A, "nothing measured": UNMEASURED_A, "by CNOSSOS-EU": STANDARD_A}
 
 
@@ -155,8 +155,7 @@ def _powers(tree: DataTree) -> dict[tuple[str, str], dict[str, float]]:
     found = {}
     for model, entry in _MODELS.items():
         for law in data.laws(tree, entry):
-            beside = entry is OWN_A and law in data.laws(tree, ALONE_A)
-            levels = _of_law(tree, entry, law) | (_of_law(tree, ALONE_A, law) if beside else {})
+            levels = _of_law(tree, entry, law)
             both = levels.get("track") or energy_sum([levels[part] for part in OF_TRACK if part in levels])
             found[law, model] = {TRACK: float(both)} | levels
     standard = data.stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
@@ -314,7 +313,10 @@ def _by_vibration(tree: DataTree, of: Sources | None) -> str:
     if of is None or not of.bodies:
         return ""
     names, without = of.loudest, "" if "wheel" in of.parts else " without the wheel"
-    levels = " and ".join(f"{of.bodies[name][0]:.1f}" for name in names)
+    sideways = schema.RAIL_SIDEWAYS in of.parts
+    levels = " and ".join(
+        f"{of.bodies[name][0]:.1f}{' (sideways too)' if sideways and name == RAIL else ''}" for name in names
+    )
     of_whole = f"{levels} of {_written(of.whole)} of sound power{without}"
     share, parts = "half of it", [part for name in names for part in BODIES[name] if part in of.parts]
     if len(names) > 1:

@@ -106,10 +106,17 @@ def sideways_table(tree: DataTree) -> ReportTable:
         "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), "{:.3g}"),
         "beyond friction": text_cells(map(data.in_percent, data.values(tree, schema.SLIP_SHARE)), "number"),
     }
+    alone, there = schema.SINGLE_FORCE_POWER_LEVEL_A, data.laws(tree, schema.SINGLE_FORCE_POWER_LEVEL_A)
+    if there:
+        levels = np.array([data.of_law(tree, alone, law) for law in laws])
+        for name, found in zip(schema.SINGLE_FORCES, levels.T, strict=True):
+            if np.isfinite(found).any():
+                columns[f"{name} / dB(A)"] = number_cells(found, "{:.1f}")
     note = (
         "Beyond friction: share of the time in which a lateral force of this rms, normally distributed, is "
         "more than the coefficient of friction times the static load; where it is not small, the contact "
-        "slips, and the force is less. Sound power with what moves sideways: under rolling noise."
+        "slips, and the force is less. Alone: sound power re 1 pW that one force would make without the "
+        "other; no part of the total, which is under rolling noise."
     )
     return table("sideways_table", "Sideways", columns, note)
 
