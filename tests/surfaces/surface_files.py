@@ -29,29 +29,40 @@ def zipped(*members, compress=True):
     return stream.getvalue()
 
 
-def sdf_binary(stored, code, *, steps=(2e-6, 3e-6), unit=1e-9, points=None, profiles=None, compression=0):
-    """Binary SDF; `stored` (profiles, points) in the data type of the code."""
+def sdf_binary(
+    stored,
+    code,
+    *,
+    steps=(2e-6, 3e-6),
+    unit=1e-9,
+    points=None,
+    profiles=None,
+    compression=0,
+    magic=b"bISO-1.0",
+    counts="<HH",
+):
+    """Binary SDF; `stored` (profiles, points) in the data type of the code; ISO-2.0 counts by ``<II``."""
     stored = np.asarray(stored, SDF_TYPES[code])
     rows, columns = stored.shape
     return (
-        b"bISO-1.0"
+        magic
         + b"maker".ljust(10)
         + b"010120251200" * 2
-        + struct.pack("<HH", columns if points is None else points, rows if profiles is None else profiles)
+        + struct.pack(counts, columns if points is None else points, rows if profiles is None else profiles)
         + struct.pack("<dddd", *steps, unit, -1.0)
         + bytes([compression, code, 0])
         + stored.tobytes()
     )
 
 
-def sdf_ascii(words, *, steps=(2e-6, 3e-6), unit=1e-9, code=5, **changes):
+def sdf_ascii(words, *, steps=(2e-6, 3e-6), unit=1e-9, code=5, magic="aISO-1.0", **changes):
     """ASCII SDF; `words` (profiles, points) as strings. A change of None leaves a field out."""
     fields = {"ManufacID": "maker", "NumPoints": len(words[0]), "NumProfiles": len(words)}
     fields |= {"Xscale": steps[0], "Yscale": steps[1], "Zscale": unit, "Zresolution": -1}
     fields |= {"Compression": 0, "DataType": code, "CheckType": 0} | changes
     header = "".join(f"{name:12} = {value}\n" for name, value in fields.items() if value is not None)
     body = "\n".join(" ".join(row) for row in words)
-    return f"aISO-1.0\n{header}*\n{body}\n*\nSerial = 7\n*\n".encode()
+    return f"{magic}\n{header}*\n{body}\n*\nSerial = 7\n*\n".encode()
 
 
 def _tag(name, content):

@@ -75,15 +75,59 @@ WHOLE = {
     "netCDF by name": ("a.nc", netcdf(s=("yx", STORED, {}), z=("xy", HEIGHTS, {})), {"array": "z"}),
     "netCDF called heights": ("a.nc", netcdf(s=("yx", STORED, {}), heights=("xy", HEIGHTS, {})), {}),
 }
+ENDS = {code: np.iinfo(kind) if code not in (3, 7) else np.finfo(kind) for code, kind in SDF_TYPES.items()}
+"""Limits of each type."""
+REVISIONS = {  # magic, how points are counted, which end is reserved, and the types that a revision has
+    "ISO-1.0": (b"bISO-1.0", "<HH", "min", (4, 5, 6, 3, 7)),
+    "ISO-2.0": (b"bISO-2.0", "<II", "min", (4, 5, 6, 3, 7)),
+    "ISO-2.0 that counts as before": (b"bISO-2.0", "<HH", "min", (5, 7)),
+    "BCR-1.0": (b"bBCR-1.0", "<HH", "max", tuple(SDF_TYPES)),
+    "BCR-1.0 in capitals": (b"BBCR-1.0", "<HH", "max", (5, 7)),
+}
+MARKED = {
+    f"sdf {revision} {SDF_TYPES[code]}": (holed(getattr(ENDS[code], end)), code, magic, counts)
+    for revision, (magic, counts, end, codes) in REVISIONS.items()
+    for code in codes
+}
+NC_FILL = {"i2": -32767, "i4": -2147483647, "f4": 9.969209968386869e36, "f8": 9.969209968386869e36}
+RANGES = {
+    "_FillValue of another type": {"_FillValue": np.float32(-999.0)},
+    "missing_value of another type": {"missing_value": -999.0},
+    "several missing values": {"missing_value": np.array([-998.0, -999.0])},
+    "valid_range": {"valid_range": np.array([-100.0, 100.0])},
+    "valid_min": {"valid_min": -100.0},
+}
 PACKED = {"missing_value": np.int16(-999), "scale_factor": 0.5, "add_offset": 4.0}
 MARKERS = {1: 2**16 - 1, 2: 2**32 - 1, 3: np.nan, 5: -(2**15), 6: -(2**31), 7: np.nan}
 HOLED = {
     **{f"sdf {code}": ("a.sdf", sdf_binary(holed(marker), code)) for code, marker in MARKERS.items()},
+    **{
+        name: ("a.sdf", sdf_binary(stored, code, magic=magic, counts=counts))
+        for name, (stored, code, magic, counts) in MARKED.items()
+    },
     "sdf in ASCII": ("a.sdf", sdf_ascii(words(holed(np.nan)))),
+    "sdf of BCR in ASCII": ("a.sdf", sdf_ascii(words(holed(32767)), magic="aBCR-1.0", DataType="INTEGER")),
+    "sdf of BCR in ASCII, double": ("a.sdf", sdf_ascii(words(holed(1.7e308)), magic="aBCR-1.0", code=7)),
     "x3p mask": ("a.x3p", x3p([STORED], kind="I", height=("1e-9", ""), valid=holed(0, STORED + 1) > 0)),
     "x3p not a number": ("a.x3p", x3p([1e-9 * holed(np.nan)])),
     "x3p infinite": ("a.x3p", x3p([1e-9 * holed(np.inf)])),
     "netCDF": ("a.nc", netcdf(z=("xy", holed(-999, 2 * HEIGHTS - 8, (1, 2)).astype("i2"), PACKED))),
+    **{
+        f"netCDF that fills {kind}": (
+            "a.nc",
+            netcdf(z=("xy", holed(fill, HEIGHTS, (1, 2)).astype(kind), {})),
+        )
+        for kind, fill in NC_FILL.items()
+    },
+    **{
+        f"netCDF {name}": ("a.nc", netcdf(z=("xy", holed(-999, HEIGHTS, (1, 2)), told)))
+        for name, told in RANGES.items()
+    },
+    **{
+        f"npy {kind} {sign}": ("a.npy", npy(holed(sign * np.finfo(kind).max, HEIGHTS, (1, 2)).astype(kind)))
+        for kind in ("f4", "f8")
+        for sign in (-1.0, 1.0)
+    },
 }
 
 
@@ -115,10 +159,35 @@ def test_a_map_is_the_same_in_every_format(write, name, contents, hints):
 @pytest.mark.parametrize(("name", "contents"), HOLED.values(), ids=HOLED)
 def test_a_missing_point_is_missing_in_every_format(write, name, contents):
     with pytest.warns(MissingPointsWarning, match=r"1 points \(8\.33 % of all\) have no height.*left as NaN"):
-        surface = read_surface(write(name, contents))
+        surface = read_surface(write(name, contents), **(NM if name == "a.npy" else {}))
     expected = 1e-9 * holed(np.nan, HEIGHTS, (1, 2))
     np.testing.assert_allclose(surface.heights, expected, rtol=1e-14, atol=1e-24)
     assert surface.spacing == pytest.approx((2e-6, 3e-6))
+
+
+@pytest.mark.parametrize(("magic", "end"), [(b"bISO-1.0", "max"), (b"bBCR-1.0", "min")])
+@pytest.mark.parametrize("code", [4, 5, 6])
+def test_the_other_end_of_a_type_is_a_height(write, magic, end, code):
+    value = getattr(ENDS[code], end)
+    surface = read_surface(write("a.sdf", sdf_binary(holed(value), code, magic=magic)))
+    assert surface.heights[1, 2] == pytest.approx(1e-9 * value)
+
+
+@pytest.mark.parametrize("file_format", ["ASCII", "BINARY"])
+@pytest.mark.parametrize("revision", ["ISO_1_0", "ISO_2_0", "BCR_1_0"])
+def test_an_independent_writer_is_understood(tmp_path, revision, file_format):
+    """sdfio, of every type; BCR has no direction of its profiles, which it turns."""
+    sdfio = pytest.importorskip("sdfio", minversion="2.0")
+    rules = sdfio.Revision[revision].rules
+    for kind in rules.data_types:
+        file, stored = tmp_path / f"{kind.name}.sdf", 1e-9 * holed(np.nan)
+        scales = {"x_scale": 2e-6, "y_scale": 3e-6, "z_scale": 1e-9}
+        written = sdfio.SdfFile.from_array(stored, **scales, format=sdfio.FileFormat[file_format])
+        written.with_revision(sdfio.Revision[revision], data_type=kind).save(file)
+        with pytest.warns(MissingPointsWarning, match="1 points"):
+            found = read_surface(file).heights
+        turned = slice(None, None, -1 if rules.reverses_profile_order else 1)
+        np.testing.assert_allclose(found, stored[turned].T, rtol=1e-6, atol=1e-15)
 
 
 def test_eight_bit_sdf_has_no_marker(write):

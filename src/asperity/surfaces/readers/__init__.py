@@ -165,7 +165,7 @@ def _read_by(reader: Reader, file: Path, hints: Hints) -> list[guards.Surface]:
 def _by_content(file: Path, head: bytes) -> str | None:
     """Extension that a file of this content has by right, of those in `OWN`; None for all others."""
     extension = file.suffix.lower()
-    if head.startswith((b"aISO-1.0", b"bISO-1.0", b"aBCR-1.0", b"bBCR-1.0")):
+    if head[:1].lower() in (b"a", b"b") and head[1:8].upper() in (b"ISO-1.0", b"ISO-2.0", b"BCR-1.0"):
         return ".sdf"
     if head.startswith(b"a") and extension == ".sdf":  # softgauges bear the name of their institute
         return ".sdf"

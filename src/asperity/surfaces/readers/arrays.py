@@ -61,7 +61,7 @@ def only_one(names: list[str], source: str, what: str = "heights") -> str:
 
 
 def _surfaces(data: bytes, hints: Hints, file: str, source: str) -> list[guards.Surface]:
-    heights = guards.scaled(array_in(data, file), hints.heights_in(source), source)
+    heights = guards.scaled(guards.without_marks(array_in(data, file)), hints.heights_in(source), source)
     return guards.surfaces_of(heights, hints.spacing_in(source), source)
 
 

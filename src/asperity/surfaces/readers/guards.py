@@ -152,6 +152,17 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
     return [HeightMap(array, spacing, source)]
 
 
+MARKED = 3.4e38
+"""Size from which a number marks a missing point: the largest ones of either floating point type do so."""
+
+
+def without_marks(array: NDArray[Any]) -> NDArray[Any]:
+    """Array with NaN where the largest numbers of a floating point type stand, of either sign."""
+    if array.dtype.kind != "f" or array.dtype.itemsize < 4:
+        return array
+    return np.where(np.isfinite(array) & (np.abs(array) >= MARKED), np.array(np.nan, array.dtype), array)
+
+
 def scaled(array: NDArray[Any], unit: float, source: str) -> Array:
     """Return real numbers times the length of their unit, m, as float64."""
     remedy = advice("array", "name", "Select another one, as in", "Keep numbers alone in the file.")

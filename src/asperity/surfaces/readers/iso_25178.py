@@ -17,10 +17,16 @@ from asperity.surfaces.readers.hints import Hints
 from asperity.text_files import number_in
 
 SDF_TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")  # by the code in the header
-# Integers of 16 and 32 bits mark a missing point by the largest unsigned or the smallest signed value.
-MISSING = {"<u2": 2**16 - 1, "<u4": 2**32 - 1, "<i2": -(2**15), "<i4": -(2**31)}
+NAMES = ("UCHAR", "UINTEGER", "ULONGINT", "FLOAT", "CHAR", "INTEGER", "LONGINT", "DOUBLE")
+"""Of these types in headers of BCR in ASCII."""
+BEYOND = {"<f4": 3.4e38, "<f8": 1.7e308}
+"""Size from which a number with a floating point is none, by the proposal of 1993."""
+OLD = b"BCR"
+"""What follows the first letter of a file by that proposal; ISO 25178-71 came after it."""
 
 _BINARY = struct.Struct("<8s10s12s12sHHddddBBB")
+_WIDE = struct.Struct("<8s10s12s12sIIddddBBB")
+"""Header of the second revision of ISO 25178-71, which counts more points."""
 _FIELDS = {  # of the header, with what is allowed there
     "Compression": ("a number", math.isfinite),
     "DataType": ("0 to 7", range(len(SDF_TYPES)).__contains__),
@@ -37,12 +43,13 @@ def read_sdf(path: Path, hints: Hints) -> list[guards.Surface]:
     """Read an SDF file; there are no hints to it.
 
     Its profiles run along x, so x is the first axis of the map and profiles follow one another along y; a
-    single one is a profile. Lengths are in m by the standard. Compressed data are refused.
+    single one is a profile. Lengths are in m by the standard. Compressed data are refused. A point without a
+    height has the smallest value of its type, by the proposal of 1993 (BCR) the largest, see `missing_in`.
     """
     source = path.name
     hints.refuse(source, "SDF")
     data = path.read_bytes()
-    binary = data[:1] == b"b"
+    binary, old = data[:1].lower() == b"b", data[1:4].upper() == OLD
     header, body = _binary_header(data, source) if binary else _ascii_header(data)
     compression, code, profiles, points, unit, dx, dy = (
         guards.header_number(source, name, header.get(name.lower()), *fits) for name, fits in _FIELDS.items()
@@ -53,25 +60,73 @@ def read_sdf(path: Path, hints: Hints) -> list[guards.Surface]:
     count = guards.check_claim(source, shape, least, len(body) + (not binary))
     stored = np.frombuffer(body, kind, count) if binary else _ascii_heights(body, count, source)
     raw = stored.reshape(shape)
-    heights = guards.scaled(raw, unit, source)
-    if kind in MISSING:
-        heights[raw == MISSING[kind]] = np.nan
+    missing = missing_in(raw, kind, old=old)
+    heights = guards.scaled(np.where(missing, np.zeros(1, raw.dtype), raw), unit, source)
+    heights[missing] = np.nan
     return guards.surfaces_of(heights.T, (dx, dy), source)
 
 
+def missing_in(raw: NDArray[Any], kind: str, *, old: bool) -> NDArray[np.bool_]:
+    """Points without a height, by their stored values: the end of their type that a revision reserves.
+
+    The smallest value by ISO 25178-71, and the largest of unsigned types, which it does not have; of one byte
+    of these, which no revision of it has reserved, none. The largest by the proposal of 1993. Of numbers with
+    a floating point both ends, and what is no number.
+
+    Parameters
+    ----------
+    raw : ndarray
+    kind : str
+        Their type, of `SDF_TYPES`.
+    old : bool
+        Whether the file is one by the proposal.
+
+    Returns
+    -------
+    ndarray of bool
+    """
+    if kind in BEYOND:
+        return np.asarray(~(np.abs(raw) < BEYOND[kind]))
+    ends, signed = np.iinfo(kind), np.dtype(kind).kind == "i"
+    if old:
+        return np.asarray((raw == ends.max) | np.isnan(raw))
+    if signed:
+        return np.asarray((raw == ends.min) | np.isnan(raw))
+    return np.asarray(((raw == ends.max) & (ends.bits > 8)) | np.isnan(raw))
+
+
 def _binary_header(data: bytes, source: str) -> tuple[dict[str, str], bytes]:
-    size = _BINARY.size
+    """Fields of a header, and what follows it; the second revision may count as the first one does."""
+    layouts = [_BINARY]
+    if data[1:8].upper() == b"ISO-2.0":
+        layouts = sorted([_WIDE, _BINARY], key=lambda layout: not _fits(data, layout))
+    size = layouts[0].size
     received, allowed = f"{len(data)} bytes", f"a header of {size} bytes"
     require(len(data) >= size, source, received, allowed, guards.EXPORT)
-    values = map(str, _BINARY.unpack_from(data)[4:])
+    values = map(str, layouts[0].unpack_from(data)[4:])
     return dict(zip(map(str.lower, _IN_BINARY), values, strict=True)), data[size:]
 
 
+def _fits(data: bytes, layout: struct.Struct) -> bool:
+    """Whether what a header says in a layout is in the file."""
+    if len(data) < layout.size:
+        return False
+    points, profiles, *_, code, _ = layout.unpack_from(data)[4:]
+    known = code < len(SDF_TYPES) and points * profiles > 0
+    return known and layout.size + points * profiles * np.dtype(SDF_TYPES[code]).itemsize <= len(data)
+
+
 def _ascii_header(data: bytes) -> tuple[dict[str, str], bytes]:
+    if data[1:4].upper() == OLD:  # which has comments, and words in the place of codes
+        data = re.sub(rb";[^\r\n]*", b"", data)
     head, _, rest = data.partition(b"*")
     pairs = (line.partition("=") for line in head.decode("latin-1").splitlines())
-    header = {name.strip().lower(): value.strip() for name, _, value in pairs}
-    return {"compression": "0"} | header, rest.partition(b"*")[0]  # a trailer may follow
+    header = {"compression": "0"} | {name.strip().lower(): value.strip() for name, _, value in pairs}
+    if header["compression"].upper() in ("NULL", "NONE"):
+        header["compression"] = "0"
+    if (word := header.get("datatype", "").upper()) in NAMES:
+        header["datatype"] = str(NAMES.index(word))
+    return header, rest.partition(b"*")[0]  # a trailer may follow
 
 
 def _ascii_heights(body: bytes, points: int, source: str) -> NDArray[Any]:

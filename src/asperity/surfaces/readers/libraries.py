@@ -86,7 +86,7 @@ def _surfaces(measured: Any, hints: Hints, source: str) -> list[guards.Surface]:
     require(measured.is_uniform, source, received, allowed, "Resample it at a uniform spacing first.")
     unit = None if measured.unit is None else factor(measured.unit, "m")
     heights = np.ma.filled(np.ma.asarray(measured.heights(), dtype=np.float64), np.nan)
-    heights = heights * hints.heights_in(source, unit)
+    heights = guards.without_marks(heights) * hints.heights_in(source, unit)
     lateral = hints.pixel_unit or unit
     dx, dy = np.broadcast_to(measured.pixel_size, 2)
     stated = None if lateral is None else (float(dx) * lateral, float(dy) * lateral)
@@ -146,12 +146,43 @@ def _unit(variable: Any) -> float | None:
 def _decoded(variable: Any, unit: float, source: str) -> Array:
     """Apply the conventional attributes for missing values, scale and offset."""
     raw, attributes = np.asarray(variable[...]), variable.attrs
-    heights = guards.scaled(raw, 1.0, source)
-    for name in ("_FillValue", "missing_value"):
-        if name in attributes:
-            heights[np.isin(raw, attributes[name])] = np.nan
+    if str(attributes.get("_Unsigned", "")).lower() == "true" and raw.dtype.kind == "i":
+        raw = raw.view(raw.dtype.str.replace("i", "u"))
+    missing = _missing(raw, attributes)
+    heights = guards.scaled(np.where(missing, np.zeros(1, raw.dtype), raw), 1.0, source)
+    heights[missing] = np.nan
     scale, offset = attributes.get("scale_factor", 1.0), attributes.get("add_offset", 0.0)
     return (heights * float(np.ravel(scale)[0]) + float(np.ravel(offset)[0])) * unit
+
+
+FILLED = {"i2": -32767, "i4": -2147483647, "i8": -9223372036854775806, "f4": 9.969209968386869e36,
+          "f8": 9.969209968386869e36, "u2": 65535, "u4": 4294967295, "u8": 18446744073709551614}  # fmt: skip
+"""What netCDF fills arrays with that were never written, by type; nothing of one byte."""
+
+
+def _missing(raw: Array, attributes: Any) -> Array:
+    """Points without a height, by the conventions of netCDF: what fills, marks, and is out of range.
+
+    All of these are values as they are stored, before scale and offset; what fills by default counts where
+    nothing else is said to.
+    """
+    told = {name: np.atleast_1d(attributes[name]) for name in _RANGES if name in attributes}
+    told = {name: values for name, values in told.items() if values.dtype.kind in "iuf"}
+    missing = np.zeros(raw.shape, dtype=bool)
+    for name in ("_FillValue", "missing_value"):
+        if name in told:  # often of another type than the heights
+            missing |= np.isin(raw, told[name].astype(raw.dtype))
+    if "_FillValue" not in told and (kind := raw.dtype.str[1:]) in FILLED:
+        missing |= raw == np.array(FILLED[kind]).astype(raw.dtype)
+    low, high = told.get("valid_range", (None, None))
+    for least in (low, *told.get("valid_min", ())):
+        missing |= np.zeros(1, bool) if least is None else raw < least
+    for most in (high, *told.get("valid_max", ())):
+        missing |= np.zeros(1, bool) if most is None else raw > most
+    return missing
+
+
+_RANGES = ("_FillValue", "missing_value", "valid_range", "valid_min", "valid_max")
 
 
 def _placed(coordinate: Any, hints: Hints, source: str, name: str) -> tuple[positions.Index, float]:
