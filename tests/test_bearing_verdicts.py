@@ -143,7 +143,9 @@ def test_tones_allow_for_contact_angle_and_slip():
 
 
 OUTER = Hypothesis("outer", 30.0, 107.66, 3.0, 40.0, 1.0)
-SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, 0.834, 0.25, SimpleNamespace(duration=4.0))
+SOUND = Diagnosis(
+    30.0, 30.0, "confirmed", (), (), None, 0.0, False, 0.834, 0.25, SimpleNamespace(duration=4.0)
+)
 
 
 @pytest.mark.parametrize(
@@ -189,6 +191,12 @@ SOUND = Diagnosis(30.0, 30.0, "confirmed", (), (), None, 0.0, 0.834, 0.25, Simpl
             "The line of the shaft is not found at 30 Hz (1800 1/min): the speed is not confirmed. No "
             "lines of rings or "
             "balls stand out: no sign of a fault if it is right, 83 % sure.",
+        ),
+        (
+            {"speed_is": "unconfirmed", "multiple": True},
+            "Lines of the shaft are at 30 Hz (1800 1/min), and as clear at half or twice of it: the speed is "
+            "not confirmed. No lines of rings or balls stand out: no sign of a fault if it is right, 83 "
+            "% sure.",
         ),
         (
             {"speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.1), "resolution": 10.0},

@@ -57,6 +57,8 @@ class Diagnosis:
         Lines of a part that are too faint for a fault.
     blows : float
         Frequency of blows that are those of no part at this speed, Hz; 0 for none.
+    multiple : bool
+        Whether lines of the shaft are where the speed says, but as clear at half or twice of it.
     confidence : float
         That this is so, 0 to 1.
     resolution : float
@@ -72,6 +74,7 @@ class Diagnosis:
     alike: tuple[Hypothesis, ...]
     faint: Hypothesis | None
     blows: float
+    multiple: bool
     confidence: float
     resolution: float
     record: BearingRecord
@@ -139,12 +142,23 @@ def decided(
     """Decide what the hypotheses of a record say of the speed given."""
     ranked = sorted(found, key=lambda each: -_worth(each, told))
     struck = [each for each in ranked if _deep(each, tones)]
-    shaft, support = shaft_near(record, told)
-    there = support >= SUPPORTED and _at(shaft, told) and _at(record.speed(shaft), told)
+    shaft, support, alone = shaft_near(record, told)
+    seen = support >= SUPPORTED and _at(shaft, told) and _at(record.speed(shaft), told)
+    there = seen and alone
     resolution = 1.0 / record.duration
     speed, state = (record.speed(shaft), CONFIRMED) if there else (told, UNCONFIRMED)
     bare = Diagnosis(
-        told, speed, state, (), (), None, 0.0, sure("sound" if there else "nothing"), resolution, record
+        told=told,
+        speed=speed,
+        speed_is=state,
+        parts=(),
+        alike=(),
+        faint=None,
+        blows=0.0,
+        multiple=seen and not alone,
+        confidence=sure("sound" if there else "nothing"),
+        resolution=resolution,
+        record=record,
     )
     if not struck:
         return replace(bare, faint=next((each for each in ranked if _near(each, told)), None))
@@ -159,6 +173,9 @@ def decided(
             bare, speed=record.speed(best.speed), speed_is="contradicted", confidence=confidence
         )
         return replace(elsewhere, parts=(best,), blows=best.tone)
+    here = [each for each in struck if _near(each, told) and abs(each.tone - best.tone) <= resolution]
+    if here and _worth(here[0], told) >= _worth(best, told) - AHEAD:
+        return _of_parts(bare, here[0], [each for each in struck if not _same(each, here[0])], tones, 0.0)
     if abs(best.tone - round(best.tone / told) * told) <= resolution:  # blows of the shaft, as of a coupling
         return bare
     return replace(bare, blows=best.tone, confidence=sure("sound" if there else "blows"))
@@ -238,9 +255,9 @@ def _of_shaft(each: Hypothesis, best: Hypothesis, tones: Mapping[str, Tone], res
     return bool((np.abs(made - each.tone) <= 2.0 * resolution).any())
 
 
-def shaft_near(record: BearingRecord, told: float) -> tuple[float, float]:
-    """Where near a speed lines of the shaft are clearest, Hz, and how clear: 0 where twice or half of it is
-    clearer."""
+def shaft_near(record: BearingRecord, told: float) -> tuple[float, float, bool]:
+    """Where near a speed lines of the shaft are clearest, Hz, how clear, and whether more than at half and
+    twice."""
     speeds = told * np.exp(np.arange(-APART, APART, FINE))
     support = record.supports(speeds)
     at = int(support.argmax())
@@ -250,4 +267,4 @@ def shaft_near(record: BearingRecord, told: float) -> tuple[float, float]:
     )
     odd = float(record.supports(2.0 * here, offset=0.5)[0])
     alone = record.supports(others).max() <= support[at] and odd >= ODD
-    return float(here[0]), float(support[at]) if alone else 0.0
+    return float(here[0]), float(support[at]), bool(alone)

@@ -77,8 +77,10 @@ class Hypothesis:
 
     @property
     def score(self) -> float:
-        """By which hypotheses are ranked."""
-        return self.support + 10.0 * self.clearness + 15.0 * float(np.log(min(self.depth, 1.0) + 1e-3))
+        """By which hypotheses are ranked: a shaft that is not heard speaks for none and against none."""
+        return (
+            max(self.support, 0.0) + 10.0 * self.clearness + 15.0 * float(np.log(min(self.depth, 1.0) + 1e-3))
+        )
 
 
 @dataclass(frozen=True, eq=False)

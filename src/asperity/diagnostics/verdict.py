@@ -66,6 +66,9 @@ def _of_speed(found: Diagnosis) -> list[str]:
     if found.record.duration < needed:
         short = f"The record of {found.record.duration:.3g} s is too short for the line of the shaft"
         return [f"{short} at {turns(found.told)}, which takes {needed:.2g} s: the speed is not confirmed."]
+    if found.multiple and not found.blows:
+        fit = f"Lines of the shaft are at {turns(found.told)}, and as clear at half or twice of it"
+        return [f"{fit}: the speed is not confirmed."]
     missed = f"The line of the shaft is not found at {turns(found.told)}"
     if found.blows:
         return [f"{missed}: {ASKED}"]
