@@ -200,6 +200,49 @@ def complex_mode(i, phase=0.7, spread=0.0):
     return real | of_complex | {"r3": turned, "r1": 0j * turned, "r2": 0j * turned}
 
 
+def fields(width, *values):
+    """A line of a universal file."""
+    return "".join(f"{v:{width}d}" if isinstance(v, int) else f"{v:{width}.5E}" for v in values) + "\n"
+
+
+def analysis(i=0, *, of_complex=False, six=False, location=1, result=8, kind=None):
+    """A dataset 2414 of a mode, line by line after its definition, with the values of a dataset 55."""
+    told = complex_mode(i) if of_complex else mode(i)
+    shapes = np.stack([told[name] for name in ("r1", "r2", "r3")], axis=1) + 0.0
+    if six:
+        shapes = np.hstack([shapes, np.ones_like(shapes)])
+    eigenvalue, a = (complex(told.get(name, 0.0)) for name in ("eig", "modal_a"))
+    numbers = (0.0, told["freq"], 0.0, told["modal_m"], told["modal_damp_vis"], 0.0)
+    lines = ["    -1\n", "  2414\n", fields(10, i + 1), "mode\n", fields(10, location), *5 * ["NONE\n"]]
+    kind = kind or (3 if of_complex else 2)
+    lines += [fields(10, 1, kind, 3 if six else 2, result, 5 if of_complex else 2, shapes.shape[1])]
+    lines += [fields(10, 0, 0, 0, 0, 0, i + 1, 0, 0), fields(10, 0, 0), fields(13, *numbers)]
+    lines += [fields(13, eigenvalue.real, eigenvalue.imag, a.real, a.imag, 0.0, 0.0)]
+    for number, values in zip(NUMBERS.tolist(), shapes, strict=True):
+        both = [part for v in values for part in (v.real, v.imag)] if of_complex else values.tolist()
+        lines += [fields(10, number), fields(13, *both)]
+    return "".join([*lines, "    -1\n"])
+
+
+@pytest.mark.parametrize("how", [{}, {"six": True}, {"of_complex": True}, {"result": 95}])
+@pytest.mark.parametrize("name", ["modes.unv", "modes.dat"])
+def test_modes_in_datasets_of_analysis(universal, name, how):
+    """2414, as programs write normal modes today; known by its content."""
+    file = universal(nodes(), UNITS)
+    whole = file.read_text() + "".join(analysis(i, **how) for i in range(MODES))
+    file = file.with_name(name)
+    file.write_text(whole)
+    the_same(modal_files.read_modal_structure(file, **CHOSEN), 2e-4)
+
+
+@pytest.mark.parametrize("how", [{"kind": 4}, {"location": 2}])
+def test_an_analysis_that_is_none_of_modes_at_nodes_is_left_out(universal, how):
+    file = universal(nodes(), UNITS)
+    file.write_text(file.read_text() + analysis(**how).replace("\n         1\n", "\n         1         6\n"))
+    with pytest.raises(InputError):
+        modal_files.read_modal_structure(file, **CHOSEN)
+
+
 @pytest.fixture
 def universal(tmp_path):
     """``universal(*sets)`` writes a universal file."""
@@ -233,7 +276,7 @@ test_universal_files_that_do_not_say_enough = refusals(
     ([nodes(), UNITS, mode()], {"nodes": None}, "42 nodes at 41 places along y.*Choose those under"),
     ([nodes(), UNITS, mode()], {"nodes": [1, 99]}, "node 99, which has no place or no shape"),
     ([nodes(), mode()], {}, "no unit of length.*dataset 164.*Export it again"),
-    ([UNITS, mode()], {}, r"datasets 164, 55; allowed: modes in datasets 55 and nodes"),
+    ([UNITS, mode()], {}, r"datasets 164, 55; allowed: modes in datasets 55 or 2414 and nodes"),
     ([nodes(), UNITS, mode(modal_m=0.0)], {}, "a modal mass of 0 of the mode at"),
     ([nodes(), UNITS, mode(spec_data_type=12)], {}, "a mode as data of type 12"),
     ([nodes(), UNITS, mode(modal_damp_vis=0.0)], {}, r"ratio of 0 of the mode at 7.85.* Give damping"),

@@ -1,4 +1,4 @@
-"""Modes from a universal file: datasets 55 (modes), 15 or 2411 (nodes) and 164 (units), through pyuff."""
+"""Modes from universal files: datasets 55 or 2414 (modes), 15 or 2411 (nodes), 164 (units), by pyuff."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -10,7 +10,7 @@ import numpy as np
 from asperity.arguments import Array, Complex, file_path, listed, no_file, one_of, require, shown
 from asperity.errors import InputError
 from asperity.files import amount
-from asperity.hdf5 import check_unpacked, opened_netcdf
+from asperity.hdf5 import check_unpacked, is_hdf5, opened_netcdf
 from asperity.sandbox import Answer, sandboxed
 from asperity.structures.modal import ModalStructure
 from asperity.surfaces.readers.guards import hostile
@@ -22,8 +22,10 @@ Dataset = dict[str, Any]
 AXES = ("x", "y", "z")
 NORMAL, COMPLEX = 2, (3, 7)
 """Analysis types of a dataset 55: normal modes, and complex ones of first and second order."""
-DISPLACEMENT = (0, 1, 8)
-"""Its data types that are displacements: unknown, general, displacement."""
+DISPLACEMENT = (0, 1, 8, 95, 96)
+"""Its data types that are displacements: unknown, general, displacement; of a 2414 unknown vectors."""
+AT_NODES, COMPLEX_NUMBERS = 1, (5, 6)
+"""Where data of a dataset 2414 are, and its types of numbers that are complex."""
 FULL = (0, 2, 3)
 """Its data characteristics with x, y and z: unknown, three and six degrees of freedom."""
 OUT_OF_PHASE = 0.1
@@ -63,15 +65,42 @@ def _datasets(file: Path) -> tuple[list[Dataset], list[Dataset], Dataset | None]
     with hostile(file.name, "universal"):
         opened = pyuff.UFF(str(file))
         types = [str(kind).strip().removesuffix(".0") for kind in opened.get_set_types()]
-        wanted = [i for i, kind in enumerate(types) if kind in ("15", "55", "164", "2411")]
+        wanted = [i for i, kind in enumerate(types) if kind in ("15", "55", "164", "2411", "2414")]
         sets = [(types[i], opened.read_sets(i)) for i in wanted]
+    sets = [("55", _of_analysis(each)) if kind == "2414" else (kind, each) for kind, each in sets]
     modes = [each for kind, each in sets if kind == "55" and each.get("analysis_type") in (NORMAL, *COMPLEX)]
     nodes = [each for kind, each in sets if kind in ("15", "2411")]
     units = [each for kind, each in sets if kind == "164"]
     if not modes or not nodes:
         received = f"datasets {listed(types) or 'of no kind'}"
-        raise InputError(file.name, received, "modes in datasets 55 and nodes in dataset 15 or 2411", _EXPORT)
+        raise InputError(file.name, received, "modes in datasets 55 or 2414 and nodes in 15 or 2411", _EXPORT)
     return modes, nodes, units[-1] if units else None
+
+
+def _of_analysis(found: Dataset) -> Dataset:
+    """A dataset 2414 as the dataset 55 that it has succeeded: of modes at nodes, others without their type.
+
+    Its records 12 and 13 are time, frequency, eigenvalue, modal mass, viscous and hysteretic damping; real
+    and imaginary part of the eigenvalue, of modal A and of modal B. At each node stand the values of all
+    degrees of freedom, of complex ones real and imaginary part in turn.
+    """
+    kind, at_nodes = found.get("analysis_type"), found.get("dataset_location") == AT_NODES
+    if kind not in (NORMAL, *COMPLEX) or not at_nodes:
+        return {}
+    values = np.array(found["data_at_node"], dtype=float)
+    if found["data_type"] in COMPLEX_NUMBERS:
+        values = values[:, ::2] + 1j * values[:, 1::2]
+    numbers = {
+        record: [float(found.get(f"record{record}_field{field}", 0.0)) for field in range(1, 7)]
+        for record in (12, 13)
+    }
+    _, frequency, _, mass, viscous, hysteretic = numbers[12]
+    real, imaginary, a_real, a_imaginary, *_ = numbers[13]
+    told = {"freq": frequency, "modal_m": mass, "modal_damp_vis": viscous, "modal_damp_his": hysteretic}
+    shape = {f"r{axis}": values[:, axis - 1] for axis in range(1, 1 + min(3, values.shape[1]))}
+    eigen = {"eig": complex(real, imaginary), "modal_a": complex(a_real, a_imaginary)}
+    as_before = {"data_ch": found["data_characteristic"], "spec_data_type": found["result_type"]}
+    return {"analysis_type": kind, "node_nums": found["node_nums"], **as_before, **told, **eigen, **shape}
 
 
 def _unit(stated: Dataset | None, of: str, source: str) -> float:
@@ -191,13 +220,13 @@ def read_modal_structure(
     the dimensions of positions and of frequencies; ``modal_masses`` and ``residual_flexibility`` if there are
     any. Attributes ``units`` name the units of what has one.
 
-    *Universal file*: modes in datasets 55, nodes in dataset 15 or 2411, units in dataset 164, through the
-    package pyuff. The keywords are for these files alone.
+    *Universal file*: modes in datasets 55 or 2414, nodes in dataset 15 or 2411, units in dataset 164, through
+    the package pyuff. The keywords are for these files alone.
 
     Parameters
     ----------
     path : str or Path
-        The file; ``.nc`` is netCDF, ``.uff`` and ``.unv`` are universal files, others text.
+        The file, known by its content: netCDF-4, a universal file, or text.
     along, force : {"x", "y", "z"}, optional
         Direction of the path, and of the contact force.
     damping : float, optional
@@ -235,16 +264,23 @@ def read_modal_structure(
     require(size <= LARGEST_FILE, file.name, amount(size), f"at most {amount(LARGEST_FILE)}")
     numbers = None if nodes is None else [int(node) for node in nodes]
     given: dict[str, Any] = {"along": along, "force": force, "damping": damping, "nodes": numbers}
-    kind = file.suffix.lower()
-    if kind in (".uff", ".unv", ".univ") and not around:
+    universal, netcdf = _is_universal(file), is_hdf5(file) or file.suffix.lower() in (".nc", ".nc4")
+    if universal and not around:
         return _read_from(file, "universal", modes_of_universal, given)
     for name, value in given.items():
         if value is not None:
             allowed = "nothing: it is for universal files (.uff, .unv)"
             raise InputError(name, shown(value), allowed, f"{file.name} states it, in SI or with its units.")
-    if kind in (".nc", ".nc4"):
+    if netcdf:
         return _read_from(file, "netCDF-4", modes_of_netcdf, "rad" if around else "m")
     return _structure(_table_of_modes(file, *(("angle", "rad") if around else ("position", "m"))), file.name)
+
+
+def _is_universal(file: Path) -> bool:
+    """Whether a file begins as universal files do, with the mark of a dataset, or has their extension."""
+    with open(file, "rb") as opened:
+        first = opened.read(1024).lstrip().split(maxsplit=1)
+    return first[:1] == [b"-1"] or file.suffix.lower() in (".uff", ".unv", ".univ")
 
 
 def _read_from(file: Path, kind: str, serve: Callable[..., Answer], *more: Any) -> ModalStructure:
