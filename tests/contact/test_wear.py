@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from asperity import ArchardWear, EnergyWear, FrictionalHalfSpace, HalfSpace, HeightMap, Hertz, Material
+from asperity.contact import tangential
 from asperity.contact.wear import Rubbing, rubbing, wear_depth, worn
-from asperity.errors import InputError, OutOfRangeWarning
+from asperity.errors import InputError, OutOfRangeWarning, UnconvergedWarning
 from asperity.store import Store
 from asperity.surfaces.synthesis import self_affine
 from refusals import refusals
@@ -277,3 +278,11 @@ def test_a_contact_that_does_not_roll_wears_nothing():
     shifted = ROLLING.shift(ROLLING.half_space.solve(GAP, load=LOAD), (1e-6, 0.0))
     with pytest.raises(InputError, match="contact: received one that was shifted, or stands; allowed: one"):
         wear_depth(ROLLING, shifted, LINEAR)
+
+
+def test_tractions_that_did_not_converge_are_counted_and_told(monkeypatch):
+    """The pressure converged; the friction on it was not let to."""
+    monkeypatch.setattr(tangential, "MAX_ITERATIONS", 1)
+    with pytest.warns(UnconvergedWarning, match="2 of 2 contact solutions of wear"):
+        after = worn(ROLLING, RAIL, GAP, LOAD, LINEAR, (2e-4, 0.0), 0.1)
+    assert after.counts.unconverged == after.counts.solved == 2
