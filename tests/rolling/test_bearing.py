@@ -71,6 +71,18 @@ WAVY = BallBearing(5, 8e-3, 8e-3 * COSINE / 0.2, contact_angle=math.acos(COSINE)
 """f_c = 0.4 f_r and f_b = 2 f_r: all tones are multiples of f_r/5."""
 
 
+def test_at_a_contact_angle_a_part_of_the_centrifugal_force_presses():
+    """m (d_m/2) (2π 0.4 f_r)² cos α, along the normal, in which a ball moves; on average over a turn."""
+    a, speed = math.acos(COSINE), 100.0
+    held = Ring.rigid(0.3, a, radial_stiffness=1e8, axial_stiffness=1e8, damping_ratio=0.05)
+    rings = BearingRings(Ring.rigid(0.5, a), held)
+    keys = {"axial": 500.0, "speed": speed, "duration": 0.01, "time_step": 2e-6, "settling": 0.01}
+    run = roll_bearing(WAVY, rings, *hertz(WAVY), **keys)
+    outwards = 0.5 * WAVY.ball_mass * WAVY.pitch_diameter * (2.0 * math.pi * 0.4 * speed) ** 2
+    assert (run.outer_force - run.inner_force).mean() == pytest.approx(outwards * COSINE, rel=0.01)
+    assert run.inner_force.min() > 0.0
+
+
 LINES = range(1, 200)
 
 
