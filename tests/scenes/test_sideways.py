@@ -24,6 +24,7 @@ from small_cases import HEARD
 
 CASE = HEARD | {"duration": "0.3 s"}
 PLACE = 0.01
+STEEL = MATERIALS["steel"]
 LEANING, HEAD = {"rail_inclination": "1:40", "wheel_shift": "5 mm"}, 0.3 * math.sin(math.atan(1 / 40))
 RINGING = {"roughness": "disc", "section": "straight-web"}
 
@@ -45,7 +46,7 @@ def by_places(case, frequency, modes=None, head=PLACE):
     under = hertz.approach(65e3)
     springs = (
         hertz.tangent_stiffness(under),
-        stick_stiffness(hertz.semi_axes(under), (MATERIALS["steel"],) * 2),
+        stick_stiffness(hertz.semi_axes(under), (STEEL,) * 2),
     )
     wheel, places = wheel_receptances(modes, 600.0, frequency, PLACE), (np.arange(12) + 0.5) * 0.05
     shares, squares = [], []
@@ -80,6 +81,27 @@ def test_the_lateral_force_and_the_rail_are_those_of_both_forces_at_every_place(
     moved = np.mean(spread * np.einsum("xmf,xmnf,xnf->xf", both.conj(), forms, both).real, axis=0)
     power = 2.0 * SideOfRail(0.172, 0.15, 0.072).power(frequency, moved * force[0]) / 1e-12
     assert_levels(of_part(spectra, "rail sideways"), frequency, power, band)
+
+
+def test_what_the_lateral_force_does_to_the_vertical_one_is_told_with_its_sign(off):
+    """|1/(A_vv − A_vl²/A_ll)|² against |1/A_vv|², each as a mean over the bay, in bands."""
+    case = WheelOnRail(**CASE)
+    frequency, band = (off["spectra"][name].values for name in ("frequency", "band"))
+    under = case.smooth_contact.approach(65e3)
+    normal = case.smooth_contact.tangent_stiffness(under)
+    tangential = stick_stiffness(case.smooth_contact.semi_axes(under), (STEEL,) * 2)
+    track = LateralTrack(case.track.model())
+    wheel = wheel_receptances(None, 600.0, frequency, PLACE)
+    energy = np.zeros((2, len(frequency)))
+    for x in (np.arange(12) + 0.5) * 0.05:
+        (vv, vl), (_, ll) = wheel + track.answers(2.0 * np.pi * frequency, x, x, PLACE)
+        vv = vv + 1.0 / normal
+        energy += np.abs([1.0 / (vv - vl**2 / (ll + 1.0 / tangential)), 1.0 / vv]) ** 2
+    coupled, free = (band_energies(frequency, each, band / HALF_BAND, band * HALF_BAND) for each in energy)
+    found, expected = off["sideways"]["vertical_force_change"].values, 10.0 * np.log10(coupled / free)
+    inside = (band > 180.0) & (band < 3500.0)
+    np.testing.assert_allclose(found[inside], expected[inside], atol=0.02)
+    assert np.abs(expected[inside]).max() > 0.1
 
 
 def test_modes_of_the_wheel_follow_both_forces(runs):
