@@ -1,6 +1,7 @@
 """Progress on a terminal, and where there is none."""
 
 import io
+import re
 
 import pytest
 
@@ -48,6 +49,23 @@ def test_a_rate_is_that_of_the_last_half_minute(clock):
     reports = [(0, 0), (1, 1000), (30, 1010), (60, 1020), (90, 1030)]
     lines = shown(clock, *((time, done, 1059, "scan") for time, done in reports))
     assert lines[-1] == "scan: 1030 of 1059, about 87 s left"
+
+
+def test_the_time_left_of_a_study_does_not_jump(clock):
+    """Twelve members are kept, then two at a time take about two minutes: it jumped from 6 to 38."""
+    reports, now = [(0.0, 0), (0.5, 6), (1.0, 12)], 1.0
+    for done in range(13, 43, 2):
+        now += 120.0 + 10.0 * ((done * 7) % 5 - 2)
+        reports += [(now - 15.0, done), (now, done + 1)]
+    lines = shown(clock, *((time, done, 42, "study") for time, done in reports))
+    promised = {}
+    for line in lines:
+        if found := re.search(r"study: (\d+) of 42, about (\d+) (s|min) left", line):
+            promised[int(found[1])] = float(found[2]) * (60.0 if found[3] == "min" else 1.0)
+    real = {done: now - time for time, done in reports}
+    assert len(promised) > 20
+    for done in (done for done in promised if 16 <= done < 40):
+        assert 0.7 < promised[done] / real[done] < 1.4, done
 
 
 def test_before_anything_is_done_no_time_is_promised(clock):

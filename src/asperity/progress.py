@@ -16,6 +16,10 @@ from asperity.terminal import manner, write
 NOTEBOOK_INTERVAL = 0.2  # s between drawings of a bar
 QUIET_INTERVAL = 10.0  # s between lines where standard error is not a terminal
 WINDOW = 30.0  # s over which a rate is taken: what was kept went by at once, the rest has to be computed
+FEWEST = 8
+"""Steps that a rate is taken from, at least: members of a study take minutes, and come in bursts."""
+KEPT = 0.1
+"""Share of the time of a step from which on it was computed, not kept."""
 COMPILED = "compiled functions"
 """The piece of work that is compiling."""
 COMPILING = "compiling functions, once: later runs load them …"
@@ -90,18 +94,29 @@ class _Piece:
         """Take down that so many steps are done now; return whether that is to be shown."""
         now, self.done, self.total = time.monotonic(), done, total
         self._seen.append((now, done))
-        while len(self._seen) > 2 and self._seen[1][0] < now - WINDOW:
+        while len(self._seen) > 2 and self._seen[1][0] < now - WINDOW and self._is_told_by_others():
             self._seen.popleft()
         due = now - self._shown >= interval
         self._shown = now if due else self._shown
         return due
 
+    def _is_told_by_others(self) -> bool:
+        """Whether the rate is known without the first time: from enough steps, or as these were kept."""
+        (first, before), (second, between), (last, done) = self._seen[0], self._seen[1], self._seen[-1]
+        quick = (second - first) * (done - between) < KEPT * (last - second) * (between - before)
+        return done - between >= FEWEST or (done > between > before and quick)
+
+    @property
+    def left(self) -> float:
+        """Time that the rest will take, s; zero before anything is done."""
+        (first, before), (last, done) = self._seen[0], self._seen[-1]
+        return (self.total - done) * (last - first) / (done - before) if done > before else 0.0
+
     @property
     def words(self) -> str:
         """How far it is, as ``"scan: 5 of 9, about 4 s left"``; no time before anything is done."""
-        (first, before), (last, done) = self._seen[0], self._seen[-1]
-        left = (self.total - done) * (last - first) / (done - before) if done > before else 0.0
-        return f"{self.message}: {done} of {self.total}" + f", about {duration(left)} left" * (left > 0.0)
+        told = f", about {duration(self.left)} left" * (self.left > 0.0)
+        return f"{self.message}: {self._seen[-1][1]} of {self.total}{told}"
 
 
 @contextmanager
@@ -132,18 +147,24 @@ def _bars(stream: TextIO) -> Iterator[Progress]:
     from rich.console import Console
 
     tasks: dict[str, progress.TaskID] = {}
+    pieces: dict[str, _Piece] = {}
     columns = (
         progress.TextColumn("{task.description}", markup=False),
         progress.BarColumn(),
         progress.MofNCompleteColumn(),
-        progress.TimeRemainingColumn(elapsed_when_finished=True),
+        progress.TextColumn("{task.fields[left]}", markup=False),
+        progress.TimeElapsedColumn(),
     )
     with progress.Progress(*columns, console=Console(file=stream)) as bars:
 
         def update(done: int, total: int, message: str) -> None:
             if message not in tasks:
-                tasks[message] = bars.add_task(printable(message))
-            bars.update(tasks[message], completed=done, total=total)
+                tasks[message] = bars.add_task(printable(message), left="")
+                pieces[message] = _Piece(message, done, total)
+            piece = pieces[message]
+            piece.report(done, total, 0.0)
+            left = f"about {duration(piece.left)} left" if piece.left > 0.0 else ""
+            bars.update(tasks[message], completed=done, total=total, left=left)
 
         with COMPILATION.announced(lambda text: bars.console.print(text, markup=False, highlight=False)):
             yield update

@@ -74,6 +74,9 @@ def test_loads_tones_and_waviness(drawn):
     bars = [mark for mark in chart.panels[0].marks if getattr(mark, "width", 0.0) == 2.2]
     assert len(bars) == 9  # all balls lie on the outer ring as they turn
     assert max(bars, key=lambda bar: np.hypot(np.ptp(bar.x), np.ptp(bar.y))).y.max() < 0.0
+    assert "68.4 N" in [
+        mark.text.strip() for mark in chart.panels[0].marks if hasattr(mark, "text")
+    ]  # its scale
     assert f"Picture: {Path('a.png').resolve()}" in said
 
 

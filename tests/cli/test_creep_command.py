@@ -1,10 +1,12 @@
 """``asperity creep``: a curve of a case in words, as CSV, and drawn."""
 
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from asperity.reporting.chart import Line
 from command_line import call
 
 BALL = 'kind = "ball-on-beam"\n[surface]\n{}\n[ball]\nload = "20 N"\n[beam]\nloss_factor = 0.01\n'
@@ -17,7 +19,10 @@ def coarse():
     Path("case.toml").write_text(rough + window)
 
 
-def test_a_rough_case_is_told_written_and_drawn():
+def test_a_rough_case_is_told_written_and_drawn(monkeypatch):
+    drawn, creep = [], import_module("asperity.cli.creep")  # of this name the command line has a command
+    write = creep.write_chart
+    monkeypatch.setattr(creep, "write_chart", lambda chart, *to: (drawn.append(chart), write(chart, *to)))
     asked = ("creep", "case.toml", "--direction", "lateral", "--points", "3", "--friction", "0.2")
     told = call(*asked, "-o", "creep.svg", "--table", "creep.csv").stdout
     assert "samples)" in told
@@ -28,6 +33,9 @@ def test_a_rough_case_is_told_written_and_drawn():
     assert found[:, 1] == pytest.approx(found[:, 5], abs=0.08)
     assert found[-1, 1:3] == pytest.approx(1.0, abs=0.03)
     assert found[:, 2] != pytest.approx(found[:, 1], abs=1e-6)
+    lines = [mark for mark in drawn[0].panels[0].marks if isinstance(mark, Line)]
+    assert len(lines) == 4
+    assert all((line.x[0], line.y[0]) == (0.0, 0.0) for line in lines)  # what does not creep has no force
     assert Path("creep.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
 
 

@@ -140,7 +140,12 @@ def test_a_case_is_varied_in_the_units_that_were_typed_with_a_figure_for_each_ke
         assert np.ptp(table["rms_force"].values[..., 0]) > 0.0
     page = (out / "study.html").read_text(encoding="utf-8")
     figures = re.findall('<figure id="(.*?)" class="chart">', page)
-    assert figures == ["key-speed", "key-ball.load"]  # of one seed there is nothing to draw
+    assert figures == [
+        "key-speed",
+        "bands-speed",
+        "key-ball.load",
+        "bands-ball.load",
+    ]  # of one seed there is nothing to draw
     assert '<td class="number">3.6</td>' in page  # without a script its numbers are read
     assert not (out / "study_mean.csv").exists()
 
@@ -211,7 +216,7 @@ def test_variants_are_told_by_what_they_do():
     assert found["ball.load [N]"] == ["5.0", "10.0"] * 3
     assert (numbers(found["effect [dB]"])[:2] < -10.0).all()
     page = Path("out/study.html").read_text(encoding="utf-8")
-    assert re.findall('<figure id="(.*?)" class="chart">', page) == ["key-ball.load"]
+    assert re.findall('<figure id="(.*?)" class="chart">', page) == ["key-ball.load", "bands-ball.load"]
     assert 'id="effects-2"' in page
     again = json.loads(call(*AGAIN, "--json").stdout)
     words = again["in_words"]["ball.load = 5 N"]

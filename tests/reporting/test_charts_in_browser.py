@@ -27,6 +27,7 @@ from asperity.reporting.chart import (
 from asperity.reporting.data import page_colours
 from asperity.reporting.figure import PageFigure
 from asperity.reporting.page import figures_page, whole_page
+from asperity.scenes.report import write_summary
 from browser import OVERLAPS, assert_accessible, assert_readable, pages_of, pixels
 from small_cases import CASES
 
@@ -245,10 +246,60 @@ def test_figures_far_below_are_drawn_when_they_are_near(browser, address):
     page.close()
 
 
-# --- reports of all kinds
+# --- paper, and narrow screens
 
 WIDEST = "wheel-on-rail"
 """Its report has figures of all sorts; those of the others are looked at by --long."""
+
+CUT = """() => [...document.querySelectorAll(".rows")]
+  .filter((each) => each.scrollWidth > each.clientWidth + 1).map((each) => each.getAttribute("aria-label"))"""
+REGIONS = """() => [...document.querySelectorAll("[role=region], nav, main, header")].map((each) =>
+  `${each.getAttribute("role") ?? each.tagName} ${each.getAttribute("aria-label") ?? ""}`)"""
+SHEETS = re.compile(rb"/Type\s*/Page\b")
+
+
+def test_tables_are_whole_on_narrow_screens_and_contents_stay_in_sight(browser, reports):
+    with pages_of(browser, (reports[WIDEST] / "report.html").as_uri()) as opened:
+        page = opened(390)
+        assert page.evaluate(CUT) == []
+        assert (
+            page.locator(".rows td").first.evaluate("it => getComputedStyle(it, '::before').content")
+            == '"law"'
+        )
+        regions = page.evaluate(REGIONS)
+        assert len(set(regions)) == len(regions)  # no two landmarks of one name
+        page.evaluate("document.querySelector('#provenance').scrollIntoView()")
+        contents = page.locator("nav[aria-label=Contents]").bounding_box()
+        assert 0.0 <= contents["y"] < 1000.0
+
+
+@pytest.mark.parametrize("way", ["button", "summary"])
+def test_a_summary_is_one_sheet_of_paper(browser, reports, real_runs, tmp_path, way):
+    """With a table of more rows than a sheet holds."""
+    file = reports[WIDEST] / "report.html"
+    if way == "summary":
+        file = write_summary(real_runs[WIDEST], tmp_path / "summary.html")
+    page = browser.new_page(viewport={"width": 1200, "height": 900})
+    page.add_init_script("window.print = () => { window.printed = true; }")
+    page.goto(file.as_uri())
+    page.locator("figure.chart.ready").last.wait_for(state="attached")
+    assert page.locator("#print-summary").count() == (way == "button")
+    more = "it => { for (let n = 0; n < 25; n++) it.append(it.rows[0].cloneNode(true)); }"
+    page.locator(".answer tbody").first.evaluate(more)
+    if way == "button":
+        page.emulate_media(media="print")
+        assert not page.locator("#print-summary").is_visible()
+        page.emulate_media(media="screen")
+        page.click("#print-summary")
+        page.wait_for_function("() => window.printed")
+    else:
+        page.evaluate("dispatchEvent(new Event('load'))")
+        page.wait_for_function("() => Number(document.body.style.zoom) < 1")
+    assert len(SHEETS.findall(page.pdf(prefer_css_page_size=True))) == 1
+    page.close()
+
+
+# --- reports of all kinds
 
 
 @pytest.fixture(params=[pytest.param(kind, marks=[pytest.mark.long] * (kind != WIDEST)) for kind in CASES])

@@ -126,5 +126,8 @@ def test_the_table_of_a_figure_is_thinned_and_says_so():
     table = numbers_table(Lines(Series("x", "m", x), lines).columns())
     assert (len(table.rows), len(table.head)) == (24, 12)
     assert table.note == "24 of 100 rows and 12 of 41 columns; the CSV file has all."
-    assert [cell.text for cell in (table.rows[0][-1], table.rows[-1][-1])] == ["−3.9e−05", "–"]
+    assert [cell.text for cell in (table.rows[0][-1], table.rows[-1][-1])] == ["−3.9·10⁻⁵", "–"]
+    foremost = [line.heading for line in lines[7:9]]
+    assert set(foremost) < set(numbers_table(Lines(Series("x", "m", x), lines).columns(), foremost).head)
+    assert len(numbers_table(Lines(None, lines).columns(), [line.heading for line in lines]).head) == 12
     assert numbers_table(Lines(None, [Series("a", "m", np.ones(1))]).columns()).note == ""

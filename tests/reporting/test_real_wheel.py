@@ -7,13 +7,14 @@ from report_tree import PARTS
 
 from asperity.cli.studying import print_table
 from asperity.reporting.chart import Boxes, Line, Note, Rules
-from asperity.reporting.study_figures import key_figure
+from asperity.reporting.data import typed_words
+from asperity.reporting.study_figures import ends_in_words, key_figures
 from asperity.scenes.figures.force import AROUND_PEAK, around_peak
 from asperity.scenes.figures.motion import point_labels
 from asperity.scenes.figures.noise import sound_power_table
 from asperity.scenes.report import figures_of
 from asperity.studies.member import kept, names_kept
-from asperity.studies.table import USUAL, USUAL_IN_FIGURES, chosen, columns_of
+from asperity.studies.table import LOUDNESS, USUAL, USUAL_IN_FIGURES, chosen, columns_of
 
 
 @pytest.fixture
@@ -225,8 +226,16 @@ def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(tree
 
 def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(study):
     assert not study["contact_loss_share"].values.any()
-    *shown, _ = key_figure(study, None, "speed", {}, USUAL_IN_FIGURES)
-    panels = {panel.title: panel for panel in shown}
+    figures = {
+        name: list(parts) for name, _, parts in key_figures(study, None, "speed", {}, USUAL_IN_FIGURES)
+    }
+    panels = {panel.title: panel for *shown, _ in figures.values() for panel in shown}
+    for *shown, _ in figures.values():  # no legend mixes laws, what radiates, and values of keys
+        told = [
+            tuple(sorted(line.label for line in panel.marks if getattr(line, "label", ""))) for panel in shown
+        ]
+        assert len({bool({"rail", "total"} & {*labels}) for labels in told}) == 1
+    assert "bands-speed" in figures
     assert panels["L_pAFmax"].y.label == "dB(A) re 20 µPa"
     assert not any("without contact" in title for title in panels)
     sound = panels["sound power level from the vibration itself, areal"]
@@ -239,6 +248,24 @@ def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(s
         "sleepers",
         "total",
     ]  # the wheel is rigid
+
+
+def test_a_sentence_says_where_a_study_is_quietest_and_loudest(study):
+    level = study["radiated_power_level_a"].isel(law=0).sel(radiator="total")
+    speed = typed_words(study["speed"])
+    ends = [(float(level[n]), speed[n]) for n in (int(level.values.argmin()), int(level.values.argmax()))]
+    low, high = (f"{value:.1f} dB(A) re 1 pW at speed {at}" for value, at in ends)
+    told = "A-weighted sound power level from the vibration itself, areal, total"
+    assert ends_in_words(study, LOUDNESS) == f"{told}: from {low} to {high}."
+    assert ends_in_words(study, ["nothing"]) == ""
+
+
+def test_the_numbers_of_a_figure_begin_with_the_main_law(tree):
+    """12 of 54 columns of the sound power were without its total."""
+    drawn = PARTS["radiated_power_bands"].drawn(tree)
+    (table,) = drawn.numbers
+    assert "total, areal [dB re 1 pW]" in table.head
+    assert len(table.head) < len(drawn.columns)
 
 
 def test_what_a_study_of_wheels_may_be_asked_to_show_is_what_it_keeps(tree):

@@ -247,6 +247,24 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     assert "beam.loss_factor" in words
     assert "0.02" in words
     assert "dB(A)" in words
+    assert "#compare=" in tab.url  # it has an address, which opens it again
+    tab.reload()
+    tab.wait_for_selector("#comparison #force_level.ready .plot canvas")
+    assert tab.inner_text("#comparison-words") in words
+    tab.evaluate("location.hash = ''")  # as Back to where one began
+    tab.wait_for_selector("#comparison", state="hidden")
+    tab.go_back()
+    tab.wait_for_selector("#comparison:not([hidden])")
+
+
+def test_back_closes_a_run(tab, tmp_path):
+    have_a_run(tab, tmp_path)
+    tab.locator("#run-list li[data-state=done] a.name").first.click()
+    tab.wait_for_selector("#run:not([hidden])")
+    tab.go_back()
+    tab.wait_for_selector("#run", state="hidden")
+    tab.go_forward()
+    tab.wait_for_selector("#run:not([hidden])")
 
 
 def test_a_report_can_ask_nothing_of_the_server(tab, served, tmp_path):

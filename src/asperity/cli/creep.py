@@ -93,7 +93,16 @@ def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
     _say_columns(f"{title}: creep force over friction", columns)
     say(f"{words}.")
     axes = Axis(name, 0.0, float(curve.creepage[-1])), Axis("creep force over friction", 0.0, 1.05)
-    return title, columns, Chart((_panel(*axes, curve.creepage, drawn),))
+    begun = {
+        each: (_from_zero(mean), None if scatter is None else _from_zero(scatter))
+        for each, (mean, scatter) in drawn.items()
+    }
+    return title, columns, Chart((_panel(*axes, _from_zero(curve.creepage), begun),))
+
+
+def _from_zero(values: Array) -> Array:
+    """Values of a curve with its origin: what does not creep has no creep force."""
+    return np.concatenate([[0.0], values])
 
 
 def _told_states(states: TractionStates, source: str) -> Told:

@@ -18,7 +18,8 @@ from asperity.laws import spec_of
 from asperity.progress import progress_bar
 from asperity.reporting import data, page, study_figures
 from asperity.reporting.figure import PageFigure
-from asperity.reporting.tables import ReportTable
+from asperity.reporting.tables import ReportTable, text_cells
+from asperity.reporting.tables import table as report_table
 from asperity.results import attributes_of, save
 from asperity.scenes.figures.effects import Effects, effects_table
 from asperity.schema.spectra import FORCE_LEVEL
@@ -190,10 +191,12 @@ def _write(
         told = _by_place(table, effect)
         blocks: list[page.Block] = [*_blocks(told)]
         blocks += _figures(mean, scatter, band, asked or tables.USUAL_IN_FIGURES)
+        if blocks and not told:
+            blocks.append(_table(mean, asked or tables.USUAL))
         if blocks:
             names["page"] = PAGE
             beside = {words: names[what] for what, words in OFFERED.items() if what in names}
-            lead = (told and told[0][1].best) or _summary(table)
+            lead = (told and told[0][1].best) or _summary(table, mean)
             text = page.figures_page("Study", lead, blocks, beside)
             files.write_bytes(new / PAGE, text.encode())
         for name in {MEANS, BAND, EFFECTS, PAGE} - set(names.values()):  # of an earlier study
@@ -203,10 +206,24 @@ def _write(
     return written
 
 
-def _summary(table: xarray.Dataset) -> str:
+def _summary(table: xarray.Dataset, mean: xarray.Dataset) -> str:
+    """Say what was swept, how much of it was computed, and between what and what its first level lies."""
     swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
     done, count = int(table["completed"].sum()), table["completed"].size
-    return swept if done == count else f"{swept}; {done} of {count} members completed"
+    told = swept if done == count else f"{swept}; {done} of {count} members completed"
+    return f"{told}. {ends}" if (ends := study_figures.ends_in_words(mean, tables.LOUDNESS)) else told
+
+
+def _table(mean: xarray.Dataset, names: Sequence[str]) -> ReportTable:
+    """Numbers of a study: a row for each place on its axes, as the page has them on paper, too."""
+    shown = [name for name in names if name in mean and not {*PLACES} & {*mean[name].dims}]
+    heading, rows = tables.columns_of(mean[shown], bands=False)
+    kept = [n for n in range(len(heading)) if any(_short(row[n]) != "–" for row in rows)]
+    cells = {
+        heading[n].replace("_", " "): text_cells(_short(row[n]) for row in rows[:MOST_ROWS]) for n in kept
+    }
+    note = f"{MOST_ROWS} of {len(rows)} rows; study.csv has all." if len(rows) > MOST_ROWS else ""
+    return report_table("numbers", "Numbers of the study", cells, note)
 
 
 def _figures(
@@ -218,8 +235,8 @@ def _figures(
     figures = []
     for key in json.loads(mean.attrs["sweep"]):
         if mean.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(mean)):
-            parts = study_figures.key_figure(mean, scatter, key, looks, names)
-            figures.append(PageFigure.of(f"key-{key}", f"Over {key}", parts))
+            for name, title, parts in study_figures.key_figures(mean, scatter, key, looks, names):
+                figures.append(PageFigure.of(name, title, parts))
     if band is not None and VARIANT not in band.dims:
         parts = study_figures.ensemble_figure(band, looks)
         figures.append(PageFigure.of("ensemble", "Contact force over the seeds", parts, BAND))
@@ -290,7 +307,7 @@ def print_table(
 def _short(value: object) -> str:
     if isinstance(value, str):
         return value
-    return "–" if value != value else f"{value:.4g}"
+    return "–" if value != value else data.plain(float(value), 4)  # type: ignore[arg-type]
 
 
 def _width(heading: str, cells: Sequence[str]) -> int:

@@ -41,6 +41,11 @@ class Series:
         return str(self.places.get("law", ""))
 
     @property
+    def is_total(self) -> bool:
+        """Whether it is the sum of others."""
+        return any(str(place).startswith("total") for place in self.places.values())
+
+    @property
     def heading(self) -> str:
         """Of its column, as ``"areal [N^2/Hz]"``."""
         units = re.sub(r"(?<=[A-Za-z)])(\d)", r"^\1", self.units).replace("um", "µm").replace("uPa", "µPa")
@@ -146,6 +151,7 @@ class PageFigure:
     chart: Chart
     file: str = ""  # with its numbers, beside the page
     columns: Mapping[str, Numbers] = dataclasses.field(default_factory=dict)  # of that file
+    foremost: Sequence[str] = ()  # heads of the columns that are read first
 
     @classmethod
     def of(cls, name: str, title: str, parts: Iterable[Panel | str], *file: Any) -> "PageFigure":
@@ -158,7 +164,7 @@ class PageFigure:
     @property
     def numbers(self) -> list[ReportTable]:
         """Tables that are shown where no script runs."""
-        return [numbers_table(self.columns)] if self.columns else chart_tables(self.chart)
+        return [numbers_table(self.columns, self.foremost)] if self.columns else chart_tables(self.chart)
 
 
 Draw = Callable[[DataTree, Lines], Iterable[Panel | str]]
@@ -195,7 +201,11 @@ class Figure:
         parts = [*self.draw(tree, lines), data.missing(tree, *self.needs)]
         if not any(isinstance(each, Panel) for each in parts):
             raise data.Missing(self.name)
-        file = f"{self.name}.csv", lines.columns(self.stretches)
+        main = next(iter(data.law_entries(tree)), None)
+        of_main = sorted(
+            (each for each in lines.lines if each.law == main), key=lambda each: not each.is_total
+        )
+        file = f"{self.name}.csv", lines.columns(self.stretches), [each.heading for each in of_main]
         return PageFigure.of(self.name, self.title, parts, *file)
 
 

@@ -107,10 +107,39 @@ SPREAD = 20.0
 """Ratio of the largest value to the smallest from which the axis is logarithmic."""
 
 
+def key_figures(
+    mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str, looks: Looks, names: Sequence[str]
+) -> Iterator[tuple[str, str, Iterator[Panel | str]]]:
+    """Figures of a swept key, each with its name and title: one for each thing that its lines stand for.
+
+    So that no legend mixes laws, what radiates, and values of keys; the parameters are those of `key_figure`.
+    """
+    drawn = [name for name in names if name in mean and _says_something(mean[name])][:MOST_PANELS]
+    told: dict[str, list[str]] = {}
+    for name in drawn:
+        told.setdefault(_told_apart(mean, name, key), []).append(name)
+    for n, (what, some) in enumerate(told.items()):
+        title = f"Over {key}" + (f", by {what}" if what and n else "")
+        yield f"key-{key}" + (f"-{what}" if n else ""), title, key_figure(mean, scatter, key, looks, some)
+    if FORCE_LEVEL.name in mean:
+        panel = _bands(mean, key)
+        words = f"Force level of {panel.title}: one-third octaves, a line for each value of {key}."
+        yield f"bands-{key}", f"Force level by {key}", iter((panel, words))
+
+
+def _told_apart(table: xarray.Dataset, name: str, key: str) -> str:
+    """What the lines of a quantity over a key stand for, in a word."""
+    held, others = table[name], _others(table, key)
+    own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
+    if others:
+        return "other keys"
+    return own[0] if own else LAW.name if LAW.name in held.dims else ""
+
+
 def key_figure(
     mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str, looks: Looks, names: Sequence[str]
 ) -> Iterator[Panel | str]:
-    """What a swept key does: quantities over it, and the force level in bands for each value.
+    """What a swept key does: quantities over it.
 
     `mean` and `scatter` are tables of a study without its seeds, if it swept any: `scatter` holds standard
     deviations under the same names. `looks` are looks of lines by law, `names` the quantities: those
@@ -120,14 +149,34 @@ def key_figure(
     drawn = [name for name in names if name in mean and _says_something(mean[name])][:MOST_PANELS]
     for n, name in enumerate(drawn):
         yield replace(_panel(mean, scatter, name, key, looks), beside=n % 2 == 1)
-    if FORCE_LEVEL.name in mean:
-        yield _bands(mean, key)
     told, others = [str(mean[key].attrs["long_name"])], _others(mean, key)
     if scatter is not None:
         told.append("mean ± standard deviation over the seeds")
     if others:
         told.append(f"{_main(mean)} alone, a line for each {' and '.join(others)}")
     yield f"{key}: {', '.join(told)}."
+
+
+def ends_in_words(table: xarray.Dataset, names: Sequence[str]) -> str:
+    """Say where the first of some levels that a study has is lowest and highest, of the main law."""
+    name = next((each for each in names if each in table and _says_something(table[each])), "")
+    if not name:
+        return ""
+    keys = [key for key in json.loads(table.attrs["sweep"]) if key in table.dims]
+    held, told = table[name], [str(table[name].attrs["long_name"]).partition(":")[0].partition(",")[0]]
+    if LAW.name in held.dims:
+        held = held.sel({LAW.name: _main(table)})
+        told.append(_main(table))
+    for dim in [str(dim) for dim in held.dims if dim not in keys]:
+        told.append(str(most := _largest(held, dim)))
+        held = held.sel({dim: most})
+    units = data.written_units(str(held.attrs["units"]))
+    ends = []
+    for found in (held.argmin(...), held.argmax(...)):
+        at = {str(dim): int(place) for dim, place in found.items()}
+        where = ", ".join(f"{key} {data.typed_words(table[key])[n]}" for key, n in at.items())
+        ends.append(f"{float(held[at]):.1f} {units} at {where}")
+    return f"{', '.join(told).capitalize()}: from {ends[0]} to {ends[1]}."
 
 
 def _says_something(found: xarray.DataArray) -> bool:

@@ -107,11 +107,14 @@ COLUMNS, ROWS = 12, 24
 _four_digits = partial(data.plain, digits=4)
 
 
-def numbers_table(columns: Mapping[str, chart.Numbers]) -> ReportTable:
-    """Numbers of a figure by the heads of its CSV file, or some of them."""
-    count = len(next(iter(columns.values())))
-    rows, named = chart.spread(count, ROWS), chart.spread(len(columns), COLUMNS)
-    shown = {list(columns)[n]: columns[list(columns)[n]][rows] for n in named}
+def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] = ()) -> ReportTable:
+    """Numbers of a figure by the heads of its CSV file; of many the first, the `foremost`, and some."""
+    count, heads = len(next(iter(columns.values()))), list(columns)
+    kept = list(dict.fromkeys([heads[0], *(head for head in foremost if head in columns)]))[:COLUMNS]
+    others = [head for head in heads if head not in kept]
+    kept += [others[n] for n in chart.spread(len(others), COLUMNS - len(kept))] if len(kept) < COLUMNS else []
+    rows, named = chart.spread(count, ROWS), sorted(kept, key=heads.index)
+    shown = {head: columns[head][rows] for head in named}
     counts = {"rows": (len(rows), count), "columns": (len(named), len(columns))}
     parts = [f"{some} of {every} {what}" for what, (some, every) in counts.items() if some < every]
     note = f"{' and '.join(parts)}; the CSV file has all." if parts else ""

@@ -2,11 +2,13 @@
 
 import { ask, find, make, showBlocks, span } from "./asking.js";
 import { fill, kind, showErrors, typed } from "./form.js";
-import { showRun, shown } from "./watching.js";
+import { closeRun, showRun, shown } from "./watching.js";
 
-const opened = () => decodeURIComponent(location.hash.replace(/^#run=/, "")) || null;
+// What is shown has an address: #run=ID of one run, #compare=ID,ID of several; none without.
+const addressed = (what) => location.hash.startsWith(`#${what}=`) ? decodeURIComponent(location.hash.slice(what.length + 2)) : "";
+const opened = () => addressed("run") || null;
 const chosen = new Set();
-let runs = [], listed = "";
+let runs = [], listed = "", compared = "";
 let rolled = sessionStorage.getItem("rolled");  // the run that this tab began last
 
 export async function listRuns() {
@@ -15,7 +17,7 @@ export async function listRuns() {
   } catch (error) {
     runs = runs.map((run) => run.state === "running" ? { ...run, message: error.message } : run);
   }
-  const now = JSON.stringify(runs) + opened() + [...chosen];
+  const now = JSON.stringify(runs) + location.hash + [...chosen];
   if (now !== listed) { listed = now; drawRuns(); }
   document.body.dataset.runs = String(runs.length);
   const active = runs.some((run) => ["running", "waiting"].includes(run.state));
@@ -38,6 +40,8 @@ function drawRuns() {
   find("compare").textContent = chosen.size >= 2 ? `Compare the ${chosen.size} chosen runs` : "Choose two runs to compare";
   const open = runs.find((run) => run.id === opened());
   if (open?.state === "done" && shown.id !== open.id) showRun(open);
+  if (location.hash.length < 2 && shown.id) closeRun();
+  if (compared !== addressed("compare")) showComparison(addressed("compare"));
 }
 
 // What became of the run that was begun here, where Roll was pressed.
@@ -111,11 +115,19 @@ export async function roll() {
   find("roll").disabled = false;
 }
 
-export async function compare() {
-  const asked = runs.filter((run) => chosen.has(run.id)).reverse().map((run) => `run=${run.id}`).join("&");
-  find("comparison").hidden = false;
+export function compare() {
+  const asked = runs.filter((run) => chosen.has(run.id)).reverse().map((run) => run.id).join(",");
+  if (asked === compared) showComparison(asked);
+  else location.hash = `compare=${asked}`;
+}
+
+async function showComparison(asked) {
+  compared = asked;
+  find("comparison").hidden = !asked;
+  if (!asked) return;
   try {
-    const found = await ask(`ask/compare?${asked}`);
+    const found = await ask(`ask/compare?${asked.split(",").map((id) => `run=${encodeURIComponent(id)}`).join("&")}`);
+    if (compared !== asked) return;
     find("comparison-words").replaceChildren(make("p", { textContent: found.summary }));
     showBlocks(find("comparison-blocks"), found);
   } catch (error) {

@@ -35,6 +35,12 @@ export async function showRun(run) {
   }
 }
 
+export function closeRun() {  // as Back does
+  play(false);
+  Object.assign(shown, { id: null, view: null });
+  find("run").hidden = true;
+}
+
 function showWarnings(warnings) {
   const box = find("warnings");
   box.hidden = warnings.length === 0;

@@ -79,6 +79,9 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
         if share:
             bar = _at(rim + np.array([0.1, 0.1 + 1.3 * share]) * ball, place)
             marks.append(chart.Line(*bar, colour=chart.VERMILLION, width=2.2))
+            if share == 1.0:
+                (x,), (y,) = _at(rim + 0.75 * ball, place)
+                marks.append(chart.Note(f"  {force(outer.max())}", float(x), float(y), colour=chart.INK))
     every_fault = _faults(tree)
     for part, faults in every_fault.items():
         where, balls = (np.array(each) for each in zip(*faults, strict=True))
@@ -98,8 +101,8 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     yield chart.Panel(side, replace(side, label=""), tuple(marks), seen, height=5.0, equal=True, plain=True)
     yield (
         "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
-        "below the load; balls are as dark, and bars as long, as their static load. The bearing turns "
-        "anticlockwise. Triangles: accelerometers."
+        "below the load; balls are as dark, and bars as long, as their static load, the longest "
+        f"{force(outer.max())}. The bearing turns anticlockwise. Triangles: accelerometers."
     )
     for part, faults in every_fault.items():
         parts, moved = data.words(tree, bearing.PART), data.values(tree, bearing.MODULATION)

@@ -1,5 +1,7 @@
 """What helps: what named changes of a case do to what radiates, as a table and in words."""
 
+import re
+
 import numpy as np
 import xarray
 
@@ -42,7 +44,7 @@ class Effects:
     def in_words(self) -> dict[str, str]:
         """What each variant does: ``"Rail 2.1 dB down, sleepers 1.0 up."``"""
         return {
-            name: f"Left out: {why.rstrip('.')}." if why else self._words(effect, error)
+            name: f"Left out: {said_once(why)}." if why else self._words(effect, error)
             for name, why, effect, error in zip(
                 self.variants, self.left_out, self.effect, self.error, strict=True
             )
@@ -77,6 +79,12 @@ class Effects:
         return (
             names[0] if len(names) < 2 and names else f"{' and '.join(names)}, about equal" if names else ""
         )
+
+
+def said_once(reasons: str) -> str:
+    """Reasons of several keys, each once: what two keys lack for one reason is told as one."""
+    told = (each.strip(" .-") for each in re.split(r";|\n|\. (?=[A-Z])", reasons))
+    return "; ".join(dict.fromkeys(filter(None, told)))
 
 
 def effects_table(of: Effects) -> tables.ReportTable:

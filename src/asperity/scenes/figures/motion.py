@@ -82,7 +82,13 @@ def energy_table(tree: DataTree) -> ReportTable:
     energies = np.transpose([data.of_law(tree, schema.ENERGY, law) for law in laws])
     terms = zip(data.words(tree, schema.ENERGY_TERM), energies, strict=True)
     columns = {"law": text_cells(laws), **{term: number_cells(energy, "J") for term, energy in terms}}
-    note, entry = "Energies from the start of the run-in to the end of the run.", schema.ENERGY_RESIDUAL
+    note = (
+        "A check of the steps in time, from the start of the run-in to the end of the run: the first term, "
+        "the work of the loads, is the sum of the others: energy that has been gained (positive) or "
+        "given off, what dampers took, and the work on the contacts less what the texture feeds in. Over a "
+        "track the contacts hold what goes into the rail, too."
+    )
+    entry = schema.ENERGY_RESIDUAL
     if data.present(tree, entry):
         left = [float(data.of_law(tree, entry, law)) for law in laws]
         columns["relative residual"] = number_cells(left, "{:.1e}")
