@@ -2,6 +2,7 @@
 
 import io
 import re
+import sys
 
 import pytest
 
@@ -91,6 +92,18 @@ def test_what_was_compiled_is_told_once_and_what_each_piece_took_where_it_is_wan
     with progress_bar(stream := io.StringIO()):
         module.COMPILATION.begin("another")
     assert stream.getvalue() == ""
+
+
+def test_whoever_waits_at_a_prompt_or_a_notebook_is_told_once_that_functions_are_compiled(
+    clock, monkeypatch, capsys
+):
+    """The first roll of a notebook has no bar, and takes a minute more than the next."""
+    module.COMPILATION.begin("in a program")
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(sys, "ps1", ">>> ", raising=False)
+    for name in ("at a prompt", "again"):
+        module.COMPILATION.begin(name)
+    assert capsys.readouterr().err == f"{module.COMPILING}\n"
 
 
 def test_nothing_is_shown_where_it_shall_be_quiet():

@@ -18,12 +18,11 @@ from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.preparing import prepare
 from asperity.scenarios.refining import Setting, Way, restricted, settings_for
 from asperity.scenarios.scene import PreparedCase
-from asperity.scenes import compute
 from asperity.scenes import schema as scene
 from asperity.scenes.result import computed_result
 from asperity.scenes.validity import compared_bands
 from asperity.schema import Entry, Values, contact, convergence, group, provenance, rolling, spectra
-from asperity.spectra import band_levels, level_of, nominal_frequency, psd
+from asperity.spectra import band_levels, level_of, nominal_frequency, psd, spectrum_segment
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 
@@ -186,7 +185,7 @@ def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset,
     """Levels of the force over all of a record and over its first half, from segments of one length."""
     force = tree[rolling.CONTACT_FORCE.group].to_dataset()[rolling.CONTACT_FORCE.name].values
     half = force.shape[-1] // 2
-    segment = min(compute.spectrum_segment(force.shape[-1], step), half)
+    segment = min(spectrum_segment(force.shape[-1], step), half)
 
     def levels(part: Array) -> xarray.Dataset:
         frequency, density = psd(part, step, segment=segment)

@@ -50,6 +50,7 @@ class Compilation:
 
     def __init__(self) -> None:
         self.functions, self.seconds = 0, 0.0
+        self._said = False
         self._announce: Callable[[str], object] | None = None
         self._begun: dict[str, float] = {}  # functions that are being compiled, one inside the other
         self._lock = threading.Lock()
@@ -68,6 +69,9 @@ class Compilation:
         with self._lock:
             self._begun[name] = time.monotonic()
             announce, self._announce = self._announce, None
+            if announce is None and not self._said and _somebody_waits():
+                announce = _say_aloud
+            self._said = self._said or announce is not None
         if announce is not None:
             announce(COMPILING)
 
@@ -77,6 +81,16 @@ class Compilation:
             if (begun := self._begun.pop(name, None)) is not None:
                 self.functions += 1
                 self.seconds += 0.0 if self._begun else time.monotonic() - begun
+
+
+def _somebody_waits() -> bool:
+    """Whether a person sits before a prompt or a notebook, and would wonder what takes so long."""
+    return hasattr(sys, "ps1") or _in_notebook()
+
+
+def _say_aloud(text: str) -> None:
+    """Say on standard error what is waited for."""
+    write(sys.stderr, text)
 
 
 COMPILATION = Compilation()

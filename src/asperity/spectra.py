@@ -5,6 +5,7 @@ in wavelength are those in wavenumber read backwards, since both have their cent
 10^(1/10) of the SI unit.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -62,6 +63,25 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     if length % 2 == 0:
         density[..., -1] *= 0.5  # zero and half the sampling frequency have no other side
     return np.asarray(np.fft.rfftfreq(length, spacing), dtype=np.float64), density
+
+
+SEGMENT = (0.025, 0.2)
+"""Shortest and longest segment of the spectra of a record, s: lines 40 Hz and 5 Hz apart."""
+
+
+def spectrum_segment(samples: int, step: float) -> int:
+    """Length of the segments that spectra of a record are averaged over, in time steps, s.
+
+    A quarter of the record within `SEGMENT`, so that windows leave most of it.
+    """
+    shortest, longest = (round(length / step) for length in SEGMENT)
+    return min(max(samples // 4, shortest), longest, samples)
+
+
+def lowest_band(samples: int, step: float) -> float:
+    """Centre, Hz, of the lowest one-third octave that is a line wide in the spectra of a record."""
+    lines = np.asarray(np.fft.rfftfreq(spectrum_segment(samples, step), step), dtype=np.float64)
+    return _covered_centres(lines, float(lines[1]))[0] if lines.size > 1 else math.inf
 
 
 def hann_window(length: int) -> Array:

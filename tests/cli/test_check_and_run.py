@@ -215,7 +215,7 @@ def test_the_plan_counts_contact_solutions():
     assert rows["contact solutions, scan for the filters"] == f"at most {2 * 2 * (strip - window + 1)}"
     assert rows["contact solutions, scan for the path"] == f"at most {2 * (path - window + 1)}"
     assert rows["contact solutions, direct"] == f"at most {7500}"
-    assert rows["work"] == "about 40 s, less what the cache holds"
+    assert rows["work"] == "about 40 s on the clock, less what the cache holds"
     smooth = CASE.replace('rms = "0.5 um"', 'spectrum = "iso3095"')
     assert not any(name.startswith("contact solutions") for name in rows_of(smooth))
 

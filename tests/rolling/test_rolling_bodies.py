@@ -7,8 +7,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from asperity import Beam, ModalStructure, material
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
+from asperity.rolling import steps
 from asperity.rolling.roll import roll_bodies
-from asperity.structures.body import Body, chain
+from asperity.structures.body import Body, carriage, chain
 from one_contact import Shelf, Stepped, first_contact, rigid_bar, rough, same
 
 STEEL = material("steel")
@@ -145,3 +146,25 @@ def test_laws_that_python_steps_stand_beside_compiled_ones_and_go_on_amid_a_step
     assert_array_equal(again.degrees_of_freedom[1], found.degrees_of_freedom[1])
     assert again.energy == found.energy
     assert_array_equal(again.in_contact, found.in_contact)
+
+
+@pytest.mark.parametrize("rate", [1e-3, 0.1, 1.0, 50.0, 1e4])
+def test_what_a_damper_takes_in_a_step_is_exact_however_stiff_it_is(rate):
+    """Of two masses that move apart, nothing else on them: m v²/2 (1 - exp(-2 rate)), m the reduced mass."""
+    h, v, (below, above) = 2e-5, np.array([3e-3, -1e-3]), (0.5, 2.0)
+    reduced = below * above / (below + above)
+    pair = chain([below, above], [1e-6], [rate / h * reduced])
+    taken = steps.taken_by_dampers(pair, h)[1, :, 1]
+    expected = 0.5 * reduced * 16e-6 * -np.expm1(-2.0 * rate)
+    assert v @ taken @ v == pytest.approx(expected, rel=1e-9)
+    assert steps.stiff_dampers(pair, h) is (rate > 0.1)
+
+
+@pytest.mark.parametrize("damper", [10.0, 1e4, 1e6, 1e9, 1e12])
+def test_the_energy_of_a_bogie_closes_with_dampers_of_any_stiffness(damper):
+    """Their rates die away within a step, where the powers at both ends are far too much."""
+    bogie = carriage(1.0, 2e-3, [0.0, 0.1], 0.5, 2e4, damper, load=20.0)
+    law = Linear(20.0, CONTACT, texture=rough(1e-7, 1e-4, 0.1, 4000))
+    found = roll_bodies(BEAM, [bogie], [law] * 2, positions=[0.0], **PATH | {"time_step": 2e-5})
+    assert found.energy.shares["damping of the bodies"] > 0.0
+    assert found.energy.residual < 1e-5

@@ -2,17 +2,24 @@
 
 import json
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from asperity import HalfSpace
-from asperity.case.cases import parse_case
+import asperity
+import small_cases
+from asperity import Beam, HalfSpace, material
+from asperity.case.cases import as_case, parse_case
 from asperity.cli.running import planned
 from asperity.contact.scan import Counts, warn_of_flaws, window_for
-from asperity.errors import Grade, PhysicsWarning
+from asperity.errors import CaseError, Grade, InputError, PhysicsWarning
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import try_contacts
+from asperity.scenes.validity import _contact, _doubts, _of_motion
+from asperity.spectra import band_levels, lowest_band, psd, spectrum_segment
+
+STEEL = material("steel")
 
 CASE = """
 kind = "ball-on-beam"
@@ -166,3 +173,73 @@ def test_flaws_are_told_with_their_share_and_graded_by_it(kind):
         assert kind == "unconverged" or words in str(message)
     shares = {0.0099: Grade.NOTE, 0.01: Grade.WARNING, 0.099: Grade.WARNING, 0.1: Grade.OUT}
     assert {share: Grade.of_share(share) for share in shares} == shares
+
+
+# --- motions that are none, and records that hold nothing: told before, or in the verdict
+
+SHORT = {"kind": "wheel-on-rail", "surface": {"spectrum": "iso3095"}, "wheel": {"section": "rigid"}}
+
+
+@pytest.mark.parametrize("duration", [0.03, 0.1, 0.3, 0.5, 1.0])
+def test_a_record_without_a_band_up_to_the_highest_frequency_is_refused_before_it_is_rolled(duration):
+    """As the spectra of the run would: the check and they agree on either side of the lowest band."""
+    step = 1.0 / 8000.0
+    lowest = lowest_band(round(duration / step) + 1, step)
+    for highest, is_covered in ((0.8 * lowest, False), (1.01 * lowest, True)):
+        signal = np.random.default_rng(1).standard_normal(round(duration / step) + 1)
+        lines, density = psd(signal, step, segment=spectrum_segment(len(signal), step))
+        if is_covered:
+            assert len(band_levels(lines, density, high=highest)[0]) == 1
+        else:
+            with pytest.raises(InputError, match="enough lines to cover a band"):
+                band_levels(lines, density, high=highest)
+        numerics = {"highest_frequency": highest, "time_step": step}
+        case = as_case(SHORT | {"duration": duration, "numerics": numerics})
+        if is_covered:
+            prepare_case(case)
+        else:
+            told = f"numerics.highest_frequency: received .* the lowest is at {lowest:.4g} Hz. Record longer"
+            with pytest.raises((CaseError, InputError), match=told):
+                prepare_case(case)
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+def test_an_energy_that_is_left_over_is_warned_of_and_leads_the_verdict(runs, monkeypatch):
+    case = small_cases.changed("bodies", laws=["linear"])
+    found = validity(runs(case))["energy that the balance leaves open, linear"]
+    assert (found["grade"], found["limit"]) == ("", "up to 0.001")
+    monkeypatch.setattr("asperity.scenes.validity.RESIDUAL", 1e-12)
+    tree = asperity.run(case, brief=True)
+    found = validity(tree)["energy that the balance leaves open, linear"]
+    assert found["grade"] == "warning"
+    assert "numerics.time_step" in found["remedy"]
+    assert tree.attrs["verdict"].startswith("Doubtful for linear: ")
+    assert "is unaccounted for" in tree.attrs["verdict"]
+
+
+@pytest.mark.parametrize(
+    ("force", "moved", "words"),
+    [
+        (-701.0, 2e3, ("Out of range for linear: a mean contact force of -701 loads", "of its length")),
+        (1.0, 0.05, ("Doubtful for linear: a beam displaced by 5 % of its length",)),
+        (1.7, 0.0, ("Doubtful for linear: a mean contact force of 1.7 loads",)),
+        (1.01, 0.01, ()),
+    ],
+)
+def test_a_motion_that_cannot_be_is_no_verdict_without_a_doubt(force, moved, words):
+    """A linear contact may pull: a mean of -701 loads, and a beam of 1 m that moves by 2 km."""
+    run = SimpleNamespace(
+        energy=SimpleNamespace(residual=0.0),
+        body=np.zeros(1, dtype=int),
+        over_displacement=np.array([[moved]]),
+        contact_force=np.full((1, 2), force * 5.0),
+        in_contact=np.zeros((1, 2), dtype=bool),
+        flights=[([0.0], [1.0])],
+    )
+    beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=500.0)
+    computed = SimpleNamespace(runs={"linear": run}, scene=SimpleNamespace(loads=[5.0]), over=beam)
+    found = list(_of_motion(computed))
+    told = "; ".join(_doubts(computed, found))
+    assert all(each in told for each in words), told
+    assert bool(told) is bool(words)
+    assert _contact(run, "ball") == "The ball loses contact 1 time, 100 % of the time"

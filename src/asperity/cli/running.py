@@ -430,4 +430,4 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
 
 
 def _work(work: Work) -> tuple[str, str]:
-    return "work", f"about {duration(float(f'{work.seconds:.1g}'))}, less what the cache holds"
+    return "work", work.told

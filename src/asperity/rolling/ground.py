@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, positive, real
-from asperity.errors import InputError, LargeDeflectionWarning
+from asperity.errors import InputError, LargeDeflectionWarning, percent
 from asperity.kernels.rail import Channels
 from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step
 from asperity.structures.beam import Beam, SupportedBeam
@@ -197,15 +197,20 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
     return channels, weights
 
 
+def share_bent(over: Modal | RailBetween | None, displaced: Array) -> float:
+    """Largest displacement of a beam under its contacts, m, over its length; zero of what is no beam."""
+    if not isinstance(over, Beam | SupportedBeam):
+        return 0.0
+    return float(np.abs(displaced).max()) / over.length
+
+
 def warn_if_bent(over: Modal | RailBetween | None, displaced: Array) -> None:
     """Compare the deflection of a beam under its contacts, m, with what beam theory allows."""
-    if not isinstance(over, Beam | SupportedBeam):
-        return
-    deflection = float(np.abs(displaced).max())
-    share = deflection / over.length
+    share = share_bent(over, displaced)
     if share > LARGEST_DEFLECTION:
+        deflection = float(np.abs(displaced).max())
         LargeDeflectionWarning.warn(
             f"the beam is displaced by up to {deflection:.3g} m under the contact, "
-            f"{100 * share:.2g} % of its length: beam theory needs small slopes, as up to "
-            f"{100 * LARGEST_DEFLECTION:.0f} %; check load, section, length and support of the beam"
+            f"{percent(share)} of its length: beam theory needs small slopes, as up to "
+            f"{percent(LARGEST_DEFLECTION)}; check load, section, length and support of the beam"
         )

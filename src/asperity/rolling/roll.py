@@ -15,7 +15,7 @@ from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.kernels import pointforce, stepping
 from asperity.laws.spec import Law, SteppedLaw
 from asperity.progress import Progress
-from asperity.rolling import assembly, ground
+from asperity.rolling import assembly, ground, steps
 from asperity.rolling.stepper import OnPaths, Stepper
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -217,13 +217,23 @@ def ledger_of(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
     shares = {
         "work of the loads": -loads,
         "bodies": bodies,
-        "damping of the bodies": ledger[stepping.BODY_DAMPING],
+        "damping of the bodies": ledger[stepping.BODY_DAMPING] + _missed_of_dampers(stepper),
         "structure": structure,
         "damping of the structure": ledger[stepping.OVER_DAMPING],
         "contacts": ledger[stepping.CONTACT_WORK],
         "slope of the structure": ledger[stepping.SLOPE_WORK],
     }
     return Ledger(shares, ledger[stepping.CONTACT_DAMPING], ledger[stepping.THROUGHPUT])
+
+
+def _missed_of_dampers(stepper: Stepper) -> float:
+    """Energy, J, that stiff dampers of bodies took beyond what the ledger has of them."""
+    h, of, record, missed = stepper.course.time_step, stepper.system.body, stepper.record, 0.0
+    for k, (body, core, rates) in enumerate(zip(stepper.bodies, record.core, stepper.started, strict=True)):
+        if steps.stiff_dampers(body, h):
+            count, force = len(body.mass), record.contact_force[of == k]
+            missed += steps.missed_by_powers(body, h, core[:count], rates[:count], force)
+    return missed
 
 
 def flying(prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:

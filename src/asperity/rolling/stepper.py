@@ -129,6 +129,7 @@ class Stepper:
         self.motion.counts[0] = -1
         self._advance(0, np.inf)
         self.motion.approach[1] = self.motion.approach[0]
+        self.started = self.motion.core[:, states // 2 :].copy()  # rates of the bodies
 
     def energies(self) -> tuple[float, float, float]:
         """Now, J: of the structure, of the bodies, and of the bodies under their constant forces."""

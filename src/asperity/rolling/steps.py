@@ -26,7 +26,7 @@ import numpy as np
 from scipy.linalg import block_diag, eigh
 
 from asperity.arguments import Array, ArrayLike, NDArray
-from asperity.errors import CoarseSamplingWarning, InputError
+from asperity.errors import CoarseSamplingWarning, InputError, percent
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw
 from asperity.structures.body import Body
@@ -34,6 +34,9 @@ from asperity.structures.body import Body
 TAYLOR_RADIUS, TAYLOR_TERMS = 0.5, 14  # remainder below 1e-16
 RESOLVED = 0.9 * np.pi
 """Angle by which a mode may turn in a step to be followed."""
+STIFF = 0.1
+"""Rate of a damper times the step from which what it takes is not found by the powers at both ends."""
+GAUSS_POINTS = 8
 ROUNDING = 1e-12
 """Share of the largest squared natural frequency of a body that counts as none."""
 
@@ -104,23 +107,32 @@ def alternating_of_modes(coefficients: Array) -> Array:
     return np.asarray(((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant)
 
 
-def body_step(body: Body, time_step: float) -> Array:
-    """Exact step of the coordinates y of a body, as `exact_step`: (2, d, 4, d), of y, y' and forces on them.
+def _natural(body: Body, time_step: float) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
+    """Squares of natural angular frequencies (d,), basis of natural coordinates and damping in it (d, d).
 
-    Natural coordinates that turn by more than RESOLVED in a step only answer as those of `resolved_step`.
+    And which of these coordinates turn by at most RESOLVED in a step.
     """
     for what in ("mass", "damping", "stiffness"):
         matrix = getattr(body, what)
         if np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max():
             raise InputError(f"{what} of a body", "a matrix that is not symmetric", "a symmetric matrix")
     squares, basis = eigh(body.stiffness, body.mass)  # y = basis z
-    largest, d = float(np.abs(squares).max()), len(squares)
+    largest = float(np.abs(squares).max())
     if squares.min() < -1e-9 * largest:
         raise InputError("stiffness of a body", "a negative one", "springs that pull back")
     squares = np.where(squares > ROUNDING * largest, squares, 0.0)
     damping = basis.T @ body.damping @ basis
     turned = np.sqrt(np.maximum(squares - 0.25 * np.diag(damping) ** 2, 0.0)) * time_step
-    slow, fast = np.flatnonzero(turned <= RESOLVED), np.flatnonzero(turned > RESOLVED)
+    return squares, basis, damping, turned <= RESOLVED
+
+
+def body_step(body: Body, time_step: float) -> Array:
+    """Exact step of the coordinates y of a body, as `exact_step`: (2, d, 4, d), of y, y' and forces on them.
+
+    Natural coordinates that turn by more than RESOLVED in a step only answer as those of `resolved_step`.
+    """
+    squares, basis, damping, followed = _natural(body, time_step)
+    slow, fast, d = np.flatnonzero(followed), np.flatnonzero(~followed), len(squares)
     step, places = np.zeros((2 * d, 4 * d)), np.concatenate([slow, d + slow])
     stiffness = np.diag(squares[slow])
     step[np.ix_(places, np.concatenate([places, 2 * d + places]))] = exact_step(
@@ -130,6 +142,65 @@ def body_step(body: Body, time_step: float) -> Array:
     natural = basis.T @ body.mass  # z = natural y
     step = np.kron(np.eye(2), basis) @ step @ block_diag(natural, natural, basis.T, basis.T)
     return np.asarray(step.reshape(2, d, 4, d))
+
+
+def stiff_dampers(body: Body, time_step: float) -> bool:
+    """Whether what a damper of a body takes over a step is not seen by the powers at its ends."""
+    _, _, damping, followed = _natural(body, time_step)
+    largest = np.linalg.eigvalsh(damping[np.ix_(followed, followed)]).max(initial=0.0)
+    return bool(largest * time_step > STIFF)
+
+
+def taken_by_dampers(body: Body, time_step: float) -> Array:
+    """Energy that the dampers of a body take over a step, (4, d, 4, d): a quadratic form.
+
+    Of y and y' at the start and of the forces on y at start and end, linear between. With the generator G of
+    `exact_step` it is the integral of exp(Gᵀt) S exp(G t): by Gauss's rule over a part of the step in which
+    little happens, and doubled from there, which is stable however stiff the dampers are.
+    """
+    squares, basis, damping, followed = _natural(body, time_step)
+    d, slow, h = len(squares), np.flatnonzero(followed), time_step
+    s = len(slow)
+    place, rate, force, rise = (slice(i * s, (i + 1) * s) for i in range(4))
+    damping = damping[np.ix_(slow, slow)]
+    generator, power = np.zeros((2, 4 * s, 4 * s))
+    generator[place, rate] = generator[rate, force] = generator[force, rise] = np.eye(s)
+    generator[rate, place], generator[rate, rate] = -(h**2) * np.diag(squares[slow]), -h * damping
+    power[rate, rate] = damping / h
+    size = float(np.abs(generator).sum(axis=1).max(initial=TAYLOR_RADIUS))
+    doublings = max(0, int(np.ceil(np.log2(size / TAYLOR_RADIUS))))
+    part = 0.5**doublings
+    places, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+    on_the_way = exponentials(generator * (0.5 * part * (1.0 + places))[:, None, None])
+    taken = np.einsum("n,nij,ik,nkl->jl", 0.5 * part * weights, on_the_way, power, on_the_way)
+    (step,) = exponentials(generator[None] * part)
+    for _ in range(doublings):
+        taken, step = taken + step.T @ taken @ step, step @ step
+    natural, pushed = (basis.T @ body.mass)[slow], h**2 * basis.T[slow]  # z = natural y
+    into = block_diag(natural, h * natural, np.zeros((2 * s, 2 * d)))
+    into[force, 2 * d : 3 * d], into[rise, 2 * d : 3 * d], into[rise, 3 * d :] = pushed, -pushed, pushed
+    return np.asarray(into.T @ taken @ into).reshape(4, d, 4, d)
+
+
+def missed_by_powers(body: Body, h: float, coordinates: Array, rates: Array, forces: Array) -> float:
+    """Energy, J, that stiff dampers of a body take beyond the trapezoidal rule on the powers at steps, h s.
+
+    Of a motion y (d, n) that started with rates (d,) and went on under contact forces (c, n), N.
+    """
+    from scipy.signal import lfilter
+
+    step, pushed = body_step(body, h), body.contacts.T @ forces - body.pressing[:, None]
+    y, before, now = coordinates[:, :-1], pushed[:, :-1], pushed[:, 1:]
+    on_rates, from_place, from_before, from_now = step[1, :, 1], step[1, :, 0], step[1, :, 2], step[1, :, 3]
+    driven = from_place @ y + from_before @ before + from_now @ now
+    decay, shapes = np.linalg.eig(on_rates)
+    amplitudes = np.linalg.solve(shapes, np.column_stack([rates, driven]).astype(complex))
+    found = [lfilter([1.0], [1.0, -each], row) for each, row in zip(decay, amplitudes, strict=True)]
+    rate = np.real(shapes @ np.array(found))
+    given = np.stack([y, rate[:, :-1], before, now])
+    taken = np.einsum("adn,adbe,ben->", given, taken_by_dampers(body, h), given, optimize=True)
+    powers = np.sum(rate * (body.damping @ rate), axis=0)
+    return float(taken - h * (powers.sum() - 0.5 * (powers[0] + powers[-1])))
 
 
 def padded(parts: Sequence[NDArray[Any]]) -> NDArray[Any]:
@@ -199,7 +270,7 @@ def softening(
         shorter = max(stable[worst], np.sqrt(max(impact[worst], 0.0)))
         CoarseSamplingWarning.warn(
             f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies "
-            f"as light: it is kept stable by softening the contact by {100 * share:.2g} %, and motion near "
+            f"as light: it is kept stable by softening the contact by {percent(share)}, and motion near "
             f"{0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s"
         )
     return softer

@@ -2,8 +2,8 @@
 
 import math
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -17,12 +17,13 @@ from asperity.contact.scan import FILTER_SHARE, ScanJob, rtol_for, scan_forces
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of, spec_of
-from asperity.progress import Progress
+from asperity.progress import Progress, duration
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios import compiling, laws, reducing, running_in
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.scene import PreparedCase, scene_of
-from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
+from asperity.scenarios.textures import Textures, recorded_time, textures_of, warn_of_textures
+from asperity.spectra import HALF_BAND, lowest_band, nominal_frequency
 from asperity.store import MOST_HELD, Store
 from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
@@ -91,6 +92,20 @@ def _within_the_map(case: Case, textures: Textures) -> Case | None:
     return with_chosen(case, {"contact": {"window": cells * case.contact.spacing}})
 
 
+def _problems_of_record(prepared: PreparedCase) -> Iterator[InputError]:
+    """A record that holds no one-third octave up to the highest frequency."""
+    case = prepared.case
+    recorded, highest = recorded_time(case, prepared.textures), case.numerics.highest_frequency
+    samples = math.floor(recorded / case.time_step * (1.0 + 1e-12)) + 1
+    lowest = lowest_band(samples, case.time_step)
+    if highest * HALF_BAND < lowest:
+        received = f"{highest:.4g} Hz with a record of {recorded:.4g} s"
+        allowed = f"a record that holds a one-third octave up to it; of this the lowest is at {lowest:.4g} Hz"
+        least = f"at least {nominal_frequency(lowest)}"
+        remedy = f"Record longer (duration), or ask for {least}."
+        yield InputError("numerics.highest_frequency", received, allowed, remedy)
+
+
 def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
     """Heights that no surface has on which bodies roll: most often in another unit."""
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
@@ -114,8 +129,9 @@ def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
 
 
 def _problems(prepared: PreparedCase) -> Iterator[InputError]:
-    """What fits neither samples nor window."""
+    """What fits neither samples nor window; a record too short for its spectra."""
     contact, shape, textures = prepared.case.contact, prepared.shape, prepared.textures
+    yield from _problems_of_record(prepared)
     nx, ny = shape.body.shape
     if (steep := _problem_of_heights(prepared)) is not None:
         yield steep
@@ -245,7 +261,20 @@ class Work:
     solutions: dict[str, int]  # contacts to solve, at most, by what for
     steps: int  # time steps of a law, with its run-in
     tried: ContactTrial | None  # contacts of a sample; None without samples
-    seconds: float  # a coarse time on all threads, nothing of it found in the cache, s
+    seconds: float  # a coarse time on the clock, on all threads, nothing of it found in the cache, s
+    parts: Mapping[str, float] = field(default_factory=dict)  # of that, by what takes it: laws, scans, s
+    compiling: float = 0.0  # beside it, s: of functions that are not kept from an earlier run
+
+    @property
+    def told(self) -> str:
+        """The time in words: on the clock, what most of it is for, and what is compiled first."""
+        said = f"about {duration(float(f'{self.seconds:.1g}'))} on the clock, less what the cache holds"
+        most = max(self.parts, key=self.parts.__getitem__, default="")
+        if most and self.parts[most] > 0.5 * self.seconds:
+            said += f"; most of it {most}"
+        if self.compiling:
+            said += f"; before that functions are compiled, about {duration(self.compiling)}, the first time"
+        return said
 
 
 def expect(prepared: PreparedCase, progress: Progress) -> Work:
@@ -275,13 +304,18 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
         solutions["running in"] = running_in.running_in_solutions(prepared)
     contacts = len(prepared.scene.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    seconds = START_TIME + prepared.processor + TRACK_TIME * len(case.point_positions)
-    seconds += STEP_TIME * steps * contacts * len(case.laws)
+    parts = {"start and report": START_TIME, "textures": prepared.processor}
+    parts["the track"] = TRACK_TIME * len(case.point_positions)
     if isinstance(prepared.scene.over, Track) and prepared.scene.over.bays:
         kernels = np.unique(np.round(np.subtract.outer(*[prepared.scene.offsets] * 2), 6)).size
-        seconds += BAY_TIME * kernels * prepared.scene.over.cell_bays / thread_count()
+        parts["the track"] += BAY_TIME * kernels * prepared.scene.over.cell_bays / thread_count()
+    parts |= {f"the law {law}": STEP_TIME * steps * contacts for law in case.laws}
     if trial is not None:
         one = NEIGHBOUR * trial.solution
-        seconds += case.contact.samples * len(trial.approaches) * trial.solution
-        seconds += one * sum(solutions.values()) / thread_count() + one * len(solved) * steps * contacts
-    return Work(scans, solutions | dict.fromkeys(solved, steps * contacts), steps, trial, seconds)
+        parts["contacts of samples"] = case.contact.samples * len(trial.approaches) * trial.solution
+        parts |= {f"the {name}": one * count / thread_count() for name, count in solutions.items()}
+        for law in solved:
+            parts[f"the law {law}"] += one * steps * contacts
+    counts = solutions | dict.fromkeys(solved, steps * contacts)
+    seconds, compiling_time = sum(parts.values()), compiling.time_to_compile()
+    return Work(scans, counts, steps, trial, seconds, parts, compiling_time)

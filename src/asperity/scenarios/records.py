@@ -13,7 +13,7 @@ from asperity.case import body, form
 from asperity.case.across import complete
 from asperity.case.surface import MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
-from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
+from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning, percent
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces import measured_lines, synthesis
@@ -151,7 +151,7 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
         if not isinstance(measured, HeightMap):
             remedy = "A single line can be the path: give it as surface.line."
             raise InputError("surface.file", "a line of heights", "maps of heights", remedy)
-        received = f"{100 * measured.missing_share:.2g} % of the points without a height"
+        received = f"{percent(measured.missing_share)} of the points without a height"
         complete = measured.missing_share == 0.0
         require(complete, "surface.file", received, "complete maps", "Set fill = true in [surface].")
         points = math.prod(measured.size) / spacing**2

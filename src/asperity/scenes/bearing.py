@@ -19,11 +19,12 @@ from asperity.errors import Finding, Grade, InputError, PhysicsWarning, percent,
 from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
-from asperity.scenarios import preparing, reducing
+from asperity.scenarios import compiling, preparing, reducing
 from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes, scenario_group
+from asperity.scenes.validity import energy_left
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -59,8 +60,6 @@ SILENT = 1e-5
 """Amplitude of a line, m/s², that no accelerometer feels: what is left of rounding and of the start."""
 BY_PARTS = "areal"
 """The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
-RESIDUAL = 1e-3
-"""What the energy balance may leave open, relative to the throughput."""
 SOURCES = (
     "T. A. Harris and M. N. Kotzalas, Essential Concepts of Bearing Technology, 5th ed. (2007).",
     "F. P. Wardle, Proc. IMechE 202 C (1988) 305 (vibration of ball bearings by waviness).",
@@ -122,7 +121,16 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
             solutions[f"scan of the {NAMES[name]}"] = int(rough) * reducing.STATES
     for law in (law for law in case.laws if spec_of(law).solved_every_step):
         solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
-    seconds = preparing.START_TIME + STEP_TIME * steps * found.bearing.balls * runs
+    rolled_once = STEP_TIME * steps * found.bearing.balls
+    parts = {
+        "start and report": preparing.START_TIME,
+        "each part alone": rolled_once * (runs - len(case.laws)),
+    }
+    parts |= {f"the law {law}": rolled_once for law in case.laws}
+    for name, count in solutions.items():
+        part = f"the law {name}" if f"the law {name}" in parts else f"the {name}"
+        parts[part] = parts.get(part, 0.0) + SOLUTION_TIME * count
+    seconds, compiled = sum(parts.values()), compiling.time_to_compile()
     tones = ", ".join(f"{NAMES[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS)
     load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
@@ -139,7 +147,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
         ("not in it", LEFT_OUT),
     ]
-    return rows, preparing.Work({}, solutions, steps, None, seconds + SOLUTION_TIME * sum(solutions.values()))
+    return rows, preparing.Work({}, solutions, steps, None, seconds, parts, compiled)
 
 
 def bearing_rings(case: BallBearingCase) -> BearingRings:
@@ -448,11 +456,7 @@ def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator
             Grade.of_share(share) if share else None, "Their contact forces are too coarse.",
             "Take a smaller time_step.", warned=True
         )  # fmt: skip
-        yield Finding(
-            f"energy that the balance leaves open, {name}", f"{left:.1e} of the throughput",
-            f"up to {RESIDUAL:g}", Grade.WARNING if left > RESIDUAL else None,
-            "The time step is coarse for what moves.", "Take a smaller time_step."
-        )  # fmt: skip
+        yield energy_left(name, left, "time_step")
     yield from _missed(runs)
 
 

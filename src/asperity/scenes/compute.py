@@ -22,7 +22,7 @@ from asperity.scenarios.running_in import run_in_case
 from asperity.scenarios.scene import PreparedCase, Scene
 from asperity.scenarios.textures import other_contacts, recorded_time
 from asperity.schema import Values
-from asperity.spectra import band_levels, psd
+from asperity.spectra import band_levels, psd, spectrum_segment
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
 from asperity.structures.moving_kernel import moving_kernel
@@ -122,19 +122,6 @@ class Computed(ReducedCase):
         """Centres of the one-third octaves (b,), Hz."""
         highest = self.case.numerics.highest_frequency
         return band_levels(self.frequency, self.force_psd, high=highest)[0]
-
-
-SEGMENT = (0.025, 0.2)
-"""Shortest and longest segment of the spectra, s: lines 40 Hz and 5 Hz apart."""
-
-
-def spectrum_segment(samples: int, step: float) -> int:
-    """Length of the segments that spectra are averaged over, in time steps.
-
-    A quarter of the record within `SEGMENT`, so that windows leave most of it.
-    """
-    shortest, longest = (round(length / step) for length in SEGMENT)
-    return min(max(samples // 4, shortest), longest, samples)
 
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:

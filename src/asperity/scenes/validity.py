@@ -10,6 +10,7 @@ from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
 from asperity.reporting import data
+from asperity.rolling.ground import LARGEST_DEFLECTION, share_bent
 from asperity.rolling.roll import RolledBodies
 from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice
 from asperity.scenarios.preparing import ContactTrial
@@ -25,6 +26,12 @@ SLOPE = (0.2, 0.5)
 """Rms slope: warned of, and out of range, above. The half-space leaves out terms of its square."""
 ISOLATED = (0.05, 0.25)
 """Share of the load on cells that touch alone: warned of, and out of range, above."""
+RESIDUAL = 1e-3
+"""What the energy balance may leave open, relative to the throughput."""
+MISSED_LOAD = (0.5, 1.0)
+"""Share of its load by which the mean contact force of a body may miss it: warned of, and out of range."""
+BENT = (LARGEST_DEFLECTION, 0.1)
+"""Share of the length that a beam may be displaced by: warned of, and out of range."""
 CELLS_PER_WAVE = 4
 """Cells that the shortest wave must have, so that no more than `ISOLATED` touches alone."""
 
@@ -48,16 +55,67 @@ def findings(
         "Take a smaller numerics.time_step.",
         warned=True,
     )
+    motion = [time_steps, *_of_motion(computed)]
     if reduction is None:
-        return [time_steps]
+        return motion
     return [
         _area(case, reduction.pressed.area_ratio, choice),
         _slope(computed),
         _isolated(case, reduction.pressed.isolated_share),
         *_cut_off(computed),
         *(answer for answer in population if answer.laws),
-        time_steps,
+        *motion,
     ]
+
+
+def energy_left(law: str, residual: float, key: str) -> Finding:
+    """What the energy balance of a run by a law leaves open, relative to the throughput.
+
+    `key` is that of the time step.
+    """
+    told = f"{residual:.1e} of the energy that passed through the contacts is unaccounted for"
+    return Finding(
+        f"energy that the balance leaves open, {law}", f"{residual:.1e} of the throughput",
+        f"up to {RESIDUAL:g}", Grade.WARNING if residual > RESIDUAL else None,
+        "The time step is coarse for what moves.", f"Take a smaller {key}.", told, (law,)
+    )  # fmt: skip
+
+
+def _of_motion(computed: Computed) -> Iterator[Finding]:
+    """Whether motions are possible: energies that balance, mean forces that are loads, small deflections."""
+    left = {law: run.energy.residual for law, run in computed.runs.items()}
+    main, worst = next(iter(left)), max(left, key=left.__getitem__)
+    for law in dict.fromkeys((main, worst)):
+        if law == main or left[law] > RESIDUAL:
+            yield energy_left(law, left[law], "numerics.time_step")
+    for law, run in computed.runs.items():
+        loads = np.bincount(run.body, computed.scene.loads)
+        share = np.bincount(run.body, run.contact_force.mean(axis=1)) / loads
+        mean = float(share[np.argmax(np.abs(share - 1.0))])
+        if (grade := _grade(abs(mean - 1.0), MISSED_LOAD)) is not None:
+            yield Finding(
+                f"mean contact force of a body over its load, {law}",
+                rounded(mean),
+                f"{1.0 - MISSED_LOAD[0]:g} to {1.0 + MISSED_LOAD[0]:g}",
+                grade,
+                "What rolls is thrown, sucked on, or a record shorter than it bounces.",
+                "Look for what drives it: supports, springs, a linear contact that pulls; or record longer.",
+                f"a mean contact force of {rounded(mean)} loads",
+                (law,),
+            )
+        bent = share_bent(computed.over, run.over_displacement)
+        if (grade := _grade(bent, BENT)) is not None:
+            yield Finding(
+                f"displacement of the beam over its length, {law}",
+                percent(bent),
+                f"up to {percent(BENT[0])}",
+                grade,
+                "Beam theory needs small slopes.",
+                "Check load, section, length and support of the beam.",
+                f"a beam displaced by {percent(bent)} of its length",
+                (law,),
+                warned=True,
+            )
 
 
 def choice_of(computed: Computed, *, brief: bool) -> LawChoice | None:
@@ -274,13 +332,14 @@ def _varies(run: RolledBodies) -> str:
 
 def _contact(run: RolledBodies, body: str) -> str:
     """Say how often the contact of a body is lost; of several contacts, which, and how much of the time."""
-    share, (starts, _), one = 100.0 * (1.0 - run.in_contact.mean(axis=-1)), run.flights[0], len(run.body) == 1
+    share, one = 1.0 - run.in_contact.mean(axis=-1), len(run.body) == 1
+    starts, _ = run.flights[0]
     if one and not len(starts):
         return f"The {body} never loses contact"
     if one:
         times = f"{len(starts)} time{'s' if len(starts) > 1 else ''}"
-        return f"The {body} loses contact {times}, {rounded(share[0], 2)} % of the time"
-    lost = [f"{k + 1} ({rounded(part, 2)} %)" for k, part in enumerate(share) if part > 0.0]
+        return f"The {body} loses contact {times}, {percent(share[0])} of the time"
+    lost = [f"{k + 1} ({percent(part)})" for k, part in enumerate(share) if part > 0.0]
     if not lost:
         return f"None of the {len(share)} contacts is ever lost"
     named = ", ".join(lost[:MOST_NAMED]) + (" and others" if len(lost) > MOST_NAMED else "")

@@ -71,17 +71,22 @@ class CellWaves:
     def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= spacing, m."""
         first, at = self._place(x)
-        return self._carried(first, at[0]) * self._shape(self.decaying, *at)
+        return self._carried(first, at[0]) * self._shape(self.decaying, at[0], self._parts(*at))
 
     def incoming(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= spacing, m, in m/N."""
         first, at = self._place(x)
-        return self._shape(self.growing, *at) / self._carried(first, at[0])
+        return self._shape(self.growing, at[0], self._parts(*at)) / self._carried(first, at[0])
 
     def symmetric_shapes(self, places: Array) -> tuple[Complex, Complex]:
         """Shapes at any places (p,), m, two of (p, 2, f): of the decaying waves and of the growing ones."""
-        at = [float(x) for x in places]
-        return np.array([self.outgoing(x) for x in at]), np.array([self.incoming(x) for x in at])
+        outgoing, incoming = np.empty((2, len(places), *self.wavenumbers.shape), complex)
+        for n, x in enumerate(places):
+            first, at = self._place(float(x))
+            carried, parts = self._carried(first, at[0]), self._parts(*at)
+            outgoing[n] = carried * self._shape(self.decaying, at[0], parts)
+            incoming[n] = self._shape(self.growing, at[0], parts) / carried
+        return outgoing, incoming
 
     def shapes_at_nodes(self, count: int) -> tuple[Complex, Complex]:
         """As `symmetric_shapes`, at the ends of so many equal parts of the stretch."""
@@ -91,7 +96,8 @@ class CellWaves:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from the first support, m."""
         whole = replace(self, start=0.0)
         first, last = whole._span(min(x, x0)), whole._span(max(x, x0))
-        waves = self._shape(self.decaying, *last) * self._shape(self.growing, *first)
+        decaying = self._shape(self.decaying, last[0], self._parts(*last))
+        waves = decaying * self._shape(self.growing, first[0], self._parts(*first))
         return np.sum(waves * self._carried(first[0], last[0]), axis=0)
 
     def _span(self, x: float) -> tuple[int, float]:
@@ -117,11 +123,15 @@ class CellWaves:
             around = around * steps[span % len(steps)]
         return around
 
-    def _shape(self, waves: Complex, span: int, place: float) -> Complex:
-        """Waves (2, f) at a place in a span, in its own scale."""
+    def _parts(self, span: int, place: float) -> Complex:
+        """Free waves from both ends of a span at a place in it (2, 2, f)."""
         inside = span % len(self.steps)
         ends = np.array([place, self.edges[inside + 1] - self.edges[inside] - place])
-        return np.einsum("eif,eijf->jf", np.exp(-1j * ends[:, None, None] * self.wavenumbers), waves[inside])
+        return np.asarray(np.exp(-1j * ends[:, None, None] * self.wavenumbers))
+
+    def _shape(self, waves: Complex, span: int, parts: Complex) -> Complex:
+        """Waves (2, f) in a span, in its own scale, by `_parts` at a place."""
+        return np.asarray(np.einsum("eif,eijf->jf", parts, waves[span % len(self.steps)]))
 
 
 def cell_waves(

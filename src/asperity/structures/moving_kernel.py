@@ -7,7 +7,7 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array, Complex, not_negative, positive, real, shown, whole
-from asperity.errors import CoarseSamplingWarning, InputError
+from asperity.errors import CoarseSamplingWarning, InputError, percent
 from asperity.progress import Progress
 from asperity.store import Store, content_key, made
 from asperity.structures.causal_track import causal_track
@@ -156,7 +156,7 @@ def moving_kernel(
     kernel = MovingKernel(track, speed, time_step, kept["weights"], distance)
     if duration is None and kernel.left_over > DIED_AWAY:
         CoarseSamplingWarning.warn(
-            f"the moving kernel still has {100 * kernel.left_over:.2g} % of its largest value after "
+            f"the moving kernel still has {percent(kernel.left_over)} of its largest value after "
             f"{LONGEST:g} s, more than {100 * DIED_AWAY:g} %: what comes later is cut off. Raise the "
             "damping or the loss factors of rail, pads and ballast."
         )
@@ -194,16 +194,19 @@ def _weights(
             grid = near if bay in (-1, 0) else far
             here, (outgoing, incoming) = shapes[grid, own], shapes[grid, (own + bay) % bays]
             amplitude = grid.hat * grid.waves.coefficients * grid.waves.carried(own, own + bay)
-            behind = positions if bay < 0 else start if bay == 0 else 0  # by reciprocity
-            spectra = _over_waves(amplitude * here[1][start], outgoing)
-            spectra[:behind] = _over_waves(amplitude * here[0][start], incoming[:behind])
+            low = 0 if mirrored else max(int(base[0]) - 1 - bay * positions, 0)
+            high = min(int(base[-1]) + 3 - bay * positions, positions)  # others are not passed
+            behind = min(positions if bay < 0 else start if bay == 0 else 0, high)  # by reciprocity
+            spectra = _over_waves(amplitude * here[1][start], outgoing[low:high])
+            if behind > low:
+                spectra[: behind - low] = _over_waves(amplitude * here[0][start], incoming[low:behind])
             response = grid.response(spectra)
             for weight, offset in zip(cubic, range(-1, 3), strict=True):
                 node = base + offset - bay * positions
                 if bay == 0 and start == 0 and mirrored:
                     node = np.abs(node)  # the track is symmetric about a sleeper
-                within = np.flatnonzero((node >= 0) & (node < positions))
-                result[within] += weight[within] * response[node[within], within]
+                within = np.flatnonzero((node >= low) & (node < high))
+                result[within] += weight[within] * response[node[within] - low, within]
         return result
 
     weights = np.zeros((bays * positions, taps))

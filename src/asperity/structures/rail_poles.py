@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from asperity.arguments import Array, ArrayLike, Complex, NDArray
-from asperity.errors import ComputationError, InputError, UnconvergedWarning
+from asperity.errors import ComputationError, InputError, UnconvergedWarning, percent
 from asperity.progress import Progress
 from asperity.store import Store, content_key, made
 from asperity.structures.modal_fit import least_squares, paired, real_basis, vector_fit
@@ -136,7 +136,7 @@ def poles_or_kernel(
     best = min(fits, key=lambda fit: (not fit.accepted, fit.fit_error))
     if best.accepted:
         return best
-    missed = f"miss the moving kernel by {100 * max(best.fit_error, best.static_error):.2g} %"
+    missed = f"miss the moving kernel by {percent(max(best.fit_error, best.static_error))}"
     UnconvergedWarning.warn(
         f"{counts[-1]} poles {missed if best.is_passive else 'give off energy'}: the track is scattered from "
         "the kernel itself, which is slower. Take more poles."
