@@ -19,7 +19,7 @@ from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted, settings_for
 from asperity.scenes.report import CHAPTERS
 from asperity.schema import Entry, convergence
-from asperity.surfaces.strip import LongStrip
+from asperity.surfaces.synthesis import long_self_affine
 from command_line import call
 from small_cases import COARSE, changed
 
@@ -109,10 +109,8 @@ class TestOnTheSameSurface:
 
     def test_a_long_path_is_held_or_refused(self, monkeypatch):
         large = finer(BALL, "grid")[1].textures
-        strip = LongStrip(
-            large.path.shape, large.path.spacing, lambda rows, seed: np.ones((rows, large.path.shape[1])),
-            seed=1, stride=500, blend=1,
-        )  # fmt: skip
+        waves = {"rms": 1e-6, "hurst": 0.8, "longest": 0.4e-3, "shortest": 80e-6}
+        strip = long_self_affine(large.path.shape, large.path.spacing, **waves, seed=1)
         found = restricted(replace(large, path=strip), 20e-6, 2, 19)
         assert found.path.shape == (len(found.line), 19)
         monkeypatch.setattr("asperity.scenarios.refining.MOST_POINTS", 1000)

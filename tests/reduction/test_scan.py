@@ -14,7 +14,8 @@ from asperity.errors import TruncatedContactWarning, UnconvergedWarning
 from asperity.reduction.stiffness import ForceTable
 from asperity.reduction.texture import areal_texture
 from asperity.store import Store, content_key
-from asperity.surfaces.strip import LongStrip, Rows
+from asperity.surfaces.strip import Rows
+from asperity.surfaces.synthesis import long_self_affine
 
 DX, MODULUS, RADIUS = 5e-6, 115e9, 10e-3
 
@@ -145,9 +146,8 @@ N, APPROACHES = 15, [0.0, 0.02e-6, 0.05e-6]
 
 
 def strip(rows):
-    return LongStrip(
-        (rows, N), (DX, DX), lambda count, seed: rough(count, N, seed, 0.02e-6), 1, stride=400, blend=20
-    )
+    waves = {"rms": 0.02e-6, "hurst": 0.5, "longest": 20 * DX, "shortest": 2 * DX}
+    return long_self_affine((rows, N), (DX, DX), **waves, seed=1)
 
 
 def along(rows, **details):

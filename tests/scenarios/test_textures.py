@@ -164,7 +164,7 @@ def test_path_and_samples_have_the_levels():
         asked = np.interp(np.log(wavelength), np.log(WAVELENGTHS[::-1]), LEVELS[::-1, 1] + 6.0)
         scatter = 4.34 / np.sqrt(0.23 / wavelength * heights.shape[0] * dx[0])
         assert (np.abs(level - asked) < 3.0 * scatter).all()
-        assert np.mean(np.abs(level - asked)) < 1.0
+        assert np.mean(np.abs(level - asked)) < 1.2 * np.mean(scatter)
     assert found.areal
     np.testing.assert_array_equal(found.line, path[:, path.shape[1] // 2])
 
@@ -326,7 +326,7 @@ REFUSED = [
         f'surface.line: {SLOPE}*{UNIT} line_unit = "um"',
     ),
     (
-        {"spectrum": LEVELS, "lateral": 1.0},
+        {"line": Profile(np.tile(LINE.heights, 20), SIDE[0]), "line_distance": "0.1 mm"},
         "duration: received 0.02 s, a path of *strips from which filters are estimated",
     ),
 ]
@@ -334,7 +334,9 @@ REFUSED = [
 
 @pytest.mark.parametrize(("surface", "message"), REFUSED)
 def test_what_cannot_be_is_refused(surface, message):
-    keys = {"contact": {"sample_length": "30 mm"}} if "spectrum" in surface else {"ball": {"load": "5 N"}}
+    keys = (
+        {"contact": {"sample_length": "30 mm"}} if "line_distance" in surface else {"ball": {"load": "5 N"}}
+    )
     with pytest.raises(InputError) as caught:
         prepared(surface=surface, laws=["hertz" if "line" in surface else "areal"], **keys)
     assert all(part in str(caught.value) for part in message.split("*"))

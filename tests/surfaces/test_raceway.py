@@ -7,7 +7,6 @@ from asperity.errors import InputError
 from asperity.surfaces.faults import Fault, lay
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
-from asperity.surfaces.synthesis import closed_around
 from refusals import refusals
 
 MM, UM = 1e-3, 1e-6
@@ -53,14 +52,6 @@ def test_roughness_has_its_rms_and_no_seam():
     steps = np.sqrt(np.mean((np.roll(heights, -1, axis=1) - heights) ** 2, axis=(0, 2)))
     assert_allclose(steps[-1], steps.mean(), rtol=0.15)
     assert steps.max() < 1.2 * steps.mean()
-
-
-def test_blend_keeps_the_mean_square_and_joins_what_followed():
-    noise = np.random.default_rng(0).normal(size=(60, 20000))
-    found = closed_around(noise, 40)
-    assert_allclose(np.mean(found**2, axis=1), 1.0, atol=0.05)
-    assert_allclose(np.mean(found[0] * noise[40], axis=0), 1.0, atol=0.05)
-    assert_array_equal(found[20:], noise[20:40])
 
 
 @pytest.mark.parametrize("again", [False, True], ids=["one step less", "to where it began"])

@@ -6,25 +6,23 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.stats import kstest
 
 from asperity.spectra import psd
 from asperity.surfaces import statistics, synthesis
 from asperity.surfaces import strip as module
-from asperity.surfaces.bands import strip_from_bands
+from asperity.surfaces.bands import BandTexture
 from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.spectra import psd_2d
 from asperity.surfaces.statistics import areal_statistics, survey_strip
-from asperity.surfaces.strip import Fields, LongStrip, Rows, raised, turning
+from asperity.surfaces.strip import Fields, Rows, raised, turning
 from refusals import refusals
 
 DX = 10e-6
 TEXTURE = {"rms": 1e-6, "hurst": 0.8, "longest": 0.4e-3, "shortest": 40e-6}
 LEVELS = {0.1: 10.0, 0.05: 5.0, 0.025: 0.0}
-
-
-@pytest.fixture(autouse=True)
-def _short_pieces(monkeypatch):
-    monkeypatch.setattr("asperity.surfaces.synthesis.PIECE_POINTS", 2**14)
 
 
 def strip(rows=20000, ny=17):
@@ -46,22 +44,90 @@ def test_every_part_is_the_same_however_it_is_read():
     again = strip()
     for first, stop in [(19000, 20000), (0, 1), (900, 2100), (5000, 5000), (963, 9000)]:
         assert np.array_equal(again.rows(first, stop), whole[first:stop])
-    assert np.array_equal(strip(rows=3000).rows(0, 3000), whole[:3000])  # longer strips begin with shorter
 
 
 def test_a_strip_with_rows_before_has_no_beginning():
     long = bands(9000, before=4000).rows(0, 9000)
-    for before in (1, 700, 3999):
+    for before in (0, 700, 3999):
         short = bands(before + 1000, before=before)
         assert np.array_equal(short.rows(0, before + 1000), long[4000 - before : 5000])
 
 
+KINDS = {
+    "self-affine": lambda shape, dx, **keys: synthesis.long_self_affine(
+        shape, (dx, dx), **TEXTURE | {"anisotropy": 2.0, "lay": 0.3}, **keys
+    ),
+    "bands": lambda shape, dx, **keys: synthesis.long_strip_from_bands(
+        shape, (200 * dx, 200 * dx), list(LEVELS), list(LEVELS.values()), lateral=0.1, **keys
+    ),
+    "likeness": lambda shape, dx, **keys: synthesis.long_strip_like(SHEET, shape, **keys),
+}
+SHEET = synthesis.self_affine((40, 30), (DX, DX), **TEXTURE | {"longest": 0.2e-3}, seed=1)
+
+
+@settings(max_examples=10, deadline=None, derandomize=True)
+@given(st.data(), st.sampled_from(sorted(KINDS)), st.integers(0, 2**64))
+def test_a_shorter_narrower_or_coarser_strip_is_a_piece_of_any_larger_one(data, kind, seed):
+    rows, before = data.draw(st.integers(2, 900)), data.draw(st.integers(-2000, 3000))
+    half, finer = data.draw(st.integers(0, 25)), data.draw(st.sampled_from([1, 2, 3]))
+    if kind == "likeness":  # resampled maps are others
+        finer = 1
+    ahead, behind, wider = (data.draw(st.integers(0, most)) for most in (300, 300, 12))
+    small = KINDS[kind]((rows, 2 * half + 1), DX, seed=seed, before=before).rows(0, rows)
+    shape = finer * (ahead + rows + behind), 2 * finer * (half + wider) + 1
+    large = KINDS[kind](shape, DX / finer, seed=seed, before=finer * (before + ahead)).rows(0, shape[0])
+    first, middle = finer * ahead, shape[1] // 2
+    piece = large[
+        first : first + finer * rows : finer, middle - finer * half : middle + finer * half + 1 : finer
+    ]
+    np.testing.assert_allclose(small, piece, rtol=0, atol=1e-10 * max(np.std(large), 1e-12))
+
+
+@pytest.mark.parametrize("shortest", [80e-6, 60e-6])
+def test_shorter_waves_are_added_to_the_same_surface(shortest):
+    """All that is in the coarse surface is in the fine one, scaled alike; no wave of the rest is so long."""
+    fine, coarse = (synthesis.SelfAffine(**TEXTURE | keys) for keys in ({}, {"shortest": shortest}))
+    both = [
+        synthesis.self_affine((160, 160), (DX, DX), **TEXTURE | {"shortest": each}, seed=3).heights
+        for each in (TEXTURE["shortest"], shortest)
+    ]
+    share = coarse._mean_square / fine._mean_square
+    rest = both[0] - both[1] * np.sqrt(share)
+    assert np.mean(rest**2) / np.mean(both[0] ** 2) == pytest.approx(1.0 - share, rel=0.4)
+    qx, qy, density = psd_2d(HeightMap(rest, (DX, DX)))
+    assert density[np.hypot(qx[:, None], qy) < 0.8 * 2 * np.pi / shortest].max() < 1e-3 * density.max()
+
+
+def test_bands_are_added_to_the_same_line_and_none_of_its_waves_changes():
+    coarse, fine = (
+        synthesis.long_strip_from_bands((9, 1), (dx, dx), list(LEVELS), list(LEVELS.values()), seed=3).drawn
+        for dx in (20e-3, 2e-3)
+    )
+    few, many = coarse.waves(0, np.zeros(1)), fine.waves(0, np.zeros(1))
+    assert len(few) < 0.6 * len(many)
+    np.testing.assert_array_equal(few, many[: len(few)])
+
+
+@pytest.mark.parametrize("factor", [2.0, 1e-3])
+def test_heights_are_proportional_to_the_rms_and_to_the_level(factor):
+    one, other = (
+        synthesis.self_affine((300, 40), (DX, DX), **TEXTURE | {"rms": rms}, seed=3).heights
+        for rms in (1e-6, factor * 1e-6)
+    )
+    np.testing.assert_allclose(other, factor * one, rtol=0, atol=1e-18 * factor)
+    line, louder = (
+        synthesis.long_strip_from_bands((300, 5), (2e-3, 2e-3), [0.1], [level], seed=3).rows(0, 300)
+        for level in (0.0, 20 * np.log10(factor))
+    )
+    np.testing.assert_allclose(louder, factor * line, rtol=0, atol=1e-18 * factor)
+
+
 def test_variance_and_spectrum_are_those_of_one_large_surface_in_blends_too():
     made = strip(rows=200000, ny=9)
-    heights = made.rows(0, 200000)
-    in_blend = np.arange(made.stride, 200000) % made.stride < made.blend
-    inside, outside = heights[made.stride :][in_blend], heights[made.stride :][~in_blend]
-    assert made.blend < made.stride
+    heights, along = made.rows(0, 200000), made.drawn.along
+    in_blend = (DX * np.arange(200000) - along.start) % along.stride < along.blend
+    inside, outside = heights[in_blend], heights[~in_blend]
+    assert 0.1 < np.mean(in_blend) < 0.2
     assert np.sqrt(np.mean(outside**2)) == pytest.approx(1e-6, rel=0.03)
     assert np.sqrt(np.mean(inside**2)) == pytest.approx(1e-6, rel=0.08)
     one = synthesis.self_affine((100000, 9), (DX, DX), **TEXTURE, seed=5).heights
@@ -76,10 +142,11 @@ def test_pieces_are_independent_and_join_without_a_step():
     made = strip()
     heights = made.rows(0, 20000)
     steps = np.abs(np.diff(heights, axis=0)).max(axis=1)
-    joints = np.arange(made.stride, 20000, made.stride) - 1
-    assert steps[joints].max() < 1.2 * np.quantile(steps, 0.999)
-    a, b = (heights[made.stride * k + made.blend : made.stride * (k + 1)].ravel() for k in (1, 2))
-    assert abs(np.corrcoef(a, b)[0, 1]) < 0.2
+    along = made.drawn.along
+    joints = [round((along.start + k * along.stride + b) / DX) for k in (1, 2, 3) for b in (0, along.blend)]
+    assert steps[np.array(joints) - 1].max() < 1.2 * np.quantile(steps, 0.999)
+    apart = round(along.stride / DX)
+    assert abs(np.corrcoef(heights[:4000].ravel(), heights[apart : apart + 4000].ravel())[0, 1]) < 0.2
 
 
 def test_likeness_has_the_measured_distribution():
@@ -89,32 +156,33 @@ def test_likeness_has_the_measured_distribution():
     once = synthesis.from_map(skewed, (20000, 9), seed=2).heights
     heights = long.rows(0, 60000)
     assert kstest(heights[::40, 4], once[::40, 4]).pvalue > 1e-3
-    blends = heights[long.stride : long.stride + long.blend]
+    along = long.drawn.along
+    at = round((along.start + along.stride) / DX)
+    blends = heights[at : at + round(along.blend / DX)]
     lowest, highest = np.quantile(skewed.levelled().heights, (0, 1))
     assert lowest <= blends.min() <= blends.max() <= highest
 
 
 def test_a_long_strip_from_bands_has_their_levels():
     made = bands(60000, before=10)
-    assert made.stride < 60000 / 10
     wavenumber, density = densities(made.rows(0, 60000), 2e-3, 4096)
     for wavelength, level in LEVELS.items():
-        low, high = (10 ** (round(-10 * np.log10(wavelength)) / 10 + s / 20) for s in (-1, 1))
+        low, high = (10 ** (round(-10 * np.log10(wavelength)) / 10 + s / 20) for s in (-3, 3))
         energy = density[(wavenumber > low) & (wavenumber < high)].sum() * wavenumber[1]
         assert 10 * np.log10(energy / 1e-12) == pytest.approx(level, abs=0.4)
 
 
 def test_strips_of_one_texture_share_pieces(monkeypatch):
-    made, whole = [], strip_from_bands
+    made, whole = [], BandTexture.waves
 
-    def counted(*arguments, **keywords):
-        made.append(keywords["seed"])
-        return whole(*arguments, **keywords)
+    def counted(texture, tile, across):
+        made.append(tile)
+        return whole(texture, tile, across)
 
-    monkeypatch.setattr("asperity.surfaces.synthesis.strip_from_bands", counted)
+    monkeypatch.setattr(BandTexture, "waves", counted)
     for before in (500, 600):
         bands(3000, before=before, seed=77).rows(0, 3000)
-    assert len(made) == len(set(made))
+    assert len(made) == len(set(made)) > 2
 
 
 def test_heights_are_added_all_across_or_turn_by_turn():
@@ -126,13 +194,9 @@ def test_heights_are_added_all_across_or_turn_by_turn():
         assert (made.shape, made.spacing) == ((8, 2), (1.0, 2.0))
 
 
-def zeros(shape, stride=4, blend=2):
-    return LongStrip(shape, (DX, DX), lambda rows, seed: np.zeros((rows, 3)), 0, stride=stride, blend=blend)
-
-
 test_what_is_wrong_is_said = refusals(
     (lambda: synthesis.long_self_affine((10, 3), (DX, DX), **TEXTURE | {"hurst": 2.0}, seed=1), "hurst"),
-    (lambda: survey_strip(zeros((1000, 3)), 500, 0, 100), "received 100 rows; allowed: at least 500 rows"),
+    (lambda: survey_strip(strip(1000), 500, 0, 100), "received 100 rows; allowed: at least 500 rows"),
 )
 
 
@@ -152,7 +216,7 @@ class Made:
 
     def read(self, *numbers):
         for number in numbers:
-            found = self.fields.rows(number, lambda number=number: self.make(number), 5, 6)
+            found = self.fields.rows(number, lambda number=number: self.make(number))[5:6]
             assert found.tolist() == [[1e4 * number + 15, 1e4 * number + 16, 1e4 * number + 17]]
         return found
 
@@ -201,7 +265,7 @@ def test_threads_read_beside_each_other():
 @pytest.fixture(scope="module")
 def surface():
     found = synthesis.self_affine(
-        (4000, 41), (2e-6, 3e-6), rms=1e-6, hurst=0.8, longest=60e-6, shortest=12e-6, seed=3
+        (4000, 41), (2e-6, 3e-6), rms=1e-6, hurst=0.8, longest=60e-6, shortest=12e-6, seed=4
     )
     return HeightMap(found.heights + 5e-6, (2e-6, 3e-6))
 

@@ -70,6 +70,17 @@ class ComparedRuns:
         """Laws that are compared, the main one first."""
         return [str(law) for law in self.table["law"].values]
 
+    def another_texture(self, run: int) -> bool:
+        """Whether another texture was drawn for a run than for the first: differences hold the chance of it.
+
+        On a part that both have drawn; a run of a program that does not tell drew another one.
+        """
+        first, own = (data.json_attribute(self.runs[i].tree, provenance.DRAWN, {}) for i in (0, run))
+        untold = [data.stated(self.runs[i].tree, provenance.DRAWN) is None for i in (0, run)]
+        if untold[0] != untold[1]:
+            return bool(first or own)
+        return any(first[part] != own[part] for part in first.keys() & own.keys())
+
     @property
     def keys(self) -> list[dict[str, Any]]:
         """Keys that differ: key, note, and the value in each run, None where it has none."""

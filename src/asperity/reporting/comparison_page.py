@@ -1,6 +1,7 @@
 """The page of a comparison: its tables, its figures, and what it says in short."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import xarray
@@ -14,6 +15,8 @@ from asperity.schema import contact, provenance, rolling
 from asperity.spectra import nominal_frequency
 from asperity.written_numbers import rounded
 
+ANOTHER = "another texture was drawn"
+"""What is said of runs that differ by chance, too."""
 SURE = 2.0
 """Standard deviation of a difference by chance, dB, from which a band says little."""
 OF_RUN = (provenance.VERDICT, provenance.ASPERITY_VERSION, provenance.CREATED)
@@ -31,6 +34,8 @@ def table_rows(of: ComparedRuns) -> tuple[list[str], list[list[object]]]:
     for attribute in OF_RUN:
         told = [str(data.stated(run.tree, attribute) or "") for run in of.runs]
         rows.append(["run", attribute.name, "", "", "", *told, *blank])
+    told = [ANOTHER * of.another_texture(r) for r in range(len(of.runs))]
+    rows += [["run", "texture", "", "", "", *told, *blank]] * any(told)
     for name in map(str, of.table.data_vars):
         if not name.endswith("_difference"):
             rows += _rows_of(of.table, name)
@@ -68,8 +73,11 @@ def summary(of: ComparedRuns) -> str:
     sentences = [f"The cases differ in {', '.join(keys[:4])}{more}" if keys else "The cases are the same"]
     for r, name in enumerate(of.names[1:], 1):
         told = [words for level in shown if (words := _level_words(of, level, r))]
-        if told:
-            sentences.append(f"{name} against {of.names[0]}, {of.laws[0]}: {'; '.join(told)}")
+        words = "; ".join(told)
+        if of.another_texture(r):
+            words = f"{ANOTHER}, so that chance is in every difference" + f" ({words})" * bool(words)
+        if words:
+            sentences.append(f"{name} against {of.names[0]}, {of.laws[0]}: {words}")
     return ". ".join(sentences) + "."
 
 
@@ -89,6 +97,11 @@ def _level_words(of: ComparedRuns, name: str, run: int) -> str:
         for i in (told[change[told].argmin()], told[change[told].argmax()])
     ]
     return f"{title} {' to '.join(ends)}, {data.signed(weighted)} dB(A)"
+
+
+def _others_drawn(of: ComparedRuns) -> str:
+    """Runs for which another texture was drawn than for the first; empty if there is none."""
+    return " and ".join(name for r, name in enumerate(of.names) if of.another_texture(r))
 
 
 def _chance(table: xarray.Dataset, run: int) -> Numbers:
@@ -151,6 +164,8 @@ def _level(of: ComparedRuns, name: str) -> Iterator[Panel | str]:
     yield Panel(bands, Axis(f"over {first} / dB"), tuple(below), height=2.8)
     yield f"Above, {of.table[name].attrs['long_name']}, of {main} in all runs; below, the differences {told}."
     yield shaded
+    if drawn := _others_drawn(of):
+        yield f"For {drawn} {ANOTHER}: every difference holds the chance of it."
 
 
 def _contacts(of: ComparedRuns) -> Iterator[Panel | str]:
@@ -202,7 +217,7 @@ def compared_blocks(of: ComparedRuns) -> list[page.Block]:
         found += [PageFigure.of(name, title.capitalize(), _level(of, name)), _difference_table(of, name)]
     if {"stiffness", "filter"} & set(of.table):
         found.append(PageFigure.of("stiffness_and_filter", "Stiffness and filter", _contacts(of)))
-    return [*found, _contact_table(of.table)]
+    return [*found, _contact_table(of)]
 
 
 # --- tables
@@ -253,21 +268,27 @@ def _difference_table(of: ComparedRuns, name: str) -> ReportTable:
     for r, k in np.argwhere(np.isfinite(difference).any(axis=2)).tolist():
         if r > 0:
             head = of.laws[k] if len(others) == 1 else f"{of.names[r]}: {of.laws[k]}"
-            cells = tables.change_cells(difference[r, k, kept], ~_sure(table, r)[kept])
-            columns[head] = [*cells, *number_cells(weighted[r, k : k + 1], data.signed, "number total")]
+            another = of.another_texture(r)
+            cells = tables.change_cells(difference[r, k, kept], ~_sure(table, r)[kept] | another)
+            total = tables.change_cells(weighted[r, k : k + 1], np.array([another]), np.inf, np.inf)
+            columns[head] = [*cells, *(replace(cell, look=f"{cell.look} total") for cell in total)]
     over = f"{others[0]} less {first}" if len(others) == 1 else f"less {first}"
     note = (
         "Shaded: more than 1 dB, more than 3 dB. In brackets: bands in which records of this "
         "length differ by 2 dB or more through chance alone. Last row: A-weighted, over the bands of both."
     )
+    if drawn := _others_drawn(of):
+        note += f" All of {drawn} is in brackets: {ANOTHER}."
     title = f"{of.levels[name].capitalize()}, {over}, in dB"
     return tables.table(f"{name}_difference", title, columns, note)
 
 
-def _contact_table(table: xarray.Dataset) -> ReportTable:
+def _contact_table(of: ComparedRuns) -> ReportTable:
     """Load, approach, stiffness and real contact of each run."""
+    table = of.table
     load, approach, stiffness, area = (table[entry.name].values for entry in OF_CONTACT)
     ratio = [f"{data.signed(each)} dB" for each in table["working_stiffness_difference"].values[1:]]
+    ratio = [f"({each})" if of.another_texture(r) else each for r, each in enumerate(ratio, 1)]
     columns = {
         "run": text_cells(table["run"].values),
         "load": number_cells(load, "N"),

@@ -17,7 +17,7 @@ from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces import measured_lines, synthesis
-from asperity.surfaces.bands import from_bands, strip_from_bands
+from asperity.surfaces.bands import SAMPLES, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import QUARTER, band_limit, level, resample, rotated
 from asperity.surfaces.readers import read_all, read_surface
@@ -57,6 +57,7 @@ class Record:
     areal: bool = True  # whether heights beside a line are a texture of their own, not carried over from it
     # measured lines that heights are interpolated between, m; none of an areal texture
     lines: tuple[Profile, ...] = ()
+    draw: str = ""  # what random numbers belong to; nothing of what is measured
 
     @property
     def heights(self) -> Array:
@@ -68,44 +69,48 @@ class Record:
 
 
 def spectrum_record(
-    spectrum: str | TableSource, level_db: float, grid: Grid, *, lateral: float, seed: int, before: int | None
+    spectrum: str | TableSource, level_db: float, grid: Grid, *, lateral: float, seed: int, before: int
 ) -> Record:
-    """Synthesise a strip of a spectrum by name or from a table, leaving out bands that the grid cannot hold.
+    """Synthesise a strip of a spectrum by name or from a table, of any length, made where it is read.
 
-    With a level added, dB; `lateral` is its correlation length across over that along. Without rows `before`
-    it closes on itself along the grid. With them it is of any length, made in pieces where it is read, holds
-    all bands that the spacing can, and from there on is the same however many rows there are: a track that is
-    rolled over at any speed.
+    With a level added, dB; `lateral` is its correlation length across over that along. From row `before` on,
+    and before it, it is the same however long the strip is, on whatever grid; bands that the grid cannot hold
+    are left out.
     """
     wavelength, levels, name = spectrum_levels(spectrum)
-    wavelength, levels = _held(wavelength, levels + level_db, grid, name, closed=before is None)
-    bands = (grid.rows, grid.lines), (grid.spacing, grid.spacing), wavelength, levels
-    if before is None:
-        strip: Strip = strip_from_bands(*bands, lateral=lateral, seed=seed)
-    else:
-        strip = synthesis.long_strip_from_bands(*bands, lateral=lateral, seed=seed, before=before)
-    held = f"bands of {nominal_length(wavelength.max())} to {nominal_length(wavelength.min())}"
-    return Record(strip, f"{name}, {held}, {level_db:+g} dB", areal=bool(np.isfinite(lateral)))
+    words = _in_words(wavelength, level_db, grid, name)
+    strip = synthesis.long_strip_from_bands(
+        (grid.rows, grid.lines), (grid.spacing, grid.spacing), wavelength, levels + level_db,
+        lateral=lateral, seed=seed, before=before,
+    )  # fmt: skip
+    return Record(strip, words, areal=bool(np.isfinite(lateral)), draw=strip.draw)
 
 
-def spectrum_line(spectrum: str | TableSource, level_db: float, grid: Grid, seed: int) -> Record:
-    """Synthesise a line of a spectrum, cut from one that closes on itself: longer than its longest band."""
+def spectrum_around(
+    spectrum: str | TableSource, level_db: float, grid: Grid, around: float, *, lateral: float, seed: int
+) -> Record:
+    """Synthesise one turn of a spectrum as `spectrum_record` does, closed on the length `around`, m.
+
+    Bands that the turn cannot hold are left out.
+    """
     wavelength, levels, name = spectrum_levels(spectrum)
-    wavelength, levels = _held(wavelength, levels + level_db, grid, name, closed=False)
-    points = max(grid.rows, math.ceil(1.2 * wavelength.max() / grid.spacing))
-    line = from_bands(points, grid.spacing, wavelength, levels, seed).heights
-    return Record(Rows(line[: grid.rows, None]), f"{name}, {level_db:+g} dB")
+    held = wavelength * HALF_BAND < 0.97 * around
+    words = _in_words(wavelength[held], level_db, grid, name)
+    strip = strip_from_bands(
+        (grid.rows, grid.lines), (grid.spacing, grid.spacing), wavelength[held], levels[held] + level_db,
+        lateral=lateral, seed=seed, around=around,
+    )  # fmt: skip
+    draw = f"bands around {around:.6g} m, seed {seed}"
+    return Record(strip, words, areal=bool(np.isfinite(lateral)), draw=draw)
 
 
-def _held(wavelength: Array, levels: Array, grid: Grid, name: str, *, closed: bool) -> tuple[Array, Array]:
-    """Bands that a spacing and, of what closes on itself, a length can hold."""
-    held = wavelength / HALF_BAND > 2.06 * grid.spacing
-    if closed:
-        held &= wavelength * HALF_BAND < 0.97 * grid.length
-    if not held.any():
+def _in_words(wavelength: Array, level_db: float, grid: Grid, name: str) -> str:
+    """Say which bands a spacing holds."""
+    held = wavelength[wavelength / HALF_BAND > SAMPLES * grid.spacing]
+    if not held.size:
         received = f"a length of {grid.length:.4g} m at {grid.spacing * 1e3:.4g} mm"
         raise InputError(f"bands of {name}", received, "a length and a spacing that hold a band")
-    return wavelength[held], levels[held]
+    return f"{name}, bands of {nominal_length(held.max())} to {nominal_length(held.min())}, {level_db:+g} dB"
 
 
 def spectrum_levels(spectrum: str | TableSource) -> tuple[Array, Array, str]:

@@ -60,6 +60,8 @@ class Textures:
     areal: bool = True
     # measured ones that a texture is interpolated between, by the body that bears them, m
     lines: dict[str, tuple[Profile, ...]] = field(default_factory=dict)
+    # what the random numbers of each part belong to: parts for which it is the same were drawn alike
+    drawn: dict[str, str] = field(default_factory=dict)
     untouched: "Textures | None" = None  # as they were before running-in; None where they still are
 
     @property
@@ -87,9 +89,11 @@ class Textures:
 def textures_of(case: Case) -> Textures:
     """Read or synthesise the textures of a case: what is rolled over, and the first body on it.
 
-    Heights of both add up; those of the body repeat with its circumference, rounded to whole cells. Samples
-    and strips are those of the surface, or cut from the path before defects are put on it: where the surface
-    has none, and where what rolls is rough itself. A synthesised path is the same at every speed.
+    Heights of both add up; those of the body repeat with its circumference, rounded to whole cells, and its
+    turn begins where the record starts. Samples and strips are those of the surface, or cut from the path
+    before defects are put on it: where the surface has none, and where what rolls is rough itself. What is
+    synthesised counts from where the record starts and depends on spectrum and seed alone, see
+    `asperity.surfaces.tiles`.
     """
     contact, spacing, margin = case.contact, case.contact.spacing, window_cells(case.contact)
     lead = cells_over(case.settled_time * case.speed, spacing)
@@ -101,7 +105,7 @@ def textures_of(case: Case) -> Textures:
     maps, strips, missing, sampled = _samples(case, own)
     over = _path(case, grid, maps, seeds[0], lead)
     turn = _turn(case, 0, grid, seeds[1])
-    strip = turning(over.strip, turn.heights, _first_row(case, before)) if turn.heights.any() else over.strip
+    strip = turning(over.strip, turn.heights, -before) if turn.heights.any() else over.strip
     is_line = case.surface.has_line
     if not is_line and (not maps or turn.heights.any()):
         maps = strips = _cut(case, strip, before)
@@ -109,10 +113,19 @@ def textures_of(case: Case) -> Textures:
     line = middle_line(over.strip)  # of a measured one, the run may end before the grid
     on_path, wave, size = np.zeros(len(line)), case.surface.corrugation_wavelength, case.surface.corrugation
     if size is not None and wave is not None:
-        how: dict[str, Any] = {"bandwidth": case.surface.corrugation_bandwidth, "seed": seeds[2]}
+        how: dict[str, Any] = {
+            "bandwidth": case.surface.corrugation_bandwidth,
+            "seed": seeds[2],
+            "before": before,
+        }
         on_path = corrugation(len(line), spacing, wavelength=wave, amplitude=size, **how).heights
+    drawn = {"surface": over.draw, case.ROLLING: turn.draw}
+    if on_path.any() and case.surface.corrugation_bandwidth is not None:
+        drawn["corrugation"] = (
+            f"{wave:.6g} m, {case.surface.corrugation_bandwidth:g} octaves, seed {seeds[2]}"
+        )
     around = turn.heights[:, turn.heights.shape[1] // 2]
-    along = np.arange(len(line)) + _first_row(case, before)
+    along = np.arange(len(line)) - before
     parts = {"rail": line + on_path, "wheel": around[along % len(around)]}
     lines = {name: body.lines for name, body in (("rail", over), ("wheel", turn)) if body.lines}
     origins = (sampled, f"path: {over.origin}", f"{case.ROLLING}: {turn.origin}" * bool(turn.origin))
@@ -130,6 +143,7 @@ def textures_of(case: Case) -> Textures:
         parts,
         areal=is_line or ((over.areal or turn.areal) and not lines),
         lines=lines,
+        drawn={name: draw for name, draw in drawn.items() if draw},
     )
     return replace(textures, **_defects(case, 0, textures))
 
@@ -160,9 +174,9 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     seed = int(np.random.SeedSequence(case.seed).generate_state(2)[1])
     turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
     change, middle = turns[1] - turns[0], turns[0].shape[1] // 2
-    along = np.arange(rows) + _first_row(case, before)
+    along = np.arange(rows) - before
     added = (turns[1][:, middle] - turns[0][:, middle])[along % len(change)]
-    path = None if first.path is None else turning(first.path, change, _first_row(case, before))
+    path = None if first.path is None else turning(first.path, change, -before)
     parts = first.parts | {"wheel": first.parts["wheel"] + added}
     turned = replace(first, path=path, line=first.line + added, parts=parts)
     return replace(turned, **_defects(case, contact, first))
@@ -229,16 +243,11 @@ def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: 
     surface, shape, margin = case.surface, (grid.rows, grid.lines), grid.lines
     before = margin + lead
     if surface.spectrum is not None:
-        if surface.lateral is None:
-            return records.spectrum_line(surface.spectrum, surface.level, grid, seed)
-        made_by = partial(records.spectrum_record, surface.spectrum, surface.level, seed=seed)
-        if surface.IN_STRIPS:
-            return made_by(grid, lateral=surface.lateral, before=before)
-        # one that closes on itself: longer than the path and than the longest band
-        wavelength, *_ = records.spectrum_levels(surface.spectrum)
-        rows = max(grid.rows, math.ceil(1.2 * wavelength.max() / grid.spacing))
-        made = made_by(replace(grid, rows=rows), lateral=surface.lateral, before=None)
-        return replace(made, strip=HeightMap(made.strip.rows(0, grid.rows), (grid.spacing, grid.spacing)))
+        lateral = surface.lateral
+        if lateral is None:
+            grid, lateral = replace(grid, lines=1), math.inf
+        spectrum = surface.spectrum, surface.level
+        return records.spectrum_record(*spectrum, grid, lateral=lateral, seed=seed, before=before)
     if surface.line is not None:
         if not surface.has_line:
             return records.lines_across(surface, grid)
@@ -249,19 +258,22 @@ def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: 
         keys = _self_affine_keys(surface)
         spacing = (grid.spacing, grid.spacing)
         strip = synthesis.long_self_affine(shape, spacing, **keys, seed=seed, before=before)
-        return Record(strip, "self-affine, Gaussian")
+        return Record(strip, "self-affine, Gaussian", draw=strip.draw)
     if maps:
         run_in = 0 if surface.IN_STRIPS else lead
-        return Record(*path_of(maps, shape, seed, run_in, before, surface.continuation))
+        path, origin = path_of(maps, shape, seed, run_in, before, surface.continuation)
+        return Record(path, origin, draw=path.draw if isinstance(path, LongStrip) else "")
     return Record(Rows(np.zeros(shape), (grid.spacing, grid.spacing)), "smooth", areal=False)
 
 
 def _cut(case: Case, strip: Strip, before: int) -> tuple[HeightMap, ...]:
-    """Cut samples from the path; of a synthesised rail from a stretch that does not depend on the speed."""
+    """Cut samples from the path; of a synthesised one from a stretch that depends on no duration or speed."""
     contact, lower = case.contact, strip.strip if isinstance(strip, Raised) else strip
-    if not isinstance(lower, LongStrip) or case.surface.spectrum is None:
+    if not isinstance(lower, LongStrip):
         return cut_from(strip, contact, case.rolled_time)
-    rows = max(math.ceil(SAMPLED_LENGTH / contact.spacing), contact.samples * strip_rows(contact))
+    rows = contact.samples * strip_rows(contact)
+    if case.surface.IN_STRIPS:
+        rows = max(math.ceil(SAMPLED_LENGTH / contact.spacing), rows)
     longer: Strip = replace(lower, shape=(before + rows, lower.shape[1]))
     if isinstance(strip, Raised):
         longer = Raised(longer, strip.added)
@@ -280,17 +292,12 @@ def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
         return Record(Rows(np.zeros((turn.rows, 1))), "", areal=False)
     if contact or not surface.IN_STRIPS:
         seed = int(np.random.SeedSequence([case.seed, 1, contact]).generate_state(1)[0])
-    made_by = partial(records.spectrum_record, rolling.roughness, rolling.roughness_level, seed=seed)
+    made_by = partial(records.spectrum_around, rolling.roughness, rolling.roughness_level, seed=seed)
     if surface.IN_STRIPS:
         lateral = math.inf if surface.lateral is None else surface.lateral
-        return made_by(turn, lateral=lateral, before=None)
-    made = made_by(replace(turn, lines=2), lateral=math.inf, before=None)  # lines that are alike
+        return made_by(turn, rolling.circumference, lateral=lateral)
+    made = made_by(replace(turn, lines=2), rolling.circumference, lateral=math.inf)  # lines that are alike
     return replace(made, strip=Rows(made.heights[:, :1]))
-
-
-def _first_row(case: Case, before: int) -> int:
-    """Row of a turn on row zero of the path; in strips, row zero of it is where the record starts."""
-    return -before if case.surface.IN_STRIPS else 0
 
 
 # --- defects

@@ -83,12 +83,21 @@ class PreparedBearing:
     caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
 
 
+def _parts(case: BallBearingCase) -> list[tuple[str, Any, float]]:
+    """Names of inner and outer raceway and of balls, their sections, and their radii, m."""
+    of = case.bearing.bearing
+    return [
+        ("inner", case.inner_raceway, of.raceway_radii[0]),
+        ("outer", case.outer_raceway, of.raceway_radii[1]),
+        ("ball", case.balls, 0.5 * of.ball_diameter),
+    ]
+
+
 def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBearing:
     """Load the bearing at rest and lay out what is on its parts; refuse what cannot be."""
     errors, made, of = list[InputError](), list[Raceway](), case.bearing.bearing
-    parts = [("inner", case.inner_raceway, of.raceway_radii[0])]
-    parts += [("outer", case.outer_raceway, of.raceway_radii[1])]
-    parts += [("ball", case.balls, 0.5 * of.ball_diameter)] * of.balls * (not case.has_smooth_balls)
+    *parts, balls = _parts(case)
+    parts += [balls] * of.balls * (not case.has_smooth_balls)
     with PhysicsWarning.caught() as caught:
         case.loaded()
         doubt_speed(of, case.speed)
@@ -245,9 +254,21 @@ def bearing_result(
     at_rest = static_group(case.static, case.kinematics)
     result = tree(scenario | at_rest | motion_group(case, runs) | heard | apart)
     result.attrs = root_attributes(
-        case, case.title, SOURCES, _verdict(heard, _deciding(apart), bool(case.faults)), caught
+        case,
+        case.title,
+        SOURCES,
+        _verdict(heard, _deciding(apart), bool(case.faults)),
+        caught,
+        {NAMES[name]: f"{draw} on {radius:.6g} m, seed {case.seed}" for name, draw, radius in _draws(case)},
     )
     return result
+
+
+def _draws(case: BallBearingCase) -> Iterator[tuple[str, str, float]]:
+    """Parts whose surface is drawn, what is drawn, and their radius, m."""
+    for name, keys, radius in _parts(case):
+        if draw := keys.texture().draw:
+            yield name, draw, radius
 
 
 # --- at rest

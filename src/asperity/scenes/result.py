@@ -2,7 +2,7 @@
 
 import warnings
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -84,7 +84,7 @@ def computed_result(
     scenario = scenario_group(case, _numerics(computed, choice, losses)) | expected
     result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
     verdict = validity.verdict(computed, in_bands, found, choice)
-    result.attrs = root_attributes(case, case.title, sources, verdict, caught)
+    result.attrs = root_attributes(case, case.title, sources, verdict, caught, computed.textures.drawn)
     return result
 
 
@@ -99,9 +99,17 @@ def scenario_group(case: AnyCase, numerics: Iterable[tuple[str, str]]) -> Values
 
 
 def root_attributes(
-    case: AnyCase, title: str, sources: Sequence[str], verdict: str, caught: list[warnings.WarningMessage]
+    case: AnyCase,
+    title: str,
+    sources: Sequence[str],
+    verdict: str,
+    caught: list[warnings.WarningMessage],
+    drawn: Mapping[str, str],
 ) -> dict[str, Any]:
-    """What the root of a result says: what was computed, by what, and what is doubtful of it."""
+    """What the root of a result says: what was computed, by what, and what is doubtful of it.
+
+    Of what was `drawn`, by part, what its random numbers belong to.
+    """
     told: Values = {
         provenance.TITLE: title,
         provenance.ASPERITY_VERSION: __version__,
@@ -110,6 +118,7 @@ def root_attributes(
         provenance.CASE: case.text,
         **({provenance.IN_MEMORY: held} if (held := case.in_memory) else {}),
         provenance.SEED: case.seed,
+        provenance.DRAWN: dict(drawn),
         provenance.CITATIONS: sources,
         provenance.VERDICT: verdict,
         provenance.WARNINGS: _collected(caught),  # those of laying out are among them

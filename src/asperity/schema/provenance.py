@@ -18,6 +18,12 @@ IN_MEMORY = _root(
     "where some did",
 )
 SEED = _root("seed", "1", "of all that was drawn at random")
+DRAWN = _root(
+    "drawn",
+    "JSON",
+    "by part, what the random numbers of its texture belong to: runs in which it is the same rolled over one "
+    "texture, whatever its size, the grid, the load or the laws",
+)
 CITATIONS = _root("citations", "JSON", "sources of methods and data")
 VERDICT = _root("verdict", "text", "what the run says, in a few sentences")
 WARNINGS = _root("warnings", "JSON", "warnings on the physics: category, message, grade, count")

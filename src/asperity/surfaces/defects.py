@@ -1,18 +1,21 @@
 """Defects of wheel and rail as lines, heights positive out of the body: corrugation, flat, dipped joint."""
 
 import math
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, require
 from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.tiles import Tiling, Waves, fine, heights_at, random_of
 
 FlatShape = Literal["fresh", "worn"]
 
 TABLE_POINTS = 1001
 """Points over half a worn flat at which its envelope is found."""
+WAVES_OF_BAND = 10.0
+"""Waves in a tile of a band of corrugation, and their wavelengths in it, at least."""
 
 
 def corrugation(
@@ -23,31 +26,54 @@ def corrugation(
     amplitude: float,
     bandwidth: float | None = None,
     seed: int = 0,
+    before: int = 0,
 ) -> Profile:
     """Corrugation of a rail, heights about zero, m: a sine, or a band of waves about one wavelength, m.
 
     The amplitude, m, is half the height between peak and trough of a sine, √2 of the rms of a band. That has
-    a width in octaves, constant density, random phases and the exact rms over the line, on which it closes; a
-    sine starts at zero rising. No standard gives a spectrum of corrugation; an amplitude of 25 µm at the
-    wavelength v/f_pp of the pinned-pinned frequency is used in the literature.
+    a width in octaves, constant density and random phases, drawn as `asperity.surfaces.tiles` says: a longer
+    line, or one of another spacing, is the same corrugation, and each tile has the exact rms. A sine starts
+    at zero rising; both count from the point `before`. No standard gives a spectrum of corrugation; an
+    amplitude of 25 µm at the wavelength v/f_pp of the pinned-pinned frequency is used in the literature.
     """
     size = amplitude / math.sqrt(2.0)
     half = 2.0 ** (0.0 if bandwidth is None else bandwidth / 2.0)
     received = f"{wavelength / half:.4g} m as the shortest wavelength"
     allowed = f"at least two samples, {2.0 * spacing:.4g} m"
     require(2.0 * spacing <= wavelength / half < math.inf, "corrugation", received, allowed)
+    x = np.asarray((np.arange(n) - before) * spacing)
     if bandwidth is None:
-        x = np.arange(n) * spacing
         heights = math.sqrt(2.0) * size * np.sin(2.0 * np.pi * x / wavelength)
         return Profile(heights, spacing, f"corrugation of {wavelength:.4g} m")
-    wavenumber = fft.rfftfreq(n, spacing)
-    inside = (wavenumber >= 1.0 / (wavelength * half)) & (wavenumber <= half / wavelength)
-    received, remedy = f"a line of {n * spacing:.4g} m", "Lengthen the line or widen the band."
-    require(inside.any(), "corrugation", received, "a line that resolves the band", remedy)
-    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, wavenumber.size)
-    heights = fft.irfft(inside * np.exp(1j * phases), n)
-    heights *= size / math.sqrt(np.mean(heights**2))
+    band = _BandOfWaves(wavelength, half, size, seed)
+    heights = heights_at(band.along, x, 1, lambda tile: fine(band.waves(tile, np.zeros(1))))[:, 0]
     return Profile(heights, spacing, f"corrugation of {wavelength:.4g} m, {bandwidth:g} octaves, seed {seed}")
+
+
+@dataclass(frozen=True)
+class _BandOfWaves:
+    """Waves of one amplitude in a band about a wavelength, m, drawn the same all across."""
+
+    wavelength: float
+    half: float  # ratio of the band's edges to its centre
+    rms: float  # m
+    seed: int
+
+    @property
+    def along(self) -> Tiling:
+        """Tiles that hold some waves of the band."""
+        width = (self.half - 1.0 / self.half) / self.wavelength
+        length = max(WAVES_OF_BAND / width, WAVES_OF_BAND * self.wavelength)
+        return Tiling.from_zero(length, 0.2 * length)
+
+    def waves(self, tile: int, across: Array) -> Waves:
+        """Complex amplitudes (k, ny), m, of a tile."""
+        middle = self.along.length / self.wavelength
+        inside = np.arange(math.ceil(middle / self.half), math.floor(middle * self.half) + 1)
+        found = np.zeros(inside[-1] + 1, np.complex128)
+        turns = random_of(self.seed, tile).random(len(inside))
+        found[inside] = self.rms * math.sqrt(2.0 / len(inside)) * np.exp(2j * np.pi * turns)
+        return np.repeat(found[:, None], len(across), axis=1)
 
 
 def flat_length(depth: float, radius: float) -> float:

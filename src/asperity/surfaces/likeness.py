@@ -73,9 +73,10 @@ class Likeness:
     source: str  # where the maps came from
 
     @property
-    def reach(self) -> int:
-        """Length of the maps, points."""
-        return (self.correlation.shape[0] + 1) // (2 * LAGS)
+    def size(self) -> tuple[int, int]:
+        """Size of the maps along and across, points."""
+        along, across = ((n + 1) // (2 * LAGS) for n in self.correlation.shape)
+        return along, across
 
 
 def likeness(

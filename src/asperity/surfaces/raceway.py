@@ -12,10 +12,11 @@ from asperity.arguments import Array, ArrayLike, NDArray, finite_array, require,
 from asperity.parameters import File, ListOf, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.faults import LENGTH, MAP, Fault, lay, map_of
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.synthesis import closed_around, from_map, self_affine
+from asperity.surfaces.likeness import likeness
+from asperity.surfaces.strip import places_across
+from asperity.surfaces.synthesis import LikeMaps, SelfAffine
+from asperity.surfaces.tiles import closed
 
-BLEND = 2.0
-"""Longest wavelengths over which the end of a roughness gives way to its beginning."""
 MOST_POINTS = 2**26
 """Points of a raceway: 512 MiB."""
 _WAVES = "1 nm to 1 mm: raceways and balls are rounder"
@@ -96,6 +97,13 @@ class AroundTexture:
         """Whether it holds heights that differ across the path."""
         return self.roughness is not None or self.map is not None
 
+    @property
+    def draw(self) -> str:
+        """What its random numbers belong to, beside a seed; empty where there are none."""
+        waves = "waves" * bool(self.waves or self.waviness)
+        rough = f"self-affine from {self.longest:.6g} m" if self.roughness else "map" * bool(self.map)
+        return " and ".join(filter(None, (waves, rough)))
+
     def line(self, rows: int, seed: int) -> NDArray[np.complex128]:
         """Complex amplitudes (rows // 2 + 1,), m, of waves per turn: a line is their real part, summed."""
         found, last = np.zeros(rows // 2 + 1, dtype=complex), rows // 2 - 1
@@ -119,17 +127,17 @@ class AroundTexture:
 
     def rough(self, shape: tuple[int, int], spacing: tuple[float, float], seed: int) -> Array:
         """Roughness (rows, lines), m, closed along the rows."""
-        measured = None if self.map is None else map_of(self.map).levelled()
-        reach = self.longest * max(self.anisotropy, 1.0) ** 0.5 if measured is None else measured.size[0]
-        longer = shape[0] + min(round(BLEND * reach / spacing[0]), shape[0]), shape[1]
-        if measured is None:
-            made = self_affine(
-                longer, spacing, rms=self.roughness or 0.0, hurst=self.hurst, longest=self.longest,
-                shortest=self.shortest, anisotropy=self.anisotropy, seed=seed,
-            )  # fmt: skip
-        else:
-            made = from_map(measured, longer, seed, spacing)
-        return closed_around(made.heights, shape[0])
+        around = shape[0] * spacing[0]
+        across = places_across(shape[1], spacing[1])
+        if self.map is not None:
+            like = likeness(map_of(self.map).levelled(), spacing)
+            return like.transform(closed(LikeMaps(like, seed, shape[0]).waves(0, across), shape[0]))
+        texture = SelfAffine(
+            rms=self.roughness or 0.0, hurst=self.hurst, longest=self.longest, shortest=self.shortest,
+            anisotropy=self.anisotropy, seed=seed, around=around,
+        )  # fmt: skip
+        texture.check(spacing)
+        return closed(texture.waves(0, across), shape[0])
 
 
 def closed_trace(trace: ArrayLike) -> tuple[Array, Array]:

@@ -5,12 +5,13 @@ import threading
 import weakref
 from collections.abc import Callable, Hashable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import IO, Protocol
 
 import numpy as np
 
 from asperity.arguments import Array
+from asperity.surfaces.tiles import Drawn, fine, heights_at
 
 BYTES_KEPT = 2**29
 """Bytes of fields in the file; where there would be more, all are forgotten, and made again when read."""
@@ -25,13 +26,13 @@ class Fields:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._held: dict[Hashable, Array | tuple[int, int]] = {}  # or offset in the file, bytes, and ny
+        self._held: dict[Hashable, Array | tuple[int, tuple[int, ...]]] = {}  # or offset in bytes, and shape
         self._file: IO[bytes] | None = None
         self._close: Callable[[], object] = lambda: None
         self._length = 0  # of the file, bytes
 
-    def rows(self, name: Hashable, make: Callable[[], Array], first: int, stop: int) -> Array:
-        """Heights of the rows first … stop − 1 of a field, m, not to be written to; unknown ones are made.
+    def rows(self, name: Hashable, make: Callable[[], Array]) -> Array:
+        """Heights of all rows of a field, m, not to be written to; unknown ones are made.
 
         They take memory for as long as they are held.
         """
@@ -40,12 +41,10 @@ class Fields:
                 self._put(name, make())
             held = self._held[name]
             if isinstance(held, np.ndarray):
-                return held[first:stop]
+                return held
             assert self._file is not None
-            offset, columns = held
             # mapped: a position in the file would be shared with forked processes
-            start, shape = offset + 8 * columns * first, (stop - first, columns)
-            return np.memmap(self._file, np.float64, "r", start, shape)
+            return np.memmap(self._file, np.float64, "r", *held)
 
     @property
     def nbytes(self) -> int:
@@ -66,7 +65,7 @@ class Fields:
             self._file.seek(self._length)
             self._file.write(np.ascontiguousarray(heights).data)
             self._file.flush()
-            self._held[name] = self._length, heights.shape[1]
+            self._held[name] = self._length, heights.shape
             self._length += size
 
 
@@ -123,56 +122,43 @@ def turning(strip: Strip, turn: Array, start: int) -> Raised:
 
 @dataclass(frozen=True, eq=False)
 class LongStrip:
-    """Gaussian strip of any length, generated in pieces that blend into each other.
+    """Gaussian strip of any length, drawn where it is read.
 
-    ``piece(rows, seed)`` returns a Gaussian field (rows, ny), stationary, with zero mean; fields of different
-    seeds, one made of the strip's seed and the piece's number, are independent. Pieces begin `stride` rows
-    apart, and give way to the next over `blend` rows, at most as many. `transform` translates the blended
-    heights, m, point by point.
+    The surface is `drawn` as `asperity.surfaces.tiles` says: what lies at a place depends neither on the
+    strip's length or width nor on its spacing. Place zero is at row `before`, and in the middle across, at
+    line ny // 2. `transform` translates the heights, m, point by point.
 
-    In a blend the two pieces are weighted by cos θ and sin θ, θ rising from 0 to π/2: the sum of two
-    independent Gaussian fields keeps variance, distribution and lateral correlation exactly, and the
-    correlation at a lag τ along the path times cos(πτ/2 blend) at least. Any part of the strip can be had
-    alone and again, and a longer strip begins with the shorter one. With rows `before` the first piece, the
-    strip has no beginning: however many there are, all rows from there on are the same.
-
-    Strips of one `name` and seed have the same pieces, and share those that are held.
+    Any part of the strip can be had alone and again, to the bit. Each tile is made once, on a grid of its
+    own; strips of one surface and width share those that are held.
     """
 
     shape: tuple[int, int]
     spacing: tuple[float, float]
-    piece: Callable[[int, int], Array]
-    seed: int
-    stride: int
-    blend: int
+    drawn: Drawn
     transform: Callable[[Array], Array] | None = None
     source: str = ""
     before: int = 0
-    name: Hashable = field(default_factory=object, repr=False)
+
+    @property
+    def draw(self) -> str:
+        """What its random numbers belong to."""
+        return self.drawn.draw
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
-        heights = np.empty((stop - first, self.shape[1]))
-        at, last = first - self.before, stop - self.before
-        while at < last:
-            k, within = divmod(at, self.stride)
-            end = min(last - k * self.stride, self.stride)
-            self._read(k, within, heights[at + self.before - first :][: end - within])
-            at = k * self.stride + end
+        heights = np.zeros((0, self.shape[1]))
+        if stop > first:
+            place = np.asarray(self.spacing[0] * (np.arange(first, stop) - self.before))
+            heights = heights_at(self.drawn.along, place, self.shape[1], self._tile)
         return heights if self.transform is None else self.transform(heights)
 
-    def _read(self, k: int, within: int, heights: Array) -> None:
-        """Read heights (n, ny), m, of piece k from a row within it on, blended with the one before."""
-        heights[:] = self._field(k, within, within + len(heights))
-        blended = min(len(heights), self.blend - within)
-        if blended > 0 and (k != 0 or self.before > 0):
-            angle = 0.5 * np.pi * ((np.arange(within, within + blended) + 0.5) / self.blend)[:, None]
-            heights[:blended] *= np.sin(angle)
-            ending = self.stride + within
-            heights[:blended] += np.cos(angle) * self._field(k - 1, ending, ending + blended)
+    def _tile(self, tile: int) -> Array:
+        """Heights of a tile on its own fine grid, m."""
+        lines, dy = self.shape[1], self.spacing[1]
+        name = self.drawn.name, tile, dy, lines
+        return fields.rows(name, lambda: fine(self.drawn.waves(tile, places_across(lines, dy))))
 
-    def _field(self, k: int, first: int, stop: int) -> Array:
-        """Rows first … stop − 1 of piece k, which has stride + blend of them."""
-        seed = int(np.random.SeedSequence([self.seed, k % 2**32]).generate_state(1)[0])
-        name = self.name, seed, self.stride, self.blend, self.shape[1]
-        return fields.rows(name, lambda: self.piece(self.stride + self.blend, seed), first, stop)
+
+def places_across(lines: int, spacing: float) -> Array:
+    """Places across (lines,), m, of lines a spacing apart; the middle one is at zero."""
+    return np.asarray(spacing * (np.arange(lines) - lines // 2))

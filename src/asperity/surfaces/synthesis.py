@@ -1,32 +1,33 @@
 """Textures that are made: records continued, self-affine surfaces, likenesses of maps, and long strips."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, require, two_lengths
-from asperity.surfaces.bands import strip_from_bands
+from asperity.surfaces.bands import band_texture, described
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
-from asperity.surfaces.strip import LongStrip
+from asperity.surfaces.strip import LongStrip, places_across
+from asperity.surfaces.tiles import GROUP, Tiling, Waves, deviates, fine, heights_at
 
 Continuation = Literal["refuse", "mirror", "repeat"]
 
-PIECE_POINTS = 2**18
-"""Points of a piece of a long strip, at least: 2 MiB."""
-PIECE_REACHES = 16
-"""Length of a piece of a long strip in correlation lengths, at least."""
-BAND_REACHES = 8
-"""Length of a piece of a long strip from band levels in longest wavelengths: each band has lines enough."""
-LEAST_PIECE = 5.0
-"""Length of a piece of a long strip from band levels, at least, m."""
-BLEND_REACHES = 2
-"""Length of the blend of two pieces in correlation lengths."""
-LARGEST_MAP = 2**27
-"""Points of a map that is made for its longest wavelength: 1 GiB, and three times that while it is made."""
+TILE_REACHES = 16.0, 6.0
+"""Size of a tile along and across in reaches of the longest waves."""
+MAP_LENGTHS = 10.0, 4.0
+"""Size of a tile along and across in lengths of a measured map."""
+BLEND_REACHES = 2.0
+"""Length of the blend of two tiles in reaches."""
+LARGEST_TILE = 2**27
+"""Points of a tile: as many numbers are drawn for it, and a few seconds go by."""
+FEWEST = 2**6
+"""Points that each side of a tile counts for at least: those of a few waves cost as much."""
 
 
 def extend(
@@ -79,18 +80,6 @@ def close(heights: ArrayLike, points: int) -> Array:
     return values
 
 
-def closed_around(heights: Array, rows: int) -> Array:
-    """Close a random strip (n, ny) over `rows` rows: those beyond give way to the first ones.
-
-    They are weighted by cos θ and sin θ as in `LongStrip`, so that mean square and lateral correlation stay.
-    """
-    beyond = len(heights) - rows
-    angle = 0.5 * np.pi * ((np.arange(beyond) + 0.5) / max(beyond, 1))[:, None]
-    closed = heights[:rows].copy()
-    closed[:beyond] = np.sin(angle) * closed[:beyond] + np.cos(angle) * heights[rows:]
-    return closed
-
-
 def self_affine(
     shape: tuple[int, int],
     spacing: tuple[float, float],
@@ -111,52 +100,51 @@ def self_affine(
     ridges that are drawn out along x then lie in that direction. J. Phys.: Condens. Matter 17 (2005) R1.
     Lengths are in m; 0 < hurst <= 1, and the shortest wave has at least two samples.
 
-    The rms is that of the *ensemble* about zero, m, exact on this grid. One realisation scatters about it,
-    the more the fewer longest wavelengths fit in; it is not rescaled, since that would make short pieces
-    rougher than the long surface they stand for. It is cut from a surface that is at least one roll-off
-    wavelength larger, so not periodic.
+    The rms is that of the *ensemble* about zero, m. One realisation scatters about it, the more the fewer
+    longest wavelengths fit in; it is not rescaled, since that would make short pieces rougher than the long
+    surface they stand for. The surface is drawn as `asperity.surfaces.tiles` says: a larger map, or one with
+    another spacing, is the same surface where the smaller one is, with x = 0 in its first row and y = 0 in
+    its column ny // 2. A shorter shortest wave adds waves to it; all of them then are scaled alike to the
+    same rms. The surface is proportional to the rms, and not periodic.
     """
-    texture = _SelfAffine(two_lengths("spacing", spacing), rms, hurst, longest, shortest, anisotropy, lay)
-    return HeightMap(texture.heights(shape, seed), texture.steps, f"{texture}, seed {seed}")
+    strip = long_self_affine(
+        shape, spacing, seed=seed, rms=rms, hurst=hurst, longest=longest, shortest=shortest,
+        anisotropy=anisotropy, lay=lay,
+    )  # fmt: skip
+    return HeightMap(_heights(strip), strip.spacing, strip.source)
 
 
 def long_self_affine(
     shape: tuple[int, int], spacing: tuple[float, float], *, seed: int, before: int = 0, **parameters: float
 ) -> LongStrip:
-    """Self-affine strip of any length, generated where it is read.
+    """Self-affine strip of any length, generated where it is read: the surface of `self_affine`.
 
-    Pieces of `self_affine` surfaces, whose parameters it has, blended over two roll-off wavelengths. With
-    rows `before`, as `LongStrip` has them.
+    With rows `before`, as `LongStrip` has them.
     """
-    texture = _SelfAffine(two_lengths("spacing", spacing), **parameters)
-
-    def piece(rows: int, piece_seed: int) -> Array:
-        return texture.heights((rows, shape[1]), piece_seed)
-
-    stride, blend = _pieces(shape[1], int(np.ceil(texture.reach[0] / texture.steps[0])))
-    source = f"{texture}, seed {seed}"
-    return LongStrip(shape, texture.steps, piece, seed, stride, blend, None, source, before, texture)
+    steps = two_lengths("spacing", spacing)
+    texture = SelfAffine(**parameters, seed=seed)
+    texture.check(steps)
+    return LongStrip(shape, steps, texture, None, f"{texture}, seed {seed}", before)
 
 
 @dataclass(frozen=True)
-class _SelfAffine:
-    """Parameters of `self_affine` surfaces on a grid of a spacing (dx, dy), m."""
+class SelfAffine:
+    """A surface that is drawn with the spectrum of `self_affine`, whose parameters it has."""
 
-    steps: tuple[float, float]
     rms: float
     hurst: float
     longest: float
     shortest: float
     anisotropy: float = 1.0
     lay: float = 0.0
+    seed: int = 0
+    around: float | None = None  # length on which the surface closes along x, m; tiles without it
 
     def __post_init__(self) -> None:
-        coarsest = 2.0 * max(self.steps)
-        fine = self.shortest >= coarsest * (1 - 1e-9)
         for name, right, allowed in (
             ("rms", 0.0 <= self.rms < np.inf, "zero or more, m"),
             ("hurst", 0.0 < self.hurst <= 1.0, "above 0, up to 1"),
-            ("shortest", fine, f"at least two samples, {coarsest:.4g} m"),
+            ("shortest", 0.0 < self.shortest < np.inf, "above zero, m"),
             ("longest", self.shortest < self.longest < np.inf, "longer than the shortest"),
             ("anisotropy", 0.0 < self.anisotropy < np.inf, "above zero"),
         ):
@@ -167,51 +155,106 @@ class _SelfAffine:
         return f"self-affine: rms {self.rms:.4g} m, Hurst {self.hurst:g}, {waves}"
 
     @property
-    def drawn(self) -> Array:
+    def name(self) -> Hashable:
+        """What names it."""
+        return self
+
+    @property
+    def draw(self) -> str:
+        """What its random numbers belong to."""
+        return f"self-affine in {self.along}, across in {self.across}, seed {self.seed}"
+
+    @property
+    def drawn_out(self) -> Array:
         """Matrix that draws a circle out and turns it by the lay."""
         stretch, cosine, sine = np.sqrt(self.anisotropy), np.cos(self.lay), np.sin(self.lay)
         return np.array([[stretch * cosine, -sine / stretch], [stretch * sine, cosine / stretch]])
 
     @property
     def reach(self) -> Array:
-        """How far the longest waves reach along x and y, m."""
-        return self.longest * np.hypot(*self.drawn.T)
+        """How far the longest waves reach along x and y, m; not less than the shortest do."""
+        return np.maximum(self.longest * np.hypot(*self.drawn_out.T), self.shortest)
 
-    def heights(self, shape: tuple[int, int], seed: int) -> Array:
-        """One realisation (nx, ny), m, cut from a periodic one."""
-        require(len(shape) == 2 and min(shape) >= 2, "shape", shape, "(nx, ny), at least 2 points each")
-        grid = [
-            fft.next_fast_len(int(np.ceil(max(n + r / d, 2.0 * r / d))), real=True)
-            for n, r, d in zip(shape, self.reach, self.steps, strict=True)
-        ]
-        received = (
-            f"{self.longest:.4g} m at {self.steps[0]:.4g} m, which take a map of {grid[0]} x {grid[1]} points"
-        )
-        remedy = "Shorten it, coarsen the spacing, or bring the anisotropy nearer to 1."
-        small = grid[0] * grid[1] <= max(LARGEST_MAP, 4 * shape[0] * shape[1])
-        require(small, "longest", received, f"at most {LARGEST_MAP} points", remedy)
-        qx = 2.0 * np.pi * fft.fftfreq(grid[0], self.steps[0])[:, None]
-        qy = 2.0 * np.pi * fft.rfftfreq(grid[1], self.steps[1])[None, :]
-        square = sum((qx * along + qy * across) ** 2 for along, across in self.drawn.T)
-        power = np.maximum(square, (2.0 * np.pi / self.longest) ** 2) ** (-1.0 - self.hurst)
-        power[qx**2 + qy**2 > (2.0 * np.pi / self.shortest) ** 2 * (1.0 + 1e-12)] = 0.0
-        power[0, 0] = 0.0
-        return _gaussian_field(power, grid, self.rms, seed)[: shape[0], : shape[1]]
+    @property
+    def along(self) -> Tiling:
+        """Tiles along x."""
+        if self.around is not None:
+            return Tiling(self.around, 0.0, 0.0)
+        return Tiling.from_zero(TILE_REACHES[0] * self.reach[0], BLEND_REACHES * self.reach[0])
+
+    @property
+    def across(self) -> Tiling:
+        """Tiles along y."""
+        return Tiling.around_zero(TILE_REACHES[1] * self.reach[1], BLEND_REACHES * self.reach[1])
+
+    def check(self, spacing: tuple[float, float]) -> None:
+        """Refuse a spacing, m, too coarse for the shortest waves, and longest ones out of all proportion."""
+        coarsest = 2.0 * max(spacing)
+        fine = self.shortest >= coarsest * (1 - 1e-9)
+        require(fine, "shortest", self.shortest, f"at least two samples, {coarsest:.4g} m")
+        sizes = [max(2.0 * each.length / self.shortest, FEWEST) for each in (self.along, self.across)]
+        received = f"{self.longest:.4g} m with waves down to {self.shortest:.4g} m"
+        received += f", which take tiles of {sizes[0]:.3g} x {sizes[1]:.3g} points"
+        remedy = "Shorten it, lengthen the shortest, or bring the anisotropy nearer to 1."
+        allowed = f"at most {LARGEST_TILE} points"
+        require(sizes[0] * sizes[1] <= LARGEST_TILE, "longest", received, allowed, remedy)
+
+    def waves(self, tile: int, across: Array) -> Waves:
+        """Complex amplitudes (k, ny), m, of a tile at places across (ny,), m."""
+        scale = self.rms / np.sqrt(self._mean_square)
+        return _waves(self.seed, tile, across, self.across, (scale * each for each in self._amplitudes()))
+
+    def _amplitudes(self) -> Iterator[Array]:
+        """Roots of the spectrum (GROUP, 2j + 1) of groups of waves along; across 0, 1, −1, 2, −2, …"""
+        turn, most = 2.0 * np.pi, (1.0 + 1e-9) / self.shortest
+        count, beside = (math.floor(most * tiling.length) for tiling in (self.along, self.across))
+        qy = turn / self.across.length * to_and_fro(beside)
+        for first in range(0, count + 1, GROUP):
+            wave = np.arange(first, first + GROUP)[:, None]
+            qx = turn / self.along.length * wave
+            square = sum((qx * along + qy * across) ** 2 for along, across in self.drawn_out.T)
+            power = np.maximum(square, (turn / self.longest) ** 2) ** (-1.0 - self.hurst)
+            power[qx**2 + qy**2 > (turn * most) ** 2] = 0.0
+            power *= np.where(wave > 0, 2.0, 1.0)  # of wave 0 across, the opposite ones are there
+            power[(wave == 0) & (qy == 0.0)] = 0.0
+            yield np.sqrt(power)
+
+    @cached_property
+    def _mean_square(self) -> float:
+        return float(sum(np.sum(each**2) for each in self._amplitudes())) or 1.0
 
 
-def _gaussian_field(power: Array, grid: Sequence[int], rms: float, seed: int) -> Array:
-    """Periodic Gaussian field with this half spectrum, scaled to an expected mean square of rms²."""
-    doubled = power.sum() + power[:, 1 : (grid[1] + 1) // 2].sum()  # the half that rfft2 leaves out
-    noise = np.random.default_rng(seed).standard_normal((grid[0], grid[1]))
-    spectrum = fft.rfft2(noise, overwrite_x=True)
-    del noise
-    spectrum *= np.sqrt(power * (rms**2 * grid[0] * grid[1] / doubled))
-    return np.asarray(fft.irfft2(spectrum, s=tuple(grid), overwrite_x=True))
+def to_and_fro(count: int) -> Array:
+    """Numbers 0, 1, −1, 2, −2, … to a number and its opposite: a larger one adds to these."""
+    index = np.arange(2 * count + 1)
+    return np.where(index % 2 == 1, (index + 1) // 2, -(index // 2)).astype(np.float64)
 
 
-def _pieces(columns: int, reach: int) -> tuple[int, int]:
-    """Rows from piece to piece of a long strip, and rows of a blend; a correlation length is `reach` rows."""
-    return max(PIECE_POINTS // columns, PIECE_REACHES * reach), max(1, BLEND_REACHES * reach)
+def _waves(seed: int, tile: int, across: Array, tiling: Tiling, amplitudes: Iterable[Array]) -> Waves:
+    """Waves along (k, ny), m, of a tile, from the amplitudes of groups of them, rms; see `SelfAffine`."""
+    found, sides = [], tiling.touching(across.min(), across.max())
+    basis = dict[int, Waves]()
+    for group, each in enumerate(amplitudes):
+        part = np.zeros((len(each), len(across)), np.complex128)
+        for side in sides:
+            if side not in basis:
+                turns = 2.0 * np.pi / tiling.length * to_and_fro(each.shape[1] // 2)
+                waves = np.exp(1j * turns[:, None] * tiling.within(side, across))
+                basis[side] = waves * tiling.weight(side, across)
+            noise = deviates(seed, (each.shape[1], GROUP), group, side, tile).T[: len(each)]
+            part += (noise * each) @ basis[side]
+        found.append(part)
+    return np.concatenate(found)
+
+
+def _heights(strip: LongStrip) -> Array:
+    """Heights of all of a strip that is no longer than a map, m, of which nothing is kept."""
+    shape, (dx, dy), drawn = strip.shape, strip.spacing, strip.drawn
+    require(len(shape) == 2 and min(shape) >= 2, "shape", shape, "(nx, ny), at least 2 points each")
+    across = places_across(shape[1], dy)
+    along = np.asarray(dx * np.arange(shape[0]))
+    heights = heights_at(drawn.along, along, shape[1], lambda tile: fine(drawn.waves(tile, across)))
+    return heights if strip.transform is None else strip.transform(heights)
 
 
 def long_strip_from_bands(
@@ -226,21 +269,14 @@ def long_strip_from_bands(
 ) -> LongStrip:
     """Strip of any length with given one-third-octave levels, generated where it is read.
 
-    Pieces of `strip_from_bands`, whose parameters it has, each with the levels asked for, blended over two of
-    the longest wavelengths. With rows `before`, as `LongStrip` has them.
+    The surface has the spectrum of `strip_from_bands`, whose parameters it has; its middle line has the
+    levels asked for in each tile, which is as long as twenty of the longest waves. Bands that the spacing
+    does not hold are left out. With rows `before`, as `LongStrip` has them.
     """
-    given, levels = np.array(wavelengths, dtype=float), np.array(levels_db, dtype=float)
     steps = two_lengths("spacing", spacing)
-    reach = int(np.ceil(given.max() / steps[0]))
-    stride = max(BAND_REACHES * reach, int(np.ceil(LEAST_PIECE / steps[0])))
-
-    def piece(rows: int, piece_seed: int) -> Array:
-        grid = fft.next_fast_len(rows, real=True), shape[1]
-        return strip_from_bands(grid, steps, given, levels, lateral=lateral, seed=piece_seed).heights[:rows]
-
-    source = f"one-third octaves {given.max():.4g} to {given.min():.4g} m, lateral {lateral:g}, seed {seed}"
-    name = "bands", steps, given.tobytes(), levels.tobytes(), lateral
-    return LongStrip(shape, steps, piece, seed, stride, BLEND_REACHES * reach, None, source, before, name)
+    texture = band_texture(wavelengths, levels_db, lateral, seed, steps[0])
+    source = f"{described(wavelengths)}, lateral {lateral:g}, seed {seed}"
+    return LongStrip(shape, steps, texture, None, source, before)
 
 
 def from_map(
@@ -260,18 +296,18 @@ def from_map(
 
     Wavelengths longer than the map are not known. The spectrum is held below one wave per map, and what lacks
     of the variance, as the bow of a sheet, gets waves twice as long as the map. A bow that all maps have
-    becomes waves of random phase: pieces as long as the maps are flatter than these. The field is made on a
-    grid longer and wider than asked for by two maps, then cut: it is not periodic, and a narrow strip holds
-    waves much longer than its width. Where the distribution and the spectrum contradict each other (a
-    distribution that is not smooth needs short waves that a steep spectrum does not have), the distribution
-    wins.
+    becomes waves of random phase: pieces as long as the maps are flatter than these. The field is drawn in
+    tiles of ten by four maps, see `asperity.surfaces.tiles`: it is not periodic, a narrow strip holds waves
+    much longer than its width, and a larger surface is the same one where the smaller one is, as in
+    `self_affine`. At another spacing the maps are resampled, and another surface is drawn. Where the
+    distribution and the spectrum contradict each other (a distribution that is not smooth needs short waves
+    that a steep spectrum does not have), the distribution wins.
 
     C. R. Dietrich and G. N. Newsam, SIAM J. Sci. Comput. 18 (1997) 1088 (circulant embedding). M. Grigoriu,
     Applied Non-Gaussian Processes (1995) (translation).
     """
-    like = likeness(maps, spacing)
-    heights = like.transform(_gaussian_like(like, shape, seed))
-    return HeightMap(heights, like.spacing, f"synthesised from {like.source}, seed {seed}")
+    strip = long_strip_like(maps, shape, seed, spacing)
+    return HeightMap(_heights(strip), strip.spacing, strip.source)
 
 
 def long_strip_like(
@@ -283,28 +319,66 @@ def long_strip_like(
 ) -> LongStrip:
     """Strip of any length in the likeness of measured maps, generated where it is read.
 
-    Gaussian pieces of the kind that `from_map` makes, blended over two lengths of the maps, then translated
-    to the height distribution, which is exact in the blends too. With rows `before`, as `LongStrip` has them.
+    The surface of `from_map`: a Gaussian one, blended from tile to tile over the length of two maps, then
+    translated to the height distribution, which is exact in the blends too. With rows `before`, as
+    `LongStrip` has them.
     """
     like = likeness(maps, spacing)
-
-    def piece(rows: int, piece_seed: int) -> Array:
-        return _gaussian_like(like, (rows, shape[1]), piece_seed)
-
     source = f"synthesised from {like.source}, seed {seed}"
-    stride, blend = _pieces(shape[1], like.reach)
-    return LongStrip(shape, like.spacing, piece, seed, stride, blend, like.transform, source, before)
+    return LongStrip(shape, like.spacing, LikeMaps(like, seed), like.transform, source, before)
 
 
-def _gaussian_like(like: Likeness, shape: tuple[int, int], seed: int) -> Array:
-    """Gaussian field of unit variance with the correlation of measured maps, not periodic."""
-    lags = [(n + 1) // 2 for n in like.correlation.shape]
-    grid = [fft.next_fast_len(n + k, real=True) for n, k in zip(shape, lags, strict=True)]
-    # lags that wrap onto each other add up: this samples the same spectrum more coarsely, never below zero
-    embedded, (nx, ny) = np.zeros((grid[0], grid[1])), lags
-    for row, row_out in ((slice(0, nx), slice(0, nx)), (slice(nx, None), slice(grid[0] - nx + 1, None))):
-        embedded[row_out, :ny] += like.correlation[row, :ny]
-        embedded[row_out, grid[1] - ny + 1 :] += like.correlation[row, ny:]
-    power = fft.rfft2(embedded, overwrite_x=True).real
-    np.maximum(power, 0.0, out=power)
-    return _gaussian_field(power, grid, 1.0, seed)[: shape[0], : shape[1]]
+@dataclass(frozen=True, eq=False)
+class LikeMaps:
+    """A Gaussian surface of unit variance that is drawn with the correlation of measured maps."""
+
+    like: Likeness
+    seed: int
+    around: int | None = None  # points on which it closes along x; tiles without it
+    name: Hashable = field(default_factory=object, repr=False)
+
+    @property
+    def draw(self) -> str:
+        """What its random numbers belong to."""
+        return f"like {self.like.source}, in {self.along}, across in {self.across}, seed {self.seed}"
+
+    @property
+    def points(self) -> tuple[int, int]:
+        """Points of a tile along and across."""
+        along, across = (
+            fft.next_fast_len(math.ceil(times * size), real=True)
+            for times, size in zip(MAP_LENGTHS, self.like.size, strict=True)
+        )
+        return (along if self.around is None else self.around), across
+
+    @property
+    def along(self) -> Tiling:
+        """Tiles along x."""
+        length = self.points[0] * self.like.spacing[0]
+        if self.around is not None:
+            return Tiling(length, 0.0, 0.0)
+        return Tiling.from_zero(length, BLEND_REACHES * self.like.size[0] * self.like.spacing[0])
+
+    @property
+    def across(self) -> Tiling:
+        """Tiles along y; a map is as wide as half of what is alone in one."""
+        dy = self.like.spacing[1]
+        return Tiling.around_zero(self.points[1] * dy, self.like.size[1] * dy)
+
+    def waves(self, tile: int, across: Array) -> Waves:
+        """Complex amplitudes (k, ny) of a tile at places across (ny,), m."""
+        groups = (self._amplitudes[i : i + GROUP] for i in range(0, len(self._amplitudes), GROUP))
+        return _waves(self.seed, tile, across, self.across, groups)
+
+    @cached_property
+    def _amplitudes(self) -> Array:
+        """Rms of the waves (k, 2j + 1) that close on a tile, across as in `to_and_fro`."""
+        correlation, (rows, lines) = self.like.correlation, self.points
+        # lags that wrap onto each other add up: the same spectrum at fewer wavenumbers, never below zero
+        places = [np.fft.fftfreq(n, 1.0 / n).astype(np.intp) for n in correlation.shape]
+        embedded = np.zeros((rows, lines))
+        np.add.at(embedded, np.ix_(places[0] % rows, places[1] % lines), correlation)
+        power = fft.rfft2(embedded, axes=(1, 0), overwrite_x=True).real[: (rows + 1) // 2]
+        power = np.maximum(power[:, to_and_fro((lines - 1) // 2).astype(np.intp)], 0.0)
+        power[1:] *= 2.0
+        return np.sqrt(power / power.sum())
