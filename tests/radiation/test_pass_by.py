@@ -173,7 +173,7 @@ def test_front_and_rear():
     assert_allclose(Passage([0.0], 10.0, length=20.0).passed, (-1.0, 1.0))
 
 
-@pytest.mark.parametrize("length", [0.0, 3.0, 40.0])
+@pytest.mark.parametrize("length", [0.0, 3.0, 40.0, 200.0])
 @pytest.mark.parametrize("passage", [ONE, Passage([0.0, 2.5, 19.0, 21.5], 20.0, 26.4)])
 def test_the_record_holds_the_whole_rise_and_fall(passage, length):
     time = passage.times(FLAT, length)

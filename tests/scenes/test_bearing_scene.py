@@ -184,6 +184,16 @@ def test_rings_stand_on_what_holds_them_and_the_outer_one_bends_as_its_section()
     assert rings.outer_bending.natural_frequencies == pytest.approx(expected, rel=1e-6)
 
 
+def test_surfaces_lie_on_the_cells_of_their_own_contacts():
+    """Of balls of that with the outer ring, which is the wider one."""
+    case = as_case(SMOOTH | {"balls": {"waves": [3], "amplitudes": ["0.1 um"]}})
+    prepared = prepare_bearing(case)
+    inner, outer = (contact.semi_axes(contact.approach(load))[1] for contact, load in case.contacts)
+    across = [each.spacing[1] for each in (*prepared.raceways, *prepared.balls)]
+    assert across == pytest.approx(np.array([inner, *[outer] * (1 + BALLS)]) / 16.0, rel=1e-9)
+    assert abs(inner / outer - 1.0) > 0.01
+
+
 def test_balls_differ_and_one_alone_has_the_fault():
     waves = {"balls": {"waviness": "10 nm"}, "fault": PIT | {"on": "ball"}}
     prepared = prepare_bearing(as_case(BEARING | waves))
