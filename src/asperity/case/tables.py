@@ -36,6 +36,9 @@ from asperity.units import unit_in_brackets
 
 LARGEST_TABLE = 32 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
+LONGEST_WAVE, MEASURED_WAVE = 10.0, 1.0
+"""m: roughness is measured up to 1 m, long corrugation up to 3 m; what is longer is track geometry."""
+_SMALLER = {"cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 0.0}
 FEWEST_LINES = 10  # of a receptance
 _BAND = 0.1  # of a decade
 DECIMALS = 14
@@ -113,6 +116,11 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
         raise InputError(
             name_of(table), f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0"
         )
+    if wavelength[0] > LONGEST_WAVE:
+        received = f"wavelengths of {wavelength[-1]:.4g} m to {wavelength[0]:.4g} m"
+        unit = next(unit for unit, metres in _SMALLER.items() if wavelength[0] * metres <= MEASURED_WAVE)
+        remedy = f"Are they in {unit}? Then write 'wavelength ({unit})' above them."
+        raise InputError(name_of(table), received, f"waves of roughness, up to {LONGEST_WAVE:g} m", remedy)
     for longer, shorter in pairwise(wavelength):
         step = math.log10(longer / shorter)
         if abs(step - _BAND) > _BAND / 5:

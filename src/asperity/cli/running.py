@@ -395,6 +395,7 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
 def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> list[tuple[str, str]]:
     """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
     from asperity.scenarios.law_choice import advice
+    from asperity.scenarios.coverage import coverages
     from asperity.scenarios.reducing import STATES
     from asperity.scenes.roundness import planned_roundness
     from asperity.scenes.track import planned_track
@@ -409,6 +410,7 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
     run_in = f", and {settling:g} s before it" if settling else ""
     rows = [
         ("textures", prepared.textures.origin),
+        *((f"bands of {each.key}", each.at(case.speed)) for each in coverages(case, prepared.textures)),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
         (
             "time",

@@ -20,6 +20,7 @@ from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress, duration
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios import compiling, laws, reducing, running_in
+from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, recorded_time, textures_of, warn_of_textures
@@ -73,6 +74,7 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
             return prepare(smaller, source)
         refuse(list(_problems(prepared)), source)
         warn_of_textures(case, prepared.shape, prepared.textures)
+        refuse(list(problems_of_coverage(case, prepared.textures)), source)
     seconds, processor = {"textures": time.perf_counter() - begin}, time.process_time() - spent
     return replace(prepared, caught=tuple(caught), seconds=seconds, processor=processor)
 

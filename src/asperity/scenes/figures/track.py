@@ -12,6 +12,7 @@ from asperity.reporting.figure import Lines, Of, figure
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import MEASURED, over_bands
 from asperity.schema import contact, rolling
+from asperity.spectra import HALF_BAND, third_octave_bands
 from asperity.written_numbers import rounded
 
 # --- marks of the track: its natural frequencies, the passing of sleepers
@@ -208,6 +209,8 @@ def loss_factors(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
 PRODUCT = schema.SURFACE_BAND_LENGTH_PRODUCT
 NAMED = 3
 """Orders that are named in words."""
+COMPARED = (100.0, 5000.0)
+"""Hz, of the bands that laws are compared in."""
 SPAN = 60.0
 """Levels, dB, that are drawn below the highest: a texture without waves leaves rounding errors."""
 _LOOKS = {
@@ -261,6 +264,8 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         yield "Dotted: as the spectrum of the case states it, of which this is one texture."
     if any(series.name == "combined" for series in parts):
         yield "Combined: rail and wheel as they meet in the contact."
+    if speed:
+        yield _heard(wavelength, speed)
     yield (
         "Left out: bands that the texture does not hold, and levels more than "
         f"{SPAN:.0f} dB below the highest."
@@ -296,6 +301,15 @@ def out_of_round(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     )
     swing = "" if run_out is None else f"Run-out {data.engineering(run_out, 'm')}. "
     yield f"{swing}The largest orders, by their amplitude: {told}; an order n passes n times in each turn."
+def _heard(wavelength: Numbers, speed: float) -> str:
+    """Say which one-third octaves of frequency bands of wavelength, m, cover at a speed, m/s."""
+    bands, _, _ = third_octave_bands(*COMPARED)
+    ends = speed / wavelength.max(), speed / wavelength.min()
+    heard = int(np.sum((bands >= ends[0] / HALF_BAND) & (bands <= ends[1] * HALF_BAND)))
+    passed = " to ".join(data.engineering(each, "Hz") for each in ends)
+    smooth = "; in the others the surfaces are smooth" * (heard < len(bands))
+    of = f"{heard} of the {len(bands)} one-third octaves from 100 Hz to 5 kHz"
+    return f"At {speed:.4g} m/s they pass with {passed}: {of}{smooth}."
 
 
 def _contact(tree: DataTree, wavelength: Numbers) -> list[Mark]:

@@ -1,0 +1,73 @@
+"""Which bands roughness covers at the speed of a case: told by check and report, doubted, refused."""
+
+import re
+
+import numpy as np
+import pytest
+
+from asperity import WheelOnRail
+from asperity.case.tables import read_levels
+from asperity.errors import InputError, OutOfRangeWarning, PhysicsWarning
+from asperity.scenarios.coverage import coverages
+from asperity.scenarios.preparing import prepare
+
+LAWS = ["linear-filtered"]
+
+
+def table(longest, count, level=0.0):
+    """Levels in one-third octaves from a wavelength, of which the logarithm is given, down."""
+    return np.column_stack([10.0 ** (longest - 0.1 * np.arange(count)), np.full(count, level)])
+
+
+def case(spectrum, speed=30.0, **wheel):
+    kept = {"laws": LAWS, "duration": 0.05, "settling": 0.05, "speed": speed}
+    with PhysicsWarning.ignored():
+        return WheelOnRail(surface={"spectrum": spectrum}, wheel=wheel, **kept)
+
+
+@pytest.mark.parametrize(("speed", "longest", "count", "covered"), [
+    (30.0, -0.5, 18, 18),  # 100 Hz to 5 kHz by f = v/λ
+    (60.0, -0.5, 18, 15),  # an octave higher: the lowest three have none
+    (30.0, -0.5, 8, 8),
+    (31.0, -1.5, 8, 8),
+    (30.0, 0.5, 18, 8),
+])  # fmt: skip
+def test_bands_are_those_of_the_waves_at_the_speed(speed, longest, count, covered):
+    prepared = prepare(case(table(longest, count), speed), "case")
+    (found,) = coverages(prepared.case, prepared.textures)
+    assert len(found.covered) == covered
+    assert len(found.bands) == 18
+    expected = speed / table(longest, count)[:, 0]
+    np.testing.assert_allclose(found.covered, [f for f in expected if 89.1 < f < 5623], rtol=0.07)
+    assert f"at {speed:g} m/s {covered} of 18 one-third octaves from 100 Hz to 5 kHz" in found.at(speed)
+
+
+def test_few_bands_are_doubted_and_none_is_refused():
+    prepared = prepare(case(table(-0.5, 2)), "case")
+    (doubt,) = [each for each in prepared.caught if "one-third octaves" in str(each.message)]
+    assert doubt.category is OutOfRangeWarning
+    assert "2 of 18 one-third octaves from 100 Hz to 5 kHz, those from 100 Hz to 125 Hz" in str(doubt.message)
+    assert "heard by waves of 6 mm to 300 mm. Is the unit of the wavelengths right?" in str(doubt.message)
+    with pytest.raises(InputError) as refused:
+        prepare(case(table(0.7, 3)), "case")
+    assert re.search(r"surface.spectrum: received .* 0 of 18 one-third octaves", str(refused.value))
+
+
+def test_a_rough_wheel_makes_up_for_a_rail_of_few_bands():
+    prepared = prepare(case(table(-0.5, 2), roughness=table(-0.6, 16)), "case")
+    assert not [each for each in prepared.caught if "one-third octaves" in str(each.message)]
+    assert [each.key for each in coverages(prepared.case, prepared.textures)] == [
+        "surface.spectrum", "wheel.roughness",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("scale", "unit"), [(100, "cm"), (1000, "mm"), (1e6, "um")])
+def test_wavelengths_under_a_wrong_unit(scale, unit, tmp_path):
+    rows = "".join(f"{wave * scale:.6g}, {level}\n" for wave, level in table(-0.5, 10))
+    (tmp_path / "a.csv").write_text(f"wavelength (m), level (dB)\n{rows}")
+    with pytest.raises(
+        InputError, match=rf"up to 10 m. Are they in {unit}\? Then write 'wavelength \({unit}\)'"
+    ):
+        read_levels(tmp_path / "a.csv")
+    (tmp_path / "a.csv").write_text(f"wavelength ({unit}), level (dB)\n{rows}")
+    np.testing.assert_allclose(read_levels(tmp_path / "a.csv")[0][0], 10.0**-0.5, rtol=1e-5)
