@@ -47,7 +47,7 @@ def test_few_bands_are_doubted_and_none_is_refused():
     (doubt,) = [each for each in prepared.caught if "one-third octaves" in str(each.message)]
     assert doubt.category is OutOfRangeWarning
     assert "2 of 18 one-third octaves from 100 Hz to 5 kHz, those from 100 Hz to 125 Hz" in str(doubt.message)
-    assert "heard by waves of 6 mm to 300 mm. Is the unit of the wavelengths right?" in str(doubt.message)
+    assert "heard by waves of 5.99 mm to 300 mm. Is the unit of the wavelengths right?" in str(doubt.message)
     with pytest.raises(InputError) as refused:
         prepare(case(table(0.7, 3)), "case")
     assert re.search(r"surface.spectrum: received .* 0 of 18 one-third octaves", str(refused.value))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from asperity.arguments import Array
 from asperity.case.form import name_of
 from asperity.case.scene import Case
+from asperity.case.tables import MEASURED_WAVE
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.textures import Textures
@@ -56,14 +57,17 @@ def coverages(case: Case, textures: Textures) -> Iterator[Coverage]:
 
 
 def _covered(case: Case, key: str, name: str, longest: float, shortest: float) -> Coverage:
-    highest = max(min(HEARD[1], case.numerics.highest_frequency), HEARD[0])
-    bands, _, _ = third_octave_bands(HEARD[0], highest)
+    highest = min(HEARD[1], case.numerics.highest_frequency)
+    bands, _, _ = third_octave_bands(min(HEARD[0], 0.1 * highest), highest)
     lowest, top = case.speed / longest / HALF_BAND, case.speed / shortest * HALF_BAND
     return Coverage(key, name, (longest, shortest), bands, bands[(bands >= lowest) & (bands <= top)])
 
 
 def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]:
-    """Errors about spectra without a wave in any band that counts; few such waves are doubted."""
+    """Errors about spectra without a wave in any band that counts, as no roughness is measured.
+
+    Those with waves in few of them are doubted.
+    """
     surface = case.surface
     others = (surface.file, surface.line, surface.corrugation, case.rolling.line)
     if case.has_defect or any(other is not None for other in others):
@@ -73,9 +77,9 @@ def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]
     if not found or len(covered) >= FEWEST * len(found[0].bands):
         return
     first, speed = found[0], case.speed
-    usual = f"{speed / HEARD[1] * 1e3:.3g} mm to {speed / HEARD[0] * 1e3:.4g} mm"
+    usual = " to ".join(f"{1e3 * speed / first.bands[end]:.3g} mm" for end in (-1, 0))
     remedy = f"At this speed they are heard by waves of {usual}. Is the unit of the wavelengths right?"
-    if not covered:
+    if not covered and first.waves[1] > MEASURED_WAVE:
         yield InputError(first.key, first.at(speed), "waves that are heard at the speed of the case", remedy)
         return
     told = "; ".join(each.at(speed) for each in found)
