@@ -63,16 +63,16 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
     places = _of_places(spacing, _thousands((slope or 0.0) / USUAL))
     if not SPACINGS[0] <= float(np.min(surface.spacing)) <= spacing <= SPACINGS[1]:
         allowed = f"distances of {SPACINGS[0] * 1e9:g} nm to {SPACINGS[1]:g} m"
-        raise InputError(what, f"points {in_words(spacing)} apart", allowed, places)
+        raise InputError(what, f"points {told_length(spacing)} apart", allowed, places)
     field = float(np.min(surface.size)) if isinstance(surface, HeightMap) else 0.0
     if field > FIELDS:
-        received = f"a map whose lesser side is {in_words(field)}"
+        received = f"a map whose lesser side is {told_length(field)}"
         raise InputError(what, received, f"maps of at most {FIELDS:g} m", places)
     if field > USUAL_FIELDS:
-        OutOfRangeWarning.warn(f"{what}: a map of {in_words(field)} and more. {places}")
+        OutOfRangeWarning.warn(f"{what}: a map of {told_length(field)} and more. {places}")
     if slope is None:
         return
-    rms = in_words(float(np.nanstd(surface.heights)))
+    rms = told_length(float(np.nanstd(surface.heights)))
     found = f"heights of {rms} over {_extent(surface)}: slopes of {slope:.2g}"
     steep = slope > USUAL_SLOPES[1]
     remedy = _of_heights(surface, _thousands(slope / USUAL), hints) if steep else places
@@ -94,19 +94,19 @@ def _of_heights(surface: HeightMap | Profile, factor: float, hints: Hints) -> st
     given = hints.height_unit or 1.0
     while factor > 1e3 and given / factor < 0.9 * min(_UNITS):
         factor /= 1e3
-    usual = in_words(float(np.nanstd(surface.heights)) / factor)
+    usual = told_length(float(np.nanstd(surface.heights)) / factor)
     unit = _UNITS.get(float(f"{given / factor:.3g}"), "um")
     lead = f"Were they in {unit.replace('u', 'µ')}, {usual}? Give"
     return advice("height_unit", unit, lead, f"Were they {usual}? Correct their unit.")
 
 
 def _of_places(spacing: float, factor: float) -> str:
-    usual = in_words(spacing / factor)
+    usual = told_length(spacing / factor)
     given = spell("pixel", usual.replace("µ", "u"))
     return f"Are points {usual} apart? Give {given}, or correct the unit of places."
 
 
-def in_words(metres: float) -> str:
+def told_length(metres: float) -> str:
     """Length with three digits in the unit that suits it: ``"0.25 µm"``."""
     unit, name = next((each for each in _NAMED if abs(metres) >= 0.1 * each[0]), _NAMED[-1])
     return f"{metres / unit:.3g} {name}"
@@ -117,5 +117,5 @@ _NAMED = ((1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1
 
 def _extent(surface: HeightMap | Profile) -> str:
     if isinstance(surface, Profile):
-        return f"a line of {in_words(surface.size)}"
-    return f"a field of {' × '.join(in_words(side) for side in surface.size)}"
+        return f"a line of {told_length(surface.size)}"
+    return f"a field of {' × '.join(told_length(side) for side in surface.size)}"
