@@ -394,8 +394,8 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
 
 def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> list[tuple[str, str]]:
     """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
-    from asperity.scenarios.law_choice import advice
     from asperity.scenarios.coverage import coverages
+    from asperity.scenarios.law_choice import advice
     from asperity.scenarios.reducing import STATES
     from asperity.scenes.roundness import planned_roundness
     from asperity.scenes.track import planned_track

@@ -301,6 +301,8 @@ def out_of_round(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     )
     swing = "" if run_out is None else f"Run-out {data.engineering(run_out, 'm')}. "
     yield f"{swing}The largest orders, by their amplitude: {told}; an order n passes n times in each turn."
+
+
 def _heard(wavelength: Numbers, speed: float) -> str:
     """Say which one-third octaves of frequency bands of wavelength, m, cover at a speed, m/s."""
     bands, _, _ = third_octave_bands(*COMPARED)
