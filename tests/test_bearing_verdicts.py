@@ -97,6 +97,15 @@ def test_a_second_ring_that_the_shaft_makes_of_the_first_is_not_named(part):
     assert [each.part for each in diagnosis.parts] == [part]
 
 
+def test_a_long_record_whose_blows_slip_is_read_in_pieces():
+    """Two thousand turns: lines of blows that come by their own clock are wider than it resolves, and no part
+    is named."""
+    signal = faulty_signal("inner", 50.0, RATE, 40.0, noise=0.2)
+    diagnosis = diagnose(signal, RATE, B6205.tones(), 50.0)
+    assert [each.part for each in diagnosis.parts] == ["inner"]
+    assert diagnosis.resolution == pytest.approx(0.1)
+
+
 def test_noise_says_nothing_of_speed_and_parts():
     for seed in range(3):
         diagnosis = diagnose(np.random.default_rng(seed).normal(size=12_000), RATE, B6205.tones(), SPEED)

@@ -3,10 +3,10 @@
 import numpy as np
 
 COEFFICIENTS = {
-    "blows": (3.70, 0.00, 0.00),
-    "elsewhere": (0.06, 1.62, 0.42),
-    "fault": (-0.08, 1.82, 0.20),
-    "fault, shaft not found": (0.43, 1.80, 0.00),
+    "blows": (3.68, 0.00, 0.00),
+    "elsewhere": (0.14, 1.26, 0.80),
+    "fault": (-0.07, 1.83, 0.19),
+    "fault, shaft not found": (0.09, 2.03, 0.00),
     "nothing": (3.11, 0.00, 0.00),
     "sound": (0.81, 0.00, 0.00),
 }

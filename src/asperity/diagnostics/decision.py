@@ -1,5 +1,6 @@
 """What is said of a record: whether its speed is confirmed, which parts are struck, and how sure that is."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -25,6 +26,8 @@ TOLD = 15.0
 AHEAD, AHEAD_OF_SHAFT = 10.0, 25.0
 """Score by which a hypothesis at another speed must be ahead to be named: where lines of the shaft are found
 at the speed given, another shaft may be near, and more is asked."""
+LONGEST = 500.0
+"""Turns of a piece of a record: blows that slip have wide lines in longer ones."""
 LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
 """Share by which the envelope follows the blows of a fault: balls that pass a sound ring that stands in the
 load make it rise and fall, too, by 0.13 at most in the records of sound bearings that were looked at."""
@@ -62,7 +65,8 @@ class Diagnosis:
     confidence : float
         That this is so, 0 to 1.
     resolution : float
-        Distance of two lines that are told apart, Hz: one over the duration.
+        Distance of two lines that are told apart, Hz: one over the duration, or that of the pieces of a long
+        record.
     record : BearingRecord
         What was looked at.
     """
@@ -132,7 +136,7 @@ def diagnose(
     received, allowed = f"{duration:.3g} s", f"at least {needed:.3g} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
     edges = band or impulsive_band(values, rate, HARMONICS * tone.order * told)
-    record = BearingRecord.of(values, rate, edges)
+    record = BearingRecord.of(values, rate, edges, pieces=math.ceil(duration * told / LONGEST))
     return decided(record, record.read(tones, told), tones, told)
 
 

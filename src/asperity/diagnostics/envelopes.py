@@ -47,6 +47,32 @@ def amplitude_spectrum(signal: ArrayLike, rate: float) -> Spectrum:
     return frequency, np.asarray(amplitude, dtype=np.float64)
 
 
+def mean_spectrum(signal: ArrayLike, rate: float, pieces: int) -> Spectrum:
+    """Root mean square, over equal pieces of a signal, of their amplitude spectra.
+
+    Lines of blows that come by their own clock widen as a record grows longer; in pieces they stay lines.
+
+    Parameters
+    ----------
+    signal : array_like (n,)
+        In any unit.
+    rate : float
+        Samples per second, Hz.
+    pieces : int
+        How many, 1 for the spectrum of the whole.
+
+    Returns
+    -------
+    frequency, amplitude : ndarray (f,)
+        As of `amplitude_spectrum` of a piece.
+    """
+    values, rate = checked_signal(signal, rate)
+    size = values.size // pieces
+    spectra = [amplitude_spectrum(values[n * size : (n + 1) * size], rate) for n in range(pieces)]
+    power = np.mean([amplitude**2 for _, amplitude in spectra], axis=0)
+    return spectra[0][0], np.sqrt(power)
+
+
 def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] | None = None) -> Spectrum:
     """Amplitudes of the lines in the envelope of a signal: how often, and how evenly, it is struck.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.diagnostics.envelopes import amplitude_spectrum, prewhitened
+from asperity.diagnostics.envelopes import mean_spectrum, prewhitened
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
 
@@ -90,7 +90,7 @@ class BearingRecord:
     Attributes
     ----------
     duration : float
-        s.
+        Of a piece, s.
     spectrum, white, band : Prominence
         Of the signal, of the envelope of the prewhitened signal, and of that of a band.
     limits : (float, float)
@@ -104,15 +104,16 @@ class BearingRecord:
     limits: tuple[float, float]
 
     @classmethod
-    def of(cls, signal: Array, rate: float, limits: tuple[float, float]) -> "BearingRecord":
-        """A record (n,) at a sampling rate, Hz, and the band of its second envelope."""
+    def of(cls, signal: Array, rate: float, limits: tuple[float, float], pieces: int = 1) -> "BearingRecord":
+        """A record (n,) at a sampling rate, Hz, the band of its second envelope, and in how many pieces it is
+        read."""
         values = signal - signal.mean()
         white = prewhitened(values, rate)
         return cls(
-            duration=values.size / rate,
-            spectrum=Prominence.of(amplitude_spectrum(values, rate)),
-            white=Prominence.of_envelope(white, rate, (0.0, 0.5 * rate)),
-            band=Prominence.of_envelope(values, rate, limits),
+            duration=values.size // pieces / rate,
+            spectrum=Prominence.of(mean_spectrum(values, rate, pieces)),
+            white=Prominence.of_envelope(white, rate, (0.0, 0.5 * rate), pieces),
+            band=Prominence.of_envelope(values, rate, limits, pieces),
             limits=limits,
         )
 

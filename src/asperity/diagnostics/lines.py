@@ -96,9 +96,9 @@ def find_lines(
     step = frequency[1] - frequency[0]
     count = min(harmonics, int((frequency[-1] / step - WITHIN - 1) * step / (expected * (1.0 + slip))))
     received, allowed = f"{expected:.4g} Hz", f"less than the spectrum reaches, {frequency[-1]:.4g} Hz"
-    require(count >= 1, "expected line", received, allowed, "Take a wider band, or a faster sampling.")
-    allowed = f"at least {8.0 * step:.3g} Hz"
-    require(expected >= 8.0 * step, "expected line", received, allowed, "Record longer.")
+    require(count >= 1, "line that is sought", received, allowed, "Take a wider band, or a faster sampling.")
+    allowed = f"at least {8.0 * step:.3g} Hz, four times what the record resolves"
+    require(expected >= 8.0 * step, "line that is sought", received, allowed, "Record longer.")
     order = np.arange(1, count + 1)
     spans = [(at, max(AROUND * at, FEWEST)) for at in order * expected / step]
     background = np.array([np.median(amplitude[max(int(at - n), 1) : int(at + n)]) for at, n in spans])

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array
-from asperity.diagnostics.envelopes import Spectrum, analytic_signal, envelope_spectrum
+from asperity.diagnostics.envelopes import Spectrum, analytic_signal, mean_spectrum
 from asperity.diagnostics.lines import AROUND, COUNTED, FEWEST, STANDS_OUT, WITHIN
 
 HARMONICS = 5
@@ -66,10 +66,14 @@ class Prominence:
         return cls(float(frequency[1]), amplitude, background, log_ratio, level)
 
     @classmethod
-    def of_envelope(cls, signal: Array, rate: float, band: tuple[float, float]) -> "Prominence":
-        """How far the lines of the envelope of a signal (n,) in a band, Hz, stand out."""
-        level = float(np.abs(analytic_signal(signal, rate, *band)).mean())
-        return cls.of(envelope_spectrum(signal, rate, band), level)
+    def of_envelope(
+        cls, signal: Array, rate: float, band: tuple[float, float], pieces: int = 1
+    ) -> "Prominence":
+        """How far the lines of the envelope of a signal (n,) in a band, Hz, stand out, over pieces of it."""
+        envelope = np.abs(analytic_signal(signal, rate, *band))
+        frequency, amplitude = mean_spectrum(envelope, rate, pieces)
+        held = frequency <= band[1] - band[0]
+        return cls.of((frequency[held], amplitude[held]), float(envelope.mean()))
 
     def at(self, frequency: Array) -> Array:
         """Logarithms of ratios at frequencies of any shape, Hz; NaN beyond the spectrum."""
