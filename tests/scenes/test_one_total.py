@@ -158,7 +158,7 @@ def test_a_study_of_one_member_and_what_helps_tell_it(kind, runs):
     assert float(found["level"].sel(radiator="total")) == pytest.approx(total(tree), abs=1e-9)
     told = effects.Effects(found)
     assert cells(effects.effects_table(told))["total"] == f"{total(tree):.1f}"
-    loudest = sources.sources_of(tree, noise.OWN_A).loudest
+    loudest = sources.main_sources(tree, noise.OWN_A).loudest
     assert told.loudest() == (loudest[0] if len(loudest) == 1 else f"{' and '.join(loudest)}, about equal")
 
 

@@ -395,7 +395,7 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
 def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) -> list[tuple[str, str]]:
     """List what will be computed and how much work it is, from `asperity.scenarios.preparing.expect`."""
     from asperity.scenarios.coverage import coverages
-    from asperity.scenarios.law_choice import advice
+    from asperity.scenarios.law_choice import advised_law
     from asperity.scenarios.reducing import STATES
     from asperity.scenes.roundness import planned_roundness
     from asperity.scenes.track import planned_track
@@ -424,7 +424,7 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
     if work.tried is not None:  # a sample
         share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"
         rows.append(("real contact", share))
-    rows += [*planned_roundness(prepared), *advice(prepared, choice)]
+    rows += [*planned_roundness(prepared), *advised_law(prepared, choice)]
     rows += [(f"contact solutions, {name}", f"at most {count}") for name, count in work.solutions.items()]
     if scan := work.scans.get("path"):
         rows.append(("scan of the path", described_scan(scan)))

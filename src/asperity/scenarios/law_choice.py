@@ -251,7 +251,7 @@ def unmapped(prepared: PreparedCase) -> str:
     return f"it holds textures that are rough across, too, and this one is alike all across; {seen}"
 
 
-def advice(prepared: PreparedCase, choice: LawChoice | None) -> Iterator[tuple[str, str]]:
+def advised_law(prepared: PreparedCase, choice: LawChoice | None) -> Iterator[tuple[str, str]]:
     """Say which law to take, or why the map does not say it: names and values."""
     if choice is not None:
         yield from choice.rows()

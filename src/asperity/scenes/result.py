@@ -17,7 +17,7 @@ from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning, warn_of_findings
 from asperity.progress import Progress
 from asperity.reference import cnossos
-from asperity.scenarios.law_choice import LawChoice, advice
+from asperity.scenarios.law_choice import LawChoice, advised_law
 from asperity.scenarios.scene import PreparedCase, force_transfer
 from asperity.scenes import creep, measured, noise, roundness, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
@@ -159,7 +159,7 @@ def _numerics(computed: Computed, choice: LawChoice | None, losses: Values) -> I
     yield from _of_structure(computed)
     yield from roundness.planned_roundness(computed)
     yield from track.described_losses(losses)
-    yield from advice(computed, choice)
+    yield from advised_law(computed, choice)
     for part, seconds in computed.seconds.items():
         yield f"wall time, {part}", f"{seconds:.2f} s"
 

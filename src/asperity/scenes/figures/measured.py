@@ -10,7 +10,7 @@ from asperity.reference.railways import PassByLimit
 from asperity.reporting import chart, data, figure, panels, tables
 from asperity.reporting.tables import Cell, ReportTable, table, text_cells
 from asperity.scenes import schema
-from asperity.scenes.figures.sources import WHOLE, Sources, decides, sources_of
+from asperity.scenes.figures.sources import WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting
 
@@ -155,13 +155,13 @@ def _result(tree: DataTree, of: Sources) -> tuple[str, bool | None]:
 
 def limit_sentence(tree: DataTree) -> str:
     """Say whether the rolling noise of the vehicle is within its limit; nothing without a type of vehicle."""
-    speed, of = data.number(tree, schema.REFERENCE_SPEED), sources_of(tree, schema.NORMALISED_LEVEL)
+    speed, of = data.number(tree, schema.REFERENCE_SPEED), main_sources(tree, schema.NORMALISED_LEVEL)
     if of is None or speed is None:
         return ""
     alone = "alone" if "wheel" in of.parts else "without the wheel"
     failed = [str(each.get("condition")) for each in _conditions(tree) if not each.get("met")]
     told = f" Not as a test asks: {', '.join(failed)}." if failed else ""
-    if (above := sources_of(tree, schema.NORMALISED_LEVEL_ABOVE)) is not None:
+    if (above := main_sources(tree, schema.NORMALISED_LEVEL_ABOVE)) is not None:
         told = f" At 3.5 m height it has {above.whole:.1f} dB(A), {_result(tree, above)[0]}.{told}"
     return (
         f"TSI Noise, {_vehicle(tree)}: rolling noise {alone} has {of.whole:.1f} dB(A) at "
@@ -182,7 +182,7 @@ def limits_table(tree: DataTree) -> ReportTable | None:
     conditions, speed = _conditions(tree), data.number(tree, schema.REFERENCE_SPEED)
     rows: list[dict[str, Any]] = []
     for place, entry in _PLACES.items():
-        if speed is not None and (of := sources_of(tree, entry)) is not None:
+        if speed is not None and (of := main_sources(tree, entry)) is not None:
             told, met = _result(tree, of)
             here = f"{of.whole:.1f} dB(A): {of.in_words}"
             what = f"L_pAeq,Tp at {3.6 * speed:.0f} km/h{place}"

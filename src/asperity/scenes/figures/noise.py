@@ -14,7 +14,7 @@ from asperity.reporting.figure import Lines, Of, Series, figure
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import LOOKS, limit_sentence
-from asperity.scenes.figures.sources import BODIES, RAIL, WHOLE, Sources, decides, sources_of
+from asperity.scenes.figures.sources import BODIES, RAIL, WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -282,7 +282,7 @@ def noise_answers(tree: DataTree) -> headline.Answers | None:
     """Sound power of the main law by both models, and what decides it."""
     if (powers := sound_power_table(tree, main=True)) is None:
         return None
-    of, by_tables = sources_of(tree, OWN_A), by_part(tree, STANDARD_A)
+    of, by_tables = main_sources(tree, OWN_A), by_part(tree, STANDARD_A)
     cards = []
     if of is not None:
         held = "from vibration" if "wheel" in of.parts else "from vibration, without the wheel"
@@ -337,7 +337,7 @@ _HEADLINES = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_M
 
 def pass_by_answers(tree: DataTree) -> headline.Answers | None:
     """Level beside the track by the main law."""
-    found = {name: of for name, entry in _HEADLINES.items() if (of := sources_of(tree, entry)) is not None}
+    found = {name: of for name, entry in _HEADLINES.items() if (of := main_sources(tree, entry)) is not None}
     if not found:
         return None
     (first, of), *others = found.items()

@@ -83,7 +83,7 @@ def decides(names: Sequence[str]) -> str:
     return f"the {names[0]} {'decide' if names[0].endswith('s') else 'decides'}"
 
 
-def sources_of(tree: DataTree, entry: Entry) -> Sources | None:
+def main_sources(tree: DataTree, entry: Entry) -> Sources | None:
     """Total and parts of a single number of the main law by what radiates; None without it."""
     found = data.stored_variable(tree, entry)
     if found is None or not (laws := data.laws(tree, entry)):
