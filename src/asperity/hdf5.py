@@ -33,6 +33,16 @@ def opened_netcdf(path: str | os.PathLike[str], source: str, **options: Any) -> 
         yield opened
 
 
+@contextmanager
+def opened_hdf5(path: str | os.PathLike[str], source: str) -> "Iterator[h5py.File]":
+    """Open an HDF5 file of any kind to read it, if it holds all of its data itself."""
+    import h5py
+
+    refuse_data_elsewhere(path, source)
+    with h5py.File(path, "r") as opened:
+        yield opened
+
+
 def is_hdf5(path: str | os.PathLike[str]) -> bool:
     """Whether a file is HDF5, by its signature, which other bytes may precede."""
     place, size = 0, os.path.getsize(path)

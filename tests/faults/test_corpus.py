@@ -68,7 +68,7 @@ CORPUS = {
     ),
     "a library that ends": (
         ("surface", "a.nc", "--height-unit", "um", "--pixel", "1 um"), 2,
-        "while it was opened; allowed: an intact netCDF-4 file", {"a.nc": ENDS},
+        "while it was opened; allowed: an intact netCDF file", {"a.nc": ENDS},
     ),
 }  # fmt: skip
 

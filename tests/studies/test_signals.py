@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray
 from executors import Here
-from scipy.io import wavfile
+from scipy.io import savemat, wavfile
 
 import asperity
 from asperity.case.cases import as_case, parse_case
@@ -271,7 +271,32 @@ def test_a_wav_file_is_read_in_shares_of_full_scale(tmp_path):
     np.testing.assert_array_equal(recorded("a.wav", wav(), tmp_path), SAMPLES / 2**15)
 
 
+@pytest.mark.parametrize("name", ["a.mat", "a", "a.dat"])
+@pytest.mark.parametrize("shape", [(-1, 1), (1, -1)])
+def test_a_record_of_matlab_is_read_whatever_it_is_called(tmp_path, monkeypatch, name, shape):
+    """As it is handed round: a column beside the turns per minute; sizes of one are no signals."""
+    here = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
+    monkeypatch.setattr("asperity.surfaces.readers.matlab.sandboxed", here)
+    stored = {"X097_DE_time": TIME.reshape(shape), "X097RPM": 1797.0}
+    savemat(tmp_path / name, stored, appendmat=False)
+    values, rate = read_signal(tmp_path / name, 12e3)
+    np.testing.assert_array_equal(values, TIME)
+    assert rate == 12e3
+
+
+def test_the_content_of_a_record_decides_not_its_name(tmp_path):
+    np.testing.assert_array_equal(recorded("a.txt", wav(), tmp_path), SAMPLES / 2**15)
+    np.save(tmp_path / "a.npy", TIME)
+    (tmp_path / "a.npy").rename(tmp_path / "a.bin")
+    np.testing.assert_array_equal(read_signal(tmp_path / "a.bin", 12e3)[0], TIME)
+
+
 test_signals_that_are_none = refusals(
+    (
+        "a.bin",
+        b"\x00\x00\x01\x02\xff" * 40,
+        "bytes that are no text, and no signal; allowed: .npz, .npy, .wav, .mat or",
+    ),
     ("a.wav", wav(data=2**32 - 1, riff=2**32 - 1), "4294967295 bytes of samples, by its head, in 1200"),
     ("a.wav", wav()[:-7], r"1200 bytes of samples, by its head, in 1193; .*truncated"),
     (

@@ -1,8 +1,10 @@
 """Hostile, damaged and wrong files end in one clear message, before anything large is allocated."""
 
+import io
 import os
 import pickle
 import struct
+import sys
 import tracemalloc
 
 import h5netcdf  # noqa: F401  what it takes itself is not what a file takes
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.io import savemat
 from surface_files import npy, sdf_ascii, sdf_binary, x3p, x3p_xml, zipped
 
 from asperity.errors import InputError
@@ -175,7 +178,7 @@ def test_file_without_permission(tmp_path):
     ("import os; os.abort()", 20.0, r"a file that ends the program that opens it"),
     ("import numpy; numpy.ones(2**31)", 20.0, r"(MemoryError|more than 8 GiB of memory).* while it was"),
     # what is limited is the processor time: a file that only has to wait is read on
-    ("import time; time.sleep(1.5); raise KeyError('read on')", 1.0, r"KeyError \('read on'\) while it was"),
+    ("import time; time.sleep(1.5); raise KeyError('read on')", 1.0, r"a format .*KeyError \('read on'\)"),
 ])  # fmt: skip
 def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, seconds, message):
     (tmp_path / "SurfaceTopography.py").write_text(f"def open_topography(path):\n    {code}\n")
@@ -183,6 +186,41 @@ def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, sec
     monkeypatch.setattr("asperity.sandbox.SECONDS", seconds)
     with pytest.raises(InputError, match=rf"a\.plu: received {message}"):
         read_surface(write(tmp_path / "a.plu", b"content"))
+
+
+def test_what_a_library_does_not_know_is_no_damaged_file(tmp_path, monkeypatch):
+    """And all that it has tried is not told."""
+    code = "class CannotDetectFileFormat(Exception): pass\ndef open_topography(path):\n"
+    code += "    raise CannotDetectFileFormat('tried: ' + 40 * 'a, ')\n"
+    (tmp_path / "SurfaceTopography.py").write_text(code)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(InputError) as caught:
+        read_surface(write(tmp_path / "a.plu", b"content"))
+    assert "received a format that SurfaceTopography does not read; allowed: text, CSV" in str(caught.value)
+    assert not {"tried", "damaged"} & set(str(caught.value).replace(":", " ").split())
+
+
+def claims_in_matlab():
+    """An array of zeros that is packed to a thousandth."""
+    stream = io.BytesIO()
+    savemat(stream, {"z": np.zeros((4000, 4000))}, do_compression=True)
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize(("name", "contents", "message"), [
+    ("a.mat", b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + 40 * b"\xff", "an intact MATLAB"),
+    ("a.mat", claims_in_matlab, "4000 x 4000 points in .* bytes, which unpack to 128000000; allowed: at mos"),
+    ("a.nc", b"CDF\x01" + 40 * b"\xff", "an intact netCDF file"),
+    ("a.nc", b"CDF\x05" + 40 * b"\x00", "netCDF of 64-bit data .* nccopy"),
+    ("a.dat", b"\x88\x1b\x03\x6f" + 900 * b"\x00", "a .dat file, which asperity does not read itself"),
+])  # fmt: skip
+def test_binary_files_that_hold_no_heights(tmp_path, monkeypatch, name, contents, message):
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    here = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
+    if name == "a.dat":
+        monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", here)
+    with pytest.raises(InputError, match=message):
+        read_surface(write(tmp_path / name, contents() if callable(contents) else contents), **HINTS)
 
 
 @pytest.mark.filterwarnings("ignore::asperity.errors.MissingPointsWarning")

@@ -7,8 +7,10 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import h5netcdf
+import h5py
 import numpy as np
 import pytest
+from scipy.io import netcdf_file, savemat
 from surface_files import SDF_TYPES, npy, sdf_ascii, sdf_binary, x3p, zipped
 
 from asperity.errors import InputError, MissingPointsWarning
@@ -39,6 +41,42 @@ def netcdf(*, x=(7.0, 9.0, 11.0, 13.0), lateral="um", unit="nm", **variables):
     return stream.getvalue()
 
 
+def classic(version=2, kind="f8", **attributes):
+    """netCDF of the classic format, whose numbers have the most significant byte first."""
+    stream = io.BytesIO()
+    with netcdf_file(stream, "w", version=version) as file:
+        file.createDimension("x", 4)
+        file.createDimension("y", 3)
+        for name, values in {"x": [7.0, 9.0, 11.0, 13.0], "y": [7.0, 10.0, 13.0]}.items():
+            variable = file.createVariable(name, "f8", (name,))
+            variable[:], variable.units = values, "um"
+        variable = file.createVariable("heights", kind, ("x", "y"))
+        variable[:], variable.units = attributes.pop("heights", HEIGHTS), "nm"
+        for name, value in attributes.items():
+            setattr(variable, name, value)
+        file.flush()
+        return stream.getvalue()
+
+
+def matlab(**variables):
+    """A file of MATLAB before version 7.3."""
+    stream = io.BytesIO()
+    savemat(stream, variables, do_compression=True)
+    return stream.getvalue()
+
+
+def matlab_hdf5(**variables):
+    """One of version 7.3: columns follow one another, and words are numbers of their own class."""
+    stream = io.BytesIO()
+    with h5py.File(stream, "w", userblock_size=512) as file:
+        for name, values in variables.items():
+            words = isinstance(values, str)
+            stored = np.array([[ord(word)] for word in values], "u2") if words else values.T
+            file[name] = stored
+            file[name].attrs["MATLAB_class"] = np.bytes_("char" if words else "double")
+    return b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(128) + stream.getvalue()[128:]
+
+
 def holed(marker, heights=STORED, at=(2, 1)):
     """Heights with a marker at the second point along x and the third along y."""
     stored = np.array(heights, dtype=float)
@@ -67,6 +105,15 @@ WHOLE = {
         for kind, zip_ in zip("ILFD", (True, False) * 2, strict=True)
     },
     "x3p, not rotated": ("a.x3p", x3p([1e-9 * STORED], rotation=f"<Rotation>{IDENTITY}</Rotation>"), {}),
+    **{f"classic netCDF {version}": ("a.nc", classic(version), {}) for version in (1, 2)},
+    **{f"classic netCDF of {kind}": ("a.cdf", classic(kind=kind), {}) for kind in ("f4", "i2", "i4")},
+    **{
+        f"matlab as {name}": (name, matlab(z=HEIGHTS, words="abc", one=1.0), NM)
+        for name in ("a.mat", "a.dat")
+    },
+    "matlab by name": ("a.mat", matlab(a=STORED, z=HEIGHTS), NM | {"array": "z"}),
+    "matlab structure": ("a.mat", matlab(s={"z": HEIGHTS, "rate": 1.0}), NM | {"array": "s.z"}),
+    "matlab 7.3": ("a.mat", matlab_hdf5(z=HEIGHTS, words="abc"), NM),
     "netCDF": ("a.nc", netcdf(), {}),
     "netCDF image": ("a.nc", netcdf(z=("yx", STORED, {})), {}),
     "netCDF that falls": ("a.nc", netcdf(x=7 - 2.0 * np.arange(4), z=("xy", HEIGHTS[::-1], {})), {}),
@@ -112,6 +159,10 @@ HOLED = {
     "x3p not a number": ("a.x3p", x3p([1e-9 * holed(np.nan)])),
     "x3p infinite": ("a.x3p", x3p([1e-9 * holed(np.inf)])),
     "netCDF": ("a.nc", netcdf(z=("xy", holed(-999, 2 * HEIGHTS - 8, (1, 2)).astype("i2"), PACKED))),
+    "classic netCDF": (
+        "a.nc",
+        classic(kind="i2", heights=holed(-999, HEIGHTS, (1, 2)), missing_value=np.int16(-999)),
+    ),
     **{
         f"netCDF that fills {kind}": (
             "a.nc",
@@ -135,7 +186,8 @@ HOLED = {
 def _read_here(monkeypatch):
     """What is read in a process of its own elsewhere is read in this one."""
     at_once = lambda function, path, arguments, **_: function(str(path), *arguments)  # noqa: E731
-    monkeypatch.setattr("asperity.surfaces.readers.libraries.sandboxed", at_once)
+    for module in ("libraries", "matlab"):
+        monkeypatch.setattr(f"asperity.surfaces.readers.{module}.sandboxed", at_once)
 
 
 @pytest.fixture
@@ -263,7 +315,7 @@ REFUSED = [  # file, its contents, hints, and what the message says
     ("a.nc", netcdf(), {"array": "q"}, "received 'q'; allowed: one of: z, or group/variable"),
     ("a.nc", netcdf(x=[0.0, 1.0, 2.5, 3.0]), {}, r"x of a\.nc:z: received coordinates that are not uniform"),
     ("a.nc", never_written(), {"pixel": "1 um"}, r"50000 x 5000 points in \d+ bytes"),
-    ("a.nc", netcdf()[:3000], {}, "an intact netCDF-4 file"),
+    ("a.nc", netcdf()[:3000], {}, "an intact netCDF file"),
     *(
         (name, contents, {hint: value}, f"hints for .*received {hint}; allowed: no hints")
         for name, contents in (("a.sdf", sdf_binary(STORED, 5)), ("a.x3p", x3p([STORED])))

@@ -29,7 +29,7 @@ from asperity.studies.axes import AS_IT_IS, VARIANT, written_out
 from asperity.studies.definition import Member
 from asperity.studies.member import SIGNAL
 from asperity.studies.times import clock_of, rate_beside
-from asperity.surfaces.readers import arrays, guards
+from asperity.surfaces.readers import arrays, guards, matlab, text
 from asperity.text_files import (
     blocks_of_lines,
     even_rows,
@@ -75,7 +75,7 @@ class SignalSet:
         full scale, in m/s2, stands in ``labels.csv``. Beside the last two lies the case in TOML.
     path : path, optional
         File with the impulse response of the path from the bearing to the sensor, as `through_path` takes
-        it: ``.npy``, ``.npz``, ``.wav``, or a table, of which a column of times (s) may come first.
+        it: ``.npy``, ``.npz``, ``.mat``, ``.wav``, or a table, of which a column of times (s) may come first.
     path_rate : str or float, optional
         Samples per second of that response, where its file does not say: Hz, or with a unit.
     noise : str, optional
@@ -254,7 +254,7 @@ def _titled(dotted: str) -> str:
 def read_signal(
     path: Path, rate: float | None = None, *, array: str | None = None, column: int | None = None
 ) -> tuple[Array, float]:
-    """Read a signal (n,) and its sampling rate, Hz, from ``.npy``, ``.npz``, ``.wav`` or a text table.
+    """Read a signal (n,) and its sampling rate, Hz, from ``.npy``, ``.npz``, ``.mat``, ``.wav`` or text.
 
     `rate` is that which a file does not state, `array` the one of several in an archive, `column` the one of
     several, from 1. A column of times gives the rate, see `clock_of`. Samples of a WAV file are in shares of
@@ -283,7 +283,7 @@ def _check_size(values: Array, source: str) -> None:
 
 def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None]:
     """What a file holds, with titles of its columns and the sampling rate, Hz, as far as it states them."""
-    kind, titles, rate = file.suffix.lower(), list[str](), None
+    kind, titles, rate = _kind_of(file), list[str](), None
     with guards.hostile(file.name, kind.lstrip(".") or "text"):
         if kind == ".wav":
             rate, values = _of_wav(file)
@@ -291,9 +291,28 @@ def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | 
             values = arrays.array_in(arrays.array_of_archive(file, array, "signals")[1], file.name)
         elif kind == ".npy":
             values = arrays.array_in(file.read_bytes(), file.name)
+        elif kind == ".mat":
+            values = matlab.array_of_matlab(file, array, "signals")[1]
+            values = values.ravel() if 1 in values.shape else values
         else:
             values, titles = _of_text(file)
     return guards.scaled(values, 1.0, file.name), titles, rate
+
+
+def _kind_of(file: Path) -> str:
+    """Extension that a file with a signal has by its content, or by its name; empty for text."""
+    with open(file, "rb") as opened:
+        head = opened.read(32)
+    known = {".wav": (b"RIFF", b"RIFX", b"RF64"), ".npy": (b"\x93NUMPY",), ".npz": (b"PK\x03\x04",)}
+    for kind, begins in (known | {".mat": matlab.HEAD}).items():
+        if head.startswith(begins):
+            return kind
+    named = file.suffix.lower()
+    if named in (*known, ".mat"):
+        return named
+    allowed, remedy = ".npz, .npy, .wav, .mat or text", "Save the signal as one of these."
+    require(text.holds_text(file), file.name, "bytes that are no text, and no signal", allowed, remedy)
+    return ""
 
 
 def _column(chosen: int | None, count: int, clock: tuple[int, float | None] | None, source: str) -> int:

@@ -10,20 +10,23 @@ import numpy as np
 from asperity.arguments import require, shown, whole
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import arrays, guards, iso_25178, text
+from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, text
 from asperity.surfaces.readers.belief import judge_sizes
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
-from asperity.surfaces.readers.libraries import read_apart
+from asperity.surfaces.readers.libraries import CLASSIC, read_apart
 
 __all__ = ["read_all", "read_surface"]
 
 Reader = Callable[[Path, Hints], list[guards.Surface]]
 
 READ_AS_TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
+MAY_BE_BINARY = {"", ".dat", ".asc", ".xyz"}
+"""Of these, those that instruments also give files of their own."""
 OWN: dict[str, tuple[str, Reader]] = {
     ".npy": ("npy", arrays.read_npy),
     ".npz": ("npz", arrays.read_npz),
-    ".nc": ("netCDF-4", read_apart("read_netcdf", "netCDF-4")),
+    ".nc": ("netCDF", read_apart("read_netcdf", "netCDF")),
+    ".mat": ("MATLAB", matlab.read_mat),
     ".sdf": ("SDF", iso_25178.read_sdf),
     ".x3p": ("X3P", iso_25178.read_x3p),
 }
@@ -55,10 +58,10 @@ def read_surface(
     Parameters
     ----------
     path : str or Path
-        Text or CSV, ``.npy``, ``.npz``, netCDF-4, SDF (ISO 25178-71), X3P (ISO 25178-72); other instrument
-        formats with the extra ``asperity[readers]``.
+        Text or CSV, ``.npy``, ``.npz``, ``.mat``, netCDF, SDF (ISO 25178-71), X3P (ISO 25178-72); other
+        instrument formats with the extra ``asperity[readers]``.
     array : str, optional
-        Name of the array (npz), variable (netCDF) or channel (instrument file), where there are several.
+        Name of the array (npz, mat), variable (netCDF) or channel (instrument file), where there are several.
     index : int, optional
         Which sample, from zero, where the file holds an ensemble (a 3-D array).
     height_unit : str or float, optional
@@ -140,13 +143,14 @@ def _chosen(surfaces: list[guards.Surface], index: int | None, path: str | Path)
 def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
     file = guards.readable_file(path)
     with file.open("rb") as stream:
-        head = stream.read(16)
+        head = stream.read(32)
     extension, content = file.suffix.lower().replace(".nc4", ".nc"), _by_content(file, head)
     if extension in OWN:
         received, allowed = f"a file that starts with {head[:8]!r}", f"a {OWN[extension][0]} file"
         remedy = "Export it again, or correct the extension."
         require(content == extension, file.name, received, allowed, remedy)
-    kind, reader = OWN[content] if content else TEXT if extension in READ_AS_TEXT else OTHER
+    as_text = extension in READ_AS_TEXT and (extension not in MAY_BE_BINARY or text.holds_text(file))
+    kind, reader = OWN[content] if content else TEXT if as_text else OTHER
     with guards.hostile(file.name, kind):
         surfaces = _read_by(reader, file, hints)
     judge_sizes(surfaces[0], hints)
@@ -171,7 +175,9 @@ def _by_content(file: Path, head: bytes) -> str | None:
         return ".sdf"
     if head.startswith(b"\x93NUMPY"):
         return ".npy"
-    if head.startswith(b"\x89HDF") and extension in ("", ".nc", ".nc4"):
+    if head.startswith(matlab.HEAD) or (extension == ".mat" and not text.holds_text(file)):
+        return ".mat"
+    if head.startswith((b"\x89HDF", *CLASSIC)) and extension in ("", ".nc", ".nc4", ".cdf", ".dat"):
         return ".nc"
     if not head.startswith(b"PK"):
         return None

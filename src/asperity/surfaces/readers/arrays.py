@@ -20,7 +20,7 @@ def read_npy(path: Path, hints: Hints) -> list[guards.Surface]:
 
     The hints `height_unit` and `pixel` are required; Python objects are refused.
     """
-    return _surfaces(path.read_bytes(), hints, path.name, path.name)
+    return surfaces_of_array(array_in(path.read_bytes(), path.name), hints, path.name)
 
 
 def read_npz(path: Path, hints: Hints) -> list[guards.Surface]:
@@ -29,7 +29,7 @@ def read_npz(path: Path, hints: Hints) -> list[guards.Surface]:
     See `read_npy`.
     """
     name, data = array_of_archive(path, hints.array)
-    return _surfaces(data, hints, path.name, f"{path.name}:{name}")
+    return surfaces_of_array(array_in(data, path.name), hints, f"{path.name}:{name}")
 
 
 def array_of_archive(path: Path, name: str | None, what: str = "heights") -> tuple[str, bytes]:
@@ -60,8 +60,9 @@ def only_one(names: list[str], source: str, what: str = "heights") -> str:
     return names[0]
 
 
-def _surfaces(data: bytes, hints: Hints, file: str, source: str) -> list[guards.Surface]:
-    heights = guards.scaled(guards.without_marks(array_in(data, file)), hints.heights_in(source), source)
+def surfaces_of_array(array: NDArray[Any], hints: Hints, source: str) -> list[guards.Surface]:
+    """Surfaces that an array without units holds, of which the hints tell the rest, see `read_npy`."""
+    heights = guards.scaled(guards.without_marks(array), hints.heights_in(source), source)
     return guards.surfaces_of(heights, hints.spacing_in(source), source)
 
 

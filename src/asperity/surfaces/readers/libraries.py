@@ -1,15 +1,16 @@
 """Formats that libraries parse, netCDF and those of instruments, in a sandbox: see `asperity.sandbox`."""
 
 import warnings
-from collections.abc import Callable
-from dataclasses import asdict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from asperity.arguments import Array, listed, require, shown
-from asperity.errors import InputError
+from asperity.errors import InputError, reason
 from asperity.hdf5 import check_unpacked, is_hdf5, opened_netcdf, refuse_data_elsewhere
 from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -17,8 +18,10 @@ from asperity.surfaces.readers import arrays, guards, positions
 from asperity.surfaces.readers.hints import SPELLING, Hints, Spelling, spelled
 from asperity.units import factor
 
-PACKAGES = {"read_netcdf": ["h5netcdf"], "read_instrument": ["SurfaceTopography", "h5py"]}
+PACKAGES = {"read_netcdf": ["h5netcdf", "xarray"], "read_instrument": ["SurfaceTopography", "h5py"]}
 """What each reader needs."""
+READ = "text, CSV, npy, npz, mat, netCDF, SDF, X3P; instrument files with SurfaceTopography"
+"""What is read."""
 
 
 def read_apart(reader: str, kind: str) -> Callable[[Path, Hints], list[guards.Surface]]:
@@ -54,20 +57,30 @@ def read_instrument(path: Path, hints: Hints) -> list[guards.Surface]:
     """
     if is_hdf5(path):
         refuse_data_elsewhere(path, path.name)
-    # remarks of the package about itself
-    with warnings.catch_warnings(action="ignore"), _opener(path)(path) as reader:
-        channels = {channel.name: channel for channel in reader.channels}
-        name = reader.default_channel.name if hints.array is None else hints.array
-        allowed = f"one of: {listed(list(channels))}"
-        require(name in channels, f"array in {path.name}", shown(name), allowed, "Choose a channel.")
-        points, sized = channels[name].nb_grid_pts, channels[name].physical_sizes is not None
-        few, allowed = (
-            np.prod(points, dtype=float) <= guards.MAX_POINTS,
-            f"at most {guards.MAX_POINTS} points",
-        )
-        require(few, path.name, f"{points} points", allowed, "Crop or split the measurement.")
-        sizes = {} if sized or hints.pixel is None else {"physical_sizes": (1.0,) * len(points)}
-        return _surfaces(channels[name].topography(**sizes), hints, f"{path.name}:{name}")
+    opener = _opener(path)
+    try:
+        with warnings.catch_warnings(action="ignore"), opener(path) as reader:  # remarks about itself
+            return _channel(reader, path, hints)
+    except (InputError, MemoryError):
+        raise
+    except Exception as error:
+        received = "a format that SurfaceTopography does not read"
+        if type(error).__name__ != "CannotDetectFileFormat":  # which lists all that it tried
+            received += f" ({reason(error)})"
+        raise InputError(path.name, received, READ, "Export it as one of these.") from error
+
+
+def _channel(reader: Any, path: Path, hints: Hints) -> list[guards.Surface]:
+    channels = {channel.name: channel for channel in reader.channels}
+    name = reader.default_channel.name if hints.array is None else hints.array
+    allowed = f"one of: {listed(list(channels))}"
+    require(name in channels, f"array in {path.name}", shown(name), allowed, "Choose a channel.")
+    points, sized = channels[name].nb_grid_pts, channels[name].physical_sizes is not None
+    few = np.prod(points, dtype=float) <= guards.MAX_POINTS
+    allowed = f"at most {guards.MAX_POINTS} points"
+    require(few, path.name, f"{points} points", allowed, "Crop or split the measurement.")
+    sizes = {} if sized or hints.pixel is None else {"physical_sizes": (1.0,) * len(points)}
+    return _surfaces(channels[name].topography(**sizes), hints, f"{path.name}:{name}")
 
 
 def _opener(path: Path) -> Any:
@@ -75,7 +88,7 @@ def _opener(path: Path) -> Any:
         from SurfaceTopography import open_topography
     except ImportError:
         received = f"a {path.suffix or 'nameless'} file, which asperity does not read itself"
-        allowed = "text, CSV, npy, npz, netCDF, SDF, X3P; instrument files with SurfaceTopography"
+        allowed = READ
         remedy = 'Install it: pip install "asperity[readers]".'
         raise InputError(path.name, received, allowed, remedy) from None
     return open_topography
@@ -97,7 +110,7 @@ def _surfaces(measured: Any, hints: Hints, source: str) -> list[guards.Surface]:
 
 
 def read_netcdf(path: Path, hints: Hints) -> list[guards.Surface]:
-    """Read the variable of a netCDF-4 file that the hints name (``group/variable`` in a group).
+    """Read the variable of a netCDF file that the hints name (``group/variable`` in a group).
 
     Without a name it is ``heights`` or the only variable with dimensions that is no coordinate. The dimension
     called ``x`` becomes the first axis of the map, whatever their order in the file; without that name,
@@ -105,7 +118,7 @@ def read_netcdf(path: Path, hints: Hints) -> list[guards.Surface]:
     the ``units`` attributes; points are put in the order of rising coordinates. The other hints stand for
     what is not stated.
     """
-    with opened_netcdf(path, path.name, phony_dims="access") as opened:
+    with _opened(path) as opened:
         variable = _chosen(opened, hints.array, path.name)
         source = f"{path.name}:{variable.name.lstrip('/')}"
         check_unpacked(path, source, variable.shape, np.dtype(variable.dtype).itemsize)
@@ -122,6 +135,54 @@ def read_netcdf(path: Path, hints: Hints) -> list[guards.Surface]:
             heights, steps = np.swapaxes(heights, -1, -2), steps[::-1]
         spacing = (steps[0], steps[-1]) if len(steps) == len(names[-2:]) else None
         return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
+
+
+CLASSIC = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
+"""What files of the classic format begin with, of which SciPy reads the first two."""
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Open a netCDF file of either kind, as h5netcdf shows one."""
+    with open(path, "rb") as file:
+        head = file.read(4)
+    if head not in CLASSIC:
+        with opened_netcdf(path, path.name, phony_dims="access") as opened:
+            yield opened
+        return
+    received, allowed = "netCDF of 64-bit data (CDF-5)", "netCDF-4, or classic netCDF (CDF-1, CDF-2)"
+    require(head != CLASSIC[2], path.name, received, allowed, "Convert it, as by nccopy -k nc4.")
+    import xarray
+
+    with xarray.open_dataset(path, engine="scipy", decode_cf=False) as opened:
+        yield _Classic({str(name): _Variable(str(name), each) for name, each in opened.variables.items()})
+
+
+class _Classic(dict[str, Any]):
+    """Variables of a classic file, as h5netcdf shows them."""
+
+    @property
+    def variables(self) -> dict[str, Any]:
+        return self
+
+    @property
+    def dimensions(self) -> set[str]:
+        return {name for each in self.values() for name in each.dimensions}
+
+
+@dataclass(frozen=True)
+class _Variable:
+    """One of them; numbers of the most significant byte first are turned as they are read."""
+
+    name: str
+    held: Any
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.held, {"dimensions": "dims"}.get(name, name))
+
+    def __getitem__(self, key: Any) -> Array:
+        values = np.asarray(self.held[key].values)
+        return values.astype(values.dtype.newbyteorder("="))
 
 
 def _chosen(opened: Any, name: str | None, source: str) -> Any:

@@ -103,6 +103,17 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     return guards.surfaces_of(heights, hints.spacing_in(path.name, (header["dx"], header["dy"])), path.name)
 
 
+def holds_text(path: Path) -> bool:
+    """Whether a file begins as text does, in an encoding that is read."""
+    with path.open("rb") as stream:
+        head = stream.read(PROBE)
+    try:
+        decoded(head[: len(head) // 4 * 4], path.name, "text", latin=True)
+    except (InputError, UnicodeDecodeError):
+        return False
+    return True
+
+
 def is_numeric(path: Path) -> bool:
     """Whether a file, whatever its name, is text that ends with lines of numbers."""
     with path.open("rb") as stream:
