@@ -39,7 +39,7 @@ ball: [contact] sample_length = "0.6 mm" → at least two windows, 1000 um
 ball: [contact] normalise = "none" → "low-wavenumber", "tangent"
 ball: [contact] spacing = "100 um" | window = "1 mm" → allowed: at most speed / (2.5 highest_frequency) = 80
 ball: [numerics] time_step = "0.1 ms" → numerics.time_step: received 100 us
-ball: [numerics] time_step = "1 ns" → 1e+09 time steps; allowed: at most 1e+08
+ball: [numerics] time_step = "1 ns" → 1·10⁹ time steps; allowed: at most 1·10⁸
 ball: [numerics] rtol = 0 → a number greater than 0 and at most 0.01
 ball: laws = [] → laws: received an empty list; allowed: at least 1, each "areal",
 ball: laws = ["arreal"] → Did you mean "areal"?

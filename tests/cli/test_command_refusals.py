@@ -178,7 +178,7 @@ REFUSED = [
     ("wheel metres.csv", "Is the unit of the coordinates right?"),
     ("wheel straight-web --highest 4", 'as "5 kHz"'),
     ("bearing 6209", "allowed: the path of a bearing file (TOML). Named bearings: 6203, 6205."),
-    ("bearing 6205 --radial '100 N' --speed '6e5 1/min'", "1/min, with 2.54e+04 N of each ball outwards"),
+    ("bearing 6205 --radial '100 N' --speed '6e5 1/min'", "1/min, with 25400 N of each ball outwards"),
     ("bearing 6205 --radial '1e-12 N' --speed '30 Hz'", "allowed: what the balls carry. Try another load"),
     ("bearing 6205 --radial 5", "radial: received '5'; allowed: a force at least 0, with its unit"),
     ("bearing both.toml", "received both clearance and contact_angle"),

@@ -17,6 +17,7 @@ from asperity.reference.materials import Material
 from asperity.structures.body import GRAVITY, Body, Wheel, carriage, chain
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
+from asperity.written_numbers import rounded
 
 MOST_CONTACTS = 200
 DEEPEST_FLAT = 0.01  # of the radius
@@ -265,7 +266,9 @@ class Rolling(Ringing, FlatOnTread):
         """What the contact above each element of a carriage carries, N."""
         above = self.contact_load - GRAVITY * self.contact_mass
         if not above > 0.0:
-            raise InputError("load", f"{above:.4g} N above each element", "a carriage that presses on them")
+            raise InputError(
+                "load", f"{rounded(above, 4)} N above each element", "a carriage that presses on them"
+            )
         return above
 
     @property

@@ -19,6 +19,7 @@ from asperity.laws import Need, family_of, law_keys, names, spec_of
 from asperity.parameters import Choice, Key, ListOf, Quantity, key, optional
 from asperity.reference.materials import contact_modulus
 from asperity.units import written
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.case.across import Meeting
@@ -422,8 +423,8 @@ class Case(AnyCase):
             allowed = f"at least one time step, {self.time_step * 1e3:.4g} ms"
             yield InputError("duration", f"{rolled * 1e3:.4g} ms", allowed)
         elif time / self.time_step > MOST_STEPS:
-            received = f"{time / self.time_step:.2g} time steps"
-            allowed = f"at most {MOST_STEPS:g} time steps"
+            received = f"{rounded(time / self.time_step, 2)} time steps"
+            allowed = f"at most {rounded(MOST_STEPS)} time steps"
             yield InputError("duration", received, allowed, "Roll faster or shorter.")
 
     def _problems_of_over(self) -> Iterator[InputError]:

@@ -26,6 +26,7 @@ from asperity.studies.signals import read_signal
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
+from asperity.written_numbers import rounded
 
 Band = tuple[float, float] | None
 WIDTH = 122
@@ -68,7 +69,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     speed = keys.speed or 0.0
     doubt_speed(keys.bearing, speed)
     found = keys.bearing.loaded(keys.radial, keys.axial, speed=speed)
-    load = f"{found.radial:.4g} N radial, {found.axial:.4g} N axial"
+    load = f"{rounded(found.radial, 4)} N radial, {rounded(found.axial, 4)} N axial"
     turning = keys.bearing.kinematics(speed or 1.0, contact_angle=found.contact_angle)
     at_rest = tree(static_group(found, turning))
     contacts = ball_contacts_table(at_rest)

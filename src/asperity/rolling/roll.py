@@ -21,6 +21,7 @@ from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
+from asperity.written_numbers import rounded
 
 
 @dataclass(frozen=True)
@@ -289,7 +290,8 @@ def refuse_missed_load(
     """
     if not force[settled:].any():
         raise errors.ComputationError(
-            f"{name}: nothing touches in all of the record: the contact force is 0 N, the load {load:.4g} N",
+            f"{name}: nothing touches in all of the record: the contact force is 0 N, the load "
+            f"{rounded(load, 4)} N",
             "a longer record, and look for what throws the bodies apart, as springs that are too soft",
         )
     driven = 0.5 * (force[1:] + force[:-1]) - load  # over each step
@@ -300,8 +302,9 @@ def refuse_missed_load(
     away = 0.5 * abs(missed) / mass * time**2
     if away > FAR * reach and (abs(missed) > ERRORS * error or missed > load):
         raise errors.ComputationError(
-            f"{name}: the mean contact force of {load + missed:.4g} N misses the load of {load:.4g} N by "
-            f"more than bounded motion can, whose standard error is {error:.2g} N: in {time:.3g} s that "
+            f"{name}: the mean contact force of {rounded(load + missed, 4)} N misses the load of "
+            f"{rounded(load, 4)} N by more than bounded motion can, whose standard error is "
+            f"{rounded(error, 2)} N: in {time:.3g} s that "
             f"drives what rolls {away:.2g} m away",
             "what a warning asks for, if there is one; else look for what gives off energy or is not held: "
             'masses, springs and damping; for a track also numerics.kernel = "scatter"',

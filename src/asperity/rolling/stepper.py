@@ -20,6 +20,7 @@ from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
+from asperity.written_numbers import rounded
 
 Free = tuple[float, float, float, float]
 Found = tuple[float, float, int, int]
@@ -212,8 +213,8 @@ class Stepper:
         step, worst = int(motion.counts[0]), int(np.argmax(np.abs(motion.force[0])))
         return ComputationError(
             f"the motion runs away: at step {step}, time {step * course.time_step:.6g} s, position "
-            f"{course.place(worst, step):.6g} m, the contact force is {motion.force[0, worst]:.3g} N under "
-            f"a load of {self.system.loads.max():.4g} N",
+            f"{course.place(worst, step):.6g} m, the contact force is {rounded(motion.force[0, worst])} N "
+            f"under a load of {rounded(self.system.loads.max(), 4)} N",
             "what a warning asks for, as a smaller numerics.time_step; without one, other masses, damping or "
             "texture there, or a track without poles",
         )

@@ -15,6 +15,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.preparing import prepare
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import strip_rows
+from asperity.written_numbers import rounded
 
 MOST_CELLS_SHOWN = 129
 """Cells along a side of the window that are solved; of wider ones every second, third, … is taken."""
@@ -64,7 +65,7 @@ class PressedSample:
         largest = min(shape.largest_force, carried)
         if largest <= shape.load:
             received = f"{self.half_space.pressure_cap / 1e9:.3g} GPa"
-            allowed = f"a hardness with which the window carries the load of {shape.load:.3g} N"
+            allowed = f"a hardness with which the window carries the load of {rounded(shape.load)} N"
             raise InputError("contact.hardness", received, allowed)
         return largest
 

@@ -13,6 +13,7 @@ from asperity.arguments import Array, ArrayLike, finite_array, not_negative, req
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning
 from asperity.structures.ball_bearing import STATIC_PRESSURE, BallBearing
+from asperity.written_numbers import rounded
 
 STEPS = 24
 """Angles of the cage over the passing of a ball."""
@@ -139,8 +140,10 @@ def load_distribution(
         _doubt(found)
     except ComputationError as error:
         lift = bearing.centrifugal_force(speed)
-        received = f"{radial:.4g} N radial and {preloaded:.4g} N axial at {60.0 * speed:.5g} 1/min"
-        received += f", with {lift:.3g} N of each ball outwards" * (lift > 0.0)
+        received = (
+            f"{rounded(radial, 4)} N radial and {rounded(preloaded, 4)} N axial at {60.0 * speed:.5g} 1/min"
+        )
+        received += f", with {rounded(lift)} N of each ball outwards" * (lift > 0.0)
         remedy = f"Try {error.remedy}."
         raise InputError("load", f"{received}: {error.what}", "what the balls carry", remedy) from error
     return found
@@ -295,7 +298,7 @@ def _doubt(found: LoadedBearing) -> None:
             0.5 * D,
             groove_radius=conformity * D,
             raceway_radius=raceway if ring == "inner" else -raceway,
-            cause=f"{heaviest:.4g} N of one ball on the {ring} ring",
+            cause=f"{rounded(heaviest, 4)} N of one ball on the {ring} ring",
             lighter=lighter,
         )
         peak = float(found._pressure(ring).max())
@@ -317,9 +320,10 @@ def _pressed_unloaded(found: LoadedBearing) -> dict[str, list[tuple[float, str]]
     """Forces of a ball on each ring, N, that come from no load, and what makes each of them smaller."""
     of = found.bearing
     squeezed = of.series_stiffness * max(-0.5 * of.radial_clearance, 0.0) ** 1.5
-    fit = f"A clearance of {of.radial_clearance * 1e6:.4g} µm alone presses each ball with {squeezed:.4g} N"
+    clearance = f"A clearance of {of.radial_clearance * 1e6:.4g} µm alone"
+    fit = f"{clearance} presses each ball with {rounded(squeezed, 4)} N"
     thrown = of.centrifugal_force(found.speed)
-    turning = f"Centrifugal force alone is {thrown:.4g} N at {60.0 * found.speed:.5g} 1/min"
+    turning = f"Centrifugal force alone is {rounded(thrown, 4)} N at {60.0 * found.speed:.5g} 1/min"
     looser, slower = (squeezed, f"{fit}: take a looser fit"), (thrown, f"{turning}: run slower")
     return {"inner": [looser], "outer": [looser, slower]}
 
