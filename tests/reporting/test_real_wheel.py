@@ -274,3 +274,16 @@ def test_what_a_study_of_wheels_may_be_asked_to_show_is_what_it_keeps(tree):
     assert set(USUAL) <= known
     asked = chosen(["peak_force, pass by maximum level"])
     assert asked == ("peak_force", "pass_by_maximum_level")
+
+
+def test_the_caption_says_which_bands_roughness_covers_at_the_speed(other):
+    level = other["spectra"]["roughness_level"].values
+    level[:] = -130.0
+    wavelength = other["spectra"]["surface_band"].values
+    shown = (wavelength < 0.32) & (wavelength > 0.09)
+    level[:, shown] = 0.0
+    frequency = other["rolling"].attrs["speed"] / wavelength[shown]
+    bands = 10.0 ** (np.arange(20, 38) / 10.0)
+    covered = int(np.sum((bands > frequency.min() * 0.89) & (bands < frequency.max() * 1.123)))
+    caption = PARTS["roughness"].drawn(other).caption
+    assert f"{covered} of the 18 one-third octaves from 100 Hz to 5 kHz; in the others" in caption

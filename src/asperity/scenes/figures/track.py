@@ -264,8 +264,10 @@ def roughness(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
         yield "Dotted: as the spectrum of the case states it, of which this is one texture."
     if any(series.name == "combined" for series in parts):
         yield "Combined: rail and wheel as they meet in the contact."
-    if speed:
-        yield _heard(wavelength, speed)
+    rough = [series for series in parts if series.name != "combined"]
+    held = np.isfinite([line.y for line in stated]).any(axis=0) if len(stated) == len(rough) else None
+    if speed and (held is None or held.any()):
+        yield _heard(wavelength if held is None else wavelength[held], speed)
     yield (
         "Left out: bands that the texture does not hold, and levels more than "
         f"{SPAN:.0f} dB below the highest."
