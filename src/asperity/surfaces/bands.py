@@ -197,7 +197,7 @@ def from_bands(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayL
     """
     texture = band_texture(wavelengths, levels_db, math.inf, seed, spacing, n * spacing)
     heights = closed(texture.waves(0, np.zeros(1)), n)[:, 0]
-    return Profile(heights, spacing, f"{described(wavelengths)}, seed {seed}")
+    return Profile(heights, spacing, f"{range_of_bands(wavelengths)}, seed {seed}")
 
 
 def strip_from_bands(
@@ -233,7 +233,7 @@ def strip_from_bands(
     nx, ny = shape
     texture = band_texture(wavelengths, levels_db, lateral, seed, spacing[0], around or nx * spacing[0])
     heights = closed(texture.waves(0, places_across(ny, spacing[1])), nx)
-    return HeightMap(heights, spacing, f"{described(wavelengths)}, lateral {lateral:g}, seed {seed}")
+    return HeightMap(heights, spacing, f"{range_of_bands(wavelengths)}, lateral {lateral:g}, seed {seed}")
 
 
 def band_texture(
@@ -250,7 +250,7 @@ def band_texture(
     return BandTexture(tuple(given.tolist()), tuple(levels.tolist()), lateral, seed, finest, around)
 
 
-def described(wavelengths: ArrayLike) -> str:
+def range_of_bands(wavelengths: ArrayLike) -> str:
     """Bands in words."""
     return f"one-third octaves {np.max(wavelengths):.4g} to {np.min(wavelengths):.4g} m"
 

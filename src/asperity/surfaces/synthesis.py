@@ -10,7 +10,7 @@ import numpy as np
 from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, require, two_lengths
-from asperity.surfaces.bands import band_texture, described
+from asperity.surfaces.bands import band_texture, range_of_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip, places_across
@@ -275,7 +275,7 @@ def long_strip_from_bands(
     """
     steps = two_lengths("spacing", spacing)
     texture = band_texture(wavelengths, levels_db, lateral, seed, steps[0])
-    source = f"{described(wavelengths)}, lateral {lateral:g}, seed {seed}"
+    source = f"{range_of_bands(wavelengths)}, lateral {lateral:g}, seed {seed}"
     return LongStrip(shape, steps, texture, None, source, before)
 
 
