@@ -202,6 +202,12 @@ SOUND = Diagnosis(
             "balls stand out: no sign of a fault if it is right, 83 % sure.",
         ),
         (
+            {"blows": 54.7},
+            "Lines of the shaft are at 30 Hz (1800 1/min), but do not explain all blows: is the speed or the "
+            "sampling rate wrong? Blows at 54.7 Hz, resolved to 0.25 Hz, are those of no part at this "
+            "speed: 83 % sure.",
+        ),
+        (
             {"speed_is": "unconfirmed", "multiple": True},
             "Lines of the shaft are at 30 Hz (1800 1/min), and as clear at half or twice of it: the speed is "
             "not confirmed. No lines of rings or balls stand out: no sign of a fault if it is right, 83 "

@@ -61,7 +61,8 @@ def _of_speed(found: Diagnosis) -> list[str]:
         where = f"not at {turns(found.told)}, as told, but at {turns(found.speed)}"
         return [f"The line of the shaft is {where}: {ASKED}"]
     if found.speed_is == "confirmed":
-        return []
+        here = f"Lines of the shaft are at {turns(found.speed)}"
+        return [f"{here}, but do not explain all blows: {ASKED}"] if found.blows else []
     needed = 2.0 * LOWEST_PLACE / found.told
     if found.record.duration < needed:
         short = f"The record of {found.record.duration:.3g} s is too short for the line of the shaft"
@@ -94,7 +95,7 @@ def _of_parts(found: Diagnosis) -> str:
             "contradicted": "At that speed there are",
         }[found.speed_is]
         return f"{begin} {there}, {resolved}: {sure}."
-    if found.blows and found.speed_is == "unconfirmed":
+    if found.blows:
         return (
             f"Blows at {_hertz(found.blows, found)}, {resolved}, are those of no part at this speed: {sure}."
         )
