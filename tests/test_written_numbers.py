@@ -8,7 +8,7 @@ import xarray as xr
 
 import asperity
 from asperity.reporting.data import typed_words
-from asperity.written_numbers import between, counted, force, plain, rounded
+from asperity.written_numbers import between, count_of, in_newtons, plain, rounded
 
 
 @pytest.mark.parametrize(
@@ -26,8 +26,8 @@ def test_digits_are_written_out(value, digits, written):
 
 def test_ends_counts_and_forces_are_in_words():
     assert (between("0.6", "0.6"), between("0.6", "0.7")) == ("0.6", "0.6 to 0.7")
-    assert [counted(n, "sample") for n in (0, 1, 8)] == ["0 samples", "1 sample", "8 samples"]
-    assert [force(each) for each in (5.04, 65e3, 999.6)] == ["5.04 N", "65 kN", "1000 N"]
+    assert [count_of(n, "sample") for n in (0, 1, 8)] == ["0 samples", "1 sample", "8 samples"]
+    assert [in_newtons(each) for each in (5.04, 65e3, 999.6)] == ["5.04 N", "65 kN", "1000 N"]
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,7 @@ def engineering(value: float, unit: str, digits: int = 3) -> str:
     return f"{scaled:.{places}f} {PREFIXES[exponent]}{unit}".replace("-", "−")
 
 
-def force(newtons: float) -> str:
+def in_newtons(newtons: float) -> str:
     """Write a force in N or kN with three digits: ``"65 kN"``."""
     return f"{rounded(newtons)} N" if abs(newtons) < 1e3 else f"{rounded(newtons / 1e3)} kN"
 
@@ -62,6 +62,6 @@ def between(low: str, high: str) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def counted(count: int, thing: str) -> str:
+def count_of(count: int, thing: str) -> str:
     """A number of things: ``"1 sample"``, ``"8 samples"``."""
     return f"{count} {thing}" if count == 1 else f"{count} {thing}s"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity import BallOnBeam, Bodies, HeightMap, Hertz, WheelOnRail
-from asperity.case.chosen_lengths import rounded
+from asperity.case.chosen_lengths import preferred_length
 from asperity.errors import InputError
 from asperity.running import prepare_case
 from asperity.studies.definition import study_of
@@ -67,7 +67,7 @@ def test_what_is_given_stays_and_what_is_not_is_chosen_again():
 
 @pytest.mark.parametrize(("length", "below", "above"), [(1e-5, 1e-5, 1e-5), (9.9e-4, 8e-4, 1e-3)])
 def test_lengths_are_ten_in_a_decade(length, below, above):
-    assert (rounded(length), rounded(length, up=True)) == (below, above)
+    assert (preferred_length(length), preferred_length(length, up=True)) == (below, above)
 
 
 def test_members_of_a_study_roll_over_one_surface():

@@ -51,23 +51,23 @@ def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
         {name: getattr(section, name) for name in names if name in section.given_names}
         for section, names in ((case.surface, ("longest", "shortest")), (case.contact, ("spacing", "window")))
     )
-    fine = max(rounded(small / CELLS), FINEST)
+    fine = max(preferred_length(small / CELLS), FINEST)
     longest = surface.get("longest", math.inf)
     shortest = surface.get("shortest", 0.25 * longest)
-    spacing = max(rounded(min(fine, shortest / CELLS_PER_WAVE, case.coarsest_spacing)), FINEST)
+    spacing = max(preferred_length(min(fine, shortest / CELLS_PER_WAVE, case.coarsest_spacing)), FINEST)
     spacing = contact.get("spacing", spacing)
     roughness, rms = 0.0, case.surface.rms
     if rms is not None:
         usual = max(2.0 * spacing, min(CELLS_PER_WAVE * max(spacing, fine), 0.25 * longest))
         shortest = surface.get("shortest", usual)
-        longest = surface.get("longest", max(rounded(LONGEST * large), 4.0 * shortest))
+        longest = surface.get("longest", max(preferred_length(LONGEST * large), 4.0 * shortest))
         surface = {"shortest": shortest, "longest": longest}
         roughness = rms * min(SIDE * large / longest, 1.0) ** case.surface.hurst
     peaks = min(PEAKS * roughness / (circle**2 / radius), MOST_PEAKS)
     wanted = max(SIDE * large * math.sqrt(1.0 + peaks), SIDE * large + case.defect_length)
-    window = rounded(wanted, up=True)
+    window = preferred_length(wanted, up=True)
     if window > held >= NARROWEST * large:
-        window = rounded(held)
+        window = preferred_length(held)
     return {"surface": surface, "contact": {"spacing": spacing, "window": window}}
 
 
@@ -87,7 +87,7 @@ def _contact_across(case: "Case") -> "tuple[Hertz, float]":
     return hertz, math.inf
 
 
-def rounded(length: float, *, up: bool = False) -> float:
+def preferred_length(length: float, *, up: bool = False) -> float:
     """The next length below, or above, of ten in a decade: 1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8, m."""
     decade = math.floor(math.log10(length))
     lengths = [float(f"{step}e{decade + more}") for more in (0, 1) for step in _STEPS]

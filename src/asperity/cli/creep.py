@@ -21,7 +21,7 @@ from asperity.reporting.figure import write_chart, write_columns
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import creep
 from asperity.terminal import say, say_table
-from asperity.written_numbers import counted, rounded
+from asperity.written_numbers import count_of, rounded
 
 NAMES = {"longitudinal": "creepage along", "lateral": "creepage across", "spin": "spin × √(ab)"}
 MOST_POINTS = 1000
@@ -83,7 +83,7 @@ def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
     if rough:
         drawn["rough"] = samples.mean(axis=0), samples.std(axis=0)
         words += (
-            f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {counted(len(rough), 'sample')})"
+            f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {count_of(len(rough), 'sample')})"
         )
     drawn |= {"linear theory": (curve.linear / limit, None), "FASTSIM": (curve.fastsim / limit, None)}
     columns = {name: curve.creepage}
@@ -108,7 +108,7 @@ def _from_zero(values: Array) -> Array:
 def _told_states(states: TractionStates, source: str) -> Told:
     """Rough over smooth under the same load in words, the functions themselves as columns."""
     load, change = states.load.mean(axis=0), states.change
-    title = f"{source}: rough contact over smooth under the same load, {counted(len(states.load), 'sample')}"
+    title = f"{source}: rough contact over smooth under the same load, {count_of(len(states.load), 'sample')}"
     told = {
         name: [f"{m:.3f} ± {rounded(s, 2)}" if m == m else "short sample" for m, s in zip(*each, strict=True)]
         for name, each in change.items()

@@ -25,7 +25,7 @@ from asperity.schema import bearing, provenance, rolling
 from asperity.store import Store, content_key
 from asperity.terminal import detail, remark, say, say_files, say_table
 from asperity.threads import THREADS, processors
-from asperity.written_numbers import between, counted, rounded
+from asperity.written_numbers import between, count_of, rounded
 
 if TYPE_CHECKING:
     from xarray import DataArray, DataTree
@@ -419,7 +419,7 @@ def plan(prepared: PreparedCase, work: Work, choice: LawChoice | None = None) ->
         *([("contacts", f"{len(offsets)}, {places}")] if len(offsets) > 1 else []),
         *planned_track(prepared),
         ("laws", ", ".join(case.laws)),
-        ("contact", f"{nx} × {ny} cells, {counted(contact.samples, 'sample')}, {states} approaches"),
+        ("contact", f"{nx} × {ny} cells, {count_of(contact.samples, 'sample')}, {states} approaches"),
     ]
     if work.tried is not None:  # a sample
         share = f"about {100 * work.tried.pressed.area_ratio:.0f} % of the area of smooth bodies"

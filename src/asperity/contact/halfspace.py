@@ -19,7 +19,7 @@ from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
 from asperity.threads import refuse_to_go_on
-from asperity.written_numbers import force, rounded
+from asperity.written_numbers import in_newtons, rounded
 
 if TYPE_CHECKING:
     import xarray
@@ -429,7 +429,7 @@ class HalfSpace:
         found = running_in.run_in(heights, job, cache=cache, workers=workers, progress=progress)
         running_in.warn_of_running_in(found, job, "rtol", "Enlarge the window.")
         number = f"{len(found.largest)} pass" + ("es" if len(found.largest) > 1 else "")
-        words = f"run in by {number} under {force(load)}, {rounded(100 * found.yielded_share)} % yielded"
+        words = f"run in by {number} under {in_newtons(load)}, {rounded(100 * found.yielded_share)} % yielded"
         origin = f"{surface.source}; " if isinstance(surface, HeightMap) and surface.source else ""
         return HeightMap(found.heights, self.spacing, origin + words)
 
@@ -442,9 +442,9 @@ class HalfSpace:
         """Check that a load, N, is one that the window carries."""
         load = real("load", load, "a force ≥ 0, N", at_least=0.0)
         largest = self.pressure_cap * self.cell_area * self.shape[0] * self.shape[1]
-        allowed = f"less than hardness × window area = {force(largest)}"
+        allowed = f"less than hardness × window area = {in_newtons(largest)}"
         remedy = "Enlarge the window, raise the hardness or lower the load."
-        require(load < largest, "load", force(load), allowed, remedy)
+        require(load < largest, "load", in_newtons(load), allowed, remedy)
         return load
 
     def _field(self, name: str, values: ArrayLike) -> Array:

@@ -13,7 +13,7 @@ from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning, Grade, OutOfRangeWarning
 from asperity.structures.outline import LARGEST_WHEEL, checked_outline, doubts_of
-from asperity.written_numbers import force, rounded
+from asperity.written_numbers import in_newtons, rounded
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in loads of the class of the working load."""
@@ -134,7 +134,9 @@ def geometry_of(case: scene.Case) -> Geometry:
     _doubt_wheel(case)
     width = 2.0 * max(shape.semi_axes)
     for side, size in over.sides.items():
-        allowed = f"at least {rounded(width * 1e6)} um, the width of the smooth contact under {force(load)}"
+        allowed = (
+            f"at least {rounded(width * 1e6)} um, the width of the smooth contact under {in_newtons(load)}"
+        )
         remedy = "A beam smaller than its contact is no elastic half-space: enlarge it, or press less."
         require(size >= width, f"{case.over_name}.{side}", f"{rounded(size * 1e6)} um", allowed, remedy)
     _check_grid(n, h, shape.semi_axes, load)
@@ -144,7 +146,7 @@ def geometry_of(case: scene.Case) -> Geometry:
 def _check_half_space(case: scene.Case, hertz: Hertz, load: float) -> None:
     """Hold the contact under the load, and in the highest state given, to the half-space."""
     body, top = case.rolling, case.contact.approaches
-    asked = [(hertz.approach(load), f"a working load of {force(load)}")]
+    asked = [(hertz.approach(load), f"a working load of {in_newtons(load)}")]
     if top is not None:
         asked.append((top[-1], f"an approach of {rounded(top[-1] * 1e6)} µm"))
     bent = abs(body.raceway_along)
@@ -176,16 +178,17 @@ def _doubt_wheel(case: scene.Case) -> None:
 def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
     """Hold the grid to the smooth contact under the load, N: the window holds it, cells are finer than it."""
     wide, small = 2.2e6 * max(axes), min(axes)
-    allowed = f"at least {rounded(wide, 4)} um, 1.1 times the width of the smooth contact under {force(load)}"
+    width = f"the width of the smooth contact under {in_newtons(load)}"
+    allowed = f"at least {rounded(wide, 4)} um, 1.1 times {width}"
     held = cells * spacing * 1e6
     require(held >= wide, "contact.window", f"{rounded(held, 4)} um", allowed, "Enlarge the window.")
-    allowed = f"less than {rounded(2e6 * small, 2)} um, the width of the smooth contact under {force(load)}"
+    allowed = f"less than {rounded(2e6 * small, 2)} um, {width}"
     remedy = "Refine the spacing and the window with it, or press harder."
     require(spacing <= 2.0 * small, "contact.spacing", f"{rounded(spacing * 1e6)} um", allowed, remedy)
     if spacing > small / 8:
         CoarseSamplingWarning.warn(
             f"contact.spacing = {rounded(spacing * 1e6)} µm is coarser than an eighth of the contact radius "
-            f"({rounded(small * 1e6)} µm under {force(load)}): forces carry an error of some per cent. "
+            f"({rounded(small * 1e6)} µm under {in_newtons(load)}): forces carry an error of some per cent. "
             "Refine the spacing."
         )
 

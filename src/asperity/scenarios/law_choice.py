@@ -20,7 +20,7 @@ from asperity.structures.track import Track
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
 from asperity.threads import thread_count
-from asperity.written_numbers import force
+from asperity.written_numbers import in_newtons
 
 ROWS = 2**15
 """Most rows of a path, from its middle, that are looked at: a length that is transformed fast."""
@@ -195,7 +195,7 @@ class LawChoice:
             f"rms {place.roughness:.2g} approaches, {place.within:.2g} within the patch; correlation length "
             f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load; k a of "
             f"{HIGH / 1e3:g} kHz {place.highest_wavenumber:.2g}, mapped from {self.reach[0]:.2g} to "
-            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {force(near.load)}, "
+            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {in_newtons(near.load)}, "
             f"{near.speed:g} m/s, {self.distance:.1f} half decades away{off}",
         )
 

@@ -30,7 +30,7 @@ from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 from asperity.units import written
-from asperity.written_numbers import force, rounded
+from asperity.written_numbers import in_newtons, rounded
 
 STEEPEST = 1.0
 """Rms slope up to which surfaces are taken for such: the half-space is for small ones."""
@@ -167,7 +167,9 @@ def _problems(prepared: PreparedCase) -> Iterator[InputError]:
         largest = contact.hardness * contact.spacing**2 * nx * ny
         needed = shape.load if contact.approaches is not None else shape.largest_force
         if needed >= largest:
-            received = f"{contact.hardness / 1e9:.4g} GPa, with which the window carries {force(largest)}"
+            received = (
+                f"{contact.hardness / 1e9:.4g} GPa, with which the window carries {in_newtons(largest)}"
+            )
             allowed = f"more than the {rounded(needed, 4)} N that are needed"
             yield InputError("contact.hardness", received, allowed, "Enlarge contact.window.")
 

@@ -32,7 +32,7 @@ from asperity.store import Store
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
 from asperity.surfaces.strip import Rows
-from asperity.written_numbers import force
+from asperity.written_numbers import in_newtons
 
 LAWS = ("table", "areal", "hertz", "direct")
 """Laws that can be built on a raceway."""
@@ -373,8 +373,10 @@ class OnRaceway:
             approach, followed = self.contact.approach(share * self.load) - felt[at], share * self.load
             solved = self.space.solve(self._over(at), approach, rtol=rtol_for(self.accuracy))
             worst = max(worst, abs(followed / solved.force - 1.0) if solved.force else 1.0)
-            told.append(f"{force(followed)} where the solved contact has {force(solved.force)}")
-        message = f"At a fault areal and hertz hold for a contact under {force(self.load)}; else they have "
+            told.append(f"{in_newtons(followed)} where the solved contact has {in_newtons(solved.force)}")
+        message = (
+            f"At a fault areal and hertz hold for a contact under {in_newtons(self.load)}; else they have "
+        )
         message += f"{', and '.join(told)}. The law table has no such limit."
         grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
         OutOfRangeWarning.warn(message, grade)

@@ -22,8 +22,7 @@ from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Strip
 from asperity.threads import in_order, thread_count
-from asperity.written_numbers import force as in_newtons
-from asperity.written_numbers import rounded
+from asperity.written_numbers import in_newtons, rounded
 
 STATES = 16
 """States chosen where the case names no approaches; up to twice as many where the path is touched earlier."""

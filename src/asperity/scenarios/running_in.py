@@ -20,7 +20,7 @@ from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
 from asperity.threads import in_order, thread_count
-from asperity.written_numbers import force, rounded
+from asperity.written_numbers import in_newtons, rounded
 
 EXPECTED_PASSES = 10
 """Passes to shakedown, for the plan: four to twenty."""
@@ -97,7 +97,7 @@ def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures)
     what = "samples" if textures.path is None else "samples and path"
     passes = sorted({len(each.largest) for each in surfaces})
     number = " to ".join(map(str, sorted({passes[0], passes[-1]})))
-    words = f"{what} run in by {number} pass{'es' if passes[-1] > 1 else ''} under {force(job.load)}"
+    words = f"{what} run in by {number} pass{'es' if passes[-1] > 1 else ''} under {in_newtons(job.load)}"
     return words if textures.path is not None else f"{words}, line of the path as given"
 
 

@@ -21,7 +21,7 @@ from asperity.surfaces import levelling, measured_lines, statistics, synthesis
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
-from asperity.written_numbers import counted
+from asperity.written_numbers import count_of
 
 STRIP_WINDOWS = 16
 """Length of a strip for the filters, in windows: few bins of its spectra span the fall of a filter else."""
@@ -109,7 +109,7 @@ def textures_of(case: Case) -> Textures:
     is_line = case.surface.has_line
     if not is_line and (not maps or turn.heights.any()):
         maps = strips = _cut(case, strip, before)
-        sampled = f"{counted(len(strips), 'sample')} cut from the path"
+        sampled = f"{count_of(len(strips), 'sample')} cut from the path"
     line = middle_line(over.strip)  # of a measured one, the run may end before the grid
     on_path, wave, size = np.zeros(len(line)), case.surface.corrugation_wavelength, case.surface.corrugation
     if size is not None and wave is not None:
@@ -226,7 +226,7 @@ def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple
     if surface.file is not None:
         maps, missing = records.measured_maps(surface, contact.spacing)
         strips, origin = strips_of(maps, contact, seeds)
-        measured = f"{counted(len(maps), 'sample')} measured, {name_of(surface.file)}"
+        measured = f"{count_of(len(maps), 'sample')} measured, {name_of(surface.file)}"
         if surface.direction:
             measured += f", rolled over at {math.degrees(surface.direction):.4g}° to their x axis"
         return maps, strips, missing, f"{measured}; {origin}"

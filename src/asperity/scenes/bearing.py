@@ -31,7 +31,7 @@ from asperity.structures.ball_bearing import PARTS, Kinematics
 from asperity.structures.bearing_statics import LoadedBearing, doubt_speed
 from asperity.structures.ring import Ring
 from asperity.surfaces.raceway import Raceway
-from asperity.written_numbers import force, rounded
+from asperity.written_numbers import in_newtons, rounded
 
 RINGS = ("inner", "outer")
 NAMES = {"outer": "outer raceway", "inner": "inner raceway", "ball": "balls"}
@@ -145,7 +145,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
     held = f"{rounded(touching.mean())} of {found.bearing.balls} on average, {touching.min():.0f} or more"
     rows = [
-        ("heaviest load of a ball", f"{force(load)}, contact angle {rounded(angle)}°"),
+        ("heaviest load of a ball", f"{in_newtons(load)}, contact angle {rounded(angle)}°"),
         ("balls that touch both rings", f"{held}; at rest {rounded(at_rest.mean())}"),
         ("tones", f"{tones}; cage {rounded(turning.cage, 4)} Hz"),
         (

@@ -16,7 +16,7 @@ from asperity.scenes.compute import Computed
 from asperity.spectra import level_of
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, texture_direction
-from asperity.written_numbers import counted, rounded
+from asperity.written_numbers import count_of, rounded
 
 SIGNIFICANCE = 0.01
 """Probability by chance below which groups are told apart: there are several tests in every run."""
@@ -82,7 +82,7 @@ def _stiffness(reduction: Reduction, laws: tuple[str, ...]) -> Iterator[Finding]
     enough = "One stiffness is enough" if place <= EFFECT[0] else "One stiffness is not enough"
     yield _answer(
         "Is one contact stiffness enough for the path?",
-        f"{counted(len(samples), 'sample')}, coefficient of variation {rounded(100 * spread, 2)} %",
+        f"{count_of(len(samples), 'sample')}, coefficient of variation {rounded(100 * spread, 2)} %",
         f"{enough}: where stiffness governs the force, single places differ by {place:.1f} dB (one standard "
         f"deviation), and the mean of the samples is known to {mean:.1f} dB.",
         place,

@@ -18,7 +18,7 @@ from asperity.scenarios.scene import PreparedCase
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, spectra
 from asperity.spectra import nominal_frequency, say_little
-from asperity.written_numbers import force, rounded
+from asperity.written_numbers import in_newtons, rounded
 
 AREA = (0.9, 0.7)
 """Real contact area over that of smooth bodies: warned of, and out of range, below."""
@@ -229,7 +229,7 @@ def _cut_off(computed: Computed) -> Iterator[Finding]:
         percent(visited),
         "below 1 %",
         Grade.of_share(visited) if visited and not spec_of(main).is_smooth else None,
-        f"Forces above {force(held)} are too small: their contacts are larger than the window.",
+        f"Forces above {in_newtons(held)} are too small: their contacts are larger than the window.",
         reduction.remedy,
         f"{percent(visited)} of the time in contacts that the window cuts off",
         (main,),
@@ -327,7 +327,7 @@ def _compared(bands: xarray.Dataset, main: str, others: dict[str, str]) -> Itera
 
 def _varies(run: RolledBodies) -> str:
     """Rms of the contact forces, each about its own mean."""
-    return force(float(np.sqrt(np.mean(np.var(run.contact_force, axis=-1)))))
+    return in_newtons(float(np.sqrt(np.mean(np.var(run.contact_force, axis=-1)))))
 
 
 def _contact(run: RolledBodies, body: str) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, positive
 from asperity.errors import InputError
-from asperity.written_numbers import force
+from asperity.written_numbers import in_newtons
 
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall, CGPM 1901
 
@@ -326,6 +326,6 @@ def _pressed(body: Body) -> Body:
     """The body, if it presses on each of its contacts."""
     least = float(body.static_loads.min())
     if not least > 0.0:
-        received, allowed = f"a contact under {force(least)}", "contacts that are pressed at rest"
+        received, allowed = f"a contact under {in_newtons(least)}", "contacts that are pressed at rest"
         raise InputError("load (N)", received, allowed, "Press more.")
     return body

@@ -14,7 +14,7 @@ from asperity.reporting.figure import Lines, Of, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.schema import bearing, provenance, rolling, spectra
-from asperity.written_numbers import between, force, rounded
+from asperity.written_numbers import between, in_newtons, rounded
 
 CORNERS = 180
 RING = 0.35
@@ -81,7 +81,7 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
             marks.append(chart.Line(*bar, colour=chart.VERMILLION, width=2.2))
             if share == 1.0:
                 (x,), (y,) = _at(rim + 0.75 * ball, place)
-                marks.append(chart.Note(f"  {force(outer.max())}", float(x), float(y), colour=chart.INK))
+                marks.append(chart.Note(f"  {in_newtons(outer.max())}", float(x), float(y), colour=chart.INK))
     every_fault = _faults(tree)
     for part, faults in every_fault.items():
         where, balls = (np.array(each) for each in zip(*faults, strict=True))
@@ -102,7 +102,7 @@ def load_zone(tree: DataTree, lines: Lines) -> Iterator[chart.Panel | str]:
     yield (
         "To scale, but for the thickness of the rings, which is no part of the case. At rest, the first ball "
         "below the load; balls are as dark, and bars as long, as their static load, the longest "
-        f"{force(outer.max())}. The bearing turns anticlockwise. Triangles: accelerometers."
+        f"{in_newtons(outer.max())}. The bearing turns anticlockwise. Triangles: accelerometers."
     )
     for part, faults in every_fault.items():
         parts, moved = data.words(tree, bearing.PART), data.values(tree, bearing.MODULATION)
@@ -350,5 +350,5 @@ def bearing_answers(tree: DataTree) -> Answers:
         for band, rms in zip(data.words(tree, bearing.JUDGED_BAND), velocities, strict=True)
     ]
     load, peak = (float(data.values(tree, each).max()) for each in (bearing.BALL_LOAD, bearing.PEAK_PRESSURE))
-    heaviest = HeadlineNumber("heaviest load of a ball", force(load), f"{peak / 1e9:.2f} GPa at rest")
+    heaviest = HeadlineNumber("heaviest load of a ball", in_newtons(load), f"{peak / 1e9:.2f} GPa at rest")
     return Answers(f"{lead}.", more, (*numbers, heaviest))
