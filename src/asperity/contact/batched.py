@@ -106,6 +106,10 @@ def solve_batched(half_space: HalfSpace, block: Block, device: Device) -> None:
     As many are solved at once as fit into the device's memory, fewer if that runs out all the same; a
     `ComputationError` comes if a single contact does not fit.
     """
+    remedy = "Take whole cells, or compute on the device cpu."
+    require(
+        half_space.cells == "whole", "cells of a scan on a device", repr(half_space.cells), "'whole'", remedy
+    )
     cells, count, first = half_space.shape[0] * half_space.shape[1], len(block.planes), 0
     size = min(int(MEMORY_SHARE * device.free_memory()) // (8 * FIELDS), LARGEST_TRANSFORM // PADDED) // cells
     size = min(count, max(1, size))

@@ -35,13 +35,21 @@ class RunningIn:
     @cached_property
     def tolerance(self) -> float:
         """Lowering that counts as none, m: `SETTLED_SHARE` of the approach of the smooth, elastic bodies."""
-        elastic = HalfSpace(self.half_space.shape, self.half_space.spacing, self.half_space.modulus)
+        space = self.half_space
+        elastic = HalfSpace(space.shape, space.spacing, space.modulus, cells=space.cells)
         return SETTLED_SHARE * elastic.at_load(self.body, self.load, None, 1e-4).approach
 
     def key(self, heights: Array) -> str:
         """Name in the store of what these heights become."""
         space = self.half_space
-        parameters = [list(space.spacing), space.modulus, space.hardness, self.load, self.tolerance]
+        parameters = [
+            list(space.spacing),
+            space.modulus,
+            space.hardness,
+            space.cells,
+            self.load,
+            self.tolerance,
+        ]
         parameters += [self.passes or SHAKEDOWN, self.stride, self.rtol]
         return content_key("running-in", heights, self.body, parameters)
 

@@ -253,7 +253,7 @@ class ScanJob:
     def key(self, rows: Array, planes: Array) -> str:
         """Name in the store of the block on these heights."""
         space = self.half_space
-        parameters = [list(space.spacing), space.modulus, space.hardness, self.stride, self.rtol]
+        parameters = [list(space.spacing), space.modulus, space.hardness, space.cells, self.stride, self.rtol]
         parameters += ["batched"] if self.device else ["single"] if self.single else []
         return content_key("scan", rows, self.body, self.approaches, planes, parameters)
 

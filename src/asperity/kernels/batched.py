@@ -60,7 +60,7 @@ def unit_indentation(
     for _ in range(max_iterations):
         if np.abs(residual).max() <= rtol:  # never of NaN
             return pressure, True
-        z = _apply_stencil(residual[None], taps, np)[0] * inside
+        z = apply_stencil(residual[None], taps, np)[0] * inside
         before, rho = rho, float(np.vdot(residual, z))
         direction = rho / before * direction - z
         response = convolve_padded(direction[None], spectrum, np)[0]
@@ -159,7 +159,7 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         return step, _dot(m.residual, step), (kept != wanted).any(axis=(1, 2))
 
     free = ((m.pressure > 0.0) | (m.residual < 0.0)) & ((m.pressure < hardness) | (m.residual > 0.0))
-    z = _apply_stencil(m.residual * free, task.taps, xp) * free
+    z = apply_stencil(m.residual * free, task.taps, xp) * free
     rho, known = _dot(m.residual, z), m.rho > 0.0
     beta = xp.maximum((rho - _dot(m.previous, z)) / xp.where(known, m.rho, 1.0), 0.0) * known
     direction = (_each(beta) * m.direction - z) * (z != 0.0)
@@ -192,7 +192,7 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
     )  # fmt: skip
 
 
-def _apply_stencil(fields: Array, taps: tuple[float, ...], xp: Any) -> Array:
+def apply_stencil(fields: Array, taps: tuple[float, ...], xp: Any) -> Array:
     """Apply the stencil to fields (b, nx, ny), with nothing outside of them."""
     count, nx, ny = fields.shape
     padded = xp.zeros((count, nx + 4, ny + 4))

@@ -219,9 +219,11 @@ class Influence(NamedTuple):
     # (k, k), where the spectrum on UNIT i × UNIT j cells begins; −1 if it is not prepared
     places: NDArray
     spectra: NDArray  # from `spectrum`, one after the other
+    # (2,), sides of a cell over E*, m/Pa, where cells are covered in part; zeros where they are whole
+    rims: NDArray
 
 
-def influence(table: NDArray, taps: NDArray, dtype: DTypeLike = np.float64) -> Influence:
+def influence(table: NDArray, taps: NDArray, rims: NDArray, dtype: DTypeLike = np.float64) -> Influence:
     """Make the influence of a half-space, without any convolution prepared.
 
     Table and taps as in `Influence`, the table's sides from `fourier.smooth_length`. All but the table has
@@ -243,7 +245,7 @@ def influence(table: NDArray, taps: NDArray, dtype: DTypeLike = np.float64) -> I
     taps, known_roots, turns, spectra = (a.astype(dtype) for a in given)
     places = np.full((count, count), -1)
     return Influence(
-        table, softest, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra
+        table, softest, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra, rims
     )
 
 

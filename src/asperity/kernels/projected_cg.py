@@ -9,6 +9,7 @@ from asperity.kernels.at_load import balance_load, find_level, mark_free, projec
 from asperity.kernels.box import REACH, Box
 from asperity.kernels.influence import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
+from asperity.kernels.rims import bend, set_rims, soften, weigh, weigh_step
 
 
 def inverse_stencil(table: NDArray) -> NDArray:
@@ -81,6 +82,8 @@ class Task(NamedTuple):
     # no pressure of unit norm displaces by more, m/Pa: bounds the step of the projected gradient
     softest: float
     max_iterations: int  # iterations allowed
+    along: float  # side of a cell over E*, m/Pa, where cells are covered in part; zero where they are whole
+    across: float  # likewise
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -193,13 +196,15 @@ def _yield(pressure: NDArray, compliance: float, response: NDArray) -> float:
 
 
 @compiled(**CALLED)
-def true_residual(c: Convolution, b: Box, compliance: float) -> None:
-    """Compute the residual of the pressure, with the kernel for this box and the compliance, m/Pa."""
+def true_residual(c: Convolution, b: Box, task: Task) -> None:
+    """Compute the residual of the pressure, with the kernel for this box and what a task says."""
     convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
-    if compliance > 0.0:
-        _yield(b.pressure, compliance, b.response)
+    if task.compliance > 0.0:
+        _yield(b.pressure, task.compliance, b.response)
     for q in range(len(b.residual)):
-        b.residual[q] = b.response[q] - b.overlap[q]
+        b.residual[q] = b.response[q] - b.overlap[q] - b.rims[q]
+    if task.along > 0.0:
+        set_rims(b, task.along, task.across)
 
 
 @compiled(**CALLED)
@@ -233,10 +238,13 @@ def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple
     and whether there is a step that lowers the energy: if not, rounding allows no more.
     """
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
+    covered = task.along > 0.0
     margin = rounding(cap, task.total)
     rho, length, iteration, moving, yielded = 0.0, 1.0, done, True, 0.0
     for q in range(len(b.pressure)):
         yielded += task.compliance * b.pressure[q]
+    if covered:
+        set_rims(b, task.along, task.across)
     while iteration < task.max_iterations:
         if at_load:
             level = find_level(b, cap)
@@ -244,10 +252,20 @@ def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple
             break
         iteration += 1
         before = rho
+        if covered:
+            soften(b, level, taps[0])
         rho, change, added = precondition(b, taps, b.z)
+        if covered:
+            moved, added = weigh_step(b, b.z)
+            change = rho - moved
         if at_load:
             mark_free(b, cap, level)
+            if covered:
+                weigh(b)
             units = precondition(b, taps, b.unit)[2]
+            if covered:
+                units = weigh_step(b, b.unit)[1]
+                mark_free(b, cap, level)
             rho, change = balance_load(b, added / units, level)
         beta = max(0.0, change / before) if before > 0.0 else 0.0
         aim = CONJUGATE if beta > 0.0 else PRECONDITIONED
@@ -263,6 +281,8 @@ def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple
         convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)
         further = _yield(b.step, task.compliance, b.response) if task.compliance > 0.0 else 0.0
         curvature = _dot(b.step, b.response)
+        if covered:
+            curvature += bend(b)
         moving = curvature > 0.0
         if not moving:
             break
@@ -276,5 +296,7 @@ def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
         _advance(b, share, cap, margin)
+        if covered:
+            set_rims(b, task.along, task.across)
         yielded += share * further
     return iteration, moving

@@ -188,20 +188,24 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     """
     hardness, load, compliance = b.hardness, b.load, b.compliance
     largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
+    if known.rims[0] > 0.0:  # a cell that overlaps in part need not do so at its centre
+        first, end = max(first - 1, 0), min(end + 1, b.gap.shape[0])
+        left, right = max(left - 1, 0), min(right + 1, b.gap.shape[1])
     nx, ny = end - first, right - left
     if not is_prepared(known, nx, ny):
         return Solution(False, False, 0, 0.0, 0.0, 0.0, nx, ny)
     softest = known.softest + compliance * nx * ny
-    task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations)
+    along, across = known.rims[0], known.rims[1]
+    task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations, along, across)
     outer, everywhere = empty_box(nx, ny, b.room.outer), convolution(known, nx, ny)
     guessed = not _enter(outer, b.gap, approach, b.start, first, left, NOTHING * known.taps[0] * largest)
     if guessed:
         _guess(outer, largest, largest / REACH if load >= 0.0 else largest, known.taps[0])
     if load >= 0.0:
         carry(outer, hardness, load, known.taps[0])
-    true_residual(everywhere, outer, compliance)
+    true_residual(everywhere, outer, task)
     if guessed and load < 0.0 and not _scale(outer, hardness):
-        true_residual(everywhere, outer, compliance)
+        true_residual(everywhere, outer, task)
     worst, level, top, bottom, near, far = survey(outer, task)
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     moving, last = True, (0, 0, 0, 0)
@@ -220,7 +224,7 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
         if part:
             paste(inner, outer, row, column)
         if part or not _recurs(outer, b.rtol):
-            true_residual(everywhere, outer, compliance)
+            true_residual(everywhere, outer, task)
         worst, level, top, bottom, near, far = survey(outer, task)
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, pressure, first, left)
@@ -265,6 +269,7 @@ def _scale(b: Box, hardness: float) -> bool:
         capped += p > hardness
         b.pressure[q] = min(p, hardness)
         b.residual[q] = factor * (b.residual[q] + b.overlap[q]) - b.overlap[q]
+        b.rims[q] *= factor
     return capped == 0
 
 

@@ -1,0 +1,168 @@
+"""Cells at the rim of a contact that count as far as they are covered: against Hertz and finer grids."""
+
+import math
+
+import numpy as np
+import pytest
+
+from asperity import HalfSpace
+from asperity.contact.batched import processor, solve_batched
+from asperity.kernels import rims
+from refusals import refusals
+
+OFFSETS = [(0.0, 0.0), (0.5, 0.5), (0.3, 0.1), (0.5, 0.0)]
+"""Of the ball's middle from a cell's, in cells."""
+
+
+def ball_on_cells(across, offset=(0.0, 0.0), ratio=1.0, cells="covered", **more):
+    """Half-space and gap, as means over cells, of a ball whose contact has so many cells in its half-width.
+
+    Modulus and radius are one: an approach is the square of the half-width.
+    """
+    spacing = (1.0 / across, ratio / across)
+    shape = tuple(math.ceil(2.4 / h) + 5 for h in spacing)
+    x, y = ((np.arange(n) - 0.5 * (n - 1) - o) * h for n, h, o in zip(shape, spacing, offset, strict=True))
+    gap = 0.5 * np.add.outer(x**2 + spacing[0] ** 2 / 12.0, y**2 + spacing[1] ** 2 / 12.0)
+    return HalfSpace(shape, spacing, 1.0, cells=cells, **more), gap
+
+
+def stiffness_error(half_space, gap, count=25):
+    """Difference quotients of the force over the approach against Hertz's tangent, and forces against his."""
+    approaches = np.linspace(0.85, 1.15, count)
+    forces = np.array([half_space.solve(gap, approach=d, rtol=1e-9).force for d in approaches])
+    middle = 0.5 * (approaches[1:] + approaches[:-1])
+    quotient = np.diff(forces) / np.diff(approaches)
+    return quotient / (2.0 * np.sqrt(middle)) - 1.0, forces / (4.0 / 3.0 * approaches**1.5) - 1.0
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_the_stiffness_of_a_ball_follows_hertz_without_steps(offset):
+    for across, largest in ((6, 0.006), (9, 0.003)):
+        error, _ = stiffness_error(*ball_on_cells(across, offset))
+        assert np.abs(error).max() < largest
+    whole, _ = stiffness_error(*ball_on_cells(6, offset, cells="whole"))
+    error, _ = stiffness_error(*ball_on_cells(6, offset))
+    assert whole.std() > 3.5 * error.std()
+
+
+@pytest.mark.parametrize("ratio", [0.5, 2.0, 0.25])
+def test_cells_that_are_not_square_follow_hertz_too(ratio):
+    error, force = stiffness_error(*ball_on_cells(8 if ratio > 1.0 else 4, (0.3, 0.1), ratio))
+    assert np.abs(error).max() < 0.006
+    assert np.abs(force).max() < 0.004
+
+
+def test_force_and_area_are_of_second_order():
+    cells, errors = (8, 12, 18), []
+    for across in cells:
+        contacts = []
+        for offset in OFFSETS:
+            half_space, gap = ball_on_cells(across, offset)
+            contacts += [half_space.solve(gap, approach=d, rtol=1e-9) for d in (0.9, 1.0, 1.1)]
+        force = [c.force / (4.0 / 3.0 * c.approach**1.5) - 1.0 for c in contacts]
+        area = [c.area / (math.pi * c.approach) - 1.0 for c in contacts]
+        errors.append([np.sqrt(np.mean(np.square(each))) for each in (force, area)])
+    orders = -np.polyfit(np.log(cells), np.log(errors), 1)[0]
+    assert orders[0] > 1.8
+    assert orders[1] > 1.8
+    assert max(errors[0]) < 0.002
+
+
+def test_a_load_and_its_approach_belong_together():
+    half_space, gap = ball_on_cells(6, (0.2, 0.4))
+    given = half_space.solve(gap, approach=1.0, rtol=1e-9)
+    found = half_space.solve(gap, load=given.force, rtol=1e-9)
+    assert found.approach == pytest.approx(1.0, rel=1e-8)
+    np.testing.assert_allclose(found.pressure, given.pressure, atol=1e-6 * given.pressure.max())
+
+
+def test_starts_do_not_matter():
+    half_space, gap = ball_on_cells(7, (0.1, 0.3))
+    cold = half_space.solve(gap, approach=1.0, rtol=1e-10)
+    other = half_space.solve(gap, approach=0.8, rtol=1e-4)
+    warm = half_space.solve(gap, approach=1.0, start=other.pressure, rtol=1e-10)
+    np.testing.assert_allclose(warm.pressure, cold.pressure, atol=1e-8 * cold.pressure.max())
+
+
+def rough(shape, spacing, height=0.02):
+    """A ball's gap with waves of some cells on it."""
+    x, y = ((np.arange(n) - n / 2 + 0.3) * spacing for n in shape)
+    rng = np.random.default_rng(0)
+    waves = sum(
+        rng.normal() * np.cos(np.add.outer(rng.normal() * x, rng.normal() * y) * 9.0 + 6.0 * rng.random())
+        for _ in range(30)
+    )
+    return 0.5 * np.add.outer(x**2, y**2) + height * waves
+
+
+def test_the_tangent_is_the_central_difference():
+    shape, spacing, step = (26, 22), 0.11, 1e-6
+    half_space, gap = HalfSpace(shape, spacing, 1.0, cells="covered"), rough(shape, spacing)
+    contact = half_space.solve(gap, approach=0.4, rtol=1e-12)
+    plus, minus = (half_space.solve(gap, approach=0.4 + s, rtol=1e-13) for s in (step, -step))
+    assert contact.stiffness == pytest.approx((plus.force - minus.force) / (2.0 * step), rel=1e-5)
+
+
+@pytest.mark.parametrize(("height", "share"), [(0.001, 0.3), (0.004, 0.5), (0.02, 0.8)])
+def test_rough_contacts_are_nearer_to_those_of_a_fine_grid(height, share):
+    """Stiffness over an approach that changes by a fiftieth, against four times the resolution.
+
+    The rougher the surface, the more is lost with the waves that the coarse grid does not hold.
+    """
+    fine, shape = 0.02, (120, 120)
+    gap = rough(shape, fine, height)
+    approaches = np.linspace(0.3, 0.6, 16)
+    quotients = {}
+    for name, times, cells in (("fine", 1, "covered"), ("covered", 4, "covered"), ("whole", 4, "whole")):
+        sides = tuple(n // times for n in shape)
+        means = gap.reshape(sides[0], times, sides[1], times).mean(axis=(1, 3))
+        half_space = HalfSpace(sides, fine * times, 1.0, cells=cells)
+        forces = [half_space.solve(means, approach=d, rtol=1e-8).force for d in approaches]
+        quotients[name] = np.diff(forces)
+    covered = np.std(quotients["covered"] / quotients["fine"])
+    whole = np.std(quotients["whole"] / quotients["fine"])
+    assert covered < share * whole
+
+
+def test_a_cap_is_kept_and_rims_still_count():
+    half_space, gap = ball_on_cells(8, (0.3, 0.1), hardness=0.45)
+    contact = half_space.solve(gap, approach=1.0, rtol=1e-8)
+    finer, finer_gap = ball_on_cells(24, (0.3, 0.1), hardness=0.45)
+    reference = finer.solve(finer_gap, approach=1.0, rtol=1e-8)
+    assert contact.converged
+    assert contact.pressure.max() == 0.45
+    assert contact.force == pytest.approx(reference.force, rel=5e-3)
+
+
+def test_no_step_in_the_force_as_cells_enter():
+    """Second differences of the force are bounded: where cells are whole, each that enters is a kink."""
+    kinks = {}
+    for cells in ("covered", "whole"):
+        half_space, gap = ball_on_cells(6, cells=cells)
+        approaches = np.linspace(0.9, 1.1, 81)
+        forces = np.array([half_space.solve(gap, approach=d, rtol=1e-10).force for d in approaches])
+        kinks[cells] = np.abs(np.diff(forces, 2)).max()
+    assert kinks["covered"] < 0.25 * kinks["whole"]
+
+
+def test_a_straight_rim_along_an_axis_leaves_the_gap_of_the_closed_form():
+    """A cell hardly covered keeps the gap half a cell beyond the rim, (4/3)(1/2)^(3/2), by a step of 2/3.
+
+    Constant pressures on cells displace a little more there than the pressure does: 0.09 in the same units.
+    """
+    gap, _ = rims.remaining_gap(0.0, 0.0)
+    assert gap == pytest.approx((4.0 / 3.0 * 0.5**1.5 + 0.0896) / (2.0 / 3.0), rel=0.01)
+    assert rims.remaining_gap(1.0, 0.0)[0] == rims.remaining_gap(1.0, 1.0)[0] == 0.0
+
+
+def on_a_device():
+    """A scan of covered cells, solved in batches."""
+    half_space, gap = ball_on_cells(2)
+    block = half_space.block(0.0 * gap, gap, np.zeros(1), np.ones(1), 1, 1e-6)
+    solve_batched(half_space, block, processor())
+
+
+test_what_is_refused = refusals(
+    (lambda: HalfSpace((4, 4), 1.0, 1.0, cells="half"), "cells of the half-space: received 'half'"),
+    (on_a_device, "cells of a scan on a device: received 'covered'"),
+)
