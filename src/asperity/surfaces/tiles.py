@@ -30,7 +30,6 @@ from scipy import fft
 from scipy.special import i0e
 
 from asperity.arguments import Array, NDArray
-from asperity.threads import thread_count
 
 TAPS = 14
 """Points of the transform that a height is interpolated from."""
@@ -143,7 +142,7 @@ def closed(waves: Waves, rows: int) -> Array:
     held = (rows + 1) // 2
     spectrum[: len(waves)][:held] = 0.5 * rows * waves[:held]
     spectrum[0] *= 2.0
-    return np.asarray(fft.irfft(spectrum, rows, axis=0, overwrite_x=True, workers=thread_count()))
+    return np.asarray(fft.irfft(spectrum, rows, axis=0, overwrite_x=True))
 
 
 def fine(waves: Waves) -> Array:
