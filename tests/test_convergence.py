@@ -1,6 +1,7 @@
 """A case computed again with each setting finer: on the same surface, told in numbers, kept and resumed."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -213,6 +214,21 @@ class TestLimits:
         assert prepared.case.with_(**way.changes).numerics.kernel == "scatter"
         scattered = case_of(WHEEL.with_(numerics={"poles": None, "kernel": "scatter"}))
         assert "without poles" in settings(scattered)["poles"].limit
+
+    @SILENT
+    @pytest.mark.parametrize(("highest", "is_held"), [("215 Hz", False), ("2 kHz", True)])
+    def test_half_of_a_record_that_holds_no_band_is_not_compared(self, converged, highest, is_held):
+        """All of it holds the band of 200 Hz, half of it that of 400 Hz at least."""
+        shorter = {"duration": "24 ms", "numerics": {"highest_frequency": highest, "time_step": "40 us"}}
+        prepared = case_of(BALL | {"laws": ["linear"]} | shorter)
+        found = converged(prepared, settings(prepared)["path length"])
+        limit = told(found, "limit")["path length"]
+        change = found["convergence/force_level_change"].sel(setting="path length")
+        assert bool(np.isfinite(change).any()) == is_held
+        assert ("Not changed: path length." in found.attrs["verdict"]) != is_held
+        if not is_held:
+            words = r"duration: received 0.012 s, half of the record, .*allowed: a half that holds a band up"
+            assert re.match(words, limit), limit
 
     def test_what_fails_is_a_limit(self, converged):
         """No way of changing a setting ends the run."""

@@ -22,7 +22,15 @@ from asperity.scenes import schema as scene
 from asperity.scenes.result import computed_result
 from asperity.scenes.validity import compared_bands
 from asperity.schema import Entry, Values, contact, convergence, group, provenance, rolling, spectra
-from asperity.spectra import band_levels, level_of, nominal_frequency, psd, spectrum_segment
+from asperity.spectra import (
+    HALF_BAND,
+    band_levels,
+    level_of,
+    lowest_band,
+    nominal_frequency,
+    psd,
+    spectrum_segment,
+)
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
 
@@ -90,14 +98,14 @@ def _named(setting: Setting, progress: Progress) -> Progress:
 
 def _compared(prepared: PreparedCase, result: DataTree, setting: Setting, progress: Progress) -> Comparison:
     """Take the first way of changing a setting that can be computed."""
-    base = levels_of(result)
-    if setting.name == convergence.PATH_LENGTH:
-        whole, half = halves(result, prepared.case.time_step, prepared.case.numerics.highest_frequency)
-        return Comparison(setting.name, setting.ways[0].words, "", _over(half, whole, base))
-    limit = setting.limit
+    base, limit = levels_of(result), setting.limit
     for way in setting.ways:
         try:
-            finer, coarser = _both(prepared, base, setting, way, progress)
+            if setting.name == convergence.PATH_LENGTH:
+                case = prepared.case
+                coarser, finer = halves(result, case.time_step, case.numerics.highest_frequency)
+            else:
+                finer, coarser = _both(prepared, base, setting, way, progress)
         except AsperityError as error:
             limit = limit or brief(error)
         else:
@@ -182,10 +190,17 @@ def motion_entry(held: Mapping[Any, Any]) -> Entry | None:
 
 
 def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset, xarray.Dataset]:
-    """Levels of the force over all of a record and over its first half, from segments of one length."""
+    """Levels of the force over all of a record and over its first half, from segments of one length.
+
+    An `InputError` says that the half holds no one-third octave up to the highest frequency.
+    """
     force = tree[rolling.CONTACT_FORCE.group].to_dataset()[rolling.CONTACT_FORCE.name].values
     half = force.shape[-1] // 2
     segment = min(spectrum_segment(force.shape[-1], step), half)
+    lowest = lowest_band(half, step, segment=segment)
+    if highest * HALF_BAND < lowest:
+        received = f"{half * step:.4g} s, half of the record, of which the lowest band is at {lowest:.4g} Hz"
+        raise InputError("duration", received, f"a half that holds a band up to {highest:.4g} Hz")
 
     def levels(part: Array) -> xarray.Dataset:
         frequency, density = psd(part, step, segment=segment)

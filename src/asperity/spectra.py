@@ -78,9 +78,13 @@ def spectrum_segment(samples: int, step: float) -> int:
     return min(max(samples // 4, shortest), longest, samples)
 
 
-def lowest_band(samples: int, step: float) -> float:
-    """Centre, Hz, of the lowest one-third octave that is a line wide in the spectra of a record."""
-    lines = np.asarray(np.fft.rfftfreq(spectrum_segment(samples, step), step), dtype=np.float64)
+def lowest_band(samples: int, step: float, *, segment: int | None = None) -> float:
+    """Centre, Hz, of the lowest one-third octave that is a line wide in the spectra of a record.
+
+    By default of its own segments.
+    """
+    length = spectrum_segment(samples, step) if segment is None else segment
+    lines = np.asarray(np.fft.rfftfreq(length, step), dtype=np.float64)
     return _covered_centres(lines, float(lines[1]))[0] if lines.size > 1 else math.inf
 
 
