@@ -38,6 +38,7 @@ def faulty_signal(
     foreign=(),
     hum=0.0,
     compliance=0.0,
+    unlike=1.0,
     seed=0,
 ):
     """A record (n,) of a part that is struck, or of none, at a speed, Hz, and a sampling rate, Hz.
@@ -46,7 +47,7 @@ def faulty_signal(
     and come `slip` late on the mean and `jitter` of a period at random. Noise is an rms; `shaft` the
     amplitude of the shaft's first harmonic, falling; foreign lines are (Hz, amplitude); hum is that of 50 Hz
     and its odd multiples; compliance that of a sine at which the balls pass the load, and of the resonance
-    that it modulates.
+    that it modulates; every second blow of a ball, which meets the rings in turn, has the height `unlike`.
     """
     rng = np.random.default_rng(seed)
     time = np.arange(int(duration * rate)) / rate
@@ -78,6 +79,7 @@ def faulty_signal(
     )  # a load zone of some 130 degrees
     if part == "ball":
         weight = 0.25 + 0.75 * weight
+        weight[1::2] *= unlike
     weight = weight * (1.0 + 0.1 * rng.normal(size=times.size))
     struck = np.zeros(time.size)
     np.add.at(struck, (times * rate).astype(int), weight)

@@ -75,6 +75,37 @@ def test_at_a_wrong_speed_no_part_is_named_but_the_one_that_is_struck_at_the_spe
     assert diagnosis_sentence(diagnosis).startswith("The line of the shaft is not ")
 
 
+@pytest.mark.parametrize("unlike", [0.4, 0.2, 0.0])
+def test_a_ball_that_one_ring_strikes_harder_has_lines_of_its_spin_and_is_named(unlike):
+    """A spot meets the inner and the outer ring in turn: every second blow is alike, the comb has f_b."""
+    diagnosis = diagnose(made("ball", unlike=unlike, duration=2.0), RATE, B6205.tones(), SPEED)
+    assert [each.part for each in diagnosis.parts] == ["ball"]
+    assert diagnosis.speed_is == "confirmed"
+    (ball,) = diagnosis.parts
+    assert ball.every == 2
+    assert ball.blows == pytest.approx(orders("6205", 0.14)["ball"] * SPEED, rel=0.01)
+    assert diagnosis_sentence(diagnosis).startswith("There are lines of the ball at 13")
+
+
+MAINS = [(50.0 * n, 0.6 / n) for n in (1, 2, 3, 4, 6)]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_hum_and_its_harmonics_beat_with_each_other_and_are_no_blows(seed):
+    signal = faulty_signal(None, 28.41, RATE, 2.0, noise=0.1, shaft=0.3, foreign=MAINS, seed=seed)
+    diagnosis = diagnose(signal, RATE, B6205.tones(), 28.41)
+    assert (diagnosis.parts, diagnosis.blows) == ((), 0.0)
+    assert diagnosis.speed_is != "contradicted"
+
+
+@pytest.mark.parametrize("part", ["outer", "inner"])
+def test_unbalance_far_above_the_blows_hides_none_of_them(part):
+    diagnosis = diagnose(
+        made(part, foreign=[(SPEED, 10.0)], noise=0.1, duration=2.0), RATE, B6205.tones(), SPEED
+    )
+    assert [each.part for each in diagnosis.parts] == [part]
+
+
 @pytest.mark.parametrize("deep", [0.1, 0.3])
 def test_varying_compliance_of_a_sound_bearing_is_no_fault(deep):
     """Balls pass the load: the signal and the resonance rise and fall by so much with the tone of the outer
@@ -171,6 +202,11 @@ SOUND = Diagnosis(
             "0.25 Hz: 83 % sure.",
         ),
         (
+            {"parts": (replace(OUTER, part="ball", tone=70.7, every=2),)},
+            "There are lines of the ball at 141.4 Hz and at half of it (one ring strikes harder), resolved "
+            "to 0.25 Hz: 83 % sure.",
+        ),
+        (
             {"parts": (OUTER,), "alike": (replace(OUTER, part="ball"),)},
             "Lines at 107.7 Hz, resolved to 0.25 Hz, agree with more than one part, the outer ring and "
             "the ball; "
@@ -209,9 +245,8 @@ SOUND = Diagnosis(
         ),
         (
             {"speed_is": "unconfirmed", "multiple": True},
-            "Lines of the shaft are at 30 Hz (1800 1/min), and as clear at half or twice of it: the speed is "
-            "not confirmed. No lines of rings or balls stand out: no sign of a fault if it is right, 83 "
-            "% sure.",
+            "Lines of the shaft are at 30 Hz (1800 1/min); half or twice of it would have them, too. No "
+            "lines of rings or balls stand out: no sign of a fault, 83 % sure.",
         ),
         (
             {"speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.1), "resolution": 10.0},
@@ -230,7 +265,7 @@ def test_each_kind_of_verdict_says_the_speed_first_then_the_part_and_how_sure(ch
         == f"{said} Of the fault of the inner ring that is known to be there, the record holds no sign."
     )
     if diagnosis.parts:
-        assert diagnosis_sentence(diagnosis, "outer") == said
+        assert diagnosis_sentence(diagnosis, diagnosis.parts[0].part) == said
 
 
 def test_confidence_rises_with_what_speaks_for_it_and_is_never_all_or_nothing():
@@ -302,6 +337,19 @@ def test_of_every_measured_record_the_part_is_named_and_of_a_sound_one_none():
         diagnosis = diagnose(signal, rate, tones_of(file), speed)
         assert [each.part for each in diagnosis.parts] == ([part] if part else []), name
         assert diagnosis.speed == pytest.approx(speed, rel=0.02), name
+        assert not diagnosis.blows, name  # those of no part
+
+
+@measured
+@pytest.mark.parametrize("duration", [0.3, 0.5])
+def test_of_short_pieces_the_speed_is_not_contradicted_by_less_than_they_resolve(duration):
+    for file, name, signal, rate, speed, part in records():
+        if part and not file.startswith("cwru"):
+            piece = signal[: int(duration * rate)]
+            diagnosis = diagnose(piece, rate, tones_of(file), speed)
+            assert [each.part for each in (*diagnosis.parts, *diagnosis.alike)] == [part], name
+            assert diagnosis.speed_is != "contradicted", name
+            assert diagnosis.speed == pytest.approx(speed, rel=0.025), name
 
 
 @measured

@@ -184,7 +184,7 @@ def _lines_of(
 ) -> dict[str, LineFamily | None]:
     """Lines of each part at the speed of a diagnosis: of those it names where it found them; None if not
     resolved."""
-    named = {each.part: each.tone for each in diagnosis.parts}
+    named = {each.part: each.blows for each in diagnosis.parts}
     reached, step = spectrum[0][-1], spectrum[0][1]
     found: dict[str, LineFamily | None] = {}
     for part, tone in tones.items():

@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from asperity.arguments import ArrayLike, positive, require
+from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.diagnostics.confidence import sure
-from asperity.diagnostics.envelopes import checked_signal
+from asperity.diagnostics.envelopes import above_frequency, checked_signal
 from asperity.diagnostics.hypotheses import FINE, NEAR, BearingRecord, Hypothesis, Tone
 from asperity.diagnostics.kurtogram import impulsive_band
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
@@ -26,11 +26,13 @@ TOLD = 15.0
 AHEAD, AHEAD_OF_SHAFT = 10.0, 25.0
 """Score by which a hypothesis at another speed must be ahead to be named: where lines of the shaft are found
 at the speed given, another shaft may be near, and more is asked."""
+HUM = 400.0
+"""Frequency up to which lines of the mains and of motors are, Hz."""
 LONGEST = 500.0
 """Turns of a piece of a record: blows that slip have wide lines in longer ones."""
 LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
 """Share by which the envelope follows the blows of a fault: balls that pass a sound ring that stands in the
-load make it rise and fall, too, by 0.13 at most in the records of sound bearings that were looked at."""
+load make it rise and fall, too, by 0.19 at most in the records of sound bearings that were looked at."""
 ALIKE = 8.0
 """Score within which two parts that have the same lines are not told apart."""
 
@@ -39,6 +41,7 @@ NAMES = {"outer": "outer ring", "inner": "inner ring", "ball": "ball"}
 """Of parts, as people say them."""
 CONFIRMED: Speed = "confirmed"
 UNCONFIRMED: Speed = "unconfirmed"
+CONTRADICTED: Speed = "contradicted"
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ class Diagnosis:
     blows : float
         Frequency of blows that are those of no part at this speed, Hz; 0 for none.
     multiple : bool
-        Whether lines of the shaft are where the speed says, but as clear at half or twice of it.
+        Whether lines of the shaft are where the speed says, but clearer by far at half or twice of it.
     confidence : float
         That this is so, 0 to 1.
     resolution : float
@@ -135,9 +138,19 @@ def diagnose(
     lines = f"the lines of the {NAMES[part]} at {tone.order * told:.4g} Hz"
     received, allowed = f"{duration:.3g} s", f"at least {needed:.3g} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
-    edges = band or impulsive_band(values, rate, HARMONICS * tone.order * told)
+    edges = band or _ringing_band(values, rate, HARMONICS * tone.order * told)
     record = BearingRecord.of(values, rate, edges, pieces=math.ceil(duration * told / LONGEST))
     return decided(record, record.read(tones, told), tones, told)
+
+
+def _ringing_band(values: Array, rate: float, reached: float) -> tuple[float, float]:
+    """Most impulsive band above the lines that its envelope shall show, Hz.
+
+    Below lie the shaft's own lines, hum and the tone of balls that pass the load: each beats with the others.
+    """
+    above = min(max(reached, HUM), rate / 8.0)
+    low, high = impulsive_band(above_frequency(values, rate, above), rate, reached)
+    return max(low, above), high
 
 
 def decided(
@@ -147,14 +160,16 @@ def decided(
     ranked = sorted(found, key=lambda each: -_worth(each, told))
     struck = [each for each in ranked if _deep(each, tones)]
     shaft, support, alone = shaft_near(record, told)
-    seen = support >= SUPPORTED and _at(shaft, told) and _at(record.speed(shaft), told)
-    there = seen and alone
     resolution = 1.0 / record.duration
-    speed, state = (record.speed(shaft), CONFIRMED) if there else (told, UNCONFIRMED)
+    seen = support >= SUPPORTED and all(
+        _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
+    )
+    there = seen and alone
+    seen_at = record.speed(shaft)
     bare = Diagnosis(
         told=told,
-        speed=speed,
-        speed_is=state,
+        speed=seen_at if there and _at(seen_at, told) else told,
+        speed_is=CONFIRMED if there else UNCONFIRMED,
         parts=(),
         alike=(),
         faint=None,
@@ -171,17 +186,23 @@ def decided(
     if _near(best, told):
         return _of_parts(bare, best, rivals, tones, margin)
     ahead = AHEAD_OF_SHAFT if there and not _multiple(best.speed / told) else AHEAD
+    here = [each for each in struck if _near(each, told) and abs(each.tone - best.tone) <= resolution]
+    unresolved = [each for each in here if each.part == best.part]
+    if unresolved and _agrees(best.speed, told, resolution):
+        return _of_parts(bare, unresolved[0], rivals, tones, 0.0)
     if best.support >= SUPPORTED and margin >= ahead:
         confidence = sure("elsewhere", margin, best.support)
         elsewhere = replace(
-            bare, speed=record.speed(best.speed), speed_is="contradicted", confidence=confidence
+            bare, speed=record.speed(best.speed), speed_is=CONTRADICTED, confidence=confidence
         )
-        return replace(elsewhere, parts=(best,), blows=best.tone)
-    here = [each for each in struck if _near(each, told) and abs(each.tone - best.tone) <= resolution]
+        return replace(elsewhere, parts=(best,), blows=best.blows)
     if here and _worth(here[0], told) >= _worth(best, told) - AHEAD:
         return _of_parts(bare, here[0], [each for each in struck if not _same(each, here[0])], tones, 0.0)
     if abs(best.tone - round(best.tone / told) * told) <= resolution:  # blows of the shaft, as of a coupling
         return bare
+    faint = [each for each in ranked if _near(each, told) and abs(each.tone - best.tone) <= resolution]
+    if faint:
+        return replace(bare, faint=faint[0])
     return replace(bare, blows=best.tone, confidence=sure("sound" if there else "blows"))
 
 
@@ -200,7 +221,11 @@ def _of_parts(
     if not there:
         return found
     speed = bare.record.speed(best.speed)
-    return replace(found, speed=speed, speed_is=CONFIRMED if _at(speed, told) else "contradicted")
+    if _at(speed, told):
+        return replace(found, speed=speed, speed_is=CONFIRMED)
+    if _agrees(speed, told, resolution):
+        return replace(found, speed=told, speed_is=CONFIRMED)
+    return replace(found, speed=speed, speed_is=CONTRADICTED)
 
 
 def _worth(each: Hypothesis, told: float) -> float:
@@ -215,6 +240,11 @@ def _near(each: Hypothesis, told: float) -> bool:
 def _at(speed: float, told: float) -> bool:
     """Whether a speed is the one given, but for what speeds are rounded by."""
     return abs(speed / told - 1.0) <= NEAR + 2 * FINE
+
+
+def _agrees(speed: float, told: float, resolution: float) -> bool:
+    """Whether a speed by its lines is the one given, as far as the record resolves the two."""
+    return _at(speed, told) or abs(speed - told) <= 0.5 * resolution
 
 
 def _multiple(ratio: float) -> bool:
@@ -239,7 +269,7 @@ def _seconds(
     make."""
     found: dict[str, Hypothesis] = {}
     for each in near:
-        own = each.part != best.part and each.part not in found
+        own = each.part != best.part and each.part not in found and each.every == 1
         own = own and abs(each.speed / best.speed - 1.0) <= 0.5 * NEAR  # there is one shaft
         if own and each.depth >= 0.5 * best.depth and not _of_shaft(each, best, tones, resolution):
             found[each.part] = each
@@ -260,8 +290,8 @@ def _of_shaft(each: Hypothesis, best: Hypothesis, tones: Mapping[str, Tone], res
 
 
 def shaft_near(record: BearingRecord, told: float) -> tuple[float, float, bool]:
-    """Where near a speed lines of the shaft are clearest, Hz, how clear, and whether more than at half and
-    twice."""
+    """Where near a speed lines of the shaft are clearest, Hz, how clear, and whether half or twice of it is
+    not clearer by more than what is told is worth."""
     speeds = told * np.exp(np.arange(-APART, APART, FINE))
     support = record.supports(speeds)
     at = int(support.argmax())
@@ -270,5 +300,5 @@ def shaft_near(record: BearingRecord, told: float) -> tuple[float, float, bool]:
         [share * speeds[np.abs(speeds / here - 1.0) <= NEAR / 4.0] for share in (0.5, 2.0)]
     )
     odd = float(record.supports(2.0 * here, offset=0.5)[0])
-    alone = record.supports(others).max() <= support[at] and odd >= ODD
+    alone = record.supports(others).max() <= support[at] + TOLD and odd >= ODD
     return float(here[0]), float(support[at]), bool(alone)

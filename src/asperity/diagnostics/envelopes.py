@@ -122,6 +122,15 @@ def analytic_signal(values: Array, rate: float, low: float, high: float) -> Arra
     return np.asarray(ifft(np.where((frequency >= low) & (frequency <= high), 2.0, 0.0) * lines))
 
 
+def above_frequency(values: Array, rate: float, lowest: float) -> Array:
+    """What of a signal (n,) lies above a frequency, Hz."""
+    from scipy.fft import irfft, rfft
+
+    lines = rfft(values)
+    lines[: int(lowest * values.size / rate)] = 0.0
+    return np.asarray(irfft(lines, values.size))
+
+
 def prewhitened(signal: ArrayLike, rate: float) -> Array:
     """A signal all of whose lines are equally high, so that only their phases are left: what is impulsive
     stays.

@@ -1,8 +1,8 @@
 """What the lines of a record may mean: which part is struck, at which speed, and what the shaft says of
 it."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,12 +41,27 @@ class Tone:
         Turns of the fault past a load that stands still, per turn of the shaft: 0 of one that stands, too.
     lowest, highest : float
         Orders that the contact angle and slip allow.
+    unlike : int
+        Blows of a turn of the part that may be unlike: 2 of a spot on a ball, which meets the inner and the
+        outer ring in turn.
     """
 
     order: float
     modulation: float
     lowest: float
     highest: float
+    unlike: int = 1
+
+    def of_every(self, number: int) -> "Tone":
+        """Its comb where only every so many-th blow is like another, as of a ball that one ring strikes
+        harder."""
+        return replace(
+            self,
+            order=self.order / number,
+            lowest=self.lowest / number,
+            highest=self.highest / number,
+            unlike=1,
+        )
 
 
 @dataclass(frozen=True)
@@ -58,7 +73,7 @@ class Hypothesis:
     part : str
         As in the tones.
     speed, tone : float
-        Of the shaft, and of the blows, Hz.
+        Of the shaft, and fundamental of the comb, Hz.
     clearness : float
         Mean logarithm of the lines of the comb over the median around them, from 0 to ln 30.
     support : float
@@ -66,6 +81,8 @@ class Hypothesis:
         of standardised values, each kind less its largest, so that one foreign line does not make it.
     depth : float
         Share by which the envelope rises and falls with the blows.
+    every : int
+        Blows in a period of the comb: 2 of a ball that one ring strikes harder than the other.
     """
 
     part: str
@@ -74,6 +91,12 @@ class Hypothesis:
     clearness: float
     support: float
     depth: float
+    every: int = 1
+
+    @property
+    def blows(self) -> float:
+        """Frequency of the blows, Hz."""
+        return self.every * self.tone
 
     @property
     def score(self) -> float:
@@ -122,6 +145,10 @@ class BearingRecord:
         """Both of them."""
         return self.white, self.band
 
+    def holds_shaft(self, speed: float) -> bool:
+        """Whether it is long enough for the line of a shaft at a speed, Hz."""
+        return self.duration * speed >= 2.0 * LOWEST_PLACE
+
     def _beside(self, view: Prominence, frequency: Array, tone: float) -> Array:
         """Standardised values at frequencies, without those that the comb of a tone may make itself."""
         found = view.standardised(frequency, TURNED * float(frequency.flat[0]))
@@ -152,25 +179,32 @@ class BearingRecord:
     def read(self, tones: Mapping[str, Tone], told: float) -> list[Hypothesis]:
         """What the combs of the record may mean, the best first: of each comb and part the best speeds."""
         found = []
-        for clear, tone in self._combs(tones, told):
+        combs = [
+            (name, every, part.of_every(every))
+            for name, part in tones.items()
+            for every in range(1, part.unlike + 1)
+            if every == 1 or self.holds_shaft(told)
+        ]
+        for clear, tone in self._combs([part for _, _, part in combs], told):
             depth = max(each.depth(tone) for each in self.envelopes)
-            for name, part in tones.items():
+            for name, every, part in combs:
                 best, support = self._best_speed(part, tone, told / RANGE, told * RANGE)
                 near, nearly = self._best_speed(part, tone, told * (1.0 - NEAR), told * (1.0 + NEAR))
                 if best:
-                    found.append(Hypothesis(name, best, tone, clear, support, depth))
-                if near and nearly >= support - BETTER:
-                    found.append(Hypothesis(name, near, tone, clear, nearly, depth))
+                    found.append(Hypothesis(name, best, tone, clear, support, depth, every))
+                resolved = abs(best - near) > 0.5 / self.duration
+                if near and (nearly >= support - BETTER or not resolved):
+                    found.append(Hypothesis(name, near, tone, clear, nearly, depth, every))
         return sorted(found, key=lambda each: -each.score)
 
-    def _combs(self, tones: Mapping[str, Tone], told: float) -> list[tuple[float, float]]:
+    def _combs(self, tones: Sequence[Tone], told: float) -> list[tuple[float, float]]:
         """How clear combs are, and their tones, Hz: the clearest at any speed, and those of the parts."""
-        lowest = min(tone.lowest for tone in tones.values()) * told / RANGE
-        highest = max(tone.highest for tone in tones.values()) * told * RANGE
+        lowest = min(tone.lowest for tone in tones) * told / RANGE
+        highest = max(tone.highest for tone in tones) * told * RANGE
         step, places = self.white.step, self.white.amplitude.size
         low, high = max(lowest, 2 * LOWEST_PLACE * step), min(highest, step * places / 2.2)
         found = [each.strongest(low, high) for each in self.envelopes] if high > low else []
-        found += [self._at_its_place(part, told) for part in tones.values()]
+        found += [self._at_its_place(part, told) for part in tones]
         return [each for each in found if each[0]]
 
     def _at_its_place(self, part: Tone, told: float) -> tuple[float, float]:

@@ -4,6 +4,7 @@ resolved."""
 import math
 
 from asperity.diagnostics.decision import NAMES, Diagnosis
+from asperity.diagnostics.hypotheses import Hypothesis
 from asperity.diagnostics.prominence import LOWEST_PLACE
 
 ASKED = "is the speed or the sampling rate wrong?"
@@ -42,7 +43,7 @@ def faint_lines(found: Diagnosis) -> str:
     """What is said of lines that no fault is named for; empty where there are none."""
     if found.faint is None:
         return ""
-    tone, depth = _hertz(found.faint.tone, found), 100.0 * found.faint.depth
+    tone, depth = _hertz(found.faint.blows, found), 100.0 * found.faint.depth
     why = "too little for a fault"
     if found.faint.part == "outer":
         why = "a sound bearing has them, too, as its balls pass through the load"
@@ -53,6 +54,11 @@ def faint_lines(found: Diagnosis) -> str:
 def _hertz(frequency: float, found: Diagnosis) -> str:
     """A frequency with as many digits as the record resolves."""
     return f"{frequency:.{max(0, math.ceil(-math.log10(found.resolution)))}f} Hz"
+
+
+def _half(each: Hypothesis) -> str:
+    """What is said of blows that are unlike in turn."""
+    return " and at half of it (one ring strikes harder)" if each.every > 1 else ""
 
 
 def _of_speed(found: Diagnosis) -> list[str]:
@@ -68,8 +74,7 @@ def _of_speed(found: Diagnosis) -> list[str]:
         short = f"The record of {found.record.duration:.3g} s is too short for the line of the shaft"
         return [f"{short} at {turns(found.told)}, which takes {needed:.2g} s: the speed is not confirmed."]
     if found.multiple and not found.blows:
-        fit = f"Lines of the shaft are at {turns(found.told)}, and as clear at half or twice of it"
-        return [f"{fit}: the speed is not confirmed."]
+        return [f"Lines of the shaft are at {turns(found.told)}; half or twice of it would have them, too."]
     missed = f"The line of the shaft is not found at {turns(found.told)}"
     if found.blows:
         return [f"{missed}: {ASKED}"]
@@ -82,12 +87,13 @@ def _of_parts(found: Diagnosis) -> str:
     sure = f"{100.0 * found.confidence:.0f} % sure"
     if found.alike:
         both = " and the ".join(NAMES[each.part] for each in (found.parts[0], *found.alike))
-        lines = f"Lines at {_hertz(found.parts[0].tone, found)}, {resolved}"
+        lines = f"Lines at {_hertz(found.parts[0].blows, found)}, {resolved}"
         likelier = f"the {NAMES[found.parts[0].part]} is likelier"
         return f"{lines}, agree with more than one part, the {both}; {likelier}: {sure}."
     if found.parts:
         there = " and ".join(
-            f"lines of the {NAMES[each.part]} at {_hertz(each.tone, found)}" for each in found.parts
+            f"lines of the {NAMES[each.part]} at {_hertz(each.blows, found)}{_half(each)}"
+            for each in found.parts
         )
         begin = {
             "confirmed": "There are",
@@ -99,5 +105,5 @@ def _of_parts(found: Diagnosis) -> str:
         return (
             f"Blows at {_hertz(found.blows, found)}, {resolved}, are those of no part at this speed: {sure}."
         )
-    condition = "" if found.speed_is == "confirmed" else " if it is right"
+    condition = "" if found.speed_is == "confirmed" or found.multiple else " if it is right"
     return f"No lines of rings or balls stand out: no sign of a fault{condition}, {sure}."

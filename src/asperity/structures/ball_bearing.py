@@ -307,7 +307,8 @@ class BallBearing:
         for part, (order, modulation) in here.items():
             tones = [each.tone(part) for each in limits]
             slower = 1.0 - SLIP if part == "ball" else 1.0  # its spin follows that of the cage
-            found[part] = Tone(order, modulation, min(tones) * slower, max(tones))
+            unlike = 2 if part == "ball" else 1  # a spot of it meets both rings in turn
+            found[part] = Tone(order, modulation, min(tones) * slower, max(tones), unlike)
         return found
 
     def loaded(
