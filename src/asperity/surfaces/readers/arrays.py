@@ -8,9 +8,11 @@ from zipfile import ZipFile
 import numpy as np
 
 from asperity.arguments import NDArray, listed, require, shown
-from asperity.surfaces.readers import guards
+from asperity.surfaces.readers import guards, positions
 from asperity.surfaces.readers.hints import Hints, advice
 
+MOST_TRIED = 1000
+"""Rows by which it is told whether their first column holds positions."""
 HEADER = 128
 """Bytes in which the header of a scalar ends."""
 
@@ -62,6 +64,11 @@ def only_one(names: list[str], source: str, what: str = "heights") -> str:
 
 def surfaces_of_array(array: NDArray[Any], hints: Hints, source: str) -> list[guards.Surface]:
     """Surfaces that an array without units holds, of which the hints tell the rest, see `read_npy`."""
+    for turned in (array, array.T) if array.ndim == 2 and array.dtype.kind in "fiu" else ():
+        first, *others = turned[:MOST_TRIED].T
+        received, remedy = "even positions beside heights", "Save the heights alone, and give the pixel size."
+        bare = not positions.are_even(first) or not others or all(map(positions.are_even, others))
+        require(bare, source, received, "heights alone", remedy)
     heights = guards.scaled(guards.without_marks(array), hints.heights_in(source), source)
     return guards.surfaces_of(heights, hints.spacing_in(source), source)
 

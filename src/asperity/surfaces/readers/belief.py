@@ -25,6 +25,8 @@ USUAL = 0.03
 """Slope in the middle of usual ones, to which the units that were exchanged by thousands would come."""
 MOST_POINTS = 2**20
 """Points of which slopes are taken."""
+APART = 300.0
+"""Least distance of a height from all others, in their spread, that marks a missing point, or is wrong."""
 FEWEST_POINTS = 30
 """Points whose slopes prove nothing."""
 _NORMAL = 1.4826
@@ -59,6 +61,8 @@ def _slope_along(heights: Array, spacing: float) -> float:
 def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
     """Refuse a surface whose sizes are beyond belief, with the likely cause, and warn of unusual ones."""
     what, spacing = surface.source or "surface", float(np.max(surface.spacing))
+    if surface.heights.size >= FEWEST_POINTS and (told := _far_from_others(surface.heights)):
+        OutOfRangeWarning.warn(f"{what}: {told}")
     slope = typical_slope(surface) if surface.heights.size >= FEWEST_POINTS else None
     places = _of_places(spacing, _thousands((slope or 0.0) / USUAL))
     if not SPACINGS[0] <= float(np.min(surface.spacing)) <= spacing <= SPACINGS[1]:
@@ -84,6 +88,21 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
         OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual.format(*USUAL_SLOPES)}. {remedy}")
 
 
+def _far_from_others(heights: Array) -> str:
+    """Say which single height, of one point or many, is far from all others; empty without one."""
+    flat = heights[np.isfinite(heights)]
+    sample = flat[:: max(1, math.ceil(flat.size / MOST_POINTS))]
+    middle = float(np.median(sample)) if sample.size else 0.0
+    spread = _NORMAL * float(np.median(np.abs(sample - middle))) if sample.size else 0.0
+    for end in (float(flat.min()), float(flat.max())) if spread else ():
+        far = flat[(flat - middle) / (end - middle) > 0.5] if end != middle else flat
+        if abs(end - middle) > APART * spread and (far == end).all():
+            points = "a point has" if far.size == 1 else f"{far.size} points have"
+            received = f"{points} the height {told_length(end)}, where others spread by {told_length(spread)}"
+            return f"{received}. If it marks what is missing, write NaN there."
+    return ""
+
+
 def _thousands(ratio: float) -> float:
     """Ratio of units nearest to a ratio of lengths, or to its reciprocal: 1e3, 1e6 or 1e9."""
     size = abs(math.log10(ratio)) if ratio else 6.0
@@ -102,14 +121,14 @@ def _of_heights(surface: HeightMap | Profile, factor: float, hints: Hints) -> st
 
 def _of_places(spacing: float, factor: float) -> str:
     usual = told_length(spacing / factor)
-    given = spell("pixel", usual.replace("µ", "u"))
+    given = spell("pixel", told_length(spacing / factor, 6).replace("µ", "u"))
     return f"Are points {usual} apart? Give {given}, or correct the unit of places."
 
 
-def told_length(metres: float) -> str:
-    """Length with three digits in the unit that suits it: ``"0.25 µm"``."""
+def told_length(metres: float, digits: int = 3) -> str:
+    """Length with some digits in the unit that suits it: ``"0.25 µm"``."""
     unit, name = next((each for each in _NAMED if abs(metres) >= 0.1 * each[0]), _NAMED[-1])
-    return f"{metres / unit:.3g} {name}"
+    return f"{metres / unit:.{digits}g} {name}"
 
 
 _NAMED = ((1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1e-12, "pm"))

@@ -152,12 +152,15 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
     return [HeightMap(array, spacing, source)]
 
 
-MARKED = 3.4e38
-"""Size from which a number marks a missing point: the largest ones of either floating point type do so."""
+MARKED = 1e30
+"""Size from which a number marks a missing point: no height is as large in any unit.
+
+The largest numbers of both floating point types do so, 1.70141e38 of Surfer, 1e37 of netCDF.
+"""
 
 
 def without_marks(array: NDArray[Any]) -> NDArray[Any]:
-    """Array with NaN where the largest numbers of a floating point type stand, of either sign."""
+    """Array with NaN where numbers with a floating point stand that are beyond any height, of either sign."""
     if array.dtype.kind != "f" or array.dtype.itemsize < 4:
         return array
     return np.where(np.isfinite(array) & (np.abs(array) >= MARKED), np.array(np.nan, array.dtype), array)

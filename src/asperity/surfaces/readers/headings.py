@@ -16,10 +16,20 @@ from asperity.units import factor, quantity
 _NUMBER = r"[-+]?\d++(?:[.,]\d*+)?(?:[eE][-+]?\d++)?"
 # For lines in which one blank stands for all white space: whatever the line, they need time like its length.
 _BRACKET = re.compile(r"[\[(] ?([^\s\[\]()\d]{1,20}) ?[\])]")
+_SECTION = re.compile(r"\[ ?[^\s\[\]]{4,} ?\]")
+"""``[Data]``, the heading of a section."""
 _UNIT_LINE = re.compile(r"(.*?)\bunits?\b ?[:=]? ?[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
+_ANY_UNIT = re.compile(
+    r"(.*?)\b(?:units?|(?:wert|mess)?einheit(?:en)?|unités?|unidad(?:es)?)\b ?[:=,;]? ?(\S+?)[,; ]*",
+    re.IGNORECASE,
+)
+"""``Unit,um,``, ``Einheit: µm``: those of which any other word is none."""
 _PIXEL_LINE = re.compile(
-    r"(pixel(?:[ _]size)?|spacing|sampl(?:e|ing)[ _](?:spacing|interval|distance)|dx|dy)"
-    rf" ?[:=;]? ?({_NUMBER}) ?([^\s\d;,]{{1,20}})[;,]*",
+    r"((?:[xy][ _-])?(?:pixel[ _]?(?:size)?|(?:point |data )?spacing|step[ _](?:size|width)|increment"
+    r"|sampl(?:e|ing)[ _](?:spacing|interval|distance|pitch)|(?:measur(?:ing|ement)[ _]?)?pitch"
+    r"|xy calibration|(?:mess)?punktabstand|schrittweite|pas (?:de mesure|d'échantillonnage))(?:[ _-][xy])?"
+    r"|d[xy]|delta[ _]?[xy])"
+    rf" ?[:=;,]? ?({_NUMBER})[ ,;]*([^\s\d;,/]{{1,20}})(?:/(?:pixel|px|point))?[;,]*",
     re.IGNORECASE,
 )
 _VALUE_LINE = re.compile(rf"([^:=;\d]{{1,40}}?) ?[:=;] ?(?:({_NUMBER}) ?)?([^\s\d;,:=]{{1,20}})[;,]*")
@@ -37,7 +47,7 @@ _WIDTH = {
     "ширина",
 }
 _HEIGHT = {"height", "höhe", "hauteur", "altezza", "alto", "altura", "výška", "wysokość", "высота"}
-_LATERAL_WORDS = {"x", "y", "xy", "lateral", "length", "distance", "position", "pixel"}
+_LATERAL_WORDS = {"x", "y", "xy", "lateral", "horiz", "horizontal", "length", "distance", "position", "pixel"}
 _BEHIND_IN = re.compile(r"(?:.*\bin |[^/]*/) ?(\S+)", re.IGNORECASE)
 _LENGTH = re.compile(
     r"[npuµμmc]?m|å|angstr[oö]ms?|microns?|mils?|inch(?:es)?|(?:nano|pico|mi[ck]ro|milli|centi)?m[eè]t(?:er|re)s?",
@@ -46,6 +56,16 @@ _LENGTH = re.compile(
 _TRUTH = re.compile(r"[\[(]? ?(?:1 ?/ ?0|0 ?/ ?1|bool(?:ean)?|true/false) ?[\])]?", re.IGNORECASE)
 _VALID = re.compile(r"\W*(?:is[ _])?(valid|validity|validité|gültig|gueltig|valide)\b", re.IGNORECASE)
 _INVALID = re.compile(r"\W*(?:is[ _])?(invalid|ungültig|ungueltig|missing|bad|masked)\b", re.IGNORECASE)
+_COUNT = re.compile(
+    r"\W*(?:no|nr|num(?:ber)?|n°|index|idx|id|i|#|point|punkt|sample|row|zeile)?\W*$", re.IGNORECASE
+)
+_X = re.compile(r"\W*(?:x|lateral|position|pos|distance|weg|abstand|horizontal)(?![a-z0-9])", re.IGNORECASE)
+_Y = re.compile(r"\W*y(?![a-z0-9])", re.IGNORECASE)
+_Z = re.compile(
+    r"\W*(?:z\d*|heights?|höhe|hoehe|hauteur|altezza|altura|profile?|raw|total[ _]profile)(?![a-z])",
+    re.IGNORECASE,
+)
+"""Titles of the places and of the heights of points."""
 MOST_TITLE = 200
 """Characters of a title."""
 MOST_WORDS = 4
@@ -119,12 +139,36 @@ def _unit_of(title: str) -> str:
         return str(brackets[-1])
     if any(mark.isdigit() for mark in title):
         return ""
-    *before, last = title.split() or [""]
+    *before, last = re.split(r"[ _]", title) if title else [""]
     behind = _BEHIND_IN.fullmatch(title)
     for word in (behind[1] if behind else "", last if before else ""):
         if _LENGTH.fullmatch(word):
             return word
     return ""
+
+
+def columns_of_heights(table: Array, titles: list[Title]) -> tuple[Array, list[Title]]:
+    """Columns of a table, and their titles, in the order x, y, z where titles say which these are.
+
+    Left out are numbers of the points, columns without a title and a height, and what else stands beside
+    x, y and z. All are kept where titles name several heights, or do not name them.
+    """
+    names = [title.name for title in titles]
+    kept = [place for place, name in enumerate(names) if name or not np.isnan(table[:, place]).all()]
+    if len(kept) > 2:
+        kept = [place for place in kept if not _COUNT.match(names[place]) or not _counts(table[:, place])]
+    found = [[place for place in kept if role.match(names[place])] for role in (_X, _Y, _Z)]
+    if len(found[0]) == len(found[2]) == 1 and len(found[1]) < 2:
+        others = [place for place in kept if [place] not in found]
+        valid = [n for n in others if _VALID.match(names[n]) or _INVALID.match(names[n])]
+        if not any(_LENGTH.fullmatch(titles[place].unit) for place in others):
+            kept = [*found[0], *found[1], *valid, *found[2]]
+    return (table[:, kept], [titles[place] for place in kept]) if kept else (table, titles)
+
+
+def _counts(numbers: Array) -> bool:
+    """Whether numbers count on by one."""
+    return bool((np.diff(numbers) == 1.0).all() and numbers[0] in (0.0, 1.0))
 
 
 def without_invalid(table: Array, titles: list[Title]) -> tuple[Array, list[Title]]:
@@ -153,7 +197,7 @@ def units_of_lines(titles: list[Title]) -> tuple[float, float] | None:
     if len(titles) < 3:
         return None
     try:
-        along, *heights = (_length(title.unit) for title in titles)
+        along, *heights = (length_named(title.unit) for title in titles)
     except (InputError, ValueError):
         return None
     return (along, heights[0]) if len(set(heights)) == 1 and along >= FINER * heights[0] else None
@@ -174,10 +218,12 @@ def parsed_header(lines: Sequence[str], titles: list[Title]) -> dict[str, float]
     stated: dict[str, float] = {}
     pixels: dict[str, float] = {}
     for text in cleaned:
-        if match := _UNIT_LINE.match(text):
-            stated |= dict.fromkeys("xy" if _is_lateral(match[1]) else "z", _length(match[2]))
+        match = _UNIT_LINE.match(text) or _ANY_UNIT.fullmatch(text)
+        if match and (_UNIT_LINE.match(text) or _LENGTH.fullmatch(match[2])):
+            stated |= dict.fromkeys("xy" if _is_lateral(match[1]) else "z", length_named(match[2]))
         if match := _PIXEL_LINE.fullmatch(text):
-            pixels[match[1].lower()] = _quantity(match[2], match[3])
+            axis = re.findall(r"(?:^|[^a-z]|delta|d)([xy])(?![a-z])", match[1].lower())
+            pixels[f"d{axis[0]}" if axis else match[1].lower()] = _quantity(match[2], match[3])
     stated |= _extent(lines, cleaned)
     units = _column_units(titles) or _unit_of_one(cleaned, titles)
     stated |= ({"y": units["x"]} if "x" in units else {}) | units
@@ -190,18 +236,20 @@ def parsed_header(lines: Sequence[str], titles: list[Title]) -> dict[str, float]
 def _column_units(titles: list[Title]) -> dict[str, float]:
     """Units of the titles of two columns x, z or of three, x, y, z."""
     axes = {2: "xz", 3: "xyz"}.get(len(titles), "")
-    return {axis: _length(title.unit) for axis, title in zip(axes, titles, strict=False) if title.unit}
+    return {axis: length_named(title.unit) for axis, title in zip(axes, titles, strict=False) if title.unit}
 
 
 def _unit_of_one(lines: list[str], titles: list[Title]) -> dict[str, float]:
     """Unit of heights that one title names, of a single column or of all of a matrix."""
     for text in reversed([] if titles else lines):
         units = _BRACKET.findall(text)
+        if units and _SECTION.fullmatch(text) and not _LENGTH.fullmatch(units[0]):
+            continue
         if len(units) == 1 and not _is_lateral(text):
-            return {"z": _length(units[0])}
+            return {"z": length_named(units[0])}
         few = len(text) <= MOST_TITLE and len(text.split()) <= MOST_WORDS
         if few and not units and not _is_lateral(text) and (unit := _unit_of(text)):
-            return {"z": _length(unit)}
+            return {"z": length_named(unit)}
     return {}
 
 
@@ -216,14 +264,17 @@ def _extent(lines: Sequence[str], cleaned: list[str]) -> dict[str, float]:
     if len(found) == 2:
         return found
     comments = [number for number, text in enumerate(lines) if text.lstrip().startswith("#")]
-    if comments != [0, 1, 2, 3] or len(lines) != 4:  # channel, width, height, unit; in any language
+    stepped = any(_PIXEL_LINE.fullmatch(text) for text in cleaned)
+    if (
+        comments != [0, 1, 2, 3] or len(lines) != 4 or stepped
+    ):  # channel, width, height, unit; in any language
         return {}
     _, width, height, unit = values
     lengths = [each for each in (width, height) if each and each[2] and _LENGTH.fullmatch(each[3])]
     if len(lengths) < 2 or not unit or unit[2] or not _LENGTH.fullmatch(unit[3]):
         return {}
     sizes = [_quantity(each[2], each[3]) for each in lengths]
-    return {"width": sizes[0], "height": sizes[1], "z": _length(unit[3])}
+    return {"width": sizes[0], "height": sizes[1], "z": length_named(unit[3])}
 
 
 def _is_lateral(words: str) -> bool:
@@ -238,7 +289,10 @@ def _quantity(number: str, unit: str) -> float:
     return value
 
 
-def _length(unit: str) -> float:
+def length_named(unit: str) -> float:
+    """Length, m, of a unit that a heading names, as instruments spell it."""
+    if unit in ("Å", "\u212b", "å", "A"):  # by its letter, which the unit library does not take
+        return 1e-10
     try:
         spelt = unit.lower().replace("mikro", "micro").replace("è", "e").replace("ö", "o")
         return factor(unit if len(unit) <= 3 else spelt, "m")

@@ -210,7 +210,7 @@ class _Record:
         data = self._member(self.text("Record3/DataLink/PointDataLink") or "")
         points = guards.check_claim(self.source, shape, stored.itemsize, len(data))
         z = np.frombuffer(data, stored, points).astype(np.float64) * unit + offset
-        z[~np.isfinite(z)] = np.nan  # instruments also mark missing points by infinite heights
+        z[~(np.abs(z) < guards.MARKED)] = np.nan  # instruments also mark missing points by such heights
         if link := self.text("Record3/DataLink/ValidPointsLink"):
             mask = self._member(link)
             guards.check_claim(self.source, (points,), 1 / 8, len(mask))

@@ -146,6 +146,17 @@ def places(coordinates: Array, what: str) -> tuple[Index, float]:
     return index[::-1] if turned else index, extent / float(found[-1])
 
 
+def are_even(coordinates: Array) -> bool:
+    """Whether numbers, five or more, rise or fall evenly, as positions do and heights do not."""
+    if len(coordinates) < FEWEST_EVEN or not np.isfinite(coordinates).all() or not _rises(coordinates):
+        return False
+    return bool(np.ptp(coordinates)) and _near(np.sort(coordinates), np.arange(len(coordinates)))
+
+
+FEWEST_EVEN = 5
+"""Numbers that are not even by chance."""
+
+
 def _places_of(rising: Array, *, in_order: bool) -> Index | None:
     """Places of rising coordinates, which may have stood in this order; None where they lie on no line."""
     each, counted = np.arange(len(rising)), _counted(rising)

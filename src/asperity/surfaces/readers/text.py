@@ -16,11 +16,21 @@ from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers import guards, positions
-from asperity.surfaces.readers.headings import parsed_header, titles_of, units_of_lines, without_invalid
+from asperity.surfaces.readers.headings import (
+    Title,
+    columns_of_heights,
+    length_named,
+    parsed_header,
+    titles_of,
+    units_of_lines,
+    without_invalid,
+)
 from asperity.surfaces.readers.hints import Hints, advice, spell
 from asperity.text_files import blocks_of_lines, decoded, even_rows, lines_in, number_in, read_text
 
-MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
+MISSING = {"", "nan", "bad", "na", "n/a", "#n/a", "n.a.", "#nv", "null", "none", "void", "lost", "missing",
+           "invalid", "no data", "nodata", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind"}  # fmt: skip
+"""Words for a missing height, beside any number of asterisks, and of dashes in a line with numbers."""
 COMMENT = ("#", "%", "//")
 MAX_TEXT_BYTES = 1 << 28
 MAX_HEADER = 1 << 20  # characters of headings and comments
@@ -31,6 +41,10 @@ PIECE = 1 << 16  # fields of a long line that are split off at a time
 
 _CHECK = "Check the file and its separators."
 _NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
+_SURE_COMMA = re.compile(r"[-+]?\d+,0\d|-0,")
+"""A decimal comma: nobody writes whole numbers as 05 or -0."""
+_QUOTED_COMMA = re.compile(r'"[-+]?\d*,\d[^"\n]*"')
+"""A number in quotes with a decimal comma."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +56,7 @@ class Dialect:
 
     def numbers(self, text: str) -> array[float] | None:
         """Return the numbers of one line, NaN for missing ones; None if it holds anything else."""
-        row = array("d")
+        row, underlined = array("d"), "-" in text  # as titles are, by dashes alone
         rest: str | None = text.rstrip("\r\n")
         while rest is not None:
             words = rest.split(self.delimiter, PIECE)
@@ -52,10 +66,14 @@ class Dialect:
                 try:
                     row.append(number_in(word.replace(",", ".") if self.decimal_comma else word))
                 except ValueError:
-                    if word.lower() not in MISSING and word.strip("*"):
+                    dashes = not word.strip("-")
+                    if not dashes and word.lower() not in MISSING and word.strip("*"):
                         return None
                     row.append(math.nan)
-        return row
+                    underlined = underlined and dashes
+                else:
+                    underlined = False
+        return None if underlined else row
 
     def is_blank(self, text: str, *, above: bool) -> bool:
         """Whether a line is empty; above the numbers, delimiters alone are as good as nothing."""
@@ -85,15 +103,19 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     size, allowed = path.stat().st_size, f"at most {amount(MAX_TEXT_BYTES)} of text"
     remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
     require(size <= MAX_TEXT_BYTES, f"size of {path.name}", amount(size), allowed, remedy)
-    content = read_text(path, path.name, "heights as text", largest=size, latin=True)
+    content = _unquoted(read_text(path, path.name, "heights as text", largest=size, latin=True))
     dialect = _dialect(_last_numbers(content), hints.decimal, path.name)
     header_lines, table = _table(content, dialect, path.name)
-    table, titles = without_invalid(table, titles_of(header_lines, dialect.delimiter, table.shape[1]))
+    table = guards.without_marks(table)
+    table, titles = columns_of_heights(table, titles_of(header_lines, dialect.delimiter, table.shape[1]))
+    table, titles = without_invalid(table, titles)
     if (units := units_of_lines(titles)) is not None:
         return _lines(table, *units, hints, path.name)
     header = parsed_header(header_lines, titles)
     if not titles and "width" in header and "height" in header:
         return _map_of_a_size(table.T, header, hints, path.name)
+    if table.shape[1] > 3 and (found := _with_positions(table, titles, header, hints, path.name)):
+        return found
     try:
         return _surfaces(table, header, hints, path.name)
     except InputError as error:
@@ -101,6 +123,15 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
             raise
     heights = table * hints.heights_in(path.name, header["z"])  # lines without their positions
     return guards.surfaces_of(heights, hints.spacing_in(path.name, (header["dx"], header["dy"])), path.name)
+
+
+def _unquoted(content: str) -> str:
+    """Text without quotes around its cells, with semicolons between them where they have decimal commas."""
+    if '"' not in content:
+        return content
+    if _QUOTED_COMMA.search(content):
+        content = re.sub(r'" *, *"', ";", content)
+    return content.replace('"', "")
 
 
 def holds_text(path: Path) -> bool:
@@ -156,6 +187,8 @@ def _dialect(sample: list[str], decimal: str | None, source: str) -> Dialect:
     if "." in joined or any(w.count(",") > 1 or w.startswith(",") or w.endswith(",") for w in words):
         return Dialect(",", False)
     if len(words) > len(sample) or not all("," in word for word in words):
+        return Dialect(None, True)
+    if any(_SURE_COMMA.match(word) for word in words):
         return Dialect(None, True)
     received, allowed = f"numbers such as {words[-1][:40]!r}", "an unambiguous decimal mark"
     lead = f"Give {spell('decimal', ',')} if the comma is the decimal mark; if it separates columns, give"
@@ -258,6 +291,12 @@ def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str)
     def lateral(axis: str) -> float:
         return hints.lateral_in(source, header.get(axis), "mm", f"{heading}, or give", f"{heading}.")
 
+    if columns == 3 and len(table) > 1 and not hints.pixel:  # a section of a map
+        for place, axis in enumerate("xy"):
+            if np.ptp(table[:, 1 - place]) == 0.0:
+                line, step = positions.line(table[:, place], heights, source)
+                unit = lateral(axis)
+                return [Profile(line, step * unit, source, float(table[:, place].min()) * unit)]
     if columns == 2:
         line, step = positions.line(table[:, 0], heights, source)
         if spacing:
@@ -268,6 +307,36 @@ def _surfaces(table: Array, header: dict[str, float], hints: Hints, source: str)
         heights, steps = positions.rasterised(table[:, 0], table[:, 1], heights, source)
         spacing = spacing or (steps[0] * lateral("x"), steps[1] * lateral("y"))
     return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
+
+
+def _with_positions(
+    table: Array, titles: list[Title], header: dict[str, float], hints: Hints, source: str
+) -> list[guards.Surface]:
+    """Heights whose first column holds even positions, and perhaps the first row others; none without."""
+    across = np.array([_number(title.name) for title in titles[1:]]) if titles else table[0, 1:]
+    framed = positions.are_even(across) and (bool(titles) or not table[0, 0] > 0.0)
+    inner = table[1:] if framed and not titles else table
+    if not positions.are_even(inner[:, 0]) or all(map(positions.are_even, inner[:, 1:].T)):
+        return []
+    stated = header.get("x") or (length_named(titles[0].unit) if titles and titles[0].unit else None)
+    heights = inner[:, 1:] * hints.heights_in(source, header.get("z"))
+    if hints.pixel:
+        return guards.surfaces_of(heights, hints.pixel, source)
+    heading = "Write it into the heading, as # lateral unit: mm"
+    unit = hints.lateral_in(source, stated, "mm", f"{heading}, or give", f"{heading}.")
+    heights, step = positions.line(inner[:, 0], heights, source)
+    other = step
+    if framed:
+        turned, other = positions.line(across, heights.T, source)
+        heights = turned.T
+    return guards.surfaces_of(heights, (step * unit, other * unit), source)
+
+
+def _number(word: str) -> float:
+    try:
+        return number_in(word)
+    except ValueError:
+        return math.nan
 
 
 def _map_of_a_size(

@@ -1,0 +1,158 @@
+"""Text as instruments export it: what is beside the heights, and what marks a missing one."""
+
+import numpy as np
+import pytest
+
+from asperity import HeightMap, read_surface
+from asperity.errors import InputError, MissingPointsWarning, OutOfRangeWarning
+
+X = 0.25 * np.arange(40)  # um
+Z = np.round(0.1 * np.sin(X) + 0.02 * np.cos(7 * X), 6)
+AT = [(i, j) for j in range(6) for i in range(8)]
+MAP = np.round(np.random.default_rng(5).normal(size=(8, 6)), 4)  # um, over 1.5 x 0.5 um
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read(content, encoding="utf-8", **hints):
+        file = tmp_path / "a.csv"
+        file.write_bytes(content.encode(encoding))
+        return read_surface(file, **hints)
+
+    return read
+
+
+def rows(form):
+    return "".join(
+        form.format(k=k, n=k + 1, x=x, z=z, a=1e4 * z) + "\n"
+        for k, (x, z) in enumerate(zip(X, Z, strict=True))
+    )
+
+
+def points(form):
+    return "".join(form.format(x=1.5 * i, y=0.5 * j, z=MAP[i, j]) + "\n" for i, j in AT)
+
+
+@pytest.mark.parametrize(("head", "form"), [
+    ("Scan Data,,\nLateral(µm),Total Profile(Å)", "{x:.2f},{a:.2f}"),
+    ("NumPoints=40\n\nLateral(um)\tRaw(A)", "{x:.2f}\t{a:.2f}"),
+    ("Horiz. units: um\nVert. units: A", "{x:.2f},{a:.2f}"),
+    ('"x (um)","z (um)"', '"{x:.2f}","{z:.6f}"'),
+    ("No.,Horizontal distance[um],Height[um]", "{n},{x:.2f},{z:.6f}"),
+    ("Nr;Position [µm];Wert [µm]", "{k};{x:.2f};{z:.6f}"),
+    (",x (um),z (um)", ",{x:.2f},{z:.6f}"),
+    ("z (um);x (um)", "{z:.6f};{x:.2f}"),
+    ("Height (um),Distance (um)", "{z:.6f},{x:.2f}"),
+    ("x_um,z_um", "{x:.2f},{z:.6f}"),
+    ("x (um);z (um);intensity", "{x:.2f};{z:.6f};0.{n}"),
+    ("x (um),y (um),z (um)", "{x:.2f},3.5,{z:.6f}"),
+    ("y (um),x (um),z (um)", "{x:.2f},3.5,{z:.6f}"),
+    ("[Measurement]\nPitch,0.25,um\nUnit,um\n[Data]", "{z:.6f}"),
+    ("X spacing: 0.25 um\nZ unit: um", "{z:.6f}"),
+    ("Increment: 250 nm\nUnit: µm", "{z:.6f}"),
+])  # fmt: skip
+def test_a_line_as_it_is_exported(read, head, form):
+    line = read(f"{head}\n{rows(form)}")
+    np.testing.assert_allclose(line.heights, 1e-6 * Z, atol=2e-12)
+    assert line.spacing == pytest.approx(0.25e-6)
+
+
+def test_decimal_commas_in_quotes_and_alone(read):
+    quoted = rows('"{x:.2f}"@"{z:.6f}"').replace(".", ",").replace("@", ",")
+    np.testing.assert_allclose(read('"x (um)","z (um)"\n' + quoted).heights, 1e-6 * Z, atol=1e-15)
+    alone = "Messpunktabstand: 0,25 µm\nEinheit: µm\n" + rows("{z:.6f}").replace(".", ",")
+    np.testing.assert_allclose(read(alone).heights, 1e-6 * Z, atol=1e-15)
+
+
+KEYENCE = [
+    "Model,VK-X1000",
+    "XY calibration,1500,nm/pixel",
+    "Horizontal,6",
+    "Vertical,8",
+    "Unit,um",
+    "",
+    "Height",
+]
+
+
+@pytest.mark.parametrize(("head", "form"), [
+    ("x (um),y (um),z (um),intensity", "{x},{y},{z},17"),
+    ("x (um),y (um),z (um),R,G,B", "{x},{y},{z},1,2,3"),
+    ("z (um),x (um),y (um)", "{z},{x},{y}"),
+])  # fmt: skip
+def test_a_map_of_points_as_it_is_exported(read, head, form):
+    surface = read(f"{head}\n{points(form)}")
+    np.testing.assert_allclose(surface.heights, 1e-6 * MAP, atol=1e-15)
+    assert surface.spacing == pytest.approx((1.5e-6, 0.5e-6))
+
+
+@pytest.mark.parametrize("quote", ["", '"'])
+def test_a_map_below_many_lines_of_words(read, quote):
+    cells = [*(line.split(",") for line in KEYENCE), *([str(z) for z in row] for row in MAP)]
+    text = "\n".join(",".join(f"{quote}{cell}{quote}" for cell in row) if any(row) else "" for row in cells)
+    surface = read(text)
+    np.testing.assert_allclose(surface.heights, 1e-6 * MAP, atol=1e-15)
+    assert surface.spacing == pytest.approx((1.5e-6, 1.5e-6))
+
+
+def test_four_comments_that_state_steps_are_no_size(read):
+    """Gwyddion's four lines are known by their order, in any language: these are others."""
+    comments = "# Surface\n# dx: 1.5 µm\n# dy: 0.5 µm\n# unit: µm\n"
+    surface = read(comments + "\n".join(" ".join(map(str, row)) for row in MAP))
+    assert surface.shape == (8, 6)
+    assert surface.spacing == pytest.approx((1.5e-6, 0.5e-6))
+
+
+def framed(corner):
+    top = ",".join([corner, *(str(0.5 * j) for j in range(6))])
+    return "\n".join([top, *(",".join(map(str, (1.5 * i, *MAP[i]))) for i in range(8))])
+
+
+@pytest.mark.parametrize("corner", ["", "0", "x (um) by y (um)"])
+def test_positions_in_the_first_row_and_column_are_no_heights(read, corner):
+    surface = read("# lateral unit: um\n# height unit: um\n" * (corner[:1] != "x") + framed(corner),
+                   **({"height_unit": "um"} if corner[:1] == "x" else {}))  # fmt: skip
+    np.testing.assert_allclose(surface.heights, 1e-6 * MAP, atol=1e-15)
+    assert surface.spacing == pytest.approx((1.5e-6, 0.5e-6))
+    given = read(framed(corner), height_unit="um", pixel=("3 um", "1 um"))
+    assert isinstance(given, HeightMap)
+    assert (given.shape, given.spacing) == ((8, 6), pytest.approx((3e-6, 1e-6)))
+
+
+def test_a_plane_is_no_table_of_positions(read):
+    plane = np.add.outer(1.0 * np.arange(8), 0.5 * np.arange(6))
+    text = "\n".join(" ".join(map(str, row)) for row in plane)
+    assert read(text, height_unit="um", pixel="5 um").shape == (8, 6)
+
+
+@pytest.mark.parametrize("columns", [2, 3])
+def test_positions_in_an_array_are_told(tmp_path, columns):
+    table = np.column_stack([X, *[Z] * (columns - 1)])
+    for name, array in (("a.npy", table), ("b.npy", table.T)):
+        np.save(tmp_path / name, array)
+        with pytest.raises(InputError, match="even positions beside heights; allowed: heights alone"):
+            read_surface(tmp_path / name, height_unit="um", pixel="0.25 um")
+
+
+MARKS = ["-", "---", "n.a.", "#N/A", "NaN(ind)", "-nan(ind)", "1.#QNAN", "-1.#IND", "void", "LOST", "Invalid",
+         "1e38", "1.70141e+38", "9.96921e+36", "-3.402823e+38"]  # fmt: skip
+
+
+@pytest.mark.parametrize("mark", MARKS)
+def test_marks_of_a_missing_height(read, mark):
+    lines = rows("{x:.2f};{z:.6f}").splitlines()
+    lines[5] = f"1.25;{mark}"
+    with pytest.warns(MissingPointsWarning, match=r"1 points \(2.5 %"):
+        line = read("x (um);z (um)\n------;------\n" + "\n".join(lines))
+    np.testing.assert_allclose(np.delete(line.heights, 5), np.delete(1e-6 * Z, 5), atol=1e-15)
+
+
+@pytest.mark.parametrize(("mark", "told"), [
+    ("-9999", "a point has the height -10 mm, where others spread by"),
+    ("999.999", "a point has the height 1 mm"),
+])  # fmt: skip
+def test_a_height_far_from_all_others_is_doubted(read, mark, told):
+    lines = rows("{x:.2f};{z:.6f}").splitlines()
+    lines[5] = f"1.25;{mark}"
+    with pytest.warns(OutOfRangeWarning, match=f"{told}.* If it marks what is missing, write NaN there"):
+        read("x (um);z (um)\n" + "\n".join(lines))
