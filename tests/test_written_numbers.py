@@ -8,7 +8,7 @@ import xarray as xr
 
 import asperity
 from asperity.reporting.data import typed_words
-from asperity.written_numbers import between, count_of, in_newtons, plain, rounded
+from asperity.written_numbers import between, capital, count_of, engineering, in_newtons, plain, rounded
 
 
 @pytest.mark.parametrize(
@@ -22,6 +22,17 @@ from asperity.written_numbers import between, count_of, in_newtons, plain, round
 def test_digits_are_written_out(value, digits, written):
     assert rounded(value, digits) == written
     assert plain(value, digits) == written.replace("-", "−")
+
+
+def test_areas_are_in_a_unit_that_is_read():
+    """The next one begins at a hundredth of it."""
+    found = [engineering(each, "m²") for each in (1.34e-7, 9.1e-5, 4.2e-9, 0.0, 2.5e-14, 3.0)]
+    assert found == ["0.134 mm²", "91.0 mm²", "4200 µm²", "0 m²", "0.0250 µm²", "3.00 m²"]
+
+
+def test_a_sentence_begins_with_a_capital_and_keeps_its_names():
+    assert capital("sound power by CNOSSOS-EU") == "Sound power by CNOSSOS-EU"
+    assert capital("") == ""
 
 
 def test_ends_counts_and_forces_are_in_words():

@@ -45,7 +45,10 @@ def engineering(value: float, unit: str, digits: int = 3) -> str:
         return f"{math.degrees(value):.0f}°"
     power = 2 if unit == "m²" else 1  # a prefix on a squared unit is squared with it
     value += 0.0  # no minus before zero
-    exponent = 0 if value == 0 else 3 * math.floor(math.floor(math.log10(abs(value))) / (3 * power))
+    least = 2 * (
+        power - 1
+    )  # areas change the unit at a factor of a million: 0.134 mm² is read, 134000 µm² is not
+    exponent = 0 if value == 0 else 3 * math.floor((math.floor(math.log10(abs(value))) + least) / (3 * power))
     exponent = min(max(exponent, -12 if power == 1 else -9), 0 if power == 2 else 12)
     scaled = value / 10.0 ** (exponent * power)
     places = 0 if scaled == 0 else max(0, digits - 1 - math.floor(math.log10(abs(scaled))))
@@ -60,6 +63,11 @@ def in_newtons(newtons: float) -> str:
 def between(low: str, high: str) -> str:
     """Two ends in words; one of them where both are written alike: ``"0.6 to 0.7"``, ``"0.6"``."""
     return low if low == high else f"{low} to {high}"
+
+
+def capital(sentence: str) -> str:
+    """Begin a sentence with a capital; names in it stay as they are written: ``"CNOSSOS-EU"``."""
+    return f"{sentence[:1].upper()}{sentence[1:]}"
 
 
 def count_of(count: int, thing: str) -> str:

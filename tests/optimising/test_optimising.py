@@ -17,6 +17,7 @@ from asperity.case.cases import load_case
 from asperity.cli import main, optimising
 from asperity.optimising import running
 from asperity.optimising.allocation import rms_of
+from asperity.written_numbers import signed
 from small_cases import COARSE, WHEEL
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
@@ -59,7 +60,7 @@ def test_it_beats_the_start_by_table_with_its_limit_active(folder):
     levels = columns(out / "bands.csv")["level after [dB re 1 um]"]
     assert rms_of(levels) == pytest.approx(0.05e-6, rel=1e-3)
     assert (levels <= -30.0 + 1e-9).all()
-    assert "On its limits: rms_at_least" in told["summary"]
+    assert "Active bounds: rms_at_least" in told["summary"]
     runs = [asperity.open_result(out / name) for name in ("before", "after")]
     for law in ("table", "areal"):
         rms = [run["rolling/acceleration"].sel(law=law).values.std() for run in runs]
@@ -88,7 +89,7 @@ def test_its_document_and_its_page_are_what_the_documentation_says(folder):
     for law, levels in told["levels"].items():
         assert told["changes"][law] == levels[1] - levels[0]
         words = (
-            f"{law} {levels[0]:.1f} to {levels[1]:.1f} dB(A) re 1e-6 m/s², {levels[1] - levels[0]:+.1f} dB"
+            f"{law} {levels[0]:.1f} to {levels[1]:.1f} dB(A) re 1 µm/s², {signed(levels[1] - levels[0])} dB"
         )
         assert words in page.replace("\u00a0", " ")
 
@@ -140,8 +141,8 @@ def test_a_limit_is_kept_and_each_band_takes_its_share():
     assert np.ptp(shares) < 3.0
     assert "limit" in found.active
     before, after = found.levels["areal"]
-    assert f"areal {before:.1f} to {after:.1f} dB(A) re 1e-6 m/s²" in found.sentence
-    assert f"Limit 120 dB(A) re 1e-6 m/s²: by areal kept ({after:.1f})." in found.sentence
+    assert f"areal {before:.1f} to {after:.1f} dB(A) re 1 µm/s²" in found.sentence
+    assert f"Limit 120 dB(A) re 1 µm/s²: by areal kept ({after:.1f})." in found.sentence
 
 
 @pytest.mark.long

@@ -50,6 +50,12 @@ class Reader(HTMLParser):
         return "".join(self.text).replace("\u00a0", " ")
 
 
+def computers_exponents(page):
+    """Numbers on a page as a computer writes them, 3e-08; the keys of a case are as its file has them."""
+    told = re.sub(r"(?s)<(script|style|pre|code)\b.*?</\1>|<div class=\"case\">.*?</div>", " ", page)
+    return re.findall(r"(?<![\w.])\d[\d.]*e[-+−]?\d+\b", re.sub(r"<[^>]+>", " ", told))
+
+
 def own_scripts(page):
     """Scripts of a page: its data and what its policy allows, no other; it loads nothing, and is whole."""
     reader = Reader(page)

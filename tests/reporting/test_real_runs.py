@@ -4,7 +4,7 @@ import json
 import re
 
 import pytest
-from report_reading import Reader, own_scripts, without
+from report_reading import Reader, computers_exponents, own_scripts, without
 
 from asperity.reporting.figure import columns_text
 from asperity.results import read_result, save
@@ -44,6 +44,12 @@ def test_all_figures_tables_and_numbers_are_there(real_run, text, folder):
     chapters = {c.name for c in CHAPTERS if drawn & {part.name for part in c.figures}}
     assert drawn | chapters | TABLES[kind] | {"case", "literature", "remake", "provenance"} <= names
     assert {path.name for path in folder.iterdir()} == {"report.html", *(f"{name}.csv" for name in drawn)}
+
+
+def test_no_number_is_written_as_a_computer_does(real_run, text):
+    """The residual of the energy read 3.0e-08; heads of numbers y=-8e-05 m."""
+    assert computers_exponents(text) == []
+    assert computers_exponents(page_of(real_run, summary=True)) == []
 
 
 def test_what_the_run_says_is_shown(real_run, text):

@@ -195,7 +195,7 @@ def test_a_case_with_a_map_in_memory_says_what_to_save_first():
     case = asperity.BallOnBeam(surface={"file": plane})
     assert case.with_(surface={"file": None, "rms": 1e-6}).in_memory == {}
     tree = contact_only()
-    tree.attrs |= root_attributes(case, "", [], "", [])
+    tree.attrs |= root_attributes(case, "", [], "", [], {})
     again = page_of(tree).partition('id="remake"')[2].partition("<h3")[0]
     assert (
         "with <code>surface.file</code> in memory: height map of 40 × 30 points, 8 um × 8 um apart" in again
@@ -247,7 +247,7 @@ def test_caption_says_what_printed_owes_to_its_datum(tree):
 @pytest.mark.parametrize(
     ("value", "unit", "shown"),
     [(3.1e-7, "m", "310 nm"), (1.5e-6, "m", "1.50 µm"), (-0.41, "1", "−0.41"), (2.4e8, "Pa", "240 MPa"),
-     (0.0, "J", "0 J"), (-0.0, "m", "0 m"), (3.1e-8, "m²", "31000 µm²"),
+     (0.0, "J", "0 J"), (-0.0, "m", "0 m"), (3.1e-8, "m²", "0.0310 mm²"),
      (float("nan"), "m", "–"), (0.05, "m", "50.0 mm"), (5.04, "N", "5.04 N")],
 )  # fmt: skip
 def test_numbers_are_written_with_prefixes(value, unit, shown):

@@ -79,7 +79,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     ends = dict.fromkeys(f"{each:.0f}" for each in (found.touching.min(), found.touching.max()))
     say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
     _say_tones(turning, f"Hz at {60.0 * speed:.5g} 1/min" if speed else "per turn")
-    say(f"Balance to {found.imbalance:.0e} of the load.")
+    say(f"Balance to {rounded(found.imbalance, 1)} of the load.")
     if picture is not None:
         write_chart(load_zone.drawn(at_rest).chart, f"{keys.name or 'bearing'}, {load}", picture)
         say(f"Picture: {picture.resolve()}")

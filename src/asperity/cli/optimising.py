@@ -26,6 +26,7 @@ from asperity.scenes.report import write_page
 from asperity.store import content_key
 from asperity.terminal import say, say_files
 from asperity.text_files import write_csv
+from asperity.written_numbers import capital
 
 FILES = {
     "case": "case.toml",
@@ -132,8 +133,9 @@ def _page(found: Optimised, columns: dict[str, Array], *, report: bool) -> str:
     links = {words: FILES[what] for words, what in offered.items()}
     if report:
         links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
-    summary = f"{found.sentence[:1].upper()}{found.sentence[1:]}"
-    return page.figures_page("Optimised texture", summary, [_levels_table(found), figure], links)
+    return page.figures_page(
+        "Optimised texture", capital(found.sentence), [_levels_table(found), figure], links
+    )
 
 
 def _levels_table(found: Optimised) -> ReportTable:
@@ -149,5 +151,7 @@ def _levels_table(found: Optimised) -> ReportTable:
     if limit is not None:
         columns["limit"] = number_cells([limit] * len(before), "{:.1f}")
         columns["after less limit / dB"] = number_cells([each - limit for each in after], data.signed)
-    note = f"In {found.measure.units}: all waves of the texture, and what other bodies add."
-    return table("levels", f"{found.measure.meaning[:1].upper()}{found.measure.meaning[1:]}", columns, note)
+    note = (
+        f"In {data.written_units(found.measure.units)}: all waves of the texture, and what other bodies add."
+    )
+    return table("levels", capital(found.measure.meaning), columns, note)

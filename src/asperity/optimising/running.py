@@ -22,13 +22,14 @@ from asperity.optimising.definition import (
     with_texture,
 )
 from asperity.progress import Progress, shown_progress
+from asperity.reporting.data import written_units
 from asperity.running import run
 from asperity.scenarios.preparing import prepare
 from asperity.scenes import result
 from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
-from asperity.written_numbers import between, rounded
+from asperity.written_numbers import between, engineering, signed
 
 if TYPE_CHECKING:
     from asperity.scenes.report import Result
@@ -109,7 +110,7 @@ class Optimised:
             over = after - limit
             kept = f"{over:.1f} dB over it" if over > 2 * AT_A_BOUND else f"kept ({after:.1f})"
             told.append(f"by {law} {kept}")
-        return f"Limit {limit:g} {self.measure.units}: {', '.join(told)}."
+        return f"Limit {limit:g} {written_units(self.measure.units)}: {', '.join(told)}."
 
     @property
     def active(self) -> list[str]:
@@ -133,17 +134,17 @@ class Optimised:
     def sentence(self) -> str:
         """What came of it, for people."""
         aim, (first, last) = self.aim, (self.before, self.after)
-        rms = [1e6 * rms_of(bands.levels[bands.changed]) for bands in (first, last)]
+        rms = [engineering(rms_of(bands.levels[bands.changed]), "m") for bands in (first, last)]
+        units = written_units(self.measure.units)
         told = [
-            f"{law} {before:.1f} to {after:.1f} {self.measure.units}, {after - before:+.1f} dB"
+            f"{law} {before:.1f} to {after:.1f} {units}, {signed(after - before)} dB"
             for law, (before, after) in self.levels.items()
         ]
         lay = f", lay {first.lateral:.3g} to {last.lateral:.3g}" if aim.lateral and first.lateral else ""
         words = [
-            f"{self.measure.meaning}: {'; '.join(told)}; "
-            f"rms of the bands {between(*map(rounded, rms))} µm{lay}.",
+            f"{self.measure.meaning}: {'; '.join(told)}; rms of the bands {between(*rms)}{lay}.",
             *([self.of_limit] if self.of_limit else []),
-            f"On its limits: {'; '.join(self.active) or 'none'}.",
+            f"Active bounds: {'; '.join(self.active) or 'none'}.",
         ]
         if not self.settled:
             words.append("The search did not settle: the best texture that was met is shown.")

@@ -9,7 +9,7 @@ from asperity.arguments import Array, ArrayLike, one_of
 
 _NORDBORG = "A. Nordborg, J. Acoust. Soc. Am., 2002 (not seen), as used by a public re-implementation"
 _NORDBORG_VISCOUS = "viscous variant of " + _NORDBORG
-_UIC60 = "UIC 60 as in the program rolland: E = 210 GPa, I = 3.037e-5 m^4, A = 76.7e-4 m^2, m' = 60.2 kg/m"
+_UIC60 = "UIC 60 as in the program rolland: E = 210 GPa, I = 3037 cm^4, A = 76.7 cm^2, m' = 60.2 kg/m"
 _UIC60_SHEAR = _UIC60 + "; kappa = 0.393, G = 80.77 GPa"
 _RANGE = "chosen here within the published range "
 _OWN = "default of asperity, chosen here: the thesis prints none; "
@@ -36,7 +36,7 @@ _UIC60_TIMOSHENKO: Parameters = {
     "rotary_inertia": (60.2 / 76.7e-4 * 3.037e-5, _UIC60),
 }
 _NORDBORG_RAIL: Parameters = {
-    "bending_stiffness": (210e9 * 22.5e-6, _NORDBORG + ": E = 210 GPa, I = 22.5e-6 m^4"),
+    "bending_stiffness": (210e9 * 22.5e-6, _NORDBORG + ": E = 210 GPa, I = 2250 cm^4"),
     "mass_per_length": (60.0, _NORDBORG),
     "rail_loss_factor": (0.004, _NORDBORG),
     "pad_stiffness": (300e6, _NORDBORG),

@@ -13,7 +13,7 @@ from asperity.reporting.figure import PageFigure
 from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
 from asperity.spectra import nominal_frequency
-from asperity.written_numbers import rounded
+from asperity.written_numbers import capital, rounded
 
 ANOTHER = "another texture was drawn"
 """What is said of runs that differ by chance, too."""
@@ -156,7 +156,9 @@ def _level(of: ComparedRuns, name: str) -> Iterator[Panel | str]:
         known = np.isfinite(by := _chance(of.table, 1))
         if known.any():
             edges = band[known] / panels.EDGE, band[known] * panels.EDGE, -by[known], by[known]
-            below.append(chart.Boxes(*edges, label="± 1 s by chance", colour=MUTED, opacity=0.18))
+            below.append(
+                chart.Boxes(*edges, label="± one standard deviation, by chance", colour=MUTED, opacity=0.18)
+            )
         looks = {law: data.law_style(of.runs[0].tree, law, main) for law in of.runs[0].laws}
         for law, change in zip(of.laws, difference[1], strict=True):
             if np.isfinite(change).any():
@@ -214,7 +216,7 @@ def compared_blocks(of: ComparedRuns) -> list[page.Block]:
     """What the page shows: cases, what each run says, force, each level, contact."""
     found: list[page.Block] = [_runs_table(of), _case_table(of), _numbers_table(of.table)]
     for name, title in of.levels.items():
-        found += [PageFigure.of(name, title.capitalize(), _level(of, name)), _difference_table(of, name)]
+        found += [PageFigure.of(name, capital(title), _level(of, name)), _difference_table(of, name)]
     if {"stiffness", "filter"} & set(of.table):
         found.append(PageFigure.of("stiffness_and_filter", "Stiffness and filter", _contacts(of)))
     return [*found, _contact_table(of)]
@@ -279,7 +281,7 @@ def _difference_table(of: ComparedRuns, name: str) -> ReportTable:
     )
     if drawn := _others_drawn(of):
         note += f" All of {drawn} is in brackets: {ANOTHER}."
-    title = f"{of.levels[name].capitalize()}, {over}, in dB"
+    title = f"{capital(of.levels[name])}, {over}, in dB"
     return tables.table(f"{name}_difference", title, columns, note)
 
 

@@ -14,6 +14,7 @@ from asperity.reporting import chart, data, panels
 from asperity.reporting.chart import INK, Axis, Boxes, Line, Mark, Numbers, Panel, sequence_styles
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import nominal_length, say_little
+from asperity.written_numbers import capital
 
 MOST_PANELS = 6
 """Members of other keys, or quantities, that are drawn; the CSV file has all of them."""
@@ -84,7 +85,7 @@ def optimised_figure(
     texture: list[Mark] = [Boxes(left, right, low, high, "allowed", chart.MUTED, 0.15)]
     response: list[Mark] = []
     for name, dashes, level in (("before", (1.5, 1.5), levels[0]), ("after", (), levels[1])):
-        texture.append(Line(steps, np.repeat(level[order], 2), name, INK, dashes))
+        texture.append(Line(steps, np.repeat(level[order], 2), f"texture {name}", INK, dashes))
         for law, colour in colours.items():
             look: dict[str, Any] = {"colour": colour, "dashes": dashes, "marker": "o"}
             response.append(
@@ -176,7 +177,7 @@ def ends_in_words(table: xarray.Dataset, names: Sequence[str]) -> str:
         at = {str(dim): int(place) for dim, place in found.items()}
         where = ", ".join(f"{key} {data.typed_words(table[key])[n]}" for key, n in at.items())
         ends.append(f"{float(held[at]):.1f} {units} at {where}")
-    return f"{', '.join(told).capitalize()}: from {ends[0]} to {ends[1]}."
+    return f"{capital(', '.join(told))}: from {ends[0]} to {ends[1]}."
 
 
 def _says_something(found: xarray.DataArray) -> bool:

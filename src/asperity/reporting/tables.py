@@ -1,5 +1,6 @@
 """Tables of a page, declared by their columns; those that all kinds share; how sure a result is."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -55,7 +56,7 @@ def number_cells(
     A dash stands where there is none. All have one look, or each its own.
     """
     how = partial(data.engineering, unit=write) if isinstance(write, str) and "{" not in write else write
-    told = how.format if isinstance(how, str) else how
+    told = (lambda each: how.format(each).replace("-", "−")) if isinstance(how, str) else how
     looks = repeat(look) if isinstance(look, str) else look
     cells = zip(found, looks, strict=False)
     return [Cell(told(float(each)) if np.isfinite(each) else "–", own) for each, own in cells]
@@ -102,6 +103,8 @@ def listed_table(
 
 # --- numbers of figures, for where they are not drawn
 
+SMALL = 1e-2
+"""Lengths, m, that are not read well in metres."""
 COLUMNS, ROWS = 12, 24
 """Of a table of numbers; the CSV file has all."""
 _four_digits = partial(data.plain, digits=4)
@@ -118,8 +121,18 @@ def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] 
     counts = {"rows": (len(rows), count), "columns": (len(named), len(columns))}
     parts = [f"{some} of {every} {what}" for what, (some, every) in counts.items() if some < every]
     note = f"{' and '.join(parts)}; the CSV file has all." if parts else ""
-    cells = {name: number_cells(numbers, _four_digits) for name, numbers in shown.items()}
+    cells = {_read_well(name): number_cells(numbers, _four_digits) for name, numbers in shown.items()}
     return table("", "Numbers", cells, note)
+
+
+def _read_well(head: str) -> str:
+    """Head of a column of a CSV file with its small lengths in their units: ``"p(y=−80.0 µm) [Pa]"``."""
+
+    def length(found: re.Match[str]) -> str:
+        metres = float(found[1])
+        return f"={data.engineering(metres, 'm')}" if abs(metres) < SMALL else found[0]
+
+    return re.sub(r"=(-?\d[\d.]*(?:e-?\d+)?) m\b", length, head)
 
 
 def chart_tables(drawn: chart.Chart) -> list[ReportTable]:

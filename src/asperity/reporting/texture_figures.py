@@ -36,19 +36,23 @@ def map_panel(
     colours: str = "cividis",
     **place: Any,
 ) -> Panel:
-    """Numbers (nx, ny) from above, x to the right and y up, in the unit of x.
+    """Numbers (nx, ny) from above, x to the right and y up, in the unit of x where both are to one scale.
 
     `scale` is the label of their colours, and the lowest and highest number that these tell apart.
     """
     size, symbol = length_unit(np.ptp(x))
-    halves = [(points[1] - points[0]) / 2 if len(points) > 1 else 0.5 for points in (x, y)]
-    (left, right), (low, high) = (
-        (float(points[0] - half) / size, float(points[-1] + half) / size)
-        for points, half in zip((x, y), halves, strict=True)
-    )
+    size_across, symbol_across = (size, symbol) if equal else length_unit(np.ptp(y))
+    left, right = _edges(x, size)
+    low, high = _edges(y, size_across)
     shown = chart.Field((left, right), (low, high), numbers, *scale, colours)
     along = Axis(f"x / {symbol} (rolling direction →)", left, right)
-    return Panel(along, Axis(f"y / {symbol}", low, high), (shown, *marks), equal=equal, **place)
+    return Panel(along, Axis(f"y / {symbol_across}", low, high), (shown, *marks), equal=equal, **place)
+
+
+def _edges(points: Numbers, size: float) -> tuple[float, float]:
+    """Outer edges of the cells around evenly spaced points, m, in a unit of this size."""
+    half = (points[1] - points[0]) / 2 if len(points) > 1 else 0.5
+    return float(points[0] - half) / size, float(points[-1] + half) / size
 
 
 def height_scale(heights: Numbers) -> tuple[float, str, float, float]:

@@ -501,5 +501,5 @@ def _numerics(case: BallBearingCase, wall: float) -> Iterator[tuple[str, str]]:
     yield "time step", f"{rounded(case.step * 1e6, 4)} µs"
     yield "time steps per sample that is written", f"{case.steps_per_sample}"
     yield "resonance of the most loaded ball between the rings", f"{rounded(case.ball_resonance, 4)} Hz"
-    yield "imbalance of the static solution", f"{case.static.imbalance:.0e} of the load"
+    yield "imbalance of the static solution", f"{rounded(case.static.imbalance, 1)} of the load"
     yield "wall time", f"{wall:.2f} s"

@@ -175,7 +175,7 @@ def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
         )
         if isinstance(over.direct, RailPoles):
             yield "track in time", f"{over.direct.count} poles"
-            yield "error of the fitted poles, relative", f"{over.direct.fit_error:.1e}"
+            yield "error of the fitted poles, relative", rounded(over.direct.fit_error, 2)
         else:
             yield "track in time", "scattered from the moving kernel"
     elif over is not None:

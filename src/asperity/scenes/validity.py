@@ -73,9 +73,9 @@ def energy_left(law: str, residual: float, key: str) -> Finding:
 
     `key` is that of the time step.
     """
-    told = f"{residual:.1e} of the energy that passed through the contacts is unaccounted for"
+    told = f"{rounded(residual, 2)} of the energy that passed through the contacts is unaccounted for"
     return Finding(
-        f"energy that the balance leaves open, {law}", f"{residual:.1e} of the throughput",
+        f"energy that the balance leaves open, {law}", f"{rounded(residual, 2)} of the throughput",
         f"up to {RESIDUAL:g}", Grade.WARNING if residual > RESIDUAL else None,
         "The time step is coarse for what moves.", f"Take a smaller {key}.", told, (law,)
     )  # fmt: skip

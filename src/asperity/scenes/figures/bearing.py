@@ -14,7 +14,7 @@ from asperity.reporting.figure import Lines, Of, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
 from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.schema import bearing, provenance, rolling, spectra
-from asperity.written_numbers import between, in_newtons, rounded
+from asperity.written_numbers import between, in_newtons, plain, rounded
 
 CORNERS = 180
 RING = 0.35
@@ -30,7 +30,7 @@ RINGS = {"inner": (chart.VERMILLION, ()), "outer": (chart.BLUE, (5.0, 1.5))}
 """Looks of lines of the contacts with each ring."""
 COLOURS = {"outer": chart.BLUE, "inner": chart.VERMILLION, "ball": chart.GREEN}
 """Of the parts of a bearing."""
-RIGHT_ANGLES = tuple((each, f"{each:g}") for each in (-180.0, -90.0, 0.0, 90.0, 180.0))
+RIGHT_ANGLES = tuple((each, plain(each)) for each in (-180.0, -90.0, 0.0, 90.0, 180.0))
 AROUND = chart.Axis("azimuth from the radial load / °", -185.0, 185.0, ticks=RIGHT_ANGLES)
 
 

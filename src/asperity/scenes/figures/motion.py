@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from xarray import DataTree
@@ -91,7 +92,7 @@ def energy_table(tree: DataTree) -> ReportTable:
     entry = schema.ENERGY_RESIDUAL
     if data.present(tree, entry):
         left = [float(data.of_law(tree, entry, law)) for law in laws]
-        columns["relative residual"] = number_cells(left, "{:.1e}")
+        columns["relative residual"] = number_cells(left, partial(data.plain, digits=2))
         note += f" Residual: {entry.long_name}."
     return table("energy_balance", "Energy balance of the run", columns, note)
 

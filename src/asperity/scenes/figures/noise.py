@@ -228,14 +228,16 @@ def pass_by_level(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     time = Axis("time since the first axle was opposite / s", lines.at[0], lines.at[-1])
     axles = data.values(tree, schema.AXLE_TIME)
     yield Panel(time, axis, (*_train(tree, axles), *totals, *of_parts), height=4.2)
-    passing = "One axle passes" if len(axles) == 1 else f"{len(axles)} axles pass"
+    passing = "One axle passes (tick), two wheels on it"
+    if len(axles) > 1:
+        passing = f"{len(axles)} axles pass (ticks), two wheels on each"
     away, above = (data.number(tree, fact) for fact in (schema.RECEIVER_DISTANCE, schema.RECEIVER_HEIGHT))
     where = ""
     if away is not None and above is not None:
         where = f", {away:g} m from the middle of the track and {above:g} m above the rail head"
     ground, directions = (data.stated(tree, fact) for fact in (schema.GROUND, schema.DIRECTIVITY))
     yield (
-        f"{passing} (ticks), two wheels on each{where}; ground: {ground or HARD}, directivity: "
+        f"{passing}{where}; ground: {ground or HARD}, directivity: "
         f"{directions or 'none'}. Rail and sleepers radiate along the track as its vibration decays, a wheel "
         "from its axle; nothing screens them."
     )
