@@ -7,7 +7,7 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 from ledger import Check
-from make_peers import ball_on_cells, gaps_of
+from make_peers import PERIOD, ball_on_cells, gaps_of, periodic_gap
 
 from asperity import HalfSpace, Hertz
 from asperity.contact.hertz import in_groove
@@ -208,6 +208,134 @@ def plastic_peer():
         yield row("force", found["force"], contact.force, "N")
         yield row("deepest plastic indentation", found["deepest"], mark.max(), "µm")
         yield row("volume of the marks", found["volume"], mark.sum() * half_space.cell_area, "µm³")
+
+
+# --- one period of a surface without end ------------------------------------------------------
+
+
+def periodic_peer():
+    """A rough period under mean pressures, by tamaas, with the same spectrum of the half-space."""
+    found, gap = stored("periodic_peer.json"), periodic_gap(PERIOD)
+    half_space = HalfSpace(PERIOD["cells"], PERIOD["spacing"], PERIOD["modulus"], boundary="periodic")
+    for peer in found["contacts"]:
+        load = peer["mean"] * gap.size * half_space.cell_area
+        contact = half_space.solve(gap, load=load, rtol=1e-12)
+        body = f"rough period of {gap.shape[0]} × {gap.shape[1]} cells under {peer['mean'] / 1e6:g} MPa"
+        source = f"tamaas {found['version']}, tolerance 1e-13"
+        row = partial(Check, body=body, source=source, tolerance=1e-9)
+        yield row("approach of the mean planes", peer["approach"], contact.approach, "µm")
+        yield row("largest pressure", peer["largest"], contact.pressure.max(), "MPa")
+        touching = np.count_nonzero(contact.pressure)
+        yield row("cells in contact", peer["cells"], touching, tolerance=0)
+
+
+def westergaard():
+    """A wave Δ (1 − cos 2πx/λ) of 256 cells in plane strain: p* = π E* Δ/λ, a = (λ/π) asin √(p/p*)."""
+    length, amplitude, n = 1e-3, 1e-7, 256
+    x = (np.arange(n) - n // 2) * length / n
+    gap, full = amplitude * (1 - np.cos(2 * np.pi * x[:, None] / length)), np.pi * STEEL * amplitude / length
+    half_space = HalfSpace((n, 1), length / n, STEEL, boundary="periodic")
+    for share in (0.1, 0.5, 0.9):
+        contact = half_space.solve(gap, load=share * full * length**2 / n, rtol=1e-9)
+        edge = np.arcsin(np.sqrt(share))  # πa/λ
+        pressure = 2 * share * full * np.cos(np.pi * x / length) / share
+        pressure *= np.sqrt(np.maximum(share - np.sin(np.pi * x / length) ** 2, 0.0))
+        off = np.abs(contact.pressure[:, 0] - pressure)[
+            np.abs(np.abs(x) / length - edge / np.pi) > 2 / n
+        ].max()
+        source = "Westergaard 1939, closed form; tolerance: the grid"
+        row = partial(Check, body=f"wave of one length, p = {share:g} p*", source=source)
+        moved = share * (1 - np.log(share))  # integral of the compliance −λ ln(p/p*)/(π E*)
+        touching = contact.area / (length**2 / n)
+        yield row("approach over amplitude", moved, contact.approach / amplitude, tolerance=1e-4)
+        yield row("share in contact", 2 * edge / np.pi, touching, tolerance=2 / n)
+        yield row(
+            "largest pressure over p*", 2 * np.sqrt(share), contact.pressure.max() / full, tolerance=1e-4
+        )
+        yield row(
+            "largest error of the pressure over p*, two cells from the edge",
+            0.0,
+            off / full,
+            tolerance=2e-3,
+            absolute=True,
+        )
+
+
+def wavy_in_two_directions():
+    """A surface Δ (1 − cos 2πx/λ cos 2πy/λ): p* = √2 π E* Δ/λ, Hertz's balls, and circles not in contact."""
+    length, amplitude, n = 1e-3, 1e-7, 256
+    wave = np.cos(2 * np.pi * np.arange(n) / n)
+    gap, full = amplitude * (1 - np.outer(wave, wave)), np.sqrt(2) * np.pi * STEEL * amplitude / length
+    half_space = HalfSpace((n, n), length / n, STEEL, boundary="periodic")
+    printed = "Johnson, Greenwood, Higginson 1985"
+    row = partial(Check, body="waves along and across")
+
+    def share_in_contact(load):
+        return half_space.solve(gap, load=load * full * length**2, rtol=1e-6)
+
+    whole = share_in_contact(1.0)
+    yield row(
+        "largest pressure under p*, over p*",
+        2.0,
+        whole.pressure.max() / full,
+        source=f"{printed}, √2 π E* Δ/λ",
+        tolerance=1e-5,
+    )
+    yield row(
+        "approach under p*, over amplitude",
+        1.0,
+        whole.approach / amplitude,
+        source="full contact",
+        tolerance=1e-5,
+    )
+    light = share_in_contact(0.01).area / length**2
+    source = f"as {printed}, π (3p/8πp*)^⅔: a ball on each crest; tolerance: its limit, the cells of rims"
+    yield row(
+        "share in contact, p = 0.01 p*",
+        np.pi * (0.03 / (8 * np.pi)) ** (2 / 3),
+        light,
+        source=source,
+        tolerance=0.05,
+    )
+    apart = 1 - share_in_contact(0.97).area / length**2
+    source = (
+        f"as {printed}, (3/2π)(1 − p/p*): circles in the troughs; tolerance: its limit, the cells of rims"
+    )
+    yield row("share not in contact, p = 0.97 p*", 1.5 / np.pi * 0.03, apart, source=source, tolerance=0.1)
+
+
+def _without_rims(contact):
+    """Area less what whole cells have beyond the rim (Yastrebov, Anciaux, Molinari 2017), over a period."""
+    touching = contact.pressure > 0.0
+    edges = sum(np.count_nonzero(touching != np.roll(touching, 1, axis)) for axis in (0, 1))
+    return touching.mean() - (np.pi - 1 + np.log(2)) / 24 * edges / touching.size
+
+
+def rough_period():
+    """A self-affine surface, 16 cells to the shortest wave: share in contact over p/(E* h'), h' rms slope."""
+    n, rng = 256, np.random.default_rng(1)
+    k = np.hypot(np.fft.fftfreq(n, 1 / n)[:, None], np.fft.rfftfreq(n, 1 / n))
+    filtered = np.where((k >= 4) & (k <= 16), np.maximum(k, 1.0) ** -1.8, 0.0)
+    spectrum = np.fft.rfft2(rng.standard_normal((n, n))) * filtered
+    heights = np.fft.irfft2(spectrum)
+    curved = np.fft.irfft2(spectrum * (2 * np.pi * k) ** 2)  # the mean of height times it is that of h'²
+    heights /= np.sqrt((heights * curved).mean())
+    half_space = HalfSpace((n, n), 1 / n, 1.0, boundary="periodic")
+    areas = [_without_rims(half_space.solve(-heights, load=p, rtol=1e-4)) for p in (0.05, 0.8)]
+    row = partial(Check, body="rough period, Hurst exponent 0.8")
+    source = "between √(8/π) (Persson) and √(2π) (Bush, Gibson, Thomas), as printed of computed ones"
+    yield row(
+        "share in contact over p/E*h' = 0.05",
+        2.05,
+        areas[0] / 0.05,
+        source=source,
+        tolerance=0.45,
+        absolute=True,
+    )
+    source = "Persson, erf(√2 p/E*h'); tolerance: his theory"
+    yield row(
+        "share in contact at p/E*h' = 0.8", mp.erf(0.8 * mp.sqrt(2)), areas[1], source=source, tolerance=0.05
+    )
 
 
 # --- hardness ---------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Make `data/peers.json` and `data/plastic_peer.json`: rough contacts of tamaas and ContactMechanics.
+"""Make `data/peers.json`, `plastic_peer.json`, `periodic_peer.json` with tamaas and ContactMechanics.
 
     benchmarks/peers.sh FOLDER && FOLDER/bin/python tests/conformance/make_peers.py
 
@@ -88,8 +88,48 @@ def plastic(problem):
     return {"version": version("ContactMechanics"), "hardness": HARDNESS, "contacts": contacts}
 
 
+PERIOD = {"cells": [44, 32], "spacing": [2e-6, 3e-6], "modulus": 115e9}
+MEAN_PRESSURES = [10e6, 100e6, 400e6, 1500e6]
+
+
+def periodic_gap(problem):
+    """Gap of a rough period of oblong cells, of waves that fit into it.
+
+    Even numbers of cells: of an odd one, tamaas 2.9.0 takes the shortest waves along for shorter ones.
+    """
+    (n, m), rng = problem["cells"], np.random.default_rng(29)
+    rows, columns, gap = np.arange(n)[:, None] / n, np.arange(m) / m, np.zeros((n, m))
+    for along in range(-6, 7):
+        for across in range(7):
+            if along or across:
+                phase = 2 * np.pi * (along * rows + across * columns + rng.uniform())
+                gap += 0.1e-6 / np.hypot(along, across) ** 1.8 * np.cos(phase)
+    return gap
+
+
+def periodic():
+    """Periodic contacts under mean pressures, by tamaas."""
+    import tamaas as tm
+
+    tm.set_log_level(tm.LogLevel.error)
+    n, gap, contacts = PERIOD["cells"], periodic_gap(PERIOD), []
+    size = [count * width for count, width in zip(n, PERIOD["spacing"], strict=True)]
+    for mean in MEAN_PRESSURES:
+        model = tm.ModelFactory.createModel(tm.model_type.basic_2d, size, n)
+        model.E, model.nu = PERIOD["modulus"], 0.0
+        solver = tm.PolonskyKeerRey(model, -gap, 1e-13)
+        solver.max_iter = 10000
+        solver.solve(mean)
+        pressure, moved = np.array(model.traction), np.array(model.displacement)
+        approach = (moved - moved.mean() + gap)[pressure > 0].mean()
+        found = {"approach": approach, "largest": pressure.max(), "cells": np.count_nonzero(pressure)}
+        contacts.append({"mean": mean} | {name: float(value) for name, value in found.items()})
+    return {"version": version("tamaas"), "contacts": contacts}
+
+
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
     problem = GRID | {"waves": waves()}
     for name, make in (("peers", elastic), ("plastic_peer", plastic)):
         (DATA / f"{name}.json").write_text(json.dumps(make(problem), indent=1))
+    (DATA / "periodic_peer.json").write_text(json.dumps(periodic(), indent=1))

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asperity import arguments
-from asperity.arguments import Array, ArrayLike, NDArray, real, require
+from asperity.arguments import Array, ArrayLike, NDArray, real, require, shown
+from asperity.contact import periodic
 from asperity.errors import Outcome, UnconvergedWarning
 from asperity.kernels import fourier, projected_cg, rims, scanning
 from asperity.kernels.batched import apply_stencil, convolve_padded, padded_spectrum, unit_indentation
@@ -110,8 +111,11 @@ class Contact:
 
     @property
     def edge_share(self) -> float:
-        """Share of the force that acts on the window's outermost cells: above zero, some may be cut off."""
-        return float(edge_share(self.pressure))
+        """Share of the force that acts on the window's outermost cells: above zero, some may be cut off.
+
+        Zero for a period, which has no edge.
+        """
+        return 0.0 if self.half_space.boundary == "periodic" else float(edge_share(self.pressure))
 
 
 def edge_share(pressure: Any) -> Any:
@@ -124,7 +128,7 @@ def edge_share(pressure: Any) -> Any:
 
 
 class HalfSpace:
-    """Elastic half-space on a grid of rectangular cells, free (not periodic) boundary.
+    """Elastic half-space on a grid of rectangular cells, with a free or a periodic boundary.
 
     Parameters
     ----------
@@ -140,6 +144,9 @@ class HalfSpace:
         ``"whole"``: each cell is in contact or not, as in the program CONTACT. ``"covered"``: cells at the
         rim of a contact count as far as they are covered, so that force, stiffness and area grow evenly with
         the approach; gaps are then means over the cells.
+    boundary : str
+        ``"free"``: nothing presses outside of the grid. ``"periodic"``: the grid is one period, along and
+        across, of a surface without end; of (nx, 1) cells, of a line contact in plane strain.
 
     Notes
     -----
@@ -151,6 +158,12 @@ class HalfSpace:
     with 6 cells in the half-width of the contact. Covered cells keep the gap at their centre that a rim
     leaves there, which follows from the pressure beside them (`kernels.rims`): 0.6 %. What is solved then has
     no energy of its own; given that gap it has, and each iteration takes it anew.
+
+    Without end, bodies under a mean pressure would sink without limit, so a periodic displacement is counted
+    from its mean: û(k) = 2 p̂(k)/(E* abs(k)) for each wave that the grid holds, zero for k = 0. An approach
+    then is that of the mean planes of the surfaces, whether in contact or not: elastic surfaces touch
+    everywhere when it is the mean gap, and any more load leaves it there. Contacts are solved one by one:
+    `scan`, `run_in` and friction need a free boundary.
 
     Examples
     --------
@@ -170,6 +183,7 @@ class HalfSpace:
         modulus: float,
         hardness: float | None = None,
         cells: str = "whole",
+        boundary: str = "free",
     ) -> None:
         allowed = "two positive whole numbers (nx, ny)"
         sides = arguments.two("half-space shape", shape, allowed)
@@ -182,10 +196,19 @@ class HalfSpace:
         self.hardness = None if hardness is None else real("hardness", hardness, allowed, above=0.0)
         require(cells in CELLS, "cells of the half-space", repr(cells), " or ".join(map(repr, CELLS)))
         self.cells = cells
+        known = isinstance(boundary, str) and boundary in periodic.BOUNDARIES
+        require(known, "boundary", shown(boundary), " or ".join(map(repr, periodic.BOUNDARIES)))
+        self.boundary = boundary
+        covers = cells == "whole" or boundary == "free"
+        remedy = "What the rim of a contact leaves is known of pressures on cells, and not of their waves."
+        require(covers, "cells of a periodic half-space", repr(cells), "'whole'", remedy)
         reach_x, reach_y = (fourier.smooth_length(max(n, 32)) for n in self.shape)
         dx, dy = self.spacing
         scale = math.pi * self.modulus
-        table = influence_table(reach_x, reach_y, dx, dy) / scale
+        if boundary == "periodic":
+            table, self.lift = periodic.lifted_table(self.shape, self.spacing, self.modulus)
+        else:
+            table, self.lift = influence_table(reach_x, reach_y, dx, dy) / scale, 0.0
         taps = _unit_taps(dy / dx) * (scale / dx)
         cell = np.array([dx, dy]) / self.modulus if cells == "covered" else np.zeros(2)
         self._known = {dtype: influence(table, taps, cell, dtype) for dtype in (np.float64, np.float32)}
@@ -211,10 +234,10 @@ class HalfSpace:
         Returns
         -------
         ndarray, shape (nx, ny)
-            Displacement, m.
+            Displacement, m; of a period without its mean.
         """
-        spectrum = padded_spectrum(self.influence.table, *self.shape)
-        return np.asarray(convolve_padded(self._field("pressure", pressure)[None], spectrum, np)[0])
+        p, spectrum = self._field("pressure", pressure), padded_spectrum(self.influence.table, *self.shape)
+        return np.asarray(convolve_padded(p[None], spectrum, np)[0]) - self.lift * p.sum()
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
@@ -229,12 +252,14 @@ class HalfSpace:
         Returns
         -------
         float
-            dA · 1ᵀ A⁻¹ 1 on the contact set, N/m.
+            dA · 1ᵀ A⁻¹ 1 on the contact set, N/m; infinite where all of a period touches.
         """
         p = self._field("pressure", pressure)
         free = (p > 0.0) & (p < self.pressure_cap)
         if not free.any():
             return 0.0
+        if self.boundary == "periodic" and free.all():
+            return math.inf
         if self.cells == "covered":
             return self._stiffness_with_rims(p, free, rtol)
         rows, columns = (np.flatnonzero(free.any(axis=axis)) for axis in (1, 0))
@@ -243,7 +268,8 @@ class HalfSpace:
         rise, converged = unit_indentation(self.influence.table, taps, inside, rtol, MAX_ITERATIONS)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
-        return float(rise.sum()) * self.cell_area
+        stiffness = float(rise.sum()) * self.cell_area
+        return periodic.stiffness_of_lifted(stiffness, self) if self.lift else stiffness
 
     def _stiffness_with_rims(self, pressure: Array, free: NDArray[np.bool_], rtol: float) -> float:
         """Tangent stiffness where the gap at rims falls with the pressure: its matrix is not symmetric."""
@@ -298,7 +324,8 @@ class HalfSpace:
         gap : array_like, shape (nx, ny)
             Separation of the undeformed bodies at zero approach, m.
         approach : float, optional
-            Approach, m, positive closing. Exactly one of `approach` and `load` is given.
+            Approach, m, positive closing. Exactly one of `approach` and `load` is given. On a period that of
+            the mean planes: without hardness less than the mean gap.
         load : float, optional
             Resultant force, N.
         start : array_like, shape (nx, ny), optional
@@ -322,11 +349,11 @@ class HalfSpace:
         require(one, "approach and load", given, "exactly one of them", "Give one of the two.")
         rtol = _tolerance(rtol)
         p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self.pressure_cap)
+        solver = periodic if self.boundary == "periodic" else HalfSpace
         if approach is not None:
-            approach = real("approach", approach, "a finite length, m")
-            contact = self._contact(g, approach, p, rtol)
+            contact = solver.at_approach(self, g, real("approach", approach, "a finite length, m"), p, rtol)
         else:
-            contact = self.at_load(g, self.checked_load(load), p, rtol)
+            contact = solver.at_load(self, g, self.checked_load(load), p, rtol)
         if not contact.converged:
             _warn_unconverged(f"contact at approach {rounded(contact.approach, 4)} m", contact.outcome)
         return contact
@@ -393,6 +420,7 @@ class HalfSpace:
         """
         from asperity.contact import batched, scan
 
+        periodic.refuse_period(self, "the scan")
         one, remedy = rtol is None or force_accuracy is None, "Give one of the two, or neither."
         require(one, "rtol and force_accuracy", "both", "one of them", remedy)
         key, tolerance = ("rtol", 1e-6) if rtol is None else ("rtol", _tolerance(rtol))
@@ -471,6 +499,7 @@ class HalfSpace:
         """
         from asperity.contact import running_in, scan
 
+        periodic.refuse_period(self, "running-in")
         allowed, remedy = "a pressure at which asperities flow", "An elastic surface keeps no mark."
         require(self.hardness is not None, "hardness of the half-space", "None", allowed, remedy)
         heights = scan.heights_on(self, surface, "surface to be run in")
@@ -506,10 +535,13 @@ class HalfSpace:
         allowed = f"finite numbers, an array of the half-space's shape {self.shape}"
         return _array(arguments.finite_array(name, values, allowed, shape=self.shape))
 
-    def _contact(
+    def at_approach(
         self, gap: Array, approach: float, start: Array | None, rtol: float, total: float = -1.0
     ) -> Contact:
-        """Solve one contact, unchecked and silent; the sum of the pressure, Pa, is negative if not given."""
+        """Solve at an approach, unchecked and silent; a sum of the pressure, Pa, is negative if not given.
+
+        On a period the approach is the lifted one of `asperity.contact.periodic`, there and in `at_load`.
+        """
         block = self.block(np.zeros(self.shape), gap, np.zeros(1), np.array([approach]), 0, rtol, load=total)
         if start is not None:
             block.pressures[1, 0], block.solved[0] = start, 1
@@ -583,12 +615,12 @@ class HalfSpace:
         """
         lowest = float(gap.min())
         if load == 0.0:
-            return self._contact(gap, lowest, None, rtol)
+            return self.at_approach(gap, lowest, None, rtol)
         estimate = foundation_approach(gap, load, self.modulus, self.cell_area, self.pressure_cap)
         iterations = 0
         while True:
             reach = lowest + scanning.REACH * (estimate - lowest)
-            contact = self._contact(gap, reach, start, rtol, load / self.cell_area)
+            contact = self.at_approach(gap, reach, start, rtol, load / self.cell_area)
             iterations += contact.iterations
             if contact.approach <= reach:
                 return replace(contact, iterations=iterations)

@@ -14,6 +14,7 @@ from asperity.arguments import Array, ArrayLike, Complex, NDArray, real, require
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.friction_work import with_work
 from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.contact.periodic import refuse_period
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
 from asperity.kernels.fourier import smooth_length
@@ -108,6 +109,7 @@ class FrictionalHalfSpace:
         bodies = arguments.two("bodies", bodies, allowed)
         known = all(isinstance(each, Material) for each in bodies)
         require(known, "bodies", arguments.shown(bodies), allowed)
+        refuse_period(half_space, "a contact with friction")
         self.half_space, self.coupled = half_space, coupled
         self.friction = friction if isinstance(friction, Friction) else Friction(friction)
         nu = np.array([body.poisson_ratio for body in bodies])
