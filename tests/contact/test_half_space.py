@@ -102,7 +102,7 @@ def test_what_does_not_converge_says_so(monkeypatch):
     gap, half_space = rough()
     contact = half_space.solve(gap, approach=1e-6)
     monkeypatch.setattr("asperity.contact.halfspace.MAX_ITERATIONS", 2)
-    with pytest.warns(UnconvergedWarning, match=r"contact at approach 1e-06 m .*iteration limit"):
+    with pytest.warns(UnconvergedWarning, match=r"contact at approach 1·10⁻⁶ m .*iteration limit"):
         found = half_space.solve(gap, approach=1e-6, rtol=1e-9)
     assert (found.converged, found.outcome) == (False, Outcome.ITERATION_LIMIT)
     assert found.residual > 1e-9
