@@ -9,7 +9,7 @@ _HOME = {
     "ArchardWear": "contact.wear",
     "BallBearing": "structures.ball_bearing",
     "Beam": "structures.beam",
-    "Contact": "contact.halfspace",
+    "Contact": "contact.solved",
     "EnergyWear": "contact.wear",
     "Friction": "contact.friction",
     "FrictionalHalfSpace": "contact.tangential",

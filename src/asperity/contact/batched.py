@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, NDArray, require, shown
-from asperity.contact.halfspace import HalfSpace, edge_share
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.solved import edge_share
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import batched
 from asperity.kernels.scanning import TRUNCATED, Block

@@ -10,7 +10,8 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, one_of, real, require, two_lengths, whole
 from asperity.contact.friction import SlidingContact, cell_places
-from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.solved import Contact
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import OutOfRangeWarning
 from asperity.progress import Progress, counted

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, real
-from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.solved import Contact
 from asperity.errors import Outcome
 
 

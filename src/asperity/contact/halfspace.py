@@ -1,15 +1,16 @@
 """Frictionless contact of an elastic half-space with a rough or smooth body, at given approach or load."""
 
 import math
-from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, NDArray, real, require, shown
 from asperity.contact import periodic
+from asperity.contact.solved import Contact
 from asperity.errors import Outcome, UnconvergedWarning
 from asperity.kernels import fourier, projected_cg, rims, scanning
 from asperity.kernels.batched import apply_stencil, convolve_padded, padded_spectrum, unit_indentation
@@ -31,100 +32,6 @@ CELLS = ("covered", "whole")
 BELOW_ONE = math.nextafter(1.0, 0.0)
 AT_ONCE = 16
 """Positions between two looks at whether the user wants to stop."""
-
-
-@dataclass(frozen=True, eq=False)
-class Contact:
-    """A solved contact.
-
-    Attributes
-    ----------
-    pressure : ndarray, shape (nx, ny)
-        Contact pressure, Pa.
-    force : float
-        Resultant, N.
-    approach : float
-        Approach of the bodies, m, positive closing.
-    area : float
-        Real area of contact, m²: cells under pressure, those at rims as far as they are covered.
-    iterations : int
-        Conjugate-gradient iterations, all inner solutions together.
-    residual : float
-        Largest complementarity residual relative to the largest overlap of the undeformed bodies.
-    outcome : Outcome
-        How the solution ended, with advice.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from asperity import HalfSpace
-    >>> x = 5e-6 * np.arange(-20, 21)
-    >>> ball = np.add.outer(x**2, x**2) / (2 * 10e-3)  # R = 10 mm
-    >>> contact = HalfSpace(ball.shape, (5e-6, 5e-6), 115e9).solve(ball, load=1.0)
-    >>> contact.pressure.shape, bool(contact.pressure.argmax() == contact.pressure.size // 2)
-    ((41, 41), True)
-    """
-
-    pressure: Array
-    force: float
-    approach: float
-    area: float
-    iterations: int
-    residual: float
-    outcome: Outcome
-    half_space: "HalfSpace" = field(repr=False)
-    undeformed_gap: Array = field(repr=False)
-
-    @property
-    def converged(self) -> bool:
-        """Whether the tolerance was met."""
-        return self.outcome.ok
-
-    @cached_property
-    def gap(self) -> Array:
-        """Gap after elastic deformation, m, shape (nx, ny).
-
-        Below zero only where the hardness caps the pressure.
-        """
-        return self.undeformed_gap + self.half_space.displacement(self.pressure) - self.approach
-
-    @cached_property
-    def plastic_indentation(self) -> Array:
-        """Depth by which the surface has yielded for good, m ≥ 0, shape (nx, ny).
-
-        The overlap that the capped pressure leaves. Heights less this depth carry the same pressure without
-        yielding: a second loading is elastic.
-        """
-        capped = self.pressure >= self.half_space.pressure_cap
-        return np.where(capped, np.maximum(-self.gap, 0.0), 0.0)
-
-    @property
-    def yielded_share(self) -> float:
-        """Share of the real contact area whose pressure is at the hardness; one in full plasticity."""
-        capped = np.count_nonzero(self.pressure >= self.half_space.pressure_cap)
-        return float(capped / max(int(np.count_nonzero(self.pressure)), 1))
-
-    @cached_property
-    def stiffness(self) -> float:
-        """Tangent stiffness dF/dδ of this contact, N/m: one linear solution on the contact set, exact."""
-        return self.half_space.tangent_stiffness(self.pressure)
-
-    @property
-    def edge_share(self) -> float:
-        """Share of the force that acts on the window's outermost cells: above zero, some may be cut off.
-
-        Zero for a period, which has no edge.
-        """
-        return 0.0 if self.half_space.boundary == "periodic" else float(edge_share(self.pressure))
-
-
-def edge_share(pressure: Any) -> Any:
-    """Share of the force of pressures (..., nx, ny) that acts on the window's outermost cells."""
-    nx, ny = pressure.shape[-2:]
-    edge = pressure[..., :: max(1, nx - 1), :].sum(axis=(-2, -1))
-    edge += pressure[..., 1:-1, :: max(1, ny - 1)].sum(axis=(-2, -1))
-    total = pressure.sum(axis=(-2, -1))
-    return edge / (total + (total == 0.0))
 
 
 class HalfSpace:

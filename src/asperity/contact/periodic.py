@@ -19,7 +19,8 @@ from asperity.kernels.fourier import smooth_length
 from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
-    from asperity.contact.halfspace import Contact, HalfSpace
+    from asperity.contact.halfspace import HalfSpace
+    from asperity.contact.solved import Contact
 
 BOUNDARIES = ("free", "periodic")
 """What `boundary` may be."""

@@ -13,8 +13,9 @@ from asperity import arguments
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, real, require
 from asperity.contact.friction import Friction, SlidingContact, cell_places
 from asperity.contact.friction_work import with_work
-from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.contact.halfspace import HalfSpace
 from asperity.contact.periodic import refuse_period
+from asperity.contact.solved import Contact
 from asperity.errors import ComputationError, Outcome, OutOfRangeWarning, UnconvergedWarning, percent
 from asperity.kernels import traction as kernel
 from asperity.kernels.fourier import smooth_length

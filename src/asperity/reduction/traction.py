@@ -9,8 +9,9 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, require
 from asperity.contact.creep import DIRECTIONS, has_room, over_smooth, rolled_over
-from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, warn_of_flaws
+from asperity.contact.solved import Contact
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress, counted

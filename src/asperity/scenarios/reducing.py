@@ -10,7 +10,8 @@ from asperity.arguments import Array
 from asperity.case import scene, sections
 from asperity.contact import scan
 from asperity.contact.batched import find_device
-from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.solved import Contact
 from asperity.errors import ContactFilterWarning, InputError
 from asperity.laws import LawSpec, Need, spec_of
 from asperity.progress import Progress, counted

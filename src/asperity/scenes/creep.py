@@ -6,7 +6,7 @@ from asperity.arguments import Array, Complex
 from asperity.case.scene import Case
 from asperity.contact import creep
 from asperity.contact.friction import Friction, SlidingContact, cell_places
-from asperity.contact.halfspace import Contact
+from asperity.contact.solved import Contact
 from asperity.contact.tangential import FrictionalHalfSpace
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.progress import Progress

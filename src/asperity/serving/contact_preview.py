@@ -7,7 +7,8 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case.scene import Case
-from asperity.contact.halfspace import Contact, HalfSpace
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.solved import Contact
 from asperity.errors import CaseError, InputError
 from asperity.reduction.stiffness import patches
 from asperity.reduction.texture import punch_weights
