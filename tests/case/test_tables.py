@@ -179,7 +179,8 @@ def test_tables_that_are_wrong(name, text, message, source):
 
 @pytest.mark.parametrize("title", [
     "Limit ISO 3095 [dB re 1 um]", "limit (dB)", "EN ISO 3095 [dB]", "Grenzkurve [dB]", "TSI [dB re 1 µm]",
-    "Valeur limite [dB]", "Target [dB]",
+    "Valeur limite [dB]", "Target [dB]", "EN 13979-1 [dB]", "Reference curve [dB]", "Exceedance [dB]",
+    "Diff. [dB]",
 ])  # fmt: skip
 @pytest.mark.parametrize("first", [True, False])
 def test_a_limit_beside_the_levels_is_none_of_them(title, first, tmp_path):
@@ -189,6 +190,27 @@ def test_a_limit_beside_the_levels_is_none_of_them(title, first, tmp_path):
     for text in ("\n".join(lines), "# " + "\n".join(lines), "Site;A;B\n" + "\n".join(lines)):
         (tmp_path / "levels.csv").write_text(text, encoding="utf-8")
         np.testing.assert_allclose(tables.read_levels(tmp_path / "levels.csv")[1], [3, 2])
+
+
+@pytest.mark.parametrize(
+    "title", ["Gesamt [dB]", "Total [dB]", "σ [dB]", "StDev [dB]", "L95 [dB]", "Sum [dB]"]
+)
+def test_a_total_or_a_spread_beside_levels_is_refused(title, tmp_path):
+    (tmp_path / "a.csv").write_text(
+        f"Wavelength [cm];Wheel 1 [dB];{title}\n10;3;5\n8;2;5\n", encoding="utf-8"
+    )
+    with pytest.raises(InputError, match=f"the heading '{re.escape(title)}' beside other columns of levels"):
+        tables.read_levels(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize(("head", "told"), [
+    ("λ [cm];Left [dB];Limit [dB]", "'Left [dB]', without 'Limit [dB]'"),
+    ("λ [cm];Left [dB];Right [dB]", "the energy mean of 'Left [dB]', 'Right [dB]'"),
+    ("λ;Left;Right\ncm;dB;dB", "the energy mean of 'Left (dB)', 'Right (dB)'"),
+])  # fmt: skip
+def test_columns_that_count_are_told(head, told, tmp_path):
+    (tmp_path / "a.csv").write_text(f"{head}\n10;3;5\n8;2;5\n", encoding="utf-8")
+    assert tables.columns_of_levels(tmp_path / "a.csv") == told
 
 
 def test_a_limit_is_none_of_the_lateral_decay_rates(tmp_path):

@@ -86,8 +86,8 @@ def test_lines_measured_side_by_side_are_no_map():
     assert [float(number) for number in measured.groups()] == pytest.approx([4.0, 2.0, 6.0], rel=0.05)
     assert "Sal" not in shown
     assert "--map" not in surface(lines, "--lines").stdout
-    refused = call("surface", "map.npy", *HINTS, "--map", code=2).stderr  # three rows have no slopes
-    assert "3 points along axis 0" in refused
+    three = call("surface", "map.npy", "--height-unit", "nm", "--pixel", "2 um", "--map").stdout
+    assert "a map of 3 × 900 points" in three
 
 
 def test_spectra_of_a_surface_are_written():
@@ -171,3 +171,16 @@ def test_scale_and_slope_are_told_and_a_wrong_unit_is_refused_with_its_cause():
     refused = call("surface", "map.npy", "--height-unit", "m", "--pixel", "2 um", code=2).stderr
     assert "Were they in µm" in words_of(refused)
     assert "Give --height-unit um." in words_of(refused)
+
+
+@pytest.mark.parametrize(("shape", "told"), [
+    ((3, 10), "No Sdq and no Sdr: slopes by ISO 4287 take 7 points in a row."),
+    ((40, 6), "No Sdq and no Sdr: slopes"),
+    ((6,), "No Rdq: slopes by ISO 4287 take 7 points in a row."),
+])  # fmt: skip
+def test_small_maps_and_lines_have_all_statistics_but_slopes(shape, told):
+    heights = 1e-2 * noise(*shape)
+    out = words_of(surface(heights, *["--map"] * (len(shape) == 2)).stdout)
+    assert told in out
+    assert re.search(r"[SR]q +0\.0\d+ µm +rms height", out)
+    assert re.search(r"[SR]dq +– +rms slope", out)

@@ -71,3 +71,12 @@ def test_wavelengths_under_a_wrong_unit(scale, unit, tmp_path):
         read_levels(tmp_path / "a.csv")
     (tmp_path / "a.csv").write_text(f"wavelength ({unit}), level (dB)\n{rows}")
     np.testing.assert_allclose(read_levels(tmp_path / "a.csv")[0][0], 10.0**-0.5, rtol=1e-5)
+
+
+def test_columns_of_a_table_that_count_are_told(tmp_path):
+    levels = tmp_path / "a.csv"
+    rows = "".join(f"{wave:.6g},{level},17\n" for wave, level in table(-0.5, 18))
+    levels.write_text(f"wavelength (m),level (dB),limit (dB)\n{rows}")
+    prepared = prepare(case(levels), "case")
+    (found,) = coverages(prepared.case, prepared.textures)
+    assert "a.csv ('level (dB)', without 'limit (dB)'), waves of" in found.at(30.0)

@@ -13,6 +13,7 @@ from asperity.surfaces.statistics import (
     areal_statistics,
     material_ratio_curve,
     profile_statistics,
+    rms_slope,
     stratified,
 )
 from refusals import refusals
@@ -165,8 +166,7 @@ GAP[0, 0] = np.nan
 test_what_is_wrong_is_said = refusals(
     (lambda: spectra.autocorrelation(FLAT), "equal heights"),
     (lambda: profile_statistics(Profile(np.zeros(10), 1.0)), "equal heights"),
-    (lambda: profile_statistics(Profile([1.0, 2.0, 3.0], 1.0)), "at least 7 points"),
-    (lambda: profile_statistics(Profile([1.0, np.nan, 3.0, np.nan] * 5, 1.0)), "no seven valid points"),
+    (lambda: rms_slope(HeightMap(np.eye(6), (1.0, 1.0))), "no seven valid points in a row along both axes"),
     (lambda: spectra.psd_2d(HeightMap(GAP, (1.0, 1.0))), r"1\.00% missing points"),
 )
 
@@ -258,3 +258,10 @@ def test_the_curve_falls_from_the_highest_to_the_lowest():
     ratio, height = material_ratio_curve(heights, 11)
     assert_allclose(ratio, np.linspace(0, 1, 11))
     assert_allclose(height, 1.0 - 2.0 * ratio, atol=1e-12)
+
+
+@pytest.mark.parametrize("heights", [[1.0, 2.0, 4.0], [1.0, np.nan, 3.0, np.nan] * 5])
+def test_without_seven_points_in_a_row_there_is_no_slope_but_all_else(heights):
+    found = {item.symbol: item.value for item in profile_statistics(Profile(heights, 1.0))}
+    assert [symbol for symbol, value in found.items() if np.isnan(value)] == ["Rdq"]
+    assert found["Rq"] == pytest.approx(np.nanstd(heights))

@@ -20,11 +20,13 @@ _LEVEL = re.compile(r"(dB)(?: ?\(?(A)\)?)?(?:[ ,(]* ?re(?:[fl]\.?|\.)?(?: to)?:?
 _PER_LENGTH = re.compile(r"dB ?/ ?(\S+)")
 _LIMIT = re.compile(
     r"\b(?:limits?|grenz\w*|limites?|límites?|permitted|allowed|required|requirement|target|soll\w*)\b"
-    r"|\bISO[ -]?3095\b|\bTSI\b",
+    r"|\bISO[ -]?3095\b|\bTSI\b|\bEN[ -]?13979\b|\breference (?:curve|spectrum|values?)|\breferenz\w*"
+    r"|\b(?:diff(?:erences?|erenz)?|exceed\w*|exceedances?|margins?|überschreit\w*|abweichung\w*|écarts?)\b",
     re.IGNORECASE,
 )
 _STATISTIC = re.compile(
-    r"\b(?:means?|averages?|avg|mittel\w*|moyenne|median|max\w*|min\w*|std|sd|deviation|uncertainty|spread)\b",
+    r"\b(?:means?|averages?|avg|mittel\w*|moyenne|median|max\w*|min\w*|std|sd|st\w* ?dev\w*|deviation"
+    r"|uncertainty|spread|sigma|σ|total|sum|gesamt\w*|summe|variance|quantiles?|percentiles?|perzentil\w*|[LP]_?(?:50|90|95|99))\b",
     re.IGNORECASE,
 )
 _QUANTITY = re.compile(r"[\d.,]{1,12} ?[a-zA-Zµμ]{1,3}")

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from asperity.arguments import Array, NDArray
+from asperity.arguments import Array, NDArray, listed
 from asperity.case.form import name_of
 from asperity.case.table_headings import (
     MOST_HEADING,
@@ -135,6 +135,29 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
         allowed = f"a highest level between -{LARGEST_LEVEL:g} and {LARGEST_LEVEL:g} dB re 1 um"
         raise InputError(name_of(table), received, allowed, "Is the unit right?")
     return wavelength, level
+
+
+def columns_of_levels(table: TableSource) -> str:
+    """Say which columns of a file with levels count, and which are left out; nothing where there are two."""
+    if not isinstance(table, Path):
+        return ""
+    content = read_text(table, table.name, "a table of levels", largest=LARGEST_TABLE, latin=True)
+    words: deque[list[str]] = deque(maxlen=2)
+    for number, cells in lines_of_cells(content):
+        if are_words(cells):
+            words.append(cells)
+            continue
+        if len(cells) <= len(LEVELS):
+            return ""
+        above = [*words, _comment_above(content, number)]
+        kept = without_limits(above, len(cells), len(LEVELS))
+        titles = heading_of(above, ["m", *["dB"] * (len(cells) - 1)])
+        named_so = [f"'{title}'" for title in titles]
+        counted = [each for place, each in enumerate(named_so) if place in kept[1:]]
+        others = [each for place, each in enumerate(named_so) if place not in kept]
+        mean = "the energy mean of " * (len(counted) > 1)
+        return f"{mean}{listed(counted)}" + f", without {listed(others)}" * bool(others)
+    return ""
 
 
 @contextmanager

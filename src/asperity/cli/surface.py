@@ -34,6 +34,7 @@ Surfaces = Sequence[HeightMap | Profile]
 Spectra = dict[str, tuple[Array, Array]]
 """Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""
 AREAL = "areal"
+SLOPE_POINTS = 2 * statistics.MARGIN + 1
 RAILS, KILOMETRES = 1e-4, 100.0 / 3.6
 """Spacing of points, m, from which on they are those of a rail or a wheel, and the speed, m/s, of these."""
 
@@ -142,6 +143,9 @@ def _show(
     for item, *ends in items:
         spread = " to ".join(_scaled(replace(item, value=value)) for value in ends)
         say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}{f' ({spread})' * beside}")
+    unknown = [item.symbol for item, *_ in items if math.isnan(item.value)]
+    if slopes := [symbol for symbol in unknown if symbol[1:] in ("dq", "dr")]:
+        say(f"No {' and no '.join(slopes)}: slopes by ISO 4287 take {SLOPE_POINTS} points in a row.")
     homogeneous = _homogeneity(first)
     write_chart(chart, title, picture)
     if isinstance(first, HeightMap) and spectra:

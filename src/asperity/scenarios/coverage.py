@@ -1,12 +1,12 @@
 """Which one-third octaves of frequency the roughness of a case covers at its speed."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from asperity.arguments import Array
 from asperity.case.form import name_of
 from asperity.case.scene import Case
-from asperity.case.tables import MEASURED_WAVE
+from asperity.case.tables import MEASURED_WAVE, columns_of_levels
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.textures import Textures
@@ -27,6 +27,7 @@ class Coverage:
     waves: tuple[float, float]  # longest and shortest, m
     bands: Array  # centres of all bands that count, Hz
     covered: Array  # of those that it covers
+    columns: str = ""  # of a table with several of levels: those that count, and those that do not
 
     def at(self, speed: float) -> str:
         """Say it of a speed, m/s."""
@@ -36,7 +37,8 @@ class Coverage:
         held = ""
         if len(self.covered):
             held = f", those from {' to '.join(map(nominal_frequency, self.covered[[0, -1]]))}"
-        return f"{self.name}, waves of {longest} to {shortest}: at {speed:.4g} m/s {share}{held}"
+        levels = f" ({self.columns})" * bool(self.columns)
+        return f"{self.name}{levels}, waves of {longest} to {shortest}: at {speed:.4g} m/s {share}{held}"
 
 
 def coverages(case: Case, textures: Textures) -> Iterator[Coverage]:
@@ -46,7 +48,8 @@ def coverages(case: Case, textures: Textures) -> Iterator[Coverage]:
         name = f"{'surface' if part == 'rail' else case.ROLLING}.{key}"
         if (spectrum := getattr(section, key, None)) is not None:
             wavelength, _, called = spectrum_levels(spectrum)
-            yield _covered(case, name, called, float(wavelength[0]), float(wavelength[-1]))
+            found = _covered(case, name, called, float(wavelength[0]), float(wavelength[-1]))
+            yield replace(found, columns="" if isinstance(spectrum, str) else columns_of_levels(spectrum))
         elif section.line is not None and (lines := textures.lines.get(part)):
             longest, shortest = max(line.size for line in lines), 2.0 * lines[0].spacing
             yield _covered(case, name.replace(key, "line"), name_of(section.line), longest, shortest)

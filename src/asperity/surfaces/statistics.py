@@ -1,5 +1,6 @@
 """Roughness parameters of maps, lines and strips of any length; whether a map is the same everywhere."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -76,11 +77,11 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     Levelled heights, m; the mean is removed here, missing points are left out; for Sal, Str and Std up to 5 %
     are filled.
     `bandwidth` is that of filtered data, m; by default from two samples to the longest side. Slopes are by
-    the seven-point formula of ISO 4287:1997. If the autocorrelation does not fall to 0.2 inside the map,
-    there is a warning, see `autocorrelation_lengths`.
+    the seven-point formula of ISO 4287:1997, NaN where no seven are in a row. If the autocorrelation does
+    not fall to 0.2 inside the map, there is a warning, see `autocorrelation_lengths`.
     """
     square = _square_slopes(surface.heights, surface.spacing)
-    slopes = {"dq": np.sqrt(np.nanmean(square)), "dr": np.nanmean(np.sqrt(1.0 + square)) - 1.0}
+    slopes = {"dq": np.sqrt(_mean(square)), "dr": _mean(np.sqrt(1.0 + square)) - 1.0}
     whole, texture = cleaning.nearly_complete(surface), dict.fromkeys(("al", "tr", "td"), np.nan)
     if whole is not None:
         shortest, longest = spectra.autocorrelation_lengths(whole)
@@ -97,9 +98,10 @@ def profile_statistics(
     Levelled heights, m; the mean is removed here, missing points are left out. `bandwidth` is that of
     filtered data, m; by default from two samples to the length. The whole line is the evaluation length; Rz,
     Rp and Rv are means over its whole sections of a length, m: a fifth of it by default; of a line that was
-    filtered, the nesting index of the L-filter. Slopes are by the seven-point formula of ISO 4287:1997.
+    filtered, the nesting index of the L-filter. Slopes are by the seven-point formula of ISO 4287:1997, NaN
+    where no seven are in a row.
     """
-    rms_slope = np.sqrt(np.nanmean(_slopes(profile.heights, profile.spacing, 0) ** 2))
+    rms_slope = np.sqrt(_mean(_slopes(profile.heights, profile.spacing, 0) ** 2))
     values = _amplitudes(*_powers(profile.heights))
     heights = profile.heights - np.nanmean(profile.heights)
     points = max(1, min(round(section / profile.spacing) if section else heights.size // 5, heights.size))
@@ -144,7 +146,15 @@ def _amplitudes(powers: Array, total: float) -> dict[str, float]:
 
 def rms_slope(surface: HeightMap) -> float:
     """Rms slope Sdq of levelled heights, m; missing points are left out."""
-    return float(np.sqrt(np.nanmean(_square_slopes(surface.heights, surface.spacing))))
+    found = float(np.sqrt(_mean(_square_slopes(surface.heights, surface.spacing))))
+    received, allowed = "no seven valid points in a row along both axes", "enough valid points for slopes"
+    require(math.isfinite(found), "surface", received, allowed, "Use fill first.")
+    return found
+
+
+def _mean(values: Array) -> float:
+    """Mean of those that are known; NaN of none."""
+    return float(np.nanmean(values)) if np.isfinite(values).any() else math.nan
 
 
 def _square_slopes(heights: Array, spacing: tuple[float, float]) -> Array:
@@ -156,14 +166,10 @@ def _square_slopes(heights: Array, spacing: tuple[float, float]) -> Array:
 def _slopes(heights: Array, spacing: float, axis: int) -> Array:
     """Seven-point derivative along an axis, without the three points at either end; heights, spacing in m."""
     z = np.moveaxis(heights, axis, 0)
-    n = z.shape[0] - 2 * MARGIN
-    require(n >= 1, "surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
+    n = max(z.shape[0] - 2 * MARGIN, 0)
     slope = np.zeros_like(z[:n])
     for k, weight in SEVEN_POINTS:
         slope += weight / (60.0 * spacing) * (z[3 + k : n + 3 + k] - z[3 - k : n + 3 - k])
-    received = f"no seven valid points in a row along axis {axis}"
-    usable = np.isfinite(slope).any() or not slope.size
-    require(usable, "surface", received, "enough valid points for slopes", "Use fill first.")
     return np.moveaxis(slope, 0, axis)
 
 
