@@ -233,13 +233,36 @@ def test_a_motion_that_cannot_be_is_no_verdict_without_a_doubt(force, moved, wor
         body=np.zeros(1, dtype=int),
         over_displacement=np.array([[moved]]),
         contact_force=np.full((1, 2), force * 5.0),
+        softening=np.zeros(1),
         in_contact=np.zeros((1, 2), dtype=bool),
         flights=[([0.0], [1.0])],
     )
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=500.0)
     computed = SimpleNamespace(runs={"linear": run}, scene=SimpleNamespace(loads=[5.0]), over=beam)
+    computed.stiffness = 1e6
     found = list(_of_motion(computed))
     told = "; ".join(_doubts(computed, found))
     assert all(each in told for each in words), told
     assert bool(told) is bool(words)
     assert _contact(run, "ball") == "The ball loses contact 1 time, 100 % of the time"
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+def test_contacts_that_are_softened_for_the_time_step_are_doubted_by_the_verdict_and_foreseen():
+    """A contact that may open is softened so that impacts return their energy; a fine step asks for none."""
+    case = as_case(SHORT | {"laws": ["hertz"], "duration": "50 ms", "settling": "0 s", "speed": "1.2 m/s"})
+    coarse, fine = (
+        case.with_(numerics={"highest_frequency": highest, "kernel": "scatter", "time_step": step})
+        for highest, step in (("300 Hz", "280 us"), ("1 kHz", "50 us"))
+    )
+    told = " ".join(each["message"] for each in planned(prepare_case(coarse))["warnings"])
+    assert re.search(
+        "the contact resonance on a bay of rail, .* time steps in a period, fewer than 5", told
+    ), told
+    told = " ".join(each["message"] for each in planned(prepare_case(fine))["warnings"])
+    assert "contact resonance" not in told
+    tree = asperity.run(coarse, brief=True)
+    lead = r"Out of range for hertz: .*contacts softened by \d+ % for the time step"
+    assert re.match(lead, tree.attrs["verdict"]), tree.attrs["verdict"]
+    row = validity(tree)["softening of contacts by the time step, hertz"]
+    assert (row["grade"], row["remedy"]) == ("out of range", "Take a smaller numerics.time_step.")

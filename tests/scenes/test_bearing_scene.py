@@ -11,8 +11,17 @@ import asperity
 from asperity.case.cases import as_case
 from asperity.errors import OutOfRangeWarning, percent
 from asperity.reference.materials import MATERIALS
+from asperity.running import prepare_case
 from asperity.scenarios import raceway_laws
-from asperity.scenes.bearing import bearing_rings, cage_slip, heard_group, prepare_bearing, thinned
+from asperity.scenes.bearing import (
+    CELL_TIME,
+    bearing_rings,
+    cage_slip,
+    expected,
+    heard_group,
+    prepare_bearing,
+    thinned,
+)
 from asperity.scenes.figures.bearing import load_zone
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
@@ -266,3 +275,24 @@ def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):
     found = group(runs(BEARING), "rolling")
     assert found["inner_force"].values.min() == 0.0
     assert found["outer_force"].values.min() > 0.0  # centrifugal force keeps balls on it
+
+
+def test_the_time_told_counts_the_contacts_that_are_solved_over_faults(monkeypatch):
+    """By the law and with the fault alone, in every position at which the window holds something of it."""
+    solved, gap_over = [], raceway_laws.OnRaceway._over
+
+    def counted(self, at):
+        solved.append(self.shape.body.size)
+        return gap_over(self, at)
+
+    monkeypatch.setattr(raceway_laws.OnRaceway, "_over", counted)
+    case = as_case(BEARING | {"duration": "60 ms"})
+    ready = prepare_case(case)
+    _, work = expected(ready)
+    assert not solved
+    asperity.run(ready)
+    assert len(solved) > 100
+    told = work.parts["contacts over the faults"] / CELL_TIME
+    assert 0.95 * sum(solved) < told <= sum(solved)  # a few more hold what areal takes them for
+    _, work = expected(prepare_case(case.with_(fault=None)))
+    assert work.parts["contacts over the faults"] == 0.0

@@ -74,6 +74,7 @@ class RolledBearing:
     inner_motion: Array  # (3, n), along the radial load, across it, along the axis
     outer_motion: Array  # (3, n)
     acceleration: Array  # (sensors, n), m/s²
+    softening: Array  # (2, Z), of the contacts with both rings, by the time step, m/N
     energy: Ledger
     unconverged_steps: int
 
@@ -171,6 +172,7 @@ def roll_bearing(
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],
+        run.softening.reshape(-1, len(RINGS)).T,
         run.energy,
         run.unconverged_steps,
     )

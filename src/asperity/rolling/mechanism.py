@@ -190,6 +190,7 @@ class RolledMechanism:
     bodies: tuple[Array, ...]  # coordinates of each (d, t), m or rad, positive as its contacts open
     displacement: Array  # (sensors, t), m
     acceleration: Array  # (sensors, t), m/s²
+    softening: Array  # (n,), compliance that the time step puts in series with the contacts, m/N
     energy: roll.Ledger  # where the work of the loads went, in run-in and run
     unconverged_steps: int
 
@@ -259,6 +260,7 @@ def roll_mechanism(
         ),
         record.displacement[:, kept],
         record.acceleration[:, kept],
+        stepper.system.softening,
         roll.ledger_of(stepper, energies),
         int(stepper.motion.counts[1]),
     )

@@ -64,6 +64,7 @@ class RolledBodies:
     degrees_of_freedom: tuple[Array, ...]  # of each body (d, n), m or rad, positive upwards
     acceleration: Array  # (sensors, n), of what is rolled over, m/s², positive downwards
     in_contact: NDArray[np.bool_]  # (c, n), whether the surfaces touch
+    softening: Array  # (c,), compliance that the time step puts in series with the contacts, m/N
     energy: Ledger  # where the work of the loads went, in run-in and run
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
@@ -188,6 +189,7 @@ def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, f
         history_start=path.starts,
         degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
         in_contact=~apart,
+        softening=system.softening,
         energy=ledger_of(stepper, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),

@@ -19,6 +19,7 @@ from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress, duration
 from asperity.reduction.filter import FEWEST_POSITIONS
+from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios import compiling, laws, reducing, running_in
 from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.geometry import geometry_of, window_cells
@@ -256,6 +257,21 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     return ContactTrial(approaches, pressed, counts.truncated / max(counts.solved, 1), solution)
 
 
+def doubt_time_step(prepared: PreparedCase) -> None:
+    """Warn of a time step that is too long for the contact, as the run will.
+
+    On a track of the smooth contact on a bay of rail; elsewhere on what rolls, which is less than together
+    with what yields under it.
+    """
+    case, over, shape = prepared.case, prepared.scene.over, prepared.shape
+    limit = "the contact resonance", case.contact_resonance, 10.0
+    if isinstance(over, Track):
+        stiffness = shape.hertz.tangent_stiffness(shape.hertz.approach(shape.load))
+        on_bay = math.sqrt(stiffness / (over.mass_per_length * over.sleeper_spacing)) / (2.0 * math.pi)
+        limit = "the contact resonance on a bay of rail", on_bay, 5.0
+    warn_if_coarse(case.time_step, [limit])
+
+
 @dataclass(frozen=True)
 class Work:
     """What a run will take."""
@@ -297,6 +313,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
         Its time within a factor of three or so: that of one contact, times their number.
     """
     case, trial = prepared.case, None
+    doubt_time_step(prepared)
     with one_thread_in_linear_algebra():
         if prepared.textures.maps:
             compiling.compile_kernels(progress)

@@ -267,6 +267,12 @@ class OnRaceway:
         within = rows[window - 1 :] - np.append(0, rows[:-window])
         return within[:: self.stride] > 0
 
+    @property
+    def cells_over_faults(self) -> float:
+        """How many cells the contacts have in all that `over_faults` solves."""
+        met = self._met(self.surface.faults).sum() if self.surface.faults.any() else 0
+        return float(met) * self.shape.body.size
+
     @cached_property
     def over_faults(self) -> Array:
         """Height (rows,) that faults have for a contact under the load, m: exact for that load.

@@ -20,11 +20,11 @@ from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios import compiling, preparing, reducing
-from asperity.scenarios.raceway_laws import ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes, scenario_group
-from asperity.scenes.validity import energy_left
+from asperity.scenes.validity import energy_left, softened
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -48,6 +48,8 @@ LEFT_OUT = (
 )
 STEP_TIME, SOLUTION_TIME = 1e-6, 1e-3
 """Times of a step of one ball, and of a contact of a scan, s."""
+CELL_TIME = 3.5e-8
+"""Time of a contact under a load over a fault, for each of its cells, s."""
 SEEDS = 1000
 """Seeds of the parts of a bearing lie beside each other, and no two bearings share any."""
 DIRECTIONS = ("along", "across", "axial")
@@ -139,6 +141,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     for name, count in solutions.items():
         part = f"the law {name}" if f"the law {name}" in parts else f"the {name}"
         parts[part] = parts.get(part, 0.0) + SOLUTION_TIME * count
+    parts["contacts over the faults"] = CELL_TIME * _cells_over_faults(prepared)
     seconds, compiled = sum(parts.values()), compiling.time_to_compile()
     tones = ", ".join(f"{NAMES[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS)
     load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
@@ -157,6 +160,20 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         ("not in it", LEFT_OUT),
     ]
     return rows, preparing.Work({}, solutions, steps, None, seconds, parts, compiled)
+
+
+def _cells_over_faults(prepared: PreparedBearing) -> float:
+    """Cells of all contacts that are solved over faults: by the laws, and with the faults alone.
+
+    A law that solves every step asks for none on a ring.
+    """
+    case, found = prepared.case, 0.0
+    by_height = any(not spec_of(law).solved_every_step for law in case.laws)
+    for number, surface in enumerate((*prepared.raceways, *prepared.balls)):
+        contact, load = case.contacts[min(number, 1)]
+        times = 2 if by_height or number >= len(RINGS) else 1
+        found += times * OnRaceway(contact, surface, load).cells_over_faults
+    return found
 
 
 def bearing_rings(case: BallBearingCase) -> BearingRings:
@@ -478,6 +495,8 @@ def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator
             "Take a smaller time_step.", warned=True
         )  # fmt: skip
         yield energy_left(name, left, "time_step")
+        stiffness = [each.tangent_stiffness(each.approach(load)) for each, load in case.contacts]
+        yield from softened(name, float((run.softening.T * stiffness).max()), "time_step")
     yield from _missed(runs)
 
 

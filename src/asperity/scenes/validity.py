@@ -32,6 +32,8 @@ MISSED_LOAD = (0.5, 1.0)
 """Share of its load by which the mean contact force of a body may miss it: warned of, and out of range."""
 BENT = (LARGEST_DEFLECTION, 0.1)
 """Share of the length that a beam may be displaced by: warned of, and out of range."""
+SOFTENED = (0.1, 0.5)
+"""Share by which the time step may soften a contact: warned of, and out of range."""
 CELLS_PER_WAVE = 4
 """Cells that the shortest wave must have, so that no more than `ISOLATED` touches alone."""
 
@@ -81,6 +83,24 @@ def energy_left(law: str, residual: float, key: str) -> Finding:
     )  # fmt: skip
 
 
+def softened(law: str, share: float, key: str) -> Iterator[Finding]:
+    """Contacts of a law that are softened to be stable, by a share of their compliance at rest.
+
+    None where that is little; `key` is that of the time step.
+    """
+    if (grade := _grade(share, SOFTENED)) is not None:
+        yield Finding(
+            f"softening of contacts by the time step, {law}",
+            percent(share),
+            f"up to {percent(SOFTENED[0])}",
+            grade,
+            "The time step is too long for contacts as stiff on bodies as light, which are made softer.",
+            f"Take a smaller {key}.",
+            f"contacts softened by {percent(share)} for the time step",
+            (law,),
+        )
+
+
 def _of_motion(computed: Computed) -> Iterator[Finding]:
     """Whether motions are possible: energies that balance, mean forces that are loads, small deflections."""
     left = {law: run.energy.residual for law, run in computed.runs.items()}
@@ -89,6 +109,7 @@ def _of_motion(computed: Computed) -> Iterator[Finding]:
         if law == main or left[law] > RESIDUAL:
             yield energy_left(law, left[law], "numerics.time_step")
     for law, run in computed.runs.items():
+        yield from softened(law, float(run.softening.max()) * computed.stiffness, "numerics.time_step")
         loads = np.bincount(run.body, computed.scene.loads)
         share = np.bincount(run.body, run.contact_force.mean(axis=1)) / loads
         mean = float(share[np.argmax(np.abs(share - 1.0))])
