@@ -40,8 +40,17 @@ SETS = {
 }
 SPEEDS = (1.0, 0.97, 1.03, 0.9, 1.1, 0.7, 1.3, 0.5, 2.0)
 RATES = (0.25, 0.5, 0.8, 1.25, 2.0, 4.0)
-PIECES = ((1.0, 3), (0.5, 2), (0.25, 1))
-"""Duration, s, and number of pieces of each record."""
+PIECES = (
+    (1.0, 3, 0.0, 2),
+    (0.5, 2, 0.0, 2),
+    (0.25, 1, 0.0, 2),
+    (9.0, 1, 2.0, 2),
+    (1.0, 1, 4.0, 2),
+)
+"""Duration at most, s, number of pieces of each record, noise that is added, in rms of the record, and how
+many wrong speeds."""
+WRONG = (0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0, 4.0)
+"""Factors by which they are wrong."""
 ALLOWED = 0.031
 """Share by which a speed that is named may be off the nominal one: those of these rigs are so far."""
 PART = re.compile(r"lines of the (outer|inner|ball)")
@@ -161,33 +170,31 @@ def pieces(folder: Path, seed: int = 1):
     from asperity.structures.ball_bearing import BallBearing
 
     draw, asked = np.random.default_rng(seed), {}
-    decision.sure = lambda kind, margin=0.0, support=0.0: (
-        asked.update(kind=kind, margin=margin, support=support) or 0.0
+    decision.sure = lambda kind, margin=0.0, support=0.0, depth=0.0: (
+        asked.update(kind=kind, margin=margin, support=support, depth=depth) or 0.0
     )
     bearings = {"mfpt": BallBearing(8, 5.97e-3, 31.62e-3)}
     for of, name, _, signal, rate, speed, part in records(folder):
         tones = bearings.get(of, BallBearing.named("6205")).tones()
-        for duration, count in ((signal.size / rate, 1), *PIECES):
-            for _ in range(count):
-                size = int(duration * rate)
+        for duration, count, noise, wrong in ((signal.size / rate, 1, 0.0, 6), *PIECES):
+            for _ in range(count if part else 4 * count):  # of few sound records more pieces
+                size = min(int(duration * rate), signal.size)
                 first = draw.integers(0, signal.size - size + 1)
-                wrong = draw.choice(
-                    [0.25, 0.5, 0.7, 0.9, 0.97, 1.03, 1.1, 1.3, 2.0, 4.0],
-                    4 if size < signal.size else 10,
-                    False,
-                )
-                for factor in (1.0, *wrong):
+                piece = signal[first : first + size]
+                piece = piece + noise * signal.std() * draw.normal(size=size)
+                for factor in (1.0, *draw.choice(WRONG, wrong, False)):
                     try:
-                        found = decision.diagnose(signal[first : first + size], rate, tones, speed * factor)
+                        found = decision.diagnose(piece, rate, tones, speed * factor)
                     except ValueError:
                         continue  # too short for a tone
-                    right = _right(found, part, speed, factor)
                     yield {
                         "set": of,
                         "record": name,
+                        "sound": part is None,
                         "duration": duration,
+                        "noise": noise,
                         "factor": float(factor),
-                        "right": right,
+                        "right": _right(found, part, speed, factor),
                         **asked,
                     }
 
@@ -198,83 +205,78 @@ def _right(found, part: str | None, speed: float, factor: float) -> bool:
     named = [each.part for each in found.parts]
     if named:
         return named == [part] and abs(found.parts[0].speed / speed - 1.0) <= ALLOWED
-    if found.speed_is == "confirmed":
-        return right_speed and part is None
-    return not right_speed or (part is None and not found.blows)
+    if found.blows:
+        return not right_speed
+    if found.speed_is == "confirmed" or found.multiple:
+        return part is None
+    return part is None or not right_speed  # "if it is right", it says
 
 
-def fitted(rows, kinds):
+def weights(rows):
+    """Of rows, as if half of all bearings had a fault, and four of five speeds were right."""
+    kinds = Counter((row["sound"], row["factor"] == 1.0) for row in rows)
+    shares = {kind: 0.5 * (0.8 if kind[1] else 0.2) / count for kind, count in kinds.items()}
+    return np.array([shares[row["sound"], row["factor"] == 1.0] for row in rows]) * len(rows)
+
+
+def described(rows):
+    """What the log-odds of rows are linear in, (rows, 4)."""
+    from asperity.diagnostics.confidence import features
+
+    values = [np.append(1.0, features(row["margin"], row["support"], row["depth"])) for row in rows]
+    return np.array(values).reshape(-1, 4)
+
+
+def fitted(rows, weight, kinds):
     """Coefficients by kind: of kinds with features a logistic line with a penalty, of others the share, both
     as log-odds."""
     from scipy.optimize import minimize
 
     found = {}
     for kind in kinds:
-        own = [row for row in rows if row["kind"] == kind]
-        right = np.array([row["right"] for row in own], dtype=float)
-        told = np.array([row["factor"] == 1.0 for row in own], dtype=bool)
-        weight = np.where(told, 4.0, 1.0)  # as if half of all speeds were right
-        features = np.array(
-            [
-                [min(max(row["margin"], 0.0), 40.0) / 10.0, min(max(row["support"], 0.0), 40.0) / 10.0]
-                for row in own
-            ]
-        ).reshape(-1, 2)
+        own = np.array([row["kind"] == kind for row in rows])
+        right = np.array([row["right"] for row in rows], dtype=float)[own]
+        seen, counts = described([row for row in rows if row["kind"] == kind]), weight[own]
 
-        def loss(a, features=features, right=right, weight=weight):
-            line = a[0] + features @ a[1:]
-            fit = (weight * (np.logaddexp(0.0, line) - right * line)).sum()
+        def loss(a, seen=seen, right=right, counts=counts):
+            line = seen @ a
+            fit = (counts * (np.logaddexp(0.0, line) - right * line)).sum()
             prior = np.logaddexp(0.0, a[0]) - 0.5 * a[0]  # one more, half of it right
             return fit + prior + 0.5 * (a[1:] ** 2).sum()
 
-        slopes = [(None, None)] + [(0.0, None) if kind in WITH_FEATURES else (0.0, 0.0)] * 2
-        found[kind] = minimize(loss, np.zeros(3), bounds=slopes).x
+        slopes = [(None, None)] + [(0.0, None) if kind in WITH_FEATURES else (0.0, 0.0)] * 3
+        found[kind] = minimize(loss, np.zeros(4), bounds=slopes).x
     return found
 
 
 WITH_FEATURES = ("fault", "fault, shaft not found", "elsewhere")
 
 
-def said_sure(row, coefficients) -> float:
-    """Confidence of a row, as the package has it."""
-    a, b, c = coefficients[row["kind"]]
-    line = a + b * min(max(row["margin"], 0.0), 40.0) / 10.0 + c * min(max(row["support"], 0.0), 40.0) / 10.0
-    return min(max(1.0 / (1.0 + np.exp(-line)), 0.03), 0.97)
-
-
 def calibrate(rows) -> None:
     """Print coefficients, and how often what is said with a confidence is right, each record by the
     others."""
-    kinds = sorted({row["kind"] for row in rows})
-    for kind, values in fitted(rows, kinds).items():
+    kinds, weight = sorted({row["kind"] for row in rows}), weights(rows)
+    for kind, values in fitted(rows, weight, kinds).items():
         own = [row for row in rows if row["kind"] == kind]
-        print(
-            f'    "{kind}": ({", ".join(f"{each:.2f}" for each in values)}),'
-            f"  # {sum(row['right'] for row in own):.0f} of {len(own)}"
-        )
+        count = f"{sum(row['right'] for row in own):.0f} of {len(own)}"
+        print(f'    "{kind}": ({", ".join(f"{each:.2f}" for each in values)}),  # {count}')
+    seen, right = described(rows), np.array([row["right"] for row in rows], dtype=float)
     for group in ("record", "set"):
-        said, right, weight = [], [], []
-        for left in sorted(
-            {(row["set"], row["record"]) if group == "record" else row["set"] for row in rows}
-        ):
-            inside = lambda row: ((row["set"], row["record"]) if group == "record" else row["set"]) == left  # noqa: B023, E731
-            others = fitted([row for row in rows if not inside(row)], kinds)
-            for row in filter(inside, rows):
-                said.append(said_sure(row, others))
-                right.append(row["right"])
-                weight.append(4.0 if row["factor"] == 1.0 else 1.0)
-        said, right, weight = map(np.array, (said, right, weight))
+        names = np.array([row["set"] + (row["record"] if group == "record" else "") for row in rows])
+        said = np.zeros(len(rows))
+        for name in sorted(set(names)):
+            others = [row for row, of in zip(rows, names, strict=True) if of != name]
+            lines = fitted(others, weight[names != name], kinds)
+            for at in np.flatnonzero(names == name):
+                odds = seen[at] @ lines[rows[at]["kind"]]
+                said[at] = min(max(1.0 / (1.0 + np.exp(-odds)), 0.03), 0.97)
         print(f"\n| said, without the {group} | times | mean said | right |\n|---|---:|---:|---:|")
         for low, high in ((0.0, 0.5), (0.5, 0.7), (0.7, 0.85), (0.85, 0.95), (0.95, 1.0)):
             own = (said >= low) & (said < high)
             if own.any():
-                means = (
-                    np.average(said[own], weights=weight[own]),
-                    np.average(right[own], weights=weight[own]),
-                )
+                mean, share = (100 * np.average(each[own], weights=weight[own]) for each in (said, right))
                 print(
-                    f"| {100 * low:.0f} to {100 * high:.0f} % | {own.sum()} "
-                    f"| {100 * means[0]:.0f} % | {100 * means[1]:.0f} % |"
+                    f"| {100 * low:.0f} to {100 * high:.0f} % | {own.sum()} | {mean:.0f} % | {share:.0f} % |"
                 )
 
 

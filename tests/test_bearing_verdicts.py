@@ -106,6 +106,23 @@ def test_unbalance_far_above_the_blows_hides_none_of_them(part):
     assert [each.part for each in diagnosis.parts] == [part]
 
 
+@pytest.mark.parametrize("part", PARTS)
+def test_a_single_click_hides_no_fault(part):
+    signal = made(part, duration=2.0)
+    signal[7_000] += 1e4
+    diagnosis = diagnose(signal, RATE, B6205.tones(), SPEED)
+    assert [each.part for each in diagnosis.parts] == [part]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("gain", [1e-150, 1e-6, 1e6, 1e150])
+def test_the_verdict_is_the_same_in_every_unit(gain):
+    diagnosis = diagnose(gain * made("outer"), RATE, B6205.tones(), SPEED)
+    assert [each.part for each in diagnosis.parts] == ["outer"]
+    assert diagnosis.confidence == pytest.approx(found("outer", "plain").confidence)
+    assert diagnosis.speed == pytest.approx(found("outer", "plain").speed)
+
+
 @pytest.mark.parametrize("deep", [0.1, 0.3])
 def test_varying_compliance_of_a_sound_bearing_is_no_fault(deep):
     """Balls pass the load: the signal and the resonance rise and fall by so much with the tone of the outer

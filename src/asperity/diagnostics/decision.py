@@ -33,6 +33,8 @@ LONGEST = 500.0
 LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
 """Share by which the envelope follows the blows of a fault: balls that pass a sound ring that stands in the
 load make it rise and fall, too, by 0.19 at most in the records of sound bearings that were looked at."""
+FEW_BLOWS = 20.0
+"""Number of blows for which twice that share is asked: of few, some line up by chance."""
 ALIKE = 8.0
 """Score within which two parts that have the same lines are not told apart."""
 
@@ -138,9 +140,21 @@ def diagnose(
     lines = f"the lines of the {NAMES[part]} at {tone.order * told:.4g} Hz"
     received, allowed = f"{duration:.3g} s", f"at least {needed:.3g} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
+    values = _without_clicks(values, duration * told)
     edges = band or _ringing_band(values, rate, HARMONICS * tone.order * told)
     record = BearingRecord.of(values, rate, edges, pieces=math.ceil(duration * told / LONGEST))
     return decided(record, record.read(tones, told), tones, told)
+
+
+def _without_clicks(values: Array, turns: float) -> Array:
+    """A signal (n,) limited to what it reaches once in two turns: what is larger is no blow that recurs.
+
+    A single click, as of a loose cable, would be all that a spectrum shows.
+    """
+    size = np.abs(values)
+    recurring = max(int(0.5 * turns), 1)
+    reached = float(np.partition(size, -recurring)[-recurring])
+    return np.clip(values, -reached, reached)
 
 
 def _ringing_band(values: Array, rate: float, reached: float) -> tuple[float, float]:
@@ -158,7 +172,7 @@ def decided(
 ) -> Diagnosis:
     """Decide what the hypotheses of a record say of the speed given."""
     ranked = sorted(found, key=lambda each: -_worth(each, told))
-    struck = [each for each in ranked if _deep(each, tones)]
+    struck = [each for each in ranked if _deep(each, tones, record.duration)]
     shaft, support, alone = shaft_near(record, told)
     resolution = 1.0 / record.duration
     seen = support >= SUPPORTED and all(
@@ -175,7 +189,7 @@ def decided(
         faint=None,
         blows=0.0,
         multiple=seen and not alone,
-        confidence=sure("sound" if there else "nothing"),
+        confidence=sure("sound" if seen else "nothing"),
         resolution=resolution,
         record=record,
     )
@@ -191,7 +205,7 @@ def decided(
     if unresolved and _agrees(best.speed, told, resolution):
         return _of_parts(bare, unresolved[0], rivals, tones, 0.0)
     if best.support >= SUPPORTED and margin >= ahead:
-        confidence = sure("elsewhere", margin, best.support)
+        confidence = sure("elsewhere", margin, best.support, best.depth)
         elsewhere = replace(
             bare, speed=record.speed(best.speed), speed_is=CONTRADICTED, confidence=confidence
         )
@@ -203,7 +217,7 @@ def decided(
     faint = [each for each in ranked if _near(each, told) and abs(each.tone - best.tone) <= resolution]
     if faint:
         return replace(bare, faint=faint[0])
-    return replace(bare, blows=best.tone, confidence=sure("sound" if there else "blows"))
+    return replace(bare, blows=best.tone, confidence=sure("blows"))
 
 
 def _of_parts(
@@ -216,7 +230,7 @@ def _of_parts(
     close = [each for each in near if abs(each.tone - best.tone) <= 2.0 * resolution]
     alike = {each.part: each for each in close if _worth(each, told) >= _worth(best, told) - ALIKE}
     seconds = () if alike else tuple(_seconds(near, best, tones, resolution))
-    confidence = sure("fault" if there else "fault, shaft not found", margin, best.support)
+    confidence = sure("fault" if there else "fault, shaft not found", margin, best.support, best.depth)
     found = replace(bare, parts=(best, *seconds), alike=tuple(alike.values()), confidence=confidence)
     if not there:
         return found
@@ -253,9 +267,10 @@ def _multiple(ratio: float) -> bool:
     return abs(larger / round(larger) - 1.0) <= NEAR
 
 
-def _deep(each: Hypothesis, tones: Mapping[str, Tone]) -> bool:
+def _deep(each: Hypothesis, tones: Mapping[str, Tone], duration: float) -> bool:
     """Whether the envelope follows the blows as it does those of a fault."""
-    return each.depth >= LEAST_DEPTH["turns" if tones[each.part].modulation else "stands"]
+    least = LEAST_DEPTH["turns" if tones[each.part].modulation else "stands"]
+    return each.depth >= least * (1.0 + FEW_BLOWS / (each.tone * duration))
 
 
 def _same(one: Hypothesis, other: Hypothesis) -> bool:

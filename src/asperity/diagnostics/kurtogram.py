@@ -68,6 +68,7 @@ def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurto
     from scipy.fft import ifft, rfft
 
     values, rate = checked_signal(signal, rate)
+    values = values / np.abs(values).max()
     lines, rows = rfft(values), []
     for count in SPLITS:
         width = 0.5 * rate / count
