@@ -256,6 +256,11 @@ CUT = """() => [...document.querySelectorAll(".rows")]
 REGIONS = """() => [...document.querySelectorAll("[role=region], nav, main, header")].map((each) =>
   `${each.getAttribute("role") ?? each.tagName} ${each.getAttribute("aria-label") ?? ""}`)"""
 SHEETS = re.compile(rb"/Type\s*/Page\b")
+SHEET = (297 - 2 * 11) * 96 / 25.4 - 12  # pixels of A4 between its margins
+PRINTED_SIZE = """matchMedia("print").addEventListener("change", ({ matches }) => {
+  const { height } = document.body.getBoundingClientRect();
+  if (matches) window.printed_size = [Number(document.body.style.zoom) || 1, height];
+})"""
 
 
 def test_tables_are_whole_on_narrow_screens_and_contents_stay_in_sight(browser, reports):
@@ -289,13 +294,16 @@ def test_a_summary_is_one_sheet_of_paper(browser, reports, real_runs, tmp_path, 
     if way == "button":
         page.emulate_media(media="print")
         assert not page.locator("#print-summary").is_visible()
-        page.emulate_media(media="screen")
+        page.emulate_media(media="null")
         page.click("#print-summary")
         page.wait_for_function("() => window.printed")
     else:
         page.evaluate("dispatchEvent(new Event('load'))")
         page.wait_for_function("() => Number(document.body.style.zoom) < 1")
+    page.evaluate(PRINTED_SIZE)
     assert len(SHEETS.findall(page.pdf(prefer_css_page_size=True))) == 1
+    zoom, height = page.evaluate("printed_size")
+    assert zoom == 1.0 or height == pytest.approx(SHEET, rel=0.02)  # no smaller than the sheet asks for
     page.close()
 
 
