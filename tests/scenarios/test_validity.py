@@ -18,6 +18,7 @@ from asperity.running import prepare_case
 from asperity.scenarios.preparing import try_contacts
 from asperity.scenes.validity import _contact, _doubts, _of_motion
 from asperity.spectra import band_levels, lowest_band, psd, spectrum_segment
+from command_line import call
 
 STEEL = material("steel")
 
@@ -266,3 +267,35 @@ def test_contacts_that_are_softened_for_the_time_step_are_doubted_by_the_verdict
     assert re.match(lead, tree.attrs["verdict"]), tree.attrs["verdict"]
     row = validity(tree)["softening of contacts by the time step, hertz"]
     assert (row["grade"], row["remedy"]) == ("out of range", "Take a smaller numerics.time_step.")
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+def test_a_beam_that_moves_by_hundreds_of_metres_is_doubted_by_check_verdict_and_page(tmp_path):
+    """It yields on its suspension by 5 N/(3.9 kg (2π 10 mHz)²), 322 m, and 12 · 0.2² of that as it tilts."""
+    case = as_case(
+        {
+            "kind": "ball-on-beam",
+            "laws": ["linear"],
+            "start": "0.3 m",
+            "duration": "0.1 s",
+            "settling": "0 s",
+            "surface": {"spectrum": "iso3095"},
+            "ball": {"load": "5 N"},
+            "beam": {"support": "free", "suspension_frequency": "10 mHz"},
+            "numerics": {"highest_frequency": "1 kHz"},
+        }
+    )
+    told = [each["message"] for each in planned(prepare_case(case))["warnings"]]
+    (bent,) = [message for message in told if "displaced by up to" in message]
+    mass = 1.0 * 0.05 * 0.01 * STEEL.density
+    static = 5.0 / mass / (2.0 * np.pi * 0.01) ** 2 * (1.0 + 12.0 * 0.2**2)
+    assert float(re.search(r"up to (\d+) m", bent)[1]) == pytest.approx(static, rel=0.01)
+    (tmp_path / "case.toml").write_text(case.to_toml())
+    said = call("run", str(tmp_path / "case.toml"), "-o", str(tmp_path / "out"))  # done: exit code 0
+    lead = r"Out of range for linear: a mean contact force of [-−]\d+ loads, a beam displaced by \d+ % of its"
+    assert re.search(lead, " ".join(said.stdout.split()))
+    force = asperity.open_result(tmp_path / "out")["rolling/contact_force"]
+    assert float(force.mean()) < -100.0 * 5.0
+    page = (tmp_path / "out/report.html").read_text().replace("\u00a0", " ")
+    assert re.search(lead, page)
+    assert not re.search(r">\s*Valid\s*<", page)

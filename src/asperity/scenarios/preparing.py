@@ -19,6 +19,7 @@ from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress, duration
 from asperity.reduction.filter import FEWEST_POSITIONS
+from asperity.rolling.ground import warn_if_bent
 from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios import compiling, laws, reducing, running_in
 from asperity.scenarios.coverage import problems_of_coverage
@@ -27,6 +28,7 @@ from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, recorded_time, textures_of, warn_of_textures
 from asperity.spectra import HALF_BAND, lowest_band, nominal_frequency
 from asperity.store import MOST_HELD, Store
+from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
@@ -272,6 +274,23 @@ def doubt_time_step(prepared: PreparedCase) -> None:
     warn_if_coarse(case.time_step, [limit])
 
 
+def doubt_deflection(prepared: PreparedCase) -> None:
+    """Warn of a beam that the loads at rest displace by more than beam theory allows, as the run will.
+
+    Where the record begins, in its middle, and where it ends; supports are left out, on which nothing moves.
+    """
+    scene, (first, last) = prepared.scene, prepared.case.rolled_range
+    if not isinstance(scene.over, Beam | SupportedBeam):
+        return
+    stiffness = (2.0 * math.pi * scene.over.natural_frequencies) ** 2
+    static = []
+    for start in np.linspace(first, last, 3):
+        shapes, _ = scene.over.shapes(start + np.asarray(scene.offsets))
+        held = stiffness > 0.0
+        static.append(shapes[:, held] @ (shapes[:, held].T @ scene.loads / stiffness[held]))
+    warn_if_bent(scene.over, np.array(static))
+
+
 @dataclass(frozen=True)
 class Work:
     """What a run will take."""
@@ -314,6 +333,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     """
     case, trial = prepared.case, None
     doubt_time_step(prepared)
+    doubt_deflection(prepared)
     with one_thread_in_linear_algebra():
         if prepared.textures.maps:
             compiling.compile_kernels(progress)
