@@ -1,5 +1,7 @@
 """Keys of a drawn wheel: what its section may be, what overrides it, and what is refused."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -139,6 +141,21 @@ def with_web(depth):
     rim = [(0.4, 0.06), (0.46, 0.06), (0.46, -0.06), (0.4, -0.06)]
     hub = [(0.2, -0.06), (0.1, -0.06), (0.1, 0.06), (0.2, 0.06)]
     return np.vstack([outer, rim, inner[::-1], hub])
+
+
+@pytest.mark.parametrize("bend", [-0.4, 0.4, 0.2])
+def test_a_web_that_leaves_hub_and_rim_is_told(bend):
+    """By what it bends, less what the faces of the hub, 175 mm wide, leave to it on its side."""
+    section = WheelSection.named("straight-web", web_bend=bend)
+    (told,) = doubts_of(checked_outline(section.outline(0.46)), 0.46)
+    beside = float(re.search(r"by ([\d.]+) mm along the axle", told)[1]) * 1e-3
+    half = 0.5 * max(section.hub_width, section.rim_width)
+    least = abs(bend) + 0.5 * section.web_thickness_rim - half
+    assert least - 0.01 < beside < abs(bend)
+    with pytest.warns(OutOfRangeWarning, match="stands out of hub and rim"):
+        geometry_of(wheel_on_rail(section="straight-web", web_bend=bend, mass="1 t"))
+    bent = WheelSection.named("straight-web", web_bend=0.08).outline(0.46)
+    assert not list(doubts_of(checked_outline(bent), 0.46))
 
 
 def test_a_web_that_zigzags_and_a_diameter_for_a_radius_are_told_and_no_named_section_is():

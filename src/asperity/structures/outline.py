@@ -26,6 +26,8 @@ LARGEST_WHEEL = 0.7
 """Largest radius of the wheels that run today, with some room, m: locomotives have 0.625 m."""
 TO_AND_FRO = 5
 """Turns one after the other, each the other way, that no section has: steps of a hub are fewer."""
+STANDS_OUT = 0.05
+"""How far a web stands out of hub and rim along the axle, at most, m: bent ones stay within."""
 SHARP = np.radians(20.0)
 """Angle from which a turn counts as one."""
 SMOOTHED = 0.5e-3
@@ -75,12 +77,17 @@ def _doubled_area(outline: Array) -> float:
 def doubts_of(outline: Array, radius: float) -> Iterator[str]:
     """Say what is hardly meant of a checked outline of a wheel, m, with a radius at its running circle, m.
 
-    One or two sentences each: a diameter for a radius, edges that go to and fro.
+    One or two sentences each: a diameter for a radius, a web beside hub and rim, edges that go to and fro.
     """
     if radius > LARGEST_WHEEL:
         yield (
             f"a wheel with a radius of {radius * 1e3:.4g} mm: wheels of trains have 170 mm to 625 mm. Is it "
             "the diameter, or are the radii of its section diameters? Then halve them."
+        )
+    if (beside := _web_beside(outline)) > STANDS_OUT:
+        yield (
+            f"a web that stands out of hub and rim by {beside * 1e3:.4g} mm along the axle: bent webs "
+            "of wheels stay between their faces. Is its bend in mm?"
         )
     turns, (r, z) = _turns_to_and_fro(outline)
     if turns >= TO_AND_FRO:
@@ -89,6 +96,17 @@ def doubts_of(outline: Array, radius: float) -> Iterator[str]:
             f"an outline that turns to and fro {turns} times in a row, up to ({r:.4g} mm, {z:.4g} mm): a "
             "web that zigzags is none of a wheel. List its points in order, and smooth what was digitised."
         )
+
+
+def _web_beside(outline: Array) -> float:
+    """How far points between hub and rim lie beside the faces of both, along the axle, m."""
+    radius, place = outline.T
+    share = (radius - radius.min()) / np.ptp(radius)
+    web = (share > 0.1) & (share < 0.8)
+    if not web.any():
+        return 0.0
+    low, high = place[~web].min(), place[~web].max()
+    return float(max(place[web].max() - high, low - place[web].min()))
 
 
 def _turns_to_and_fro(outline: Array) -> tuple[int, Array]:
