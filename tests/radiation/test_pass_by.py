@@ -92,6 +92,26 @@ def test_directivity_of_cnossos():
     assert_allclose(found, [0.0, -20.0, 10 * np.log10(0.01 + 0.99 / 4), 0.0, -40.0 / 3.0, upwards], atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("receiver", "source", "lowest", "highest"),
+    [((7.5, 1.2), 0.46, 3.4, 3.6), ((7.5, 1.2), 0.0, 3.5, 3.9), ((7.5, 3.5), 0.46, 3.8, 4.8)],
+)
+def test_directivity_is_louder_opposite_by_what_the_page_says(receiver, source, lowest, highest):
+    """By the mean of the formula over the upper half of a sphere, summed up here by even elevations."""
+    band, fine = np.array([50.0, 8000.0]), np.linspace(0.0, 0.5 * np.pi, 2001)[:, None]
+    paths = [SoundPath(band, Receiver(*receiver), directivity=each) for each in ("cnossos", "even")]
+    uneven, even = (path.inverse_square(source, np.zeros(1))[:, 0] for path in paths)
+    found = 10.0 * np.log10(uneven / even)
+    upwards = 10.0 ** (40 / 30 * (2 / 3 * np.sin(2 * fine) - np.sin(fine)) * np.log10((band + 600.0) / 200.0))
+    mean = 0.505 * np.trapezoid(upwards * np.cos(fine), fine[:, 0], axis=0)
+    rise = np.arctan2(receiver[1] - source, receiver[0])
+    opposite = 10.0 ** (
+        40 / 30 * (2 / 3 * np.sin(2 * rise) - np.sin(rise)) * np.log10((band + 600.0) / 200.0)
+    )
+    np.testing.assert_allclose(found, 10.0 * np.log10(opposite / mean), atol=0.01)
+    np.testing.assert_allclose(found, (lowest, highest), atol=0.06)
+
+
 def test_directivity_keeps_power_and_hence_exposure():
     """Beside the track at the height of the source the horizontal pattern leaves the exposure as it is."""
     path = SoundPath(BAND, FLAT, directivity="cnossos")
