@@ -12,6 +12,8 @@ from asperity.structures.causal_track import causal_track
 from asperity.structures.mobility import dissipated_power
 from asperity.structures.support import (
     BendingSleeper,
+    MeasuredSleeper,
+    Relaxation,
     RigidMass,
     Spring,
     StiffnessTable,
@@ -134,6 +136,17 @@ def test_a_table_is_met_at_its_frequencies_and_held_beyond():
     twice = timoshenko(pad_table=PAD, pad_stiffness=400e6).springs["pad"]
     np.testing.assert_allclose(twice.stiffness(at), 2.0 * np.array(expected), rtol=1e-12)
     assert hash(track) == hash(timoshenko(pad_table=PAD))
+
+
+def test_parts_by_arrays_are_those_by_tuples():
+    """Tracks, and what is fitted to them, are kept by their hash."""
+    table = StiffnessTable(*map(np.array, (PAD.frequencies, PAD.real, PAD.imaginary)))
+    track = replace(Track.named("nordborg", pad_damping=None, pad_table=table), bays=Bays(*np.ones((3, 2))))
+    assert table == PAD
+    assert causal_track(track) is causal_track(replace(track, pad_table=PAD, bays=Bays.equal(2)))
+    relaxation, sleeper = Relaxation(1.0, [0.5], np.array([90.0])), (np.ones(2), np.ones(2), np.ones(2))
+    assert hash(relaxation) == hash(Relaxation(1.0, (0.5,), (90.0,)))
+    assert MeasuredSleeper(100.0, *sleeper) == MeasuredSleeper(100.0, *[(1.0, 1.0)] * 3)
 
 
 def test_preloads_are_interpolated_and_held_beyond():

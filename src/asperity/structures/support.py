@@ -9,6 +9,12 @@ from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array
 from asperity.errors import InputError
 
 
+def keep_as_tuples(frozen: object, *names: str) -> None:
+    """Turn rows of numbers that a frozen object was given, as arrays or lists, into tuples: it has a hash."""
+    for name in names:
+        object.__setattr__(frozen, name, tuple(np.asarray(getattr(frozen, name), dtype=float).tolist()))
+
+
 @dataclass(frozen=True)
 class Relaxation:
     """Stiffness relative to a nominal one: a spring beside Maxwell elements (springs in line with dampers).
@@ -21,6 +27,9 @@ class Relaxation:
     # of the Maxwell elements, zero or more: what each adds well above its frequency
     strengths: tuple[float, ...]
     frequencies: tuple[float, ...]  # at which they dissipate most, Hz
+
+    def __post_init__(self) -> None:
+        keep_as_tuples(self, "strengths", "frequencies")
 
     def at(self, omega: ArrayLike) -> Complex:
         """Stiffness relative to the nominal one at angular frequencies, rad/s, with Im ω <= 0."""
@@ -64,9 +73,9 @@ class StiffnessTable:
 
     Parameters
     ----------
-    frequencies : tuple of float
+    frequencies : sequence of float
         Hz, rising, three or more.
-    real, imaginary : tuple of float
+    real, imaginary : sequence of float
         N/m, e^{+iωt}.
 
     Raises
@@ -97,6 +106,7 @@ class StiffnessTable:
             received = f"an imaginary part below zero {wrong}, by which the pad would make energy"
             remedy = "With a time factor e^{-iωt} change its sign; else leave these lines out."
             raise InputError("dynamic stiffness", received, "zero or more", remedy)
+        keep_as_tuples(self, "frequencies", "real", "imaginary")
 
     @property
     def nominal(self) -> float:
@@ -386,6 +396,9 @@ class MeasuredSleeper(Element):
     modal_masses: tuple[float, ...]  # m_k, of the half, kg, where the seat is displaced by one
     fit_error: float = 0.0  # root mean square of the level difference to a table, dB
     fitted: str = ""  # by what, in words
+
+    def __post_init__(self) -> None:
+        keep_as_tuples(self, "natural_frequencies", "damping_ratios", "modal_masses")
 
     def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
         """Inverse of the sum of its modes."""

@@ -8,7 +8,7 @@ import numpy as np
 from asperity.arguments import Array, not_negative, require, shown, whole
 from asperity.errors import InputError
 from asperity.parameters import Flag, Number, Quantity, checked_parameters, keys_of, parameter
-from asperity.structures.support import MeasuredSleeper, Relaxation, StiffnessTable
+from asperity.structures.support import MeasuredSleeper, Relaxation, StiffnessTable, keep_as_tuples
 
 MOST_BAYS = 100
 """Of a cell: waves are kept of each of them, some ten megabytes."""
@@ -43,6 +43,7 @@ class Bays:
         received, allowed = f"{np.mean(self.spacing):.6g} times the nominal one", "the nominal one"
         even = np.isclose(np.mean(self.spacing), 1.0, rtol=1e-9)
         require(even, "mean spacing of the bays", received, allowed)
+        keep_as_tuples(self, *(each.name for each in fields(self)))
 
     @classmethod
     def equal(cls, count: int = 1) -> "Bays":
