@@ -31,6 +31,19 @@ def test_modes_of_a_named_section_are_told_and_written():
     assert Path("section.svg").read_text(encoding="utf-8").lstrip().startswith("<?xml")
 
 
+def test_modal_masses_are_told_along_both_directions():
+    """Where the web bends the axial one is the small one: 1/shape² of mass-normalised shapes."""
+    told = call("wheel", "straight-web", *LOW).stdout
+    case = WheelOnRail(surface={"smooth": True}, wheel={"section": "straight-web"})
+    modes = case.rolling.standing_modes(400.0)
+    rows = [line.split() for line in told.splitlines() if line.startswith("  ")]
+    columns = rows[0].index("radial/kg"), rows[0].index("axial/kg")
+    found = np.array([[float(row[k]) for k in columns] for row in rows[1:]])
+    radial, axial = (each[modes.heard()] for each in modes.at())
+    np.testing.assert_allclose(found, np.stack([radial**-2.0, axial**-2.0], axis=1), rtol=1e-3)
+    assert found[0, 1] < 0.2 * found[0, 0]
+
+
 def test_an_outline_brings_its_radius():
     outline(Path("outline.csv"))
     call("wheel", "outline.csv", *LOW, "-o", "modes.csv")

@@ -19,7 +19,7 @@ from asperity.structures.wheel_modes import with_running_circle
 from asperity.terminal import say
 from asperity.written_numbers import rounded
 
-COLUMNS = ("Hz", "n", "damping", "modal mass/kg", "axial", "radial")
+COLUMNS = ("Hz", "n", "damping", "radial/kg", "axial/kg", "axial", "radial")
 
 
 def show_wheel(section: str, highest: str | None, table: Path | None, picture: Path | None) -> None:
@@ -44,10 +44,13 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
     say(f"{section}: {rounded(wheel.drawn_mass, 4)} kg without its axle, held at a radius of "
         f"{1e3 * wheel.outline[:, 0].min():.4g} mm; {len(rows)} modes answer to a radial force up to "
         f"{rows[:, 0].max():.0f} Hz.")  # fmt: skip
-    say("Axial motion of the disc and radial motion of the tread, rms per radial motion at the contact:")
-    say("  {:>8} {:>3} {:>9} {:>14} {:>7} {:>7}".format(*COLUMNS))
-    for frequency, ratio, mass, n, axial, radial in rows:
-        say(f"  {frequency:8.1f} {n:3.0f} {ratio:9.2g} {mass:14.4g} {axial:7.2f} {radial:7.2f}")
+    say("Radial and axial modal mass at the contact; axial motion of the disc and radial motion of the tread, "
+        "rms per radial motion at the contact:")  # fmt: skip
+    say("  {:>8} {:>3} {:>9} {:>10} {:>10} {:>7} {:>7}".format(*COLUMNS))
+    shapes = np.abs(modes.at()[1][modes.heard()])
+    for (frequency, ratio, mass, n, axial, radial), shape in zip(rows, shapes, strict=True):
+        masses = f"{mass:10.4g} {shape**-2.0 if shape > 0.0 else np.inf:10.4g}"
+        say(f"  {frequency:8.1f} {n:3.0f} {ratio:9.2g} {masses} {axial:7.2f} {radial:7.2f}")
     if table is not None:
         modes.write(table)
         say(f"Table, for wheel.modes: {table.resolve()}")

@@ -211,6 +211,11 @@ class WheelModes:
         ]
         return both[0], both[1]
 
+    def heard(self, place: float = 0.0) -> NDArray[np.bool_]:
+        """Whether each mode (p,) answers to a radial force at a place, m."""
+        largest = np.maximum(np.abs(self.radial).max(axis=1), np.abs(self.axial).max(axis=1))
+        return np.asarray(np.abs(self.at(place)[0]) > SILENT * largest)
+
     def table(self, place: float = 0.0) -> Array:
         """Table of modes as `wheel.modes` of a case takes it (s, 6), of a contact at a place, m.
 
@@ -218,10 +223,8 @@ class WheelModes:
         disc and rms radial velocity of the tread, both per radial velocity at the contact. Modes that do not
         answer radially there are left out.
         """
-        radial = np.abs(self.at(place)[0])
-        largest = np.maximum(np.abs(self.radial).max(axis=1), np.abs(self.axial).max(axis=1))
-        heard = radial > SILENT * largest
-        shape = radial[heard]
+        heard = self.heard(place)
+        shape = np.abs(self.at(place)[0])[heard]
         columns = (self.natural_frequencies[heard], self.damping_ratios[heard], shape**-2.0)
         numbers = (self.nodal_diameters[heard], self.disc[heard] / shape, self.tread[heard] / shape)
         return np.column_stack([*columns, *numbers])
