@@ -44,8 +44,8 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
     say(f"{section}: {rounded(wheel.drawn_mass, 4)} kg without its axle, held at a radius of "
         f"{1e3 * wheel.outline[:, 0].min():.4g} mm; {len(rows)} modes answer to a radial force up to "
         f"{rows[:, 0].max():.0f} Hz.")  # fmt: skip
-    say("Radial and axial modal mass at the contact; axial motion of the disc and radial motion of the tread, "
-        "rms per radial motion at the contact:")  # fmt: skip
+    say("Radial and axial modal mass at the contact; axial motion of the disc and radial motion of the "
+        "tread, rms per radial motion at the contact:")  # fmt: skip
     say("  {:>8} {:>3} {:>9} {:>10} {:>10} {:>7} {:>7}".format(*COLUMNS))
     shapes = np.abs(modes.at()[1][modes.heard()])
     for (frequency, ratio, mass, n, axial, radial), shape in zip(rows, shapes, strict=True):
