@@ -142,6 +142,17 @@ def test_a_flange_on_the_field_side_is_told(tread):
         case_of(tread, HEAD)
 
 
+@pytest.mark.parametrize(("unit", "told"), [("m", "a section 120 m wide"), ("um", "a section 0.12 mm wide")])
+@pytest.mark.parametrize("part", ["wheel", "rail"])
+def test_a_section_in_a_wrong_unit_is_refused_with_the_cause(unit, told, part, tmp_path):
+    """Tables of mm under another unit: their slopes are right, and tell nothing."""
+    file = tmp_path / "a.csv"
+    rows = "\n".join(f"{y}; {-(y**2) / 600:.4f}" for y in range(-60, 60))
+    file.write_text(f"y ({unit}); z ({unit})\n{rows}\n")
+    with pytest.raises((CaseError, InputError), match=f"{told}; allowed: .*Are its places in mm"):
+        case_of(**{part: file})
+
+
 def test_what_has_no_flange_is_left_as_it_is():
     """Treads without one, tilted by 3 degrees and with a chamfer of 5 mm; a crowned body; a grooved rail."""
     y = np.linspace(-30e-3, 60e-3, 361)

@@ -16,6 +16,7 @@ from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.readers import hints, read_surface
+from asperity.surfaces.readers.belief import told_length
 
 if TYPE_CHECKING:
     from asperity.case.scene import Case
@@ -29,6 +30,8 @@ FEWEST = 4
 """Points of a section."""
 POINTS = 2001
 """Of a circle, and of the gap, among which the lowest is looked for."""
+WIDEST, NARROWEST = 1.0, 2e-3
+"""Widths of sections, m: wheels and rails are 60 to 150 mm wide, and their contact some 10 mm."""
 FLANGE = 10e-3
 """Least height over the rest of a tread that is a flange's, m: they are 25 mm high, chamfers 5 mm."""
 TREAD = 25e-3
@@ -67,7 +70,18 @@ def read_section(measured: Path | Profile, key: str) -> Profile:
         raise InputError(key, "a map of heights", "one line across the path")
     count = len(section.heights)
     require(count >= FEWEST, key, f"{count} points", f"at least {FEWEST}", "Measure more of them.")
+    _refuse_beyond_belief(section, key)
     return complete(section, key)
+
+
+def _refuse_beyond_belief(section: Profile, key: str) -> None:
+    """Refuse a section wider than any, or one of wheel or rail that is narrower than their contact."""
+    least = NARROWEST if key in ("wheel.profile", "track.rail_profile") else 0.0
+    wide = f"{section.size:.3g} m" if section.size > WIDEST else told_length(section.size)
+    received = f"a section {wide} wide"
+    allowed = f"sections up to {WIDEST:g} m wide, of wheel and rail from {told_length(NARROWEST)} on"
+    remedy = "Are its places in mm? Write that into the heading, as 'y (mm); z (mm)'."
+    require(least <= section.size <= WIDEST, key, received, allowed, remedy)
 
 
 def complete(line: Profile, key: str) -> Profile:
