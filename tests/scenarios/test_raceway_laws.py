@@ -75,7 +75,9 @@ def test_force_closes_around_a_rough_raceway():
         assert_allclose(np.diff(over), np.diff(over).mean(), rtol=0.05, atol=1e-9 * LOAD)
         assert np.ptp(found) > 0.01 * LOAD
     exact, averaged = (force(law[name], places, APPROACH) for name in ("table", "areal"))
-    assert np.std(averaged - exact) < 0.05 * np.std(exact)
+    # exact but for what is of second order in the heights: of forty draws 0.9 F (σ/δ)², deviation 0.2
+    second_order = LOAD * (np.std(surface.heights) / APPROACH) ** 2
+    assert np.std(averaged - exact) < 1.5 * second_order < 0.1 * np.std(exact)
 
 
 @pytest.mark.parametrize("waves", [4, 12])

@@ -156,14 +156,16 @@ numerics = {highest_frequency = "4 kHz", poles = 60}
 def test_tables_hold_where_the_rms_is_three_approaches(text):
     """From the first touch of all up they missed it by 9 %, no lower than minus an approach by 15 %.
 
-    States reach from a light load on the highest peak to the largest force on the flattest place.
+    States reach from a light load on the highest peak to the largest force on the flattest place. The error
+    is held to the load: by the force's own rms it varies threefold from texture to texture. Of 26 of them it
+    is 0.9 % of the load, with a standard deviation of 0.2 %; a touch of all up as the first state made 2.8 %.
     """
     chain = compute(prepare_case(parse_case(text)), quiet)
     direct = first_contact(chain.runs["direct"])
     looked_up = force(chain.build("table"), direct.position, direct.relative_displacement)
     error = np.sqrt(np.mean((looked_up - direct.contact_force) ** 2))
-    assert error < 0.04 * direct.contact_force.std()
     shape, states = chain.shape, chain.reduction.approaches
+    assert error < 0.015 * shape.load
     half_space = shape.half_space(None)
     places = reducing.touched_places(chain.textures, shape)
     lowest, highest = (

@@ -34,7 +34,8 @@ numerics.highest_frequency = "4 kHz"
 [surface]
 {surface}
 """
-MIDDLE, ROUGH, FINE = {"rms": 0.12}, {"rms": 0.4}, {"rms": 1.0, "shortest": 20, "hurst": 0.2}
+MIDDLE, ROUGH, FINE = {"rms": 0.17}, {"rms": 0.4}, {"rms": 1.0, "shortest": 20, "hurst": 0.2}
+"""Of twenty textures, the contact area ratio of the first is 0.80, with a standard deviation of 0.04."""
 CELLS = "share of the load on asperities of a single cell"
 CUT_OFF = "share of contacts that the window cuts off, filters"
 

@@ -90,16 +90,20 @@ def test_bodies_approach_as_far_as_they_sink(tree, kind):
 def test_table_follows_direct(tree):
     force, level = tree["rolling/contact_force"], tree["spectra/force_level_difference_to_reference"]
     direct = force.sel(law="direct")
-    assert float(((force.sel(law="table") - direct).std("time") / direct.std("time")).max()) < 0.01
+    off = ((force.sel(law="table") - direct).std("time") / direct.std("time")).max()
+    assert 20.0 * np.log10(1.0 + float(off)) < 0.2  # dB; of a dozen textures 0.1, deviation 0.03
     assert level.attrs["reference"] == "direct"
     assert level.sizes["band"] >= 10
     assert float(abs(level.sel(law="table")).max()) < 0.3
 
 
 def test_areal_explains_direct_better_than_a_line_does(ball, wheel):
-    for tree, least in ((ball, 0.98), (wheel, 0.9996)):
+    """Of what the force of a line leaves unexplained, which chance moves much, it leaves a tenth at most."""
+    for tree, least in ((ball, 0.95), (wheel, 0.9996)):
         correlation = tree["rolling/contact_force"].sel(contact=1).to_pandas().T.corr()["direct"]
-        assert correlation["areal"] > least > correlation["shifted"] > 0.8 > 0.8 * correlation["hertz"]
+        unexplained = 1.0 - correlation**2
+        assert correlation["areal"] > least
+        assert unexplained["areal"] < 0.1 * unexplained[["shifted", "hertz"]].min()
 
 
 def test_differences_to_the_linear_laws(tree):
@@ -120,7 +124,9 @@ def test_the_verdict_compares_with_practice_first_and_names_the_secant(runs):
     verdict = found.attrs["verdict"]
     practice, bare = "over linear-filtered", "over linear (linear with the stiffness F/r)"
     assert 0 < verdict.index(practice) < verdict.index(bare)
-    bands = found["spectra"].to_dataset().where(found["spectra/band_time_product"] >= 10.0, drop=True)
+    spectra = found["spectra"].to_dataset()
+    settled = spectra["start_share"] <= spectra["start_share"].attrs["most"]
+    bands = spectra.where((spectra["band_time_product"] >= 10.0) & settled, drop=True)
     difference = bands["force_level_difference_to_linear_filtered"].sel(law="areal", band=slice(90, 5500))
     for at in (difference.values.argmin(), difference.values.argmax()):
         band = nominal_frequency(float(difference["band"][at]))
