@@ -15,6 +15,7 @@ from scipy.io import savemat, wavfile
 import asperity
 from asperity.case.cases import as_case, parse_case
 from asperity.case.toml import toml_text
+from asperity.errors import InputError
 from asperity.reporting.study_figures import key_figure
 from asperity.studies.axes import AS_IT_IS
 from asperity.studies.signals import SignalSet, read_signal, through_path, with_noise
@@ -284,6 +285,16 @@ def test_a_record_of_matlab_is_read_whatever_it_is_called(tmp_path, monkeypatch,
     assert rate == 12e3
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1", "utf-16"])
+def test_a_column_with_decimal_commas_below_a_title_in_any_encoding(encoding, tmp_path):
+    values = np.round(np.sin(0.1 * np.arange(200)), 4)
+    text = "Beschleunigung in m/s²\n" + "\n".join(f"{value:.4f}".replace(".", ",") for value in values)
+    np.testing.assert_array_equal(recorded("a.txt", text.encode(encoding), tmp_path), values)
+    pairs = "\n".join(f"{number},{number * 3}" for number in range(9))  # whole numbers beside each other
+    with pytest.raises(InputError, match="2 columns"):
+        recorded("b.txt", pairs.encode(), tmp_path)
+
+
 def test_the_content_of_a_record_decides_not_its_name(tmp_path):
     np.testing.assert_array_equal(recorded("a.txt", wav(), tmp_path), SAMPLES / 2**15)
     np.save(tmp_path / "a.npy", TIME)
@@ -305,6 +316,11 @@ test_signals_that_are_none = refusals(
         r"values of up to 9.89e\+307; allowed: 1e-60 to 1e\+60 at most",
     ),
     ("a.npy", 1e-300 * np.sin(np.arange(9.0)), "values of up to 9.89e-301"),
+    (
+        "a.uff",
+        b"    -1\n    58\nNONE\nNONE\n 0.1 0.2\n",
+        "a universal file, dataset 58; .* Save the signal as .mat",
+    ),
     of=recorded,
 )
 

@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import warnings
 from array import array
 from collections import deque
@@ -364,9 +365,19 @@ def _check_pieces(file: Path) -> None:
             place += 8 + told + told % 2
 
 
+_UNIVERSAL = re.compile(r"\s*-1\s*\n\s*(\d{1,4})b?\b[^\n]*\n\s*[^\d\s+-]")
+_DECIMAL_COMMA = re.compile(r"^[ \t]*(?:[-+]?\d+,0\d|-0,\d)\d*[ \t]*\r?$", re.MULTILINE)
+"""A single number with a decimal comma: nobody writes whole numbers as 05 or -0."""
+
+
 def _of_text(file: Path) -> tuple[Array, list[str]]:
     """Numbers of a table, below lines of words, of which the last may be titles of its columns."""
-    content = read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT)
+    content = read_text(file, file.name, "a table of numbers", largest=LARGEST_TEXT, latin=True)
+    universal = _UNIVERSAL.match(content)
+    received, allowed = f"a universal file, dataset {universal[1]}" if universal else "", "a table of numbers"
+    require(not universal, file.name, received, allowed, "Save the signal as .mat, .npz, .wav or text.")
+    if "." not in content and _DECIMAL_COMMA.search(content):
+        content = content.replace(",", ".")
     numbers, columns = array("d"), 0
     words: deque[list[str]] = deque(maxlen=2)
     line = 1
