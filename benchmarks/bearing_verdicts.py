@@ -266,7 +266,7 @@ def calibrate(rows) -> None:
         said = np.zeros(len(rows))
         for name in sorted(set(names)):
             others = [row for row, of in zip(rows, names, strict=True) if of != name]
-            lines = fitted(others, weight[names != name], kinds)
+            lines = fitted(others, weights(others), kinds)
             for at in np.flatnonzero(names == name):
                 odds = seen[at] @ lines[rows[at]["kind"]]
                 said[at] = min(max(1.0 / (1.0 + np.exp(-odds)), 0.03), 0.97)

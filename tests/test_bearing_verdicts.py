@@ -87,6 +87,17 @@ def test_a_ball_that_one_ring_strikes_harder_has_lines_of_its_spin_and_is_named(
     assert diagnosis_sentence(diagnosis).startswith("There are lines of the ball at 13")
 
 
+def test_the_comb_of_a_spin_is_a_ball_only_where_the_shaft_speaks_for_no_other_part():
+    """Of an outer ring, asked at the speed whose f_b its blows have: f_o/f_b times its own."""
+    tone = orders("6205", 0.14)
+    signal = made("outer", duration=2.0)
+    asked = SPEED * 0.995 * tone["outer"] / (0.5 * tone["ball"])
+    diagnosis = diagnose(signal, RATE, B6205.tones(), asked)
+    assert "ball" not in [each.part for each in diagnosis.parts]
+    unheard = diagnose(made("ball", unlike=0.0, shaft=0.0, duration=2.0), RATE, B6205.tones(), SPEED)
+    assert [each.part for each in unheard.parts] == ["ball"]
+
+
 MAINS = [(50.0 * n, 0.6 / n) for n in (1, 2, 3, 4, 6)]
 
 
@@ -290,6 +301,8 @@ def test_confidence_rises_with_what_speaks_for_it_and_is_never_all_or_nothing():
         told = [sure(kind, margin, margin) for margin in (0.0, 10.0, 40.0, 1e6)]
         assert told == sorted(told)
         assert 0.03 <= told[0] <= told[-1] <= 0.97
+    assert sure("fault", 5.0, 5.0, 0.2) < sure("fault", 5.0, 5.0, 0.8)
+    assert sure("nothing") < sure("sound")  # a shaft that is found makes it no less sure
 
 
 # --- band and whitening

@@ -5,12 +5,12 @@ import numpy as np
 from asperity.arguments import Array
 
 COEFFICIENTS = {
-    "blows": (3.68, 0.00, 0.00, 0.00),
-    "elsewhere": (0.14, 1.26, 0.80, 0.00),
-    "fault": (-0.07, 1.83, 0.19, 0.00),
-    "fault, shaft not found": (0.09, 2.03, 0.00, 0.00),
-    "nothing": (3.11, 0.00, 0.00, 0.00),
-    "sound": (0.81, 0.00, 0.00, 0.00),
+    "blows": (1.82, 0.00, 0.00, 0.00),
+    "elsewhere": (0.23, 0.67, 0.38, 0.48),
+    "fault": (0.58, 1.04, 0.56, 0.50),
+    "fault, shaft not found": (0.68, 1.09, 0.49, 0.85),
+    "nothing": (1.97, 0.00, 0.00, 0.00),
+    "sound": (5.61, 0.00, 0.00, 0.00),
 }
 """Log-odds by kind of verdict: a constant, and slopes over the `features`.
 

@@ -172,7 +172,7 @@ def decided(
 ) -> Diagnosis:
     """Decide what the hypotheses of a record say of the speed given."""
     ranked = sorted(found, key=lambda each: -_worth(each, told))
-    struck = [each for each in ranked if _deep(each, tones, record.duration)]
+    struck = _likely([each for each in ranked if _deep(each, tones, record.duration)])
     shaft, support, alone = shaft_near(record, told)
     resolution = 1.0 / record.duration
     seen = support >= SUPPORTED and all(
@@ -271,6 +271,15 @@ def _deep(each: Hypothesis, tones: Mapping[str, Tone], duration: float) -> bool:
     """Whether the envelope follows the blows as it does those of a fault."""
     least = LEAST_DEPTH["turns" if tones[each.part].modulation else "stands"]
     return each.depth >= least * (1.0 + FEW_BLOWS / (each.tone * duration))
+
+
+def _likely(struck: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Those that are struck, without unlike blows that no shaft speaks for where one speaks for another part.
+
+    A comb of the spin is one more that any comb at a wrong speed may be.
+    """
+    told = {each.tone for each in struck if each.support >= SUPPORTED}
+    return [each for each in struck if each.every == 1 or each.support >= SUPPORTED or each.tone not in told]
 
 
 def _same(one: Hypothesis, other: Hypothesis) -> bool:
