@@ -258,6 +258,8 @@ def test_a_sentence_says_where_a_study_is_quietest_and_loudest(study):
     told = "A-weighted sound power level from the vibration itself, areal, total"
     assert ends_in_words(study, LOUDNESS) == f"{told}: from {low} to {high}."
     assert ends_in_words(study, ["nothing"]) == ""
+    beside = ends_in_words(study.drop_vars("radiated_power_level_a"), LOUDNESS)
+    assert " re 20 µPa" in beside  # what is heard is told before the force
 
 
 def test_the_numbers_of_a_figure_begin_with_the_main_law(tree):

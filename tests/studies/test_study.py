@@ -16,6 +16,7 @@ from executors import BALL, Here
 
 import asperity
 from asperity.case.cases import parse_case
+from asperity.cli import studying
 from asperity.errors import ComputationError
 from asperity.laws import Role
 from asperity.running import run
@@ -232,3 +233,20 @@ def test_differences_of_totals_are_over_the_bands_that_both_laws_have():
     difference = (force - force.sel(law="linear")).assign_attrs(units="dB", long_name="", reference="linear")
     found = _weighted({"force_level": force, entry.name: difference})
     assert float(found[_weighted_name(entry)].sel(law="areal")) == pytest.approx(-6.0)
+
+
+@pytest.mark.parametrize(
+    ("heading", "value", "head", "written"),
+    [
+        ("force_level_a [dB(A) re 1 N]", 1.9364, "force level, A-weighted [dB(A) re 1 N]", "1.9"),
+        ("force_a_difference_to_linear [dB]", -18.0, "force, A-weighted over linear [dB]", "−18.0"),
+        ("power_a total [dB(A) re 1 pW]", -0.02, "power, A-weighted total [dB(A) re 1 pW]", "0.0"),
+        ("level [dB re 1e-6 m/s2]", float("nan"), "level [dB re 1 µm/s²]", "–"),
+        ("contact_loss_share [1]", 0.01234, "contact loss share", "0.01234"),
+    ],
+)  # fmt: skip
+def test_the_table_of_a_page_has_words_and_the_levels_of_the_headline(heading, value, head, written):
+    """The headline said 1.9 dB(A), the table 1.936 below "force level a"."""
+    assert studying._head(heading) == head
+    assert studying._written(heading, value, swept=False) == written
+    assert studying._written(heading, 85.7232, swept=True) == "85.72"

@@ -1,6 +1,7 @@
 """Computes a study into a folder: its table, means and band over seeds, a page of figures; and prints it."""
 
 import json
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
@@ -219,8 +220,13 @@ def _table(mean: xarray.Dataset, names: Sequence[str]) -> ReportTable:
     shown = [name for name in names if name in mean and not {*PLACES} & {*mean[name].dims}]
     heading, rows = tables.columns_of(mean[shown], bands=False)
     kept = [n for n in range(len(heading)) if any(_short(row[n]) != "–" for row in rows)]
+    axes = len(tables.axes_of(mean))
     cells = {
-        heading[n].replace("_", " "): text_cells(_short(row[n]) for row in rows[:MOST_ROWS]) for n in kept
+        _head(heading[n]): text_cells(
+            [_written(heading[n], row[n], swept=n < axes) for row in rows[:MOST_ROWS]],
+            "" if all(isinstance(row[n], str) for row in rows) else "number",
+        )
+        for n in kept
     }
     note = f"{MOST_ROWS} of {len(rows)} rows; study.csv has all." if len(rows) > MOST_ROWS else ""
     return report_table("numbers", "Numbers of the study", cells, note)
@@ -302,6 +308,22 @@ def print_table(
         say_table(title, [heading[n] for n in block], rows_of_block, width=WIDTH, widths=widths)
     if len(rows) > MOST_ROWS:
         say(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
+
+
+def _head(heading: str) -> str:
+    """Heading of a column for people: ``"force level, A-weighted [dB(A) re 1 N]"``."""
+    name, unit, rest = heading.partition(" [")
+    name = re.sub(r"_a(?=_difference|_by_chance|$| )", ", A-weighted", name)
+    name = name.replace("_difference_to_", " over ").replace("_", " ")
+    return name + unit + data.written_units(rest) if rest != "1]" else name
+
+
+def _written(heading: str, value: object, *, swept: bool) -> str:
+    """A value of a table on the page: levels with one decimal as in other tables, swept keys as typed."""
+    if isinstance(value, str) or swept or " [dB" not in heading:
+        return _short(value)
+    level = round(float(value), 1) + 0.0  # type: ignore[arg-type]
+    return "–" if level != level else f"{level:.1f}".replace("-", "−")
 
 
 def _short(value: object) -> str:

@@ -15,7 +15,7 @@ from asperity.case.form import described_value
 from asperity.errors import InputError
 from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
-from asperity.scenes.schema import RADIATED_POWER_LEVEL_A, SHOWN
+from asperity.scenes.schema import SHOWN, TOTALS
 from asperity.schema import bearing, contact, rolling, spectra
 from asperity.studies.definition import Member, Study
 from asperity.studies.member import Failure, names_kept
@@ -223,7 +223,7 @@ _THEN = (
 
 USUAL = (*_FIRST, *SHOWN, *_THEN, *bearing.SHOWN)
 """Names of what a study shows unasked, where its table has it."""
-LOUDNESS = (RADIATED_POWER_LEVEL_A.name, WEIGHTED)
+LOUDNESS = (*(entry.name for entry in TOTALS), WEIGHTED)
 """Names of the levels of which a sentence says where they are lowest and highest, the first that there is."""
 USUAL_IN_FIGURES = tuple(name for name in USUAL if not name.startswith((OVER, bearing.LINES_FOUND.name)))
 """Names of what its figures show unasked."""
