@@ -12,7 +12,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import InputError
-from asperity.progress import shown_progress
+from asperity.progress import COMPILING, shown_progress
 from asperity.scenes.report import Result
 
 CASE = asperity.BallOnBeam(laws=["hertz", "linear"], duration=5e-3, surface={"spectrum": "iso3095"})
@@ -117,3 +117,17 @@ def test_elsewhere_nothing_is_shown(notebook, monkeypatch, capsys):
         progress(1, 2, "scan")
     assert capsys.readouterr() == ("", "")
     assert notebook == []
+
+
+def test_a_notebook_says_that_functions_are_compiled_before_it_waits():
+    """In a kernel of its own, as the first roll of a notebook: nothing else is shown there for a minute."""
+    client, nbformat = (pytest.importorskip(name) for name in ("nbclient", "nbformat"))
+    lines = (
+        "from asperity.progress import COMPILATION",
+        'COMPILATION.begin("first")',
+        'COMPILATION.begin("next")',
+    )
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("\n".join(lines))])
+    client.NotebookClient(book, timeout=60, kernel_name="python3").execute()
+    (output,) = book.cells[0].outputs
+    assert (output.name, output.text) == ("stderr", f"{COMPILING}\n")
