@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from surface_files import x3p, x3p_xml, zipped
 
 from asperity import HeightMap, read_surface
 from asperity.errors import InputError, MissingPointsWarning, OutOfRangeWarning
@@ -156,3 +157,39 @@ def test_a_height_far_from_all_others_is_doubted(read, mark, told):
     lines[5] = f"1.25;{mark}"
     with pytest.warns(OutOfRangeWarning, match=f"{told}.* If it marks what is missing, write NaN there"):
         read("x (um);z (um)\n" + "\n".join(lines))
+
+
+@pytest.mark.parametrize("mark", [np.finfo("f8").max, 1e38, 3.4e38])
+def test_marks_of_a_missing_height_in_an_archive(tmp_path, mark):
+    stored = 1e-6 * MAP.T
+    stored[1, 2] = mark
+    (tmp_path / "a.x3p").write_bytes(x3p([stored]))
+    with pytest.warns(MissingPointsWarning, match="1 points"):
+        assert np.isnan(read_surface(tmp_path / "a.x3p").heights[2, 1])
+
+
+@pytest.mark.parametrize("coordinates", ["", "0;0;"])
+def test_heights_listed_in_the_xml_of_an_archive(tmp_path, coordinates):
+    """ISO 25178-72: one Datum for each point along x, then y; an empty one has no height."""
+    words = [f"{coordinates}{1e-6 * z!r}" for z in map(float, MAP.T.ravel())]
+    words[9] = ""
+    for count, told in ((48, None), (47, "47 heights in its list; allowed: the 48 of its matrix")):
+        listed = "".join(f"<Datum>{word}</Datum>" for word in words[:count])
+        text = x3p_xml((8, 6, 1), link=False).replace(
+            "</Record3>", f"<DataList>{listed}</DataList></Record3>"
+        )
+        (tmp_path / "a.x3p").write_bytes(zipped(("main.xml", text.encode())))
+        if told:
+            with pytest.raises(InputError, match=told):
+                read_surface(tmp_path / "a.x3p")
+            continue
+        with pytest.warns(MissingPointsWarning, match="1 points"):
+            heights = read_surface(tmp_path / "a.x3p").heights
+        assert np.isnan(heights[1, 1])
+        np.testing.assert_array_equal(np.delete(heights, 7), np.delete(1e-6 * MAP, 7))
+
+
+def test_the_array_that_is_advised_holds_no_positions(tmp_path):
+    np.savez(tmp_path / "a.npz", x=1e-6 * X, z=Z)
+    with pytest.raises(InputError, match=r'received x, z; .* Choose one, as in array="z"'):
+        read_surface(tmp_path / "a.npz")

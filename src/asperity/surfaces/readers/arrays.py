@@ -11,6 +11,8 @@ from asperity.arguments import NDArray, listed, require, shown
 from asperity.surfaces.readers import guards, positions
 from asperity.surfaces.readers.hints import Hints, advice
 
+COORDINATES = ("x", "y", "t", "time", "dx", "dy")
+"""Names of arrays that are rarely meant."""
 MOST_TRIED = 1000
 """Rows by which it is told whether their first column holds positions."""
 HEADER = 128
@@ -56,7 +58,8 @@ def _has_axes(opened: ZipFile, name: str) -> bool:
 
 def only_one(names: list[str], source: str, what: str = "heights") -> str:
     """Return the only array's name that could be meant, or raise an `InputError` that lists the choice."""
-    remedy = advice("array", names[0], "Choose one, as in", "Keep one in the file.") if names else ""
+    likely = [name for name in names if name.lower() not in COORDINATES] or names[::-1]
+    remedy = advice("array", likely[0], "Choose one, as in", "Keep one in the file.") if names else ""
     named, received = f"arrays of {what} in {source}", listed(names) or "none"
     require(len(names) == 1, named, received, "exactly one", remedy)
     return names[0]

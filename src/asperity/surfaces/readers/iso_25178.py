@@ -207,9 +207,13 @@ class _Record:
         texts = {f"Size{axis}": self.text(f"Record3/MatrixDimension/Size{axis}") for axis in "ZYX"}
         sizes = (guards.header_number(self.source, *item, *guards.WHOLE) for item in texts.items())
         shape, stored = tuple(map(int, sizes)), np.dtype(X3P_TYPES[kind])
-        data = self._member(self.text("Record3/DataLink/PointDataLink") or "")
-        points = guards.check_claim(self.source, shape, stored.itemsize, len(data))
-        z = np.frombuffer(data, stored, points).astype(np.float64) * unit + offset
+        if written := self.root.findall("Record3/DataList/Datum"):
+            z = self._listed(written, shape) * unit + offset
+            points = z.size
+        else:
+            data = self._member(self.text("Record3/DataLink/PointDataLink") or "")
+            points = guards.check_claim(self.source, shape, stored.itemsize, len(data))
+            z = np.frombuffer(data, stored, points).astype(np.float64) * unit + offset
         z[~(np.abs(z) < guards.MARKED)] = np.nan  # instruments also mark missing points by such heights
         if link := self.text("Record3/DataLink/ValidPointsLink"):
             mask = self._member(link)
@@ -217,6 +221,13 @@ class _Record:
             valid = np.unpackbits(np.frombuffer(mask, np.uint8), count=points, bitorder="little")
             z[valid == 0] = np.nan
         return z.reshape(shape).transpose(0, 2, 1)  # stored as (layer, y, x)
+
+    def _listed(self, written: list[Element], shape: tuple[int, ...]) -> Array:
+        """Heights that stand in the XML itself, as last of the numbers of a point; NaN of an empty one."""
+        points, received = math.prod(shape), f"{len(written)} heights in its list"
+        require(len(written) == points, self.source, received, f"the {points} of its matrix", guards.EXPORT)
+        words = ((each.text or "").rpartition(";")[2].strip() or "nan" for each in written)
+        return np.array([number_in(word) for word in words])
 
     def _member(self, name: str) -> bytes:
         return guards.member_bytes(self.opened, name, self.source)
