@@ -138,6 +138,46 @@ def test_variance_and_spectrum_are_those_of_one_large_surface_in_blends_too():
         assert 10 * np.log10(ratio) == pytest.approx(0.0, abs=0.5)
 
 
+def expected_spectrum(shape, *, hurst, longest, shortest, anisotropy, lay, **_):
+    """Mean square of windowed Fourier lines of a piece (nx, ny) of rms one, by integrating its spectrum."""
+    q = np.arange(-15.0, 15.0, 1.0 / 16.0) * 2.0 * np.pi / longest
+    x, y = q[:, None], q
+    along, across = x * np.cos(lay) + y * np.sin(lay), y * np.cos(lay) - x * np.sin(lay)
+    stretched = np.hypot(along * np.sqrt(anisotropy), across / np.sqrt(anisotropy))
+    density = np.maximum(stretched, 2.0 * np.pi / longest) ** (-2.0 - 2.0 * hurst)
+    density[np.hypot(x, y) > 2.0 * np.pi / shortest] = 0.0
+    sides = []
+    for points in shape:  # a window's transform at each Fourier line, of each wave
+        turns = 2.0 * np.pi * np.fft.fftfreq(points)[:, None] - q
+        window = np.hanning(points + 2)[1:-1]
+        sides.append(np.abs(np.exp(-1j * turns[..., None] * np.arange(points)) @ window) ** 2)
+    return sides[0] @ density @ sides[1].T / density.sum()
+
+
+@pytest.mark.parametrize(("anisotropy", "lay"), [(1.0, 0.0), (3.0, 0.4)])
+@pytest.mark.parametrize("where", ["middle", "blend"])
+def test_the_mean_of_draws_is_the_spectrum_in_every_bin(anisotropy, lay, where):
+    """By an estimator of its own, in bins of size and direction of the wavenumber, in steps of one."""
+    keys = {"hurst": 0.8, "longest": 24.0, "shortest": 3.0, "anisotropy": anisotropy, "lay": lay}
+    shape, along = (64, 32), synthesis.SelfAffine(1.0, **keys).along
+    before = 0 if where == "middle" else 32 - round(along.start + along.stride + 0.5 * along.blend)
+    windows = np.hanning(66)[1:-1, None] * np.hanning(34)[1:-1]
+    drawn = [
+        synthesis.long_self_affine(shape, (1.0, 1.0), rms=1.0, seed=s, before=before, **keys).rows(0, 64)
+        for s in range(120)
+    ]
+    x, y = np.fft.fftfreq(64)[:, None], np.fft.fftfreq(32)
+    size = np.digitize(np.hypot(x, y), np.geomspace(0.02, 0.3, 8))
+    bins = (size * 6 + np.mod(np.arctan2(y, x), np.pi) // (np.pi / 6)).astype(int).ravel()
+    held = np.unique(bins[(size > 0).ravel() & (size < 8).ravel()])
+    found = [np.bincount(bins, (np.abs(np.fft.fft2(z * windows)) ** 2).ravel())[held] for z in drawn]
+    error = np.std(found, axis=0, ddof=1) / np.sqrt(len(found))
+    off = (np.mean(found, axis=0) - np.bincount(bins, expected_spectrum(shape, **keys).ravel())[held]) / error
+    # forty bins: one in a hundred sets of draws has a larger one than four, or a mean square above 1.8
+    assert np.abs(off).max() < 4.0
+    assert np.mean(off**2) < 1.8
+
+
 def test_pieces_are_independent_and_join_without_a_step():
     made = strip()
     heights = made.rows(0, 20000)
