@@ -5,9 +5,9 @@ import numpy as np
 from asperity.arguments import Array
 
 COEFFICIENTS = {
-    "blows": (1.82, 0.00, 0.00, 0.00),
-    "elsewhere": (0.23, 0.67, 0.38, 0.48),
-    "fault": (0.58, 1.04, 0.56, 0.50),
+    "blows": (1.75, 0.00, 0.00, 0.00),
+    "elsewhere": (0.28, 0.72, 0.32, 0.51),
+    "fault": (0.51, 1.06, 0.55, 0.46),
     "fault, shaft not found": (0.68, 1.09, 0.49, 0.85),
     "nothing": (1.97, 0.00, 0.00, 0.00),
     "sound": (5.61, 0.00, 0.00, 0.00),
