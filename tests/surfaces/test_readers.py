@@ -15,7 +15,8 @@ from surface_files import SDF_TYPES, npy, sdf_ascii, sdf_binary, x3p, zipped
 
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import read_all, read_surface
+from asperity.surfaces.readers import libraries, read_all, read_surface
+from asperity.surfaces.readers.hints import Hints
 from refusals import refusals
 
 # 4 points along x, 3 along y, no symmetry, nm
@@ -354,6 +355,18 @@ def test_instrument_file(measured):
     np.testing.assert_allclose(surface.heights, 1e-9 * holed(np.nan, HEIGHTS, (1, 2)), rtol=1e-14)
     assert surface.spacing == pytest.approx((2e-6, 3e-6))
     assert isinstance(read_surface(measured(heights=HEIGHTS[:, 0]), array="Height"), Profile)
+
+
+def test_a_line_that_a_library_calls_uneven_is_one_whose_positions_were_rounded():
+    """Rounded to 1 nm, 99.5613 nm apart; what is really uneven is told."""
+    x, z = np.round(0.0995613 * np.arange(200), 3), np.sin(np.arange(200.0))
+    for places, wrong in ((x, False), (x**2, True)):
+        line = SimpleNamespace(is_uniform=False, unit="um", heights=lambda: z,
+                               positions_and_heights=lambda places=places: (places, z))  # fmt: skip
+        with pytest.raises(InputError, match="x of a: received coordinates that") if wrong else nullcontext():
+            (profile,) = libraries._surfaces(line, Hints(), "a")
+            np.testing.assert_allclose(profile.heights, 1e-6 * z)
+            assert profile.spacing == pytest.approx(9.95613e-8, rel=1e-4)
 
 
 def test_instrument_file_that_lacks_something(measured, monkeypatch):

@@ -95,9 +95,16 @@ def _opener(path: Path) -> Any:
 
 
 def _surfaces(measured: Any, hints: Hints, source: str) -> list[guards.Surface]:
-    received, allowed = "points at no uniform spacing", "a uniform line or map"
-    require(measured.is_uniform, source, received, allowed, "Resample it at a uniform spacing first.")
     unit = None if measured.unit is None else factor(measured.unit, "m")
+    received, allowed = "points at no uniform spacing", "a line, or a uniform map"
+    line = np.ndim(measured.heights()) == 1
+    require(measured.is_uniform or line, source, received, allowed, "Resample it at a uniform spacing first.")
+    if not measured.is_uniform:  # to the library: it asks for equal steps, however they were printed
+        x, z = (np.asarray(each, dtype=np.float64) for each in measured.positions_and_heights())
+        lengths = hints.heights_in(source, unit)
+        heights, step = positions.line(x, z, source)
+        step *= hints.lateral_in(source, unit, "um", "Give it, as in", "Export it with its unit.")
+        return [Profile(heights * lengths, step, source)]
     heights = np.ma.filled(np.ma.asarray(measured.heights(), dtype=np.float64), np.nan)
     heights = guards.without_marks(heights) * hints.heights_in(source, unit)
     lateral = hints.pixel_unit or unit
