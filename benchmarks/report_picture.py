@@ -21,8 +21,6 @@ from playwright.sync_api import sync_playwright
 ROOT = Path(__file__).parents[1]
 PICTURES = {"light": ROOT / "docs/report.png", "dark": ROOT / "docs/report_dark.png"}
 VIEW = {"width": 1000, "height": 1600}
-COLOURS = 256
-"""As many as a page needs; they make a picture a third as large."""
 
 
 def written_page(folder: Path) -> Path:
@@ -31,14 +29,6 @@ def written_page(folder: Path) -> Path:
     assert lines is not None
     subprocess.run([sys.executable, "-c", lines[1]], cwd=folder, check=True)
     return folder / "page/report.html"
-
-
-def in_its_colours(picture: Image.Image) -> Image.Image:
-    """Draw a picture with the colours that it has most of: mixed ones make the green of "Valid" blue."""
-    most = sorted(picture.getcolors(picture.width * picture.height) or [], reverse=True)[:COLOURS]
-    palette = Image.new("P", (1, 1))
-    palette.putpalette([part for _, colour in most for part in colour])
-    return picture.quantize(palette=palette, dither=Image.Dither.NONE)
 
 
 def main() -> None:
@@ -55,7 +45,7 @@ def main() -> None:
             box = first.bounding_box()
             shown = {"x": 0, "y": 0, "width": VIEW["width"], "height": box["y"] + box["height"]}
             taken = Image.open(BytesIO(tab.screenshot(clip=shown))).convert("RGB")
-            in_its_colours(taken).save(file, optimize=True)
+            taken.save(file, optimize=True)  # every colour: few of them make green blue, or lines grey
         browser.close()
 
 
