@@ -2,6 +2,7 @@
 
 import math
 import re
+from decimal import Decimal
 from functools import lru_cache
 from typing import Any
 
@@ -120,7 +121,9 @@ def quantity(text: str, dimension: str) -> float:
     elif dimension and not unit and not infinite:
         remedy = "Add the unit."
     else:
-        value *= factor(unit, dimension) if unit else 1.0
+        if unit and math.isfinite(value):
+            # in decimal, so that 0.18 mm, 180 um and 0.00018 are one number
+            value = float(Decimal(match[1]) * Decimal(repr(factor(unit, dimension))))
         if infinite or math.isfinite(value):
             return value
         remedy = "The number is too large; 'inf' stands for infinity."

@@ -42,10 +42,13 @@ def decibels(ratio):
 
 
 def test_texture_that_is_the_same_all_across_is_filtered_by_sin_q_over_q():
-    """Ratio, fit and applied response, at the same time: none may differ from theory, nor from the others."""
+    """Ratio, fit and applied response, at the same time: none may differ from theory, nor from the others.
+
+    Where the texture of a strip has little, the ratio scatters: that of twelve strips by 0.1 to 0.3 dB.
+    """
     dx, stride, strips = A / 10, 2, []
     waves = {"rms": 3e-4 * DELTA, "hurst": 0.8, "longest": 12 * A, "shortest": 4 * dx}
-    for seed in (1, 2):
+    for seed in range(1, 13):
         texture = self_affine((640 + 2 * int(1.25 * A / dx), 2), (dx, dx), **waves, seed=seed)
         strips.append(filter_spectra(*scanned(texture.heights[:, 0], dx, stride), dx))
     found = estimate(strips, TANGENT)
@@ -55,7 +58,7 @@ def test_texture_that_is_the_same_all_across_is_filtered_by_sin_q_over_q():
     knee, lobe = q < 2.1, (q > 2.1) & (q < 5.4) & (np.abs(q - np.pi) > 0.5)
     assert min(knee.sum(), lobe.sum()) >= 8
     responses = (found.raw, found.magnitude, designed.applied)
-    for response, near, beyond in zip(responses, (0.25, 0.5, 0.5), (0.8, 1.1, 1.2), strict=True):
+    for response, near, beyond in zip(responses, (0.4, 0.3, 0.3), (0.5, 0.7, 0.7), strict=True):
         off = decibels(response[0]) - decibels(np.abs(theory))
         assert np.abs(off[knee]).max() < near
         assert np.abs(off[lobe]).max() < beyond

@@ -42,14 +42,8 @@ class RunningIn:
     def key(self, heights: Array) -> str:
         """Name in the store of what these heights become."""
         space = self.half_space
-        parameters = [
-            list(space.spacing),
-            space.modulus,
-            space.hardness,
-            space.cells,
-            self.load,
-            self.tolerance,
-        ]
+        parameters = [list(space.spacing), space.modulus, space.hardness, self.load, self.tolerance]
+        parameters += [] if space.cells == "whole" else [space.cells]
         parameters += [self.passes or SHAKEDOWN, self.stride, self.rtol]
         return content_key("running-in", heights, self.body, parameters)
 

@@ -253,8 +253,9 @@ class ScanJob:
     def key(self, rows: Array, planes: Array) -> str:
         """Name in the store of the block on these heights."""
         space = self.half_space
-        parameters = [list(space.spacing), space.modulus, space.hardness, space.cells, self.stride, self.rtol]
+        parameters = [list(space.spacing), space.modulus, space.hardness, self.stride, self.rtol]
         parameters += ["batched"] if self.device else ["single"] if self.single else []
+        parameters += [] if space.cells == "whole" else [space.cells]
         return content_key("scan", rows, self.body, self.approaches, planes, parameters)
 
     def solve(self, rows: Array, planes: Array) -> dict[str, NDArray[Any]]:

@@ -333,14 +333,8 @@ class _Wearing(NamedTuple):
         """Name in the store of what these heights become."""
         space, friction = self.bodies.half_space, self.bodies.friction
         bodies = [self.bodies.shear_modulus, self.bodies.poisson_ratio, self.bodies.unlikeness]
-        parameters = [
-            list(space.spacing),
-            space.modulus,
-            space.hardness,
-            space.cells,
-            bodies,
-            self.bodies.coupled,
-        ]
+        parameters = [list(space.spacing), space.modulus, space.hardness, bodies, self.bodies.coupled]
+        parameters += [] if space.cells == "whole" else [space.cells]
         with np.printoptions(threshold=sys.maxsize, floatmode="unique"):  # maps in full
             parameters += [repr(friction), repr(self.law), list(self.motion), *self[5:]]
         return content_key("worn", heights, self.body, self.load, np.asarray(friction.static), parameters)
