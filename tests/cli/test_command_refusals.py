@@ -64,7 +64,6 @@ OTHERS = {
     "taken": "in the way",
 }
 ENCODED = {
-    "little": CASE.encode("utf-16-le"),
     "odd": CASE.encode("utf-16")[:-1],
     "latin": "# caf\u00e9\n".encode("cp1252"),
 }
@@ -125,7 +124,6 @@ REFUSED = [
     ("figures {run} -o taken", "folder of the figures: received taken … Choose another folder with -o."),
     ("compare {run} {run} -o taken", "folder of the comparison: received taken"),
     # encodings and TOML
-    ("check little.toml", "little.toml: received bytes that are no text, or not in UTF-8 … Save the file as"),
     ("check odd.toml", "odd.toml: received a byte that is no UTF-16 … Save the file as UTF-8."),
     ("check latin.toml", "latin.toml: received a byte that is no UTF-8 in line 1 … Save the file as UTF-8."),
     ("check backslash-d.toml", WINDOWS),
@@ -159,7 +157,6 @@ REFUSED = [
     (f"surface maps.npz --array polished --index 3 {HINTS}", "3"),
     ("surface comma.txt --height-unit um --pixel '1 um'", 'Give --decimal "," if the comma is the decimal '
      "mark; if it separates columns, give"),
-    ("surface comma.txt --height-unit um --pixel '1 um' --decimal ,", "received 3 points along axis 0"),
     ("surface pairs.txt --height-unit um", "or give --pixel-unit mm."),
     ("surface odd.txt --pixel '1 um'", "leave the bracket out and give --height-unit um."),
     (f"surface map.npy --rotate 30 {HINTS}", "direction: received '30'; allowed: an angle, with its unit"),

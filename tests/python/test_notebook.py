@@ -28,7 +28,7 @@ def test_a_result_is_a_tree_that_shows_verdict_numbers_and_force(result):
     page = result._repr_html_()
     assert re.sub(r"\s", "", result.attrs["verdict"])[:40] in re.sub(r"\s", "", page)
     varies = float(result["rolling/contact_force"].sel(law="hertz").std())
-    assert f"<td>contact force varies by, rms</td><td>{varies:.2f} N</td>" in page
+    assert f"<td>contact force varies by, rms</td><td>{varies:.3g} N</td>" in page
     (picture,) = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
     assert base64.b64decode(picture)[:4] == b"\x89PNG"
     assert "<summary>All data</summary>" in page

@@ -156,7 +156,7 @@ def test_hertz_is_exact_and_unbounded():
     s = np.array([1e-9, 1e-6, 1e-4, 2.0])
     assert_allclose(curve.force(s), K * s**1.5, rtol=1e-15)
     assert_allclose(curve.stiffness(s), 1.5 * K * np.sqrt(s), rtol=1e-15)
-    assert_allclose(curve.inverse(K * s**1.5), s, rtol=1e-15)
+    assert_allclose(curve.inverse(K * s**1.5), s, rtol=4e-15)  # a power of a power
     assert curve.upper == np.inf
     assert_allclose(curve.force([-1e-6, 0.0]), 0.0, atol=0.0)
 

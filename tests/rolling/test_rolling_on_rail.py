@@ -56,9 +56,7 @@ def test_a_rail_that_sinks_is_no_result(poles):
     falling = replace(poles, poles=np.append(poles.poles, swing), residues=residues)
     law, path = HertzLaw(9.4e10, texture(1e-6)), {"start": 0.53, "duration": 0.03, "settling": 0.02}
     assert roll_wheel(poles, Wheel(MASS, LOAD), law, **path).outcome.ok
-    with pytest.raises(
-        ComputationError, match=r"hertz: the mean contact force .* load of 6.5e\+04 N"
-    ) as told:
+    with pytest.raises(ComputationError, match=r"hertz: the mean contact force .* load of 65000 N") as told:
         roll_wheel(falling, Wheel(MASS, LOAD), law, **path)
     assert float(str(told.value).split("force of ")[1].split()[0]) == pytest.approx(LOAD / 1.1, rel=0.02)
     assert "Try: what a warning asks for, if there is one; else" in str(told.value)

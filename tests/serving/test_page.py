@@ -183,7 +183,7 @@ def test_a_bad_upload_is_refused_and_a_good_one_is_pressed(tab, served, tmp_path
     good.write_text("# pixel: 8 um\n# z (um)\n" + "\n".join(" ".join(map(str, row)) for row in heights))
     tab.set_input_files("#surface-file", good)
     tab.wait_for_selector("#upload-state:not(.alert):has-text('map of 120 × 120 points')")
-    tab.wait_for_selector("#contact-note:has-text('samples measured, good.txt')")
+    tab.wait_for_selector("#contact-note:has-text('1 sample measured, good.txt')")
 
 
 def test_without_the_token_there_is_nothing(served):

@@ -259,7 +259,7 @@ def test_an_outline_gives_the_same_modes_in_whatever_unit(unit, metres, tmp_path
     drawn = np.insert(np.delete(outline, corner, axis=0), corner, chamfer, axis=0)
     lines = "".join(f"{r / metres:.12g}, {z / metres:.12g}\n" for r, z in drawn)
     (tmp_path / "a.csv").write_text(f"radius ({unit}), axial place ({unit})\n{lines}")
-    np.testing.assert_array_equal(read_outline(tmp_path / "a.csv"), drawn)
+    np.testing.assert_allclose(read_outline(tmp_path / "a.csv"), drawn, rtol=0.0, atol=1e-11)
     expected = wheel_modes(drawn, STEEL, 500.0, size=0.02)
     assert expected.places[-1] == pytest.approx(outline[corner, 1])
     moved = np.array(drawn)

@@ -120,11 +120,11 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     --------
     >>> import asperity
     >>> from concurrent.futures import ThreadPoolExecutor
-    >>> slower = {"half as fast": {"speed": "times 0.5"}}
+    >>> smoother = {"smoother": {"surface.level": "minus 20 dB"}}
     >>> with ThreadPoolExecutor(1) as here:
-    ...     table = asperity.study(case, {"variant": slower}, executor=here)
+    ...     table = asperity.study(case, {"variant": smoother}, executor=here)
     >>> found = asperity.effects(table)
-    >>> found["effect"].dims, bool(found["effect"].sel(variant="half as fast") < 0.0)
+    >>> found["effect"].dims, bool(found["effect"].sel(variant="smoother") < 0.0)
     (('variant',), True)
     """
     if not isinstance(table, xarray.Dataset) or VARIANT not in table.dims:
