@@ -154,7 +154,7 @@ def test_on_a_wavy_path_filters_are_read_at_the_state_of_the_contact():
     np.testing.assert_allclose(laws["hertz-filtered"].prepare(positions).planes, followed, atol=1e-15)
     # smooth bodies carry the load at another approach, but between the same two states
     smooth = found.shape.hertz.approach(load)
-    assert smooth > held_at + 0.1 * approach
+    assert smooth > held_at + 0.05 * approach
     pressed = force(laws["hertz-filtered"], positions, smooth + followed)
     np.testing.assert_allclose(pressed, load, rtol=2e-3)
     assert not laws["printed"].prepare(positions).planes.any()

@@ -24,7 +24,7 @@ from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_law
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes, scenario_group
-from asperity.scenes.validity import energy_left, softened
+from asperity.scenes.validity import contacts_softened, energy_left
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -496,7 +496,7 @@ def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator
         )  # fmt: skip
         yield energy_left(name, left, "time_step")
         stiffness = [each.tangent_stiffness(each.approach(load)) for each, load in case.contacts]
-        yield from softened(name, float((run.softening.T * stiffness).max()), "time_step")
+        yield from contacts_softened(name, float((run.softening.T * stiffness).max()), "time_step")
     yield from _missed(runs)
 
 

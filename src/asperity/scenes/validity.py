@@ -83,7 +83,7 @@ def energy_left(law: str, residual: float, key: str) -> Finding:
     )  # fmt: skip
 
 
-def softened(law: str, share: float, key: str) -> Iterator[Finding]:
+def contacts_softened(law: str, share: float, key: str) -> Iterator[Finding]:
     """Contacts of a law that are softened to be stable, by a share of their compliance at rest.
 
     None where that is little; `key` is that of the time step.
@@ -109,7 +109,9 @@ def _of_motion(computed: Computed) -> Iterator[Finding]:
         if law == main or left[law] > RESIDUAL:
             yield energy_left(law, left[law], "numerics.time_step")
     for law, run in computed.runs.items():
-        yield from softened(law, float(run.softening.max()) * computed.stiffness, "numerics.time_step")
+        yield from contacts_softened(
+            law, float(run.softening.max()) * computed.stiffness, "numerics.time_step"
+        )
         loads = np.bincount(run.body, computed.scene.loads)
         share = np.bincount(run.body, run.contact_force.mean(axis=1)) / loads
         mean = float(share[np.argmax(np.abs(share - 1.0))])
