@@ -142,7 +142,7 @@ def test_a_normalisation_that_is_asked_for_serves_all_laws(runs):
 
 def test_on_a_wavy_path_filters_are_read_at_the_state_of_the_contact():
     """Waves move it by several approaches: under the load it is the same state everywhere."""
-    wavy = {"rms": "2 um", "longest": "8 mm"}
+    wavy = {"rms": "2.5 um", "longest": "8 mm"}
     found = computed(case_of(laws=["shifted", "hertz-filtered", "printed"], surface=wavy))
     load, positions = found.shape.load, found.runs["shifted"].positions[0]
     laws = {name: found.build(name) for name in found.runs}
@@ -154,7 +154,7 @@ def test_on_a_wavy_path_filters_are_read_at_the_state_of_the_contact():
     np.testing.assert_allclose(laws["hertz-filtered"].prepare(positions).planes, followed, atol=1e-15)
     # smooth bodies carry the load at another approach, but between the same two states
     smooth = found.shape.hertz.approach(load)
-    assert smooth > held_at + 0.05 * approach
+    assert smooth > held_at + 0.1 * approach
     pressed = force(laws["hertz-filtered"], positions, smooth + followed)
     np.testing.assert_allclose(pressed, load, rtol=2e-3)
     assert not laws["printed"].prepare(positions).planes.any()
