@@ -170,10 +170,12 @@ class _Classic(dict[str, Any]):
 
     @property
     def variables(self) -> dict[str, Any]:
+        """Variables by name."""
         return self
 
     @property
     def dimensions(self) -> set[str]:
+        """Names of the dimensions of all variables."""
         return {name for each in self.values() for name in each.dimensions}
 
 
