@@ -189,13 +189,13 @@ def test_five_decibels_of_roughness_are_five_decibels_of_force(table, cache):
     bare = {"surface.level": "minus 60 dB", "wheel.roughness_level": "minus 60 dB"}
     load = asperity.study(RAIL, {"seed": [1], "variant": {"bare": bare}}, executor=Here())
     load = load["force_level"].sel(law="linear", seed=1, variant="bare")
-    force = table["force_level"].sel(law="linear", seed=1)
+    force = table["force_level"].sel(law="linear")
     change = force.sel(variant="smooth") - force.sel(variant=AS_IT_IS)
     share = 10.0 ** ((load - force.sel(variant=AS_IT_IS)) / 20.0)
     assert (np.abs(change + 5.0) < 20.0 * np.log10((1.0 + 1.79 * share) / (1.0 - share))).all()
-    alone = share < 2e-3
-    assert alone.sum() >= 5
-    np.testing.assert_allclose(change[alone], -5.0, atol=0.02)
+    alone = (share < 2e-3).transpose(*change.dims).values
+    assert alone.sum() > 15  # of three textures
+    np.testing.assert_allclose(change.values[alone], -5.0, atol=0.02)
     found = effects(table)["effect"].sel(variant="smooth", radiator=["rail", "total"])
     np.testing.assert_allclose(found, -5.0, atol=0.03)
 
