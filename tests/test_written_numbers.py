@@ -1,6 +1,8 @@
 """Numbers for people have no exponent of a computer, and two ends that read alike are told once."""
 
+import ast
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -54,24 +56,38 @@ def test_swept_values_have_as_many_digits_as_tell_them_apart(values, factor, uni
     assert typed_words(xr.DataArray(values, dims="key", attrs=attrs)) == words
 
 
-def test_no_force_in_newtons_is_written_with_a_computer_s_exponent():
-    """``{load:.3g} N`` reads 6.5e+04 N from 1 kN on; `force` writes it."""
+ALWAYS, UNITS = re.compile(r"\.[1-3]g"), re.compile(r" (N|Hz|1/min|µm|um|µs|us)(?![\w/^])")
+"""Digits that a usual number has more of before its point, and units in which numbers are that large."""
+
+
+def written_by_the_language(text):
+    """Numbers in the texts of a module of which Python may write ``1e+02``, but for what is read again."""
+    tree = ast.parse(text)
+    read_again = {
+        id(each) for call in ast.walk(tree) if isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Name) and call.func.id in ("float", "int") for each in call.args
+    }  # fmt: skip
+    for text in ast.walk(tree):
+        if not isinstance(text, ast.JoinedStr) or id(text) in read_again:
+            continue
+        for part, follows in pairwise([*text.values, ast.Constant("")]):
+            spec = part.format_spec if isinstance(part, ast.FormattedValue) else None
+            form = (
+                "".join(each.value for each in spec.values if isinstance(each, ast.Constant)) if spec else ""
+            )
+            unit = follows.value if isinstance(follows, ast.Constant) else ""
+            if ALWAYS.fullmatch(form) or (re.fullmatch(r"\.[4-6]g", form) and UNITS.match(unit)):
+                yield f"{part.lineno}: {ast.unparse(part.value)}:{form}{unit}"
+
+
+def test_no_number_in_a_text_is_written_as_a_computer_does():
+    """``{points:.2g} points`` reads 2.9e+09 points, ``{share:.2g} %`` 1e+02 %: `rounded` writes them out."""
     package = Path(asperity.__file__).parent
     found = [
-        f"{path.relative_to(package)}: {line.strip()}"
-        for room in (
-            "scenarios",
-            "scenes",
-            "reporting",
-            "contact",
-            "structures",
-            "rolling",
-            "case",
-            "cli",
-            "serving",
-        )
-        for path in sorted((package / room).rglob("*.py"))
-        for line in path.read_text(encoding="utf-8").splitlines()
-        if re.search(r":\.[1-4]g\} N(?![\w/ ])", line)
+        f"{path.relative_to(package)}, line {told}"
+        for path in sorted(package.rglob("*.py"))
+        if "kernels" not in path.parts
+        for told in written_by_the_language(path.read_text(encoding="utf-8"))
     ]
     assert not found
+    assert len(list(written_by_the_language('f"{share:.2g} % of {force:.4g} N", float(f"{x:.3g}")'))) == 2

@@ -33,6 +33,7 @@ from asperity.spectra import (
 )
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
+from asperity.written_numbers import rounded
 
 FORMAT = 1
 """Raise it when kept levels no longer mean what they meant."""
@@ -199,8 +200,10 @@ def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset,
     segment = min(spectrum_segment(force.shape[-1], step), half)
     lowest = lowest_band(half, step, segment=segment)
     if highest * HALF_BAND < lowest:
-        received = f"{half * step:.4g} s, half of the record, of which the lowest band is at {lowest:.4g} Hz"
-        raise InputError("duration", received, f"a half that holds a band up to {highest:.4g} Hz")
+        received = (
+            f"{half * step:.4g} s, half of the record, of which the lowest band is at {rounded(lowest, 4)} Hz"
+        )
+        raise InputError("duration", received, f"a half that holds a band up to {rounded(highest, 4)} Hz")
 
     def levels(part: Array) -> xarray.Dataset:
         frequency, density = psd(part, step, segment=segment)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from asperity.errors import AsperityError, ComputationError, InputError
+from asperity.written_numbers import rounded
 
 try:
     import fcntl
@@ -129,7 +130,7 @@ def amount(size: float) -> str:
     """Write a number of bytes, as ``"1.5 MiB"``."""
     for unit, factor in (("GiB", 2**30), ("MiB", 2**20), ("KiB", 2**10)):
         if size >= factor:
-            return f"{size / factor:.3g} {unit}"
+            return f"{rounded(size / factor)} {unit}"
     return f"{size:.0f} bytes"
 
 

@@ -1,11 +1,13 @@
 """Numbers as people write them: without a computer's exponents, units with prefixes, one thing singular."""
 
 import math
+import re
 
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _SMALLEST, _LARGEST = 1e-4, 1e6
 """Sizes between which all digits are written out."""
+_BEFORE_A_UNIT = re.compile(r"(?<=\d) (?=(?:[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g)(?!\w))")
 
 
 def rounded(value: float, digits: int = 3) -> str:
@@ -73,3 +75,8 @@ def capital(sentence: str) -> str:
 def count_of(count: int, thing: str) -> str:
     """A number of things: ``"1 sample"``, ``"8 samples"``."""
     return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
+def unbroken(text: str) -> str:
+    """Keep numbers and their units on one line, by spaces that do not break."""
+    return _BEFORE_A_UNIT.sub("\u00a0", text)

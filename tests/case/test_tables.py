@@ -143,7 +143,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ("rates", "f (Hz), rate\n100, 4\n", "the heading 'f (Hz), rate'; allowed: a heading with the units"),
         ("rates", "f (Hz), lateral (dB/m), vertical (dB/m)\n100, 1, 4\n", "'lateral (dB/m)' for the vert"),
         ("mobility", MOBILITY + "100, 1e-5\n200, 1e-5\n", "2 frequencies; allowed: at least 3"),
-        ("mobility", MOBILITY + "100, 1e-5\n200, -1e-5\n300, 1e-5", "a mobility of -1e-05 (m/s)/N"),
+        ("mobility", MOBILITY + "100, 1e-5\n200, -1e-5\n300, 1e-5", "a mobility of -1·10⁻⁵ (m/s)/N"),
         ("mobility", MOBILITY + "100, 15\n200, 12\n300, 9", "a mobility of 15 (m/s)/N; allowed: 1e-09 to"),
         ("mobility", "f (Hz), size (kg)\n100, 1\n", "'size (kg)'; allowed: magnitude or real part in"),
         ("mobility", COMPLEX + "100, -1e-5, 0\n200, 1e-5, 0\n300, 1e-5, 0", "power to the hammer at 100 Hz"),

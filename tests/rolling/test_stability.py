@@ -110,8 +110,8 @@ def test_the_contact_resonance_is_that_of_a_mass_on_springs_in_series():
         ((-1e-12, -1e-12), (1e11, 2.4e11), 9e5, 0.0, ""),
         ((-1e-12, 0.0), (4.9e11, 1e13), 0.0, 0.0, ""),
         ((-1e-12, -1e-12), (1e11, 0.0), 0.0, 0.0, ""),
-        ((-1e-12, -1e-12), (1e11, 5e11), 0.0, 2e-12, "by 20 %.*take at most 7.1e-06 s"),
-        ((-1e-12, 0.0), (2e11, 5e11), 2e6, 1.1e-12, "by 11 %.*take at most 5e-06 s"),
+        ((-1e-12, -1e-12), (1e11, 5e11), 0.0, 2e-12, "by 20 %.*take at most 7.1 µs"),
+        ((-1e-12, 0.0), (2e11, 5e11), 2e6, 1.1e-12, "by 11 %.*take at most 5.0 µs"),
     ],
 )
 def test_a_contact_is_softened_for_impacts_or_to_be_stable(compliances, stiffness, damping, softer, told):

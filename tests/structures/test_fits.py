@@ -321,7 +321,7 @@ test_records_and_modes_that_are_none_are_refused = pytest.mark.filterwarnings(
         (changed("driven", lambda x: x + 0.004), r"forces at 0.129, .*different places among those"),
         (slow(1e300 * ONE), "e.29[67] m/N at 20 to 58 Hz; allowed: 1e-20 to 1e.20 m/N"),
         (slow(1e-312 * ONE), "at 20 to 58 Hz; allowed: 1e-20 to 1e.20 m/N.* Check the units, and the mass"),
-        (slow(ONE, 1e-300 * SLOW), "at 2e-299 to 5.8e-299 Hz; allowed: .* from 1e-06 to 1e.20 Hz"),
+        (slow(ONE, 1e-300 * SLOW), "at 2·10⁻²⁹⁹ to 5.8·10⁻²⁹⁹ Hz; allowed: .* from 1·10⁻⁶ to 1·10²⁰ Hz"),
         (slow(np.full(SLOW.size, -1j)), "values that 1 modes meet to .* dB only"),
         # without a mode left, scipy's non-negative least squares ended the process
         (wheel(np.exp(1e-3j), SLOW, -1e-3 + 0 * SLOW, 1e9), r"modes on a mass of 1e\+09 kg meet to .* dB"),

@@ -253,7 +253,7 @@ test_what_is_no_structure_is_refused = refusals(
     (ModalStructure, {"frequencies": [], "mode_shapes": np.zeros((5, 0))}, "none; allowed: at least"),
     (ModalStructure, {"residual_flexibility": -X}, "residual flexibility.*received -1.0"),
     (ModalStructure, {"residual_flexibility": X[:3]}, r"received shape \(3,\)"),
-    (ModalStructure, {"residual_flexibility": 1e-9 - 2e-9 * np.eye(5)}, "-2e-09 m/N.*create energy"),
+    (ModalStructure, {"residual_flexibility": 1e-9 - 2e-9 * np.eye(5)}, "-2·10⁻⁹ m/N.*create energy"),
     (ModalStructure, {"residual_flexibility": np.triu(np.ones((5, 5)))}, "not symmetric"),
     of=lambda kind, change: kind(**(USUAL[kind] | change)),
 )

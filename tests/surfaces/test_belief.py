@@ -32,7 +32,7 @@ def read(tmp_path):
     ("um", "1 nm", r'Were they in nm, 1 nm\? Give height_unit="nm"'),
     ("um", "20 m", r'points 20 m apart; allowed: .* to 1 m. Are points 20 µm apart\? Give pixel="20 um"'),
     ("um", "0.4 m", r"a map whose lesser side is 12 m; allowed: .* at most 10 m. Are points 0.4 mm apart"),
-    ("pm", "1 mm", r"slopes of 1.\de-09; allowed: slopes of 1e-08 to 10 .*Are points 1 nm apart"),
+    ("pm", "1 mm", r"slopes of 1.\d·10⁻⁹; allowed: slopes of 1·10⁻⁸ to 10 .*Are points 1 nm apart"),
 ])  # fmt: skip
 def test_units_that_are_wrong_by_thousands(read, kind, height_unit, pixel, message):
     with pytest.raises(InputError, match=message):
@@ -41,7 +41,7 @@ def test_units_that_are_wrong_by_thousands(read, kind, height_unit, pixel, messa
 
 @pytest.mark.parametrize(("height_unit", "pixel", "message"), [
     ("um", "0.3 um", r"slopes of 4\.\d, usual are up to 2"),
-    ("nm", "10 mm", "slopes of 1.4e-07, usual are from 1e-06 on"),
+    ("nm", "10 mm", "slopes of 1.4·10⁻⁷, usual are from 1·10⁻⁶ on"),
     ("mm", "50 mm", "a map of 1.5 m and more"),
 ])  # fmt: skip
 def test_what_is_unusual_is_doubted_and_read(read, height_unit, pixel, message):

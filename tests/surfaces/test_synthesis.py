@@ -317,7 +317,7 @@ test_what_is_wrong_is_said = refusals(
     (lambda: affine(spacing=(UM, -UM)), "spacing"),
     (
         lambda: affine(longest=10.0),
-        r"longest: received 10 m with waves down to 4e-06 m, which take tiles of 8e\+07 x",
+        r"longest: received 10 m with waves down to 4e-06 m, which take tiles of 8·10⁷ x",
     ),
     (lambda: affine(anisotropy=1e9), r"allowed: at most 134217728 points.*nearer to 1"),
     (lambda: from_map(HeightMap(HOLED, UM), (50, 50), seed=1), r"0\.01% missing points in a map"),

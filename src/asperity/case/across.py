@@ -17,6 +17,7 @@ from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.readers import hints, read_surface
 from asperity.surfaces.readers.belief import told_length
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.case.scene import Case
@@ -77,7 +78,7 @@ def read_section(measured: Path | Profile, key: str) -> Profile:
 def _refuse_beyond_belief(section: Profile, key: str) -> None:
     """Refuse a section wider than any, or one of wheel or rail that is narrower than their contact."""
     least = NARROWEST if key in ("wheel.profile", "track.rail_profile") else 0.0
-    wide = f"{section.size:.3g} m" if section.size > WIDEST else told_length(section.size)
+    wide = f"{rounded(section.size)} m" if section.size > WIDEST else told_length(section.size)
     received = f"a section {wide} wide"
     allowed = f"sections up to {WIDEST:g} m wide, of wheel and rail from {told_length(NARROWEST)} on"
     remedy = "Are its places in mm? Write that into the heading, as 'y (mm); z (mm)'."
@@ -132,7 +133,7 @@ def _is_head_down(y: Array, z: Array) -> bool:
 def _refuse_mirrored(key: str, y: Array, z: Array, side: int) -> None:
     """Refuse a tread whose flange is on the field side."""
     top = float(y[np.argmax(z)])
-    received = f"a flange at {1e3 * top:.3g} mm, on the field side"
+    received = f"a flange at {rounded(1e3 * top)} mm, on the field side"
     allowed = "places positive to the field side: a flange is on the side of negative ones"
     remedy = "Change the sign of its places, and of those of the rail if both count the same way."
     require(side <= 0, key, received, allowed, remedy)
@@ -204,7 +205,7 @@ class Meeting:
         ).x
         inside = max(min(found - low, high - found), 0.0)
         received = f"sections that meet {1e3 * inside:.1f} mm from an edge of what is known of them"
-        allowed = f"a contact at least {1e3 * clear:.3g} mm inside, half of contact.window"
+        allowed = f"a contact at least {rounded(1e3 * clear)} mm inside, half of contact.window"
         remedy = "Measure more of them, shift them less, or shrink contact.window."
         require(inside >= clear, keys, received, allowed, remedy)
         return cls(tread, head, float(found), float(inside))
@@ -267,7 +268,7 @@ def _lying(
     angle = angle or 0.0
     across = y * math.cos(angle) - z * math.sin(angle) + shift
     depth = -(y * math.sin(angle) + z * math.cos(angle))
-    allowed = f"heights over places that rise, turned by {1e3 * angle:.3g} mrad, too"
+    allowed = f"heights over places that rise, turned by {rounded(1e3 * angle)} mrad, too"
     remedy = "Leave flanks out that are as steep, and check the units."
     require((np.diff(across) > 0.0).all(), key, "a section that overhangs", allowed, remedy)
     return Lying(scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3), turned)

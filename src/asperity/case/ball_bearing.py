@@ -27,6 +27,7 @@ from asperity.structures.ball_bearing import BEARINGS, PARTS, BallBearing, Kinem
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, closed_trace
 from asperity.units import written
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.contact.hertz import Hertz
@@ -331,7 +332,7 @@ class BallBearingCase(AnyCase):
     def title(self) -> str:
         """Say what runs."""
         name = "Ball bearing" if self.bearing.name is None else f"Ball bearing {self.bearing.name}"
-        return f"{name} at {60.0 * self.speed:.5g} 1/min"
+        return f"{name} at {rounded(60.0 * self.speed, 5)} 1/min"
 
     @cached_property
     def static(self) -> LoadedBearing:
@@ -404,8 +405,10 @@ class BallBearingCase(AnyCase):
             yield error.about("radial") if error.what == "load" else error
             return
         if leaving is not None:
-            received = f"{60.0 * self.speed:.5g} 1/min, which lifts balls off the inner ring"
-            allowed = f"less than {60.0 * leaving:.5g} 1/min, or a larger axial load or bearing.preload"
+            received = f"{rounded(60.0 * self.speed, 5)} 1/min, which lifts balls off the inner ring"
+            allowed = (
+                f"less than {rounded(60.0 * leaving, 5)} 1/min, or a larger axial load or bearing.preload"
+            )
             yield InputError("speed", received, allowed)
         balls = self.bearing.bearing.balls
         for name, fault in self.faults.items():
@@ -427,7 +430,7 @@ class BallBearingCase(AnyCase):
             yield InputError("duration", written(self.duration, "s", "ms"), allowed)
         if self.envelope_band is not None and np.ptp(self.envelope_band) < 1.1 * max(tones):
             received = f"a width of {np.ptp(self.envelope_band):g} Hz"
-            allowed = f"more than the fastest tone, {max(tones):.4g} Hz, and a tenth"
+            allowed = f"more than the fastest tone, {rounded(max(tones), 4)} Hz, and a tenth"
             yield InputError("envelope_band", received, allowed, "Take a wider band.")
         for way in ("radial", "axial") if self.static.contact_angle else ("radial",):
             if not any(getattr(keys, f"{way}_stiffness") for keys in (self.shaft, self.housing)):
@@ -435,5 +438,5 @@ class BallBearingCase(AnyCase):
                 yield InputError(f"shaft.{way}_stiffness", received, allowed)
         steps = (self.duration + self.settling) / self.step * self.bearing.bearing.balls
         if steps > MOST_STEPS:
-            received, allowed = f"{steps:.2g} time steps of balls", f"at most {MOST_STEPS:g}"
+            received, allowed = f"{rounded(steps, 2)} time steps of balls", f"at most {MOST_STEPS:g}"
             yield InputError("duration", received, allowed, "Record several shorter times.")

@@ -15,6 +15,7 @@ from asperity.errors import InputError
 from asperity.parameters import Choice, key
 from asperity.structures.body import GRAVITY
 from asperity.units import written
+from asperity.written_numbers import rounded
 
 STRUCTURES = ("plane", "beam", "track", "structure")
 """What may be rolled over; but for the plane, each is a section of the case."""
@@ -152,7 +153,7 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
     @property
     def title(self) -> str:
         """Say what rolls over what in this case."""
-        return f"Wheel on rail at {self.speed:.3g} m/s"
+        return f"Wheel on rail at {rounded(self.speed)} m/s"
 
     @property
     def time_step(self) -> float:

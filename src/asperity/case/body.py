@@ -128,7 +128,7 @@ class FlatOnTread(MeasuredLine):
         if chord * (1.0 - CLOSE_LENGTH) <= length <= longest:
             return
         allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), within {CLOSE_LENGTH:.0%}"
-        remedy = f"The chord of this length is {self._chord_depth(length) * 1e3:.3g} mm deep."
+        remedy = f"The chord of this length is {rounded(self._chord_depth(length) * 1e3)} mm deep."
         if worn:
             allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), to the radius"
         elif length > chord:

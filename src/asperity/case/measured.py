@@ -10,6 +10,7 @@ from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, read_table, refuse_disorder
 from asperity.errors import InputError
 from asperity.spectra import a_weighting
+from asperity.written_numbers import rounded
 
 FEWEST = 3
 """Rows of a table over frequency."""
@@ -103,7 +104,8 @@ def _refuse_beyond(
     if len(values) < FEWEST:
         raise InputError(name_of(table), f"{len(values)} frequencies", f"at least {FEWEST}")
     if (wrong := (values < within[0]) | (values > within[1])).any():
-        received, allowed = f"{what} of {values[wrong][0]:.3g} {unit}", "{:g} to {:g} ".format(*within) + unit
+        received = f"{what} of {rounded(values[wrong][0])} {unit}"
+        allowed = "{:g} to {:g} ".format(*within) + unit
         raise InputError(name_of(table), received, allowed, "Is the unit right?")
 
 

@@ -41,6 +41,7 @@ from asperity.structures.track import Track
 from asperity.structures.track_parameters import LAYERS, MOST_BAYS, Bays
 from asperity.surfaces.heightmap import Profile
 from asperity.units import written
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.structures.modal import Modal, ModalStructure
@@ -257,14 +258,14 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     def described_tables(self) -> Iterator[tuple[str, str]]:
         """Say which measured sleepers and pads these are, and at which preload; nothing of others."""
         if self.sleeper_table is not None:
-            met = f"{self._sleeper.fitted} meet it to {self._sleeper.fit_error:.2g} dB rms"
+            met = f"{self._sleeper.fitted} meet it to {rounded(self._sleeper.fit_error, 2)} dB rms"
             yield "measured sleepers", f"{name_of(self.sleeper_table)}: {met}"
         if self.pad_table is None:
             return
         preloads, said = preloads_of(self._pad_rows), name_of(self.pad_table)
         if self.pad_preload is not None:
             at, least, most = (1e-3 * each for each in (self.pad_preload, preloads[0], preloads[-1]))
-            said += f" at {at:.3g} kN, measured from {least:.3g} to {most:.3g} kN"
+            said += f" at {rounded(at)} kN, measured from {rounded(least)} to {rounded(most)} kN"
         yield "measured pads", f"{said}: {1e-6 * self._pad.nominal:.4g} MN/m at 300 Hz"
 
     def preloaded(self, load: float) -> Self:

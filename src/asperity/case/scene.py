@@ -384,11 +384,13 @@ class Case(AnyCase):
         )  # fmt: skip
         if spacing > coarsest:
             received = f"{written(spacing, 'm', 'um')} at {self.speed:g} m/s and {highest:g} Hz"
-            allowed = f"at most speed / ({SAMPLING} highest_frequency) = {coarsest * 1e6:.4g} um"
+            allowed = f"at most speed / ({SAMPLING} highest_frequency) = {rounded(coarsest * 1e6, 4)} um"
             remedy = "Refine spacing, or lower highest_frequency."
             yield InputError("contact.spacing", received, allowed, remedy)
         if self.time_step > 1 / (SAMPLING * highest):
-            allowed = f"at most 1 / ({SAMPLING} highest_frequency) = {1e6 / (SAMPLING * highest):.4g} us"
+            allowed = (
+                f"at most 1 / ({SAMPLING} highest_frequency) = {rounded(1e6 / (SAMPLING * highest), 4)} us"
+            )
             yield InputError("numerics.time_step", f"{self.time_step * 1e6:g} us", allowed)
         widest = 2 * min(self.rolling.radius, self.rolling.across, self.rolled_over.radius_across)
         if self.contact.window > widest:

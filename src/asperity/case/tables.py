@@ -33,6 +33,7 @@ from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import unit_in_brackets
+from asperity.written_numbers import rounded
 
 LARGEST_TABLE = 32 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
@@ -131,7 +132,7 @@ def read_levels(table: TableSource) -> tuple[Array, Array]:
                 name_of(table), received, "every one-third octave of wavelength, each once", remedy
             )
     if abs(level.max()) > LARGEST_LEVEL:
-        received = f"levels up to {level.max():.3g} dB re 1 um"
+        received = f"levels up to {rounded(level.max())} dB re 1 um"
         allowed = f"a highest level between -{LARGEST_LEVEL:g} and {LARGEST_LEVEL:g} dB re 1 um"
         raise InputError(name_of(table), received, allowed, "Is the unit right?")
     return wavelength, level

@@ -26,7 +26,7 @@ from asperity.studies.signals import read_signal
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
-from asperity.written_numbers import rounded
+from asperity.written_numbers import rounded, unbroken
 
 Band = tuple[float, float] | None
 WIDTH = 122
@@ -51,8 +51,8 @@ def show_bearing(
     say(
         f"{name}: {of.balls} balls of {of.ball_diameter * 1e3:.4g} mm, pitch diameter "
         f"{of.pitch_diameter * 1e3:.4g} mm, grooves of {of.inner_conformity:g} D (inner) and "
-        f"{of.outer_conformity:g} D (outer), clearance {of.radial_clearance * 1e6:.3g} µm, free contact "
-        f"angle {math.degrees(of.free_angle):.3g}°"
+        f"{of.outer_conformity:g} D (outer), clearance {rounded(of.radial_clearance * 1e6)} µm, free contact "
+        f"angle {rounded(math.degrees(of.free_angle))}°"
     )
     if keys.name:
         say(f"Balls and diameters as printed by {PRINTED_BY}; grooves and clearance chosen here or given.")
@@ -78,7 +78,7 @@ def _carried(keys: BearingKeys, picture: Path | None) -> dict[str, Any]:
     say(contacts.note)
     ends = dict.fromkeys(f"{each:.0f}" for each in (found.touching.min(), found.touching.max()))
     say(f"{' to '.join(ends)} of {found.bearing.balls} balls touch the inner ring while the cage turns.")
-    _say_tones(turning, f"Hz at {60.0 * speed:.5g} 1/min" if speed else "per turn")
+    _say_tones(turning, f"Hz at {rounded(60.0 * speed, 5)} 1/min" if speed else "per turn")
     say(f"Balance to {rounded(found.imbalance, 1)} of the load.")
     if picture is not None:
         write_chart(load_zone.drawn(at_rest).chart, f"{keys.name or 'bearing'}, {load}", picture)
@@ -134,9 +134,10 @@ def _heard(
     origin = {
         "confirmed": "by lines of the shaft",
         "unconfirmed": "as given: lines of the shaft are not found",
-        "contradicted": f"by what its lines fit, not {60.0 * told:.5g} 1/min as given",
+        "contradicted": f"by what its lines fit, not {rounded(60.0 * told, 5)} 1/min as given",
     }[diagnosis.speed_is]
-    say(f"{name}: {values.size} samples, {length:.4g} s at {sampled:g} Hz; {60.0 * speed:.5g} 1/min {origin}")
+    recorded = f"{values.size} samples, {rounded(length, 4)} s at {rounded(sampled, 6)} Hz"
+    say(f"{name}: {recorded}; {rounded(60.0 * speed, 5)} 1/min {origin}")
     struck = diagnostics.envelope_spectrum(values, sampled, within)
     found = _lines_of(struck, tones, diagnosis)
     faults = [each.part for each in diagnosis.parts]
@@ -152,7 +153,7 @@ def _heard(
         turning = keys.bearing.kinematics(speed, contact_angle=0.0)
         envelope = envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart
         bands = kurtogram_panel(diagnostics.kurtogram(values, sampled), within)
-        title = textwrap.fill(f"{name}: {verdict}", TITLE)
+        title = textwrap.fill(unbroken(f"{name}: {verdict}"), TITLE)
         write_chart(Chart((*envelope.panels, bands)), title, picture)
         say(f"Picture: {picture.resolve()}")
     say(verdict)
@@ -222,7 +223,7 @@ def _say_lines(
         stand = " ".join(str(n + 1) for n in np.flatnonzero(lines.prominent)) or "–"
         seen = [f"{line:.2f}", f"{line / diagnosis.speed:.3f}", f"{100 * lines.deviation:+.2f} %"]
         seen += [stand, sides if lines.distance else "–"]
-        heights = [f"{height:.3g}", f"{height / lines.background[0]:.1f}"]
+        heights = [rounded(height), f"{height / lines.background[0]:.1f}"]
         rows.append([NAMES[part], expected, *heights, *(seen if part in named else ["–"] * 5)])
     columns = [
         "of",

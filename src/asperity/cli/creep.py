@@ -83,7 +83,8 @@ def _told_curve(curve: CreepCurve, load: float, source: str) -> Told:
     if rough:
         drawn["rough"] = samples.mean(axis=0), samples.std(axis=0)
         words += (
-            f", the rough {np.mean(rough):.4f} (± {np.std(rough):.2g} over {count_of(len(rough), 'sample')})"
+            f", the rough {np.mean(rough):.4f} (± {rounded(np.std(rough), 2)} over "
+            f"{count_of(len(rough), 'sample')})"
         )
     drawn |= {"linear theory": (curve.linear / limit, None), "FASTSIM": (curve.fastsim / limit, None)}
     columns = {name: curve.creepage}

@@ -217,12 +217,15 @@ def scale_in_words(surface: HeightMap | Profile) -> str:
     speed, name = (KILOMETRES, "100 km/h") if waves[1] >= 2.0 * RAILS else (1.0, "1 m/s")
     held = " to ".join(_lengths([float(f"{wave:.3g}")]) for wave in waves)
     passed = " to ".join(_frequency(speed / wave) for wave in waves)
-    angle = f"{math.degrees(math.atan(slope)):.2g}°"
-    return f"Slopes from point to point: {slope:.2g} ({angle}). Waves of {held} pass with {passed} at {name}."
+    angle = f"{rounded(math.degrees(math.atan(slope)), 2)}°"
+    return (
+        f"Slopes from point to point: {rounded(slope, 2)} ({angle}). Waves of {held} pass with "
+        f"{passed} at {name}."
+    )
 
 
 def _frequency(hertz: float) -> str:
-    return f"{hertz / 1e3:.3g} kHz" if hertz >= 1e3 else f"{hertz:.3g} Hz"
+    return f"{rounded(hertz / 1e3)} kHz" if hertz >= 1e3 else f"{rounded(hertz)} Hz"
 
 
 def _lengths(metres: Iterable[float]) -> str:
@@ -277,7 +280,8 @@ def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
         f"textures like it by {100 * found.expected:.0f} % (p = {rounded(found.p_value, 2)}): {verdict}"
     )
     if surface.missing_share:
-        say(f"{what} the map with its missing points, {surface.missing_share:.2g} of all, interpolated.")
+        missing = rounded(surface.missing_share, 2)
+        say(f"{what} the map with its missing points, {missing} of all, interpolated.")
     names = ("variation", "expected", "p_value")
     return {name: getattr(found, name) for name in names} | {"homogeneous": bool(found.homogeneous)}
 

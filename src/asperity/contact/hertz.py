@@ -9,6 +9,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, positive, require
 from asperity.errors import HalfSpaceWarning, percent
 from asperity.reference.materials import Material
+from asperity.written_numbers import rounded
 
 HALVINGS = 56
 """Of the interval that holds the logarithm of the axis ratio, until its ends are neighbours."""
@@ -327,7 +328,7 @@ def check_half_space(
             "Take the measured radius."
         )
     angle = across / groove_radius
-    fills = f"fills {angle:.2g} rad of the groove to either side"
+    fills = f"fills {rounded(angle, 2)} rad of the groove to either side"
     allowed = f"at most {HOLLOW[1]:g} rad, where the groove is an elastic half-space"
     remedy = f"{lighter}, or take a groove of a greater radius."
     require(angle <= HOLLOW[1], "contact", f"{cause}, a contact that {fills}", allowed, remedy)
@@ -339,7 +340,8 @@ def check_half_space(
 
 
 def _slender(a: float, radius: float, direction: str, cause: str, lighter: str) -> None:
-    axis, remedy = f"a semi-axis of {a / radius:.2g} R {direction}", f"{lighter}, or take a larger body."
+    axis = f"a semi-axis of {rounded(a / radius, 2)} R {direction}"
+    remedy = f"{lighter}, or take a larger body."
     allowed = "at most R/3, where the body is an elastic half-space"
     require(a <= SLENDER[1] * radius, "contact", f"{cause}, {axis}", allowed, remedy)
     if a > SLENDER[0] * radius:

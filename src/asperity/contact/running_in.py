@@ -14,6 +14,7 @@ from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress, counted
 from asperity.store import Store, content_key
 from asperity.threads import in_order
+from asperity.written_numbers import rounded
 
 SETTLED_SHARE = 1e-3
 """Lowering in a pass, in approaches of the smooth bodies under the load, that counts as none."""
@@ -144,7 +145,7 @@ def warn_of_running_in(found: RunInHeights, job: RunningIn, tolerance: str, reme
     if job.passes is None and not found.settled:
         last, least = (1e9 * length for length in (found.largest[-1], job.tolerance))
         UnconvergedWarning.warn(
-            f"after {len(found.largest)} passes a place is still lowered by {last:.3g} nm in a pass, more "
-            f"than {least:.3g} nm: the surface has not reached shakedown. The load is too high for the "
-            "hardness: lower it, or give a number of passes."
+            f"after {len(found.largest)} passes a place is still lowered by {rounded(last)} nm in a pass, "
+            f"more than {rounded(least)} nm: the surface has not reached shakedown. The load is too high "
+            "for the hardness: lower it, or give a number of passes."
         )

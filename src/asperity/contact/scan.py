@@ -22,6 +22,7 @@ from asperity.store import PATIENCE, Store, content_key, made
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import in_order, thread_count
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     import xarray
@@ -273,7 +274,7 @@ class ScanJob:
         """What to do about contacts that are cut off."""
         overlap = self.approaches[-1] - float(first_touch(self.surface, self.body, self.stride).min())
         side = window_for(self.body, self.half_space.spacing, overlap)
-        return f"A window of {side * 1e3:.3g} mm holds them."
+        return f"A window of {rounded(side * 1e3)} mm holds them."
 
 
 @dataclass(frozen=True, eq=False)

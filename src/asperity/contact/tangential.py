@@ -21,6 +21,7 @@ from asperity.kernels import traction as kernel
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.projected_cg import inverse_stencil
 from asperity.reference.materials import Material
+from asperity.written_numbers import rounded
 
 MAX_ITERATIONS, MAX_ROUNDS = 300, 60
 """Of Newton's iteration, and of solutions whose bound, pressure or motion follows the last one."""
@@ -318,16 +319,16 @@ class FrictionalHalfSpace:
         slipping = percent(slips / area) if area else "nothing"
         if manner.ahead and creepage > LARGE_CREEPAGE:
             words.append(
-                f"A creepage of {creepage:.3g} is above {LARGE_CREEPAGE:g}: strains and paths are those of "
-                f"small creepages, and {slipping} of the contact slips. Lower it."
+                f"A creepage of {rounded(creepage)} is above {LARGE_CREEPAGE:g}: strains and paths are "
+                f"those of small creepages, and {slipping} of the contact slips. Lower it."
             )
         if spin and slips > PIVOTING * area:
             x, y = cell_places(self.half_space)
             away = np.hypot(x + eta / spin, y - xi / spin)[found.normal.pressure > 0.0]
             if away.min(initial=math.inf) < math.hypot(*self.half_space.spacing):
                 words.append(
-                    f"A spin of {spin:.3g} /m makes the contact pivot on a place inside of it: {slipping} of "
-                    "it slips, and the force says little of the creepage. Lower the spin."
+                    f"A spin of {rounded(spin)} /m makes the contact pivot on a place inside of it: "
+                    f"{slipping} of it slips, and the force says little of the creepage. Lower the spin."
                 )
         if self.unlikeness and not self.coupled:
             neglected = abs(self.unlikeness) * self.shear_modulus / (1.0 - self.poisson_ratio)
@@ -343,8 +344,8 @@ class FrictionalHalfSpace:
     ) -> SlidingContact:
         """Find a motion by Broyden's iteration on −ln(1 − |F|/limit), which is about linear in creepage."""
         size = float(np.linalg.norm(target))
-        allowed, remedy = f"less than {found.limit:.6g} N of friction", "Press more, or ask for less."
-        require(size < found.limit or size == 0.0, "force", f"{size:.6g} N", allowed, remedy)
+        allowed, remedy = f"less than {rounded(found.limit, 6)} N of friction", "Press more, or ask for less."
+        require(size < found.limit or size == 0.0, "force", f"{rounded(size, 6)} N", allowed, remedy)
 
         if not found.limit:
             return found
@@ -376,7 +377,8 @@ class FrictionalHalfSpace:
             if along @ moved:
                 jacobian_inverse += np.outer(change - jacobian_inverse @ moved, along) / (along @ moved)
             missing = after
-        raise ComputationError(f"no creepage was found for a force of {size:.6g} N", "a smaller force")
+        problem = f"no creepage was found for a force of {rounded(size, 6)} N"
+        raise ComputationError(problem, "a smaller force")
 
     def _rounds(self, normal: Contact, motion: tuple[float, ...], manner: _Manner) -> SlidingContact:
         """Solve until bound and pressure are those of the solution."""

@@ -19,6 +19,7 @@ from asperity.progress import Progress
 from asperity.store import Store, content_key
 from asperity.surfaces.heightmap import HeightMap
 from asperity.threads import refuse_to_go_on
+from asperity.written_numbers import rounded
 
 REGIMES = ("mild", "severe", "catastrophic")
 """Of wear, as a law tells them apart."""
@@ -447,8 +448,8 @@ def worn(
     deepest = float(solved[:, 1].max())
     if deepest > step:
         OutOfRangeWarning.warn(
-            f"a single pass removes {1e9 * deepest:.3g} nm, more than the {1e9 * step:.3g} nm after which "
-            "the contact is solved again: its pressure does not follow what it removes. Lower "
+            f"a single pass removes {rounded(1e9 * deepest)} nm, more than the {rounded(1e9 * step)} nm "
+            "after which the contact is solved again: its pressure does not follow what it removes. Lower "
             "the creepage, or allow for larger steps."
         )
     origin = f"{surface.source}; " if isinstance(surface, HeightMap) and surface.source else ""

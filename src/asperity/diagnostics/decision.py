@@ -13,6 +13,7 @@ from asperity.diagnostics.envelopes import above_frequency, checked_signal
 from asperity.diagnostics.hypotheses import FINE, NEAR, BearingRecord, Hypothesis, Tone
 from asperity.diagnostics.kurtogram import impulsive_band
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
+from asperity.written_numbers import rounded
 
 SUPPORTED = 15.0
 """Support from which on the shaft is believed to be where it is sought: of a wrong speed one in ten has
@@ -137,8 +138,8 @@ def diagnose(
     duration = values.size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
     needed = 2.0 * LOWEST_PLACE / (tone.order * told)
-    lines = f"the lines of the {NAMES[part]} at {tone.order * told:.4g} Hz"
-    received, allowed = f"{duration:.3g} s", f"at least {needed:.3g} s, to resolve {lines}"
+    lines = f"the lines of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
+    received, allowed = f"{rounded(duration)} s", f"at least {rounded(needed)} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
     values = _without_clicks(values, duration * told)
     edges = band or _ringing_band(values, rate, HARMONICS * tone.order * told)

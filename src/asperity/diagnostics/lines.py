@@ -8,6 +8,7 @@ import numpy as np
 
 from asperity.arguments import Array, positive, real, require, whole
 from asperity.diagnostics.envelopes import Spectrum
+from asperity.written_numbers import rounded
 
 STANDS_OUT = 4.0
 """Amplitude of a line over the median around it: noise is above in one of 65 000 places."""
@@ -95,9 +96,10 @@ def find_lines(
     frequency, amplitude = (np.asarray(each, dtype=float) for each in spectrum)
     step = frequency[1] - frequency[0]
     count = min(harmonics, int((frequency[-1] / step - WITHIN - 1) * step / (expected * (1.0 + slip))))
-    received, allowed = f"{expected:.4g} Hz", f"less than the spectrum reaches, {frequency[-1]:.4g} Hz"
+    received = f"{rounded(expected, 4)} Hz"
+    allowed = f"less than the spectrum reaches, {rounded(frequency[-1], 4)} Hz"
     require(count >= 1, "line that is sought", received, allowed, "Take a wider band, or a faster sampling.")
-    allowed = f"at least {8.0 * step:.3g} Hz, four times what the record resolves"
+    allowed = f"at least {rounded(8.0 * step)} Hz, four times what the record resolves"
     require(expected >= 8.0 * step, "line that is sought", received, allowed, "Record longer.")
     order = np.arange(1, count + 1)
     spans = [(at, max(AROUND * at, FEWEST)) for at in order * expected / step]

@@ -6,6 +6,7 @@ import math
 from asperity.diagnostics.decision import NAMES, Diagnosis
 from asperity.diagnostics.hypotheses import Hypothesis
 from asperity.diagnostics.prominence import LOWEST_PLACE
+from asperity.written_numbers import rounded
 
 ASKED = "is the speed or the sampling rate wrong?"
 
@@ -36,7 +37,7 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
 
 def turns(speed: float) -> str:
     """A speed, Hz, in both units."""
-    return f"{speed:.4g} Hz ({60.0 * speed:.4g} 1/min)"
+    return f"{rounded(speed, 4)} Hz ({rounded(60.0 * speed, 4)} 1/min)"
 
 
 def faint_lines(found: Diagnosis) -> str:
@@ -71,8 +72,9 @@ def _of_speed(found: Diagnosis) -> list[str]:
         return [f"{here}, but do not explain all blows: {ASKED}"] if found.blows else []
     needed = 2.0 * LOWEST_PLACE / found.told
     if found.record.duration < needed:
-        short = f"The record of {found.record.duration:.3g} s is too short for the line of the shaft"
-        return [f"{short} at {turns(found.told)}, which takes {needed:.2g} s: the speed is not confirmed."]
+        short = f"The record of {rounded(found.record.duration)} s is too short for the line of the shaft"
+        takes = f"which takes {rounded(needed, 2)} s: the speed is not confirmed."
+        return [f"{short} at {turns(found.told)}, {takes}"]
     if found.multiple and not found.blows:
         return [f"Lines of the shaft are at {turns(found.told)}; half or twice of it would have them, too."]
     missed = f"The line of the shaft is not found at {turns(found.told)}"
@@ -83,7 +85,7 @@ def _of_speed(found: Diagnosis) -> list[str]:
 
 def _of_parts(found: Diagnosis) -> str:
     """What is said of the parts, and how sure that is."""
-    resolved = f"resolved to {found.resolution:.2g} Hz"
+    resolved = f"resolved to {rounded(found.resolution, 2)} Hz"
     sure = f"{100.0 * found.confidence:.0f} % sure"
     if found.alike:
         both = " and the ".join(NAMES[each.part] for each in (found.parts[0], *found.alike))

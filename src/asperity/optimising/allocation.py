@@ -10,6 +10,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
+from asperity.written_numbers import rounded
 
 SLACK = 1e-6
 """By which a solution may miss a limit, dB or price."""
@@ -90,7 +91,7 @@ def roughest(response: Response, limits: Limits, level: float) -> Array:
     """
     found = _balanced(response, limits, lambda levels: level - response.level(levels), cheap=True)
     if limits.cost(found) > limits.budget + SLACK:
-        raise ComputationError(f"{_NOTHING} (its price is {limits.cost(found):.3g})", _WIDER)
+        raise ComputationError(f"{_NOTHING} (its price is {rounded(limits.cost(found))})", _WIDER)
     return found
 
 
@@ -237,7 +238,7 @@ def search(
     def at(lateral: float | None) -> Callable[[Array], Trial]:
         def rolled(levels: Array) -> Trial:
             trial = roll(levels, lateral)
-            told(f"{trial.level:.2f} dB, rms {1e6 * rms_of(levels):.3g} µm")
+            told(f"{trial.level:.2f} dB, rms {rounded(1e6 * rms_of(levels))} µm")
             return trial
 
         return rolled
@@ -321,7 +322,7 @@ def _best_lay(roll: Roll, trial: Trial, lay: tuple[float, float], told: Callable
     def louder(logarithm: float) -> float:
         lateral = float(np.exp(logarithm))
         rolled.append(roll(trial.levels, lateral))
-        told(f"{rolled[-1].level:.2f} dB, lay {lateral:.3g}")
+        told(f"{rolled[-1].level:.2f} dB, lay {rounded(lateral)}")
         return rolled[-1].level
 
     low, high = np.log(lay)

@@ -21,6 +21,7 @@ from asperity.schema import Entry, spectra
 from asperity.spectra import HALF_BAND, a_weighting, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.written_numbers import rounded
 
 C = TypeVar("C", bound=scene.Case)
 A_WEIGHTED, ACCELERATION = "A-weighted level", "rms acceleration"
@@ -161,10 +162,13 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
     high = shortest or case.speed / case.numerics.highest_frequency
     changed = (wavelength < low * HALF_BAND) & (wavelength > high / HALF_BAND)
     if np.count_nonzero(changed) < FEWEST_BANDS:
-        received = f"{np.count_nonzero(changed)} bands of the texture between {high:.3g} m and {low:.3g} m"
+        received = (
+            f"{np.count_nonzero(changed)} bands of the texture between {rounded(high)} m and {rounded(low)} m"
+        )
         allowed = f"at least {FEWEST_BANDS}"
         remedy = (
-            f"Its bands are {wavelength.min():.3g} m to {wavelength.max():.3g} m. Change longest or shortest."
+            f"Its bands are {rounded(wavelength.min())} m to {rounded(wavelength.max())} m. "
+            "Change longest or shortest."
         )
         raise InputError("bands that may be changed", received, allowed, remedy)
     return Bands(wavelength, levels, changed, lateral)

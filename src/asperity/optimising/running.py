@@ -29,7 +29,7 @@ from asperity.scenes import result
 from asperity.spectra import band_energies, level_of
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
-from asperity.written_numbers import between, engineering, signed
+from asperity.written_numbers import between, engineering, rounded, signed
 
 if TYPE_CHECKING:
     from asperity.scenes.report import Result
@@ -140,7 +140,9 @@ class Optimised:
             f"{law} {before:.1f} to {after:.1f} {units}, {signed(after - before)} dB"
             for law, (before, after) in self.levels.items()
         ]
-        lay = f", lay {first.lateral:.3g} to {last.lateral:.3g}" if aim.lateral and first.lateral else ""
+        lay = ""
+        if aim.lateral and first.lateral and last.lateral:
+            lay = f", lay {rounded(first.lateral)} to {rounded(last.lateral)}"
         words = [
             f"{self.measure.meaning}: {'; '.join(told)}; rms of the bands {between(*rms)}{lay}.",
             *([self.of_limit] if self.of_limit else []),

@@ -9,6 +9,7 @@ from scipy.linalg import solve_banded
 from asperity.arguments import Array, ArrayLike
 from asperity.errors import ComputationError
 from asperity.spectra import level_of
+from asperity.written_numbers import rounded
 
 STEPS = 25
 """Of a record, per distance of the receiver."""
@@ -159,7 +160,7 @@ def _measured(time: Array, whole: Array, passed: tuple[float, float]) -> tuple[f
     after = np.flatnonzero((time > passed[1]) & (whole < limits[1]))
     if not before.size or not after.size:
         problem = f"the level does not fall by {DROP:g} dB before and after the train"
-        between = f"between {time[0]:.3g} s and {time[-1]:.3g} s"
+        between = f"between {rounded(time[0])} s and {rounded(time[-1])} s"
         raise ComputationError(f"{problem} {between}", "a record that begins earlier and ends later")
     rise, fall = (slice(at, at + 2) for at in (before[-1], after[0] - 1))
     start = np.interp(limits[0], whole[rise], time[rise])

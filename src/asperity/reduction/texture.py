@@ -9,6 +9,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from asperity.arguments import Array, ArrayLike, require
 from asperity.kernels.curves import splines_along
 from asperity.surfaces.strip import Rows, Strip
+from asperity.written_numbers import rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +148,8 @@ def areal_texture(
     strip = Rows(heights) if isinstance(heights, np.ndarray) else heights
     n, ny = strip.shape
     width, widest = ny * spacing[1], 2 * axes[:, 1].max()
-    allowed = f"at least the width of the widest patch, {widest:.3g} m"
-    received, remedy = f"{width:.3g} m", "Enlarge contact.window."
+    allowed = f"at least the width of the widest patch, {rounded(widest)} m"
+    received, remedy = f"{rounded(width)} m", "Enlarge contact.window."
     require(widest <= width, "width of the texture strip", received, allowed, remedy)
     middle = ny // 2
     halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]

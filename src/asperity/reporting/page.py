@@ -18,9 +18,7 @@ from asperity.reporting.chart import Line, colour_variables
 from asperity.reporting.figure import Chapter, Figure, PageFigure
 from asperity.reporting.tables import ReportTable, setting_names
 from asperity.schema import provenance, rolling
-
-_UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
-
+from asperity.written_numbers import unbroken
 
 Block = PageFigure | ReportTable
 
@@ -75,8 +73,7 @@ def page_template(name: str, package: str = "asperity.reporting") -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    # numbers and their units stay on one line
-    environment.filters["unbroken"] = lambda text: re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
+    environment.filters["unbroken"] = unbroken
     return environment.get_template(name)
 
 

@@ -107,7 +107,11 @@ SMALL = 1e-2
 """Lengths, m, that are not read well in metres."""
 COLUMNS, ROWS = 12, 24
 """Of a table of numbers; the CSV file has all."""
-_four_digits = partial(data.plain, digits=4)
+
+
+def in_digits(count: int) -> Writer:
+    """Writes numbers with so many digits."""
+    return partial(data.plain, digits=count)
 
 
 def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] = ()) -> ReportTable:
@@ -121,7 +125,7 @@ def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] 
     counts = {"rows": (len(rows), count), "columns": (len(named), len(columns))}
     parts = [f"{some} of {every} {what}" for what, (some, every) in counts.items() if some < every]
     note = f"{' and '.join(parts)}; the CSV file has all." if parts else ""
-    cells = {_read_well(name): number_cells(numbers, _four_digits) for name, numbers in shown.items()}
+    cells = {_read_well(name): number_cells(numbers, in_digits(4)) for name, numbers in shown.items()}
     return table("", "Numbers", cells, note)
 
 
@@ -145,7 +149,7 @@ def chart_tables(drawn: chart.Chart) -> list[ReportTable]:
                 places = [names.get(place) or data.plain(place) for place in mark.x.tolist()]
                 columns = along.setdefault(mark.x.tobytes(), {panel.x.label: text_cells(places, "number")})
                 head = ", ".join(filter(None, (panel.title, mark.label, panel.y.label)))
-                columns[head] = number_cells(mark.y, _four_digits)
+                columns[head] = number_cells(mark.y, in_digits(4))
     return [table("", "Numbers", columns) for columns in along.values()]
 
 
@@ -176,7 +180,7 @@ def homogeneity_table(tree: DataTree) -> ReportTable:
         "map": text_cells(range(1, len(p) + 1), "number"),
         "tiles vary by": number_cells(variation, data.in_percent, looks),
         "by chance": number_cells(expected, data.in_percent, looks),
-        "p": number_cells(p, "{:.2g}", looks),
+        "p": number_cells(p, in_digits(2), looks),
         "same everywhere?": text_cells(
             "as far as chance tells" if same else "no" for same in p > significance
         ),

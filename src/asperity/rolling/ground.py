@@ -14,6 +14,7 @@ from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_period
+from asperity.written_numbers import rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +211,7 @@ def warn_if_bent(over: Modal | RailBetween | None, displaced: Array) -> None:
     if share > LARGEST_DEFLECTION:
         deflection = float(np.abs(displaced).max())
         LargeDeflectionWarning.warn(
-            f"the beam is displaced by up to {deflection:.3g} m under the contact, "
+            f"the beam is displaced by up to {rounded(deflection)} m under the contact, "
             f"{percent(share)} of its length: beam theory needs small slopes, as up to "
             f"{percent(LARGEST_DEFLECTION)}; check load, section, length and support of the beam"
         )

@@ -21,7 +21,7 @@ from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
-from asperity.written_numbers import rounded
+from asperity.written_numbers import engineering, rounded
 
 
 @dataclass(frozen=True)
@@ -306,8 +306,8 @@ def refuse_missed_load(
         raise errors.ComputationError(
             f"{name}: the mean contact force of {rounded(load + missed, 4)} N misses the load of "
             f"{rounded(load, 4)} N by more than bounded motion can, whose standard error is "
-            f"{rounded(error, 2)} N: in {time:.3g} s that "
-            f"drives what rolls {away:.2g} m away",
+            f"{rounded(error, 2)} N: in {rounded(time)} s that drives what rolls {engineering(away, 'm', 2)} "
+            "away",
             "what a warning asks for, if there is one; else look for what gives off energy or is not held: "
             'masses, springs and damping; for a track also numerics.kernel = "scatter"',
         )

@@ -30,6 +30,7 @@ from asperity.errors import CoarseSamplingWarning, InputError, percent
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.spec import SteppedLaw
 from asperity.structures.body import Body
+from asperity.written_numbers import engineering, rounded
 
 TAYLOR_RADIUS, TAYLOR_TERMS = 0.5, 14  # remainder below 1e-16
 RESOLVED = 0.9 * np.pi
@@ -269,9 +270,10 @@ def softening(
         stable = opposed if damping[worst] > 0.0 else np.sqrt(np.maximum(opposed, 0.0))
         shorter = max(stable[worst], np.sqrt(max(impact[worst], 0.0)))
         CoarseSamplingWarning.warn(
-            f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies "
-            f"as light: it is kept stable by softening the contact by {percent(share)}, and motion near "
-            f"{0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s"
+            f"the time step of {engineering(time_step, 's', 2)} is too long for a contact as stiff, or as "
+            f"damped, on bodies as light: it is kept stable by softening the contact by {percent(share)}, "
+            f"and motion near {rounded(0.5 / time_step, 2)} Hz is distorted; take at most "
+            f"{engineering(time_step / shorter, 's', 2)}"
         )
     return softer
 
@@ -291,7 +293,7 @@ def warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:
     for what, frequency, least in limits:
         if frequency * time_step * least > 1.0:
             CoarseSamplingWarning.warn(
-                f"{what}, {frequency:.4g} Hz, has {1.0 / (frequency * time_step):.3g} time steps in a "
-                f"period, fewer than {least:.0f}: its response is distorted; "
-                f"take a time step of at most {1.0 / (least * frequency):.2g} s"
+                f"{what}, {rounded(frequency, 4)} Hz, has {rounded(1.0 / (frequency * time_step))} time "
+                f"steps in a period, fewer than {least:.0f}: its response is distorted; take a time step "
+                f"of at most {engineering(1.0 / (least * frequency), 's', 2)}"
             )

@@ -11,6 +11,7 @@ from asperity.errors import InputError, OutOfRangeWarning
 from asperity.scenarios.records import spectrum_levels
 from asperity.scenarios.textures import Textures
 from asperity.spectra import HALF_BAND, nominal_frequency, nominal_length, third_octave_bands
+from asperity.written_numbers import rounded
 
 HEARD = (100.0, 5000.0)
 """Hz, of the bands that count: those in which laws are compared, and which rolling noise is heard in."""
@@ -80,7 +81,7 @@ def problems_of_coverage(case: Case, textures: Textures) -> Iterator[InputError]
     if not found or len(covered) >= FEWEST * len(found[0].bands):
         return
     first, speed = found[0], case.speed
-    usual = " to ".join(f"{1e3 * speed / first.bands[end]:.3g} mm" for end in (-1, 0))
+    usual = " to ".join(f"{rounded(1e3 * speed / first.bands[end])} mm" for end in (-1, 0))
     remedy = f"At this speed they are heard by waves of {usual}. Is the unit of the wavelengths right?"
     if not covered and first.waves[1] > MEASURED_WAVE:
         yield InputError(first.key, first.at(speed), "waves that are heard at the speed of the case", remedy)

@@ -20,7 +20,7 @@ from asperity.structures.track import Track
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
 from asperity.threads import thread_count
-from asperity.written_numbers import in_newtons
+from asperity.written_numbers import in_newtons, rounded
 
 ROWS = 2**15
 """Most rows of a path, from its middle, that are looked at: a length that is transformed fast."""
@@ -192,10 +192,11 @@ class LawChoice:
         off = ": off the map, so that the expected errors are guesses" if self.off_map else ""
         yield (
             "place on the map",
-            f"rms {place.roughness:.2g} approaches, {place.within:.2g} within the patch; correlation length "
-            f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load; k a of "
-            f"{HIGH / 1e3:g} kHz {place.highest_wavenumber:.2g}, mapped from {self.reach[0]:.2g} to "
-            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {in_newtons(near.load)}, "
+            f"rms {rounded(place.roughness, 2)} approaches, {rounded(place.within, 2)} within the patch; "
+            f"correlation length {rounded(place.correlation, 2)} contacts; dynamic force about "
+            f"{rounded(place.dynamic, 2)} of the load; k a of {HIGH / 1e3:g} kHz "
+            f"{rounded(place.highest_wavenumber, 2)}, mapped from {rounded(self.reach[0], 2)} to "
+            f"{rounded(self.reach[1], 2)}. Nearest point: {near.kind}, {in_newtons(near.load)}, "
             f"{near.speed:g} m/s, {self.distance:.1f} half decades away{off}",
         )
 

@@ -104,8 +104,11 @@ def _problems_of_record(prepared: PreparedCase) -> Iterator[InputError]:
     samples = math.floor(recorded / case.time_step * (1.0 + 1e-12)) + 1
     lowest = lowest_band(samples, case.time_step)
     if highest * HALF_BAND < lowest:
-        received = f"{highest:.4g} Hz with a record of {recorded:.4g} s"
-        allowed = f"a record that holds a one-third octave up to it; of this the lowest is at {lowest:.4g} Hz"
+        received = f"{rounded(highest, 4)} Hz with a record of {recorded:.4g} s"
+        allowed = (
+            "a record that holds a one-third octave up to it; of this the lowest is at "
+            f"{rounded(lowest, 4)} Hz"
+        )
         least = f"at least {nominal_frequency(lowest)}"
         remedy = f"Record longer (duration), or ask for {least}."
         yield InputError("numerics.highest_frequency", received, allowed, remedy)
@@ -122,11 +125,11 @@ def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
     approach = shape.hertz.approach(shape.load)
     if slope <= STEEPEST and rough <= ROUGHEST * approach:
         return None
-    received = f"heights with an rms slope of {slope:.3g}"
+    received = f"heights with an rms slope of {rounded(slope)}"
     allowed = f"slopes up to {STEEPEST:g}"
     if slope <= STEEPEST:
-        received = f"heights of {1e6 * rough:.3g} um rms within the window"
-        allowed = f"up to {ROUGHEST:g} approaches of the bodies, {1e6 * approach:.3g} um each"
+        received = f"heights of {rounded(1e6 * rough)} um rms within the window"
+        allowed = f"up to {ROUGHEST:g} approaches of the bodies, {rounded(1e6 * approach)} um each"
     of_wheel, of_rail = (np.std(np.diff(textures.parts[part])) for part in ("wheel", "rail"))
     section, name = (case.rolling, case.ROLLING) if of_wheel > of_rail else (case.surface, "surface")
     key = next((key for key in _UNITS if getattr(section, key, None) is not None), "")
@@ -143,7 +146,7 @@ def _problems(prepared: PreparedCase) -> Iterator[InputError]:
         return
     smallest = min((min(sample.shape) for sample in textures.maps), default=nx)
     if smallest < nx:
-        allowed = f"at most the measured map, {smallest * contact.spacing * 1e6:.4g} um"
+        allowed = f"at most the measured map, {rounded(smallest * contact.spacing * 1e6, 4)} um"
         received = written(contact.window, "m", "um")
         yield InputError("contact.window", received, allowed, "Choose a smaller one, or measure wider maps.")
         return
@@ -151,8 +154,8 @@ def _problems(prepared: PreparedCase) -> Iterator[InputError]:
         rows, stride = min(strip.shape[0] for strip in textures.strips), reducing.filter_stride(shape)
         if (rows - nx) // stride + 1 < FEWEST_POSITIONS:
             least = (nx + (FEWEST_POSITIONS - 1) * stride) * contact.spacing
-            received = f"strips of {rows * contact.spacing * 1e6:.4g} um"
-            allowed = f"at least {least * 1e6:.4g} um, in which the contact is filtered"
+            received = f"strips of {rounded(rows * contact.spacing * 1e6, 4)} um"
+            allowed = f"at least {rounded(least * 1e6, 4)} um, in which the contact is filtered"
             yield InputError(
                 "contact.sample_length", received, allowed, "Lengthen it, or measure larger maps."
             )

@@ -8,6 +8,7 @@ from asperity.scenarios.geometry import HIGHEST_FORCE
 from asperity.scenarios.preparing import ROUGHEST, STEEPEST
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import Raceway
+from asperity.written_numbers import rounded
 
 REMEDY = 'Is the unit right? Waviness is written as "0.5 um", roughness as "20 nm".'
 
@@ -28,17 +29,20 @@ def doubt_surface(surface: Raceway, approach: float) -> None:
     waves = surface.heights + np.fft.irfft(turns, len(surface.line))[:, None]
     for heights in (waves, surface.line):
         highest = 0.5 * float(np.ptp(heights))
-        received = f"{highest * 1e6:.4g} µm, {highest / approach:.3g} approaches of {approach * 1e6:.3g} µm"
+        received = (
+            f"{rounded(highest * 1e6, 4)} µm, {rounded(highest / approach)} approaches of "
+            f"{rounded(approach * 1e6)} µm"
+        )
         require(highest <= ROUGHEST * approach, "waves all around", received, f"at most {ROUGHEST:g}", REMEDY)
     slope = np.diff(waves, axis=0, append=waves[:1]) / surface.spacing[0]
     steep = float(np.sqrt(np.mean(slope**2)))
-    require(steep <= STEEPEST, "rms slope", f"{steep:.3g}", f"at most {STEEPEST:g}", REMEDY)
+    require(steep <= STEEPEST, "rms slope", rounded(steep), f"at most {STEEPEST:g}", REMEDY)
     highest, held = 0.5 * float(np.ptp(waves)), HIGHEST_FORCE ** (2.0 / 3.0) * approach
     if highest > held:
         OutOfRangeWarning.warn(
-            f"Waves all around of ± {highest * 1e6:.3g} µm are {highest / approach:.3g} times the approach "
-            f"of the most loaded ball, {approach * 1e6:.3g} µm: balls lose contact and come down harder than "
-            f"the laws cover, which is ± {held * 1e6:.3g} µm. {REMEDY}"
+            f"Waves all around of ± {rounded(highest * 1e6)} µm are {rounded(highest / approach)} times "
+            f"the approach of the most loaded ball, {rounded(approach * 1e6)} µm: balls lose contact and "
+            f"come down harder than the laws cover, which is ± {rounded(held * 1e6)} µm. {REMEDY}"
         )
 
 

@@ -23,6 +23,7 @@ from asperity.surfaces.levelling import QUARTER, band_limit, level, resample, ro
 from asperity.surfaces.readers import read_all, read_surface
 from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.strip import Rows, Strip
+from asperity.written_numbers import rounded
 
 MOST_POINTS = 2.0**27
 """Points of a measured map on the contact grid (1 GiB)."""
@@ -162,13 +163,17 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
         points = math.prod(measured.size) / spacing**2
         if points > MOST_POINTS:
             sides = " × ".join(f"{1e3 * side:.4g} mm" for side in measured.size)
-            received = f"maps of {sides}, {points:.2g} points at contact.spacing = {spacing * 1e6:.3g} um"
+            received = (
+                f"maps of {sides}, {rounded(points, 2)} points at contact.spacing = "
+                f"{rounded(spacing * 1e6)} um"
+            )
             remedy = "Is the pixel in µm, not mm? Else cut the map, or coarsen contact.spacing."
-            raise InputError("surface.file", received, f"at most {MOST_POINTS:.2g} points", remedy)
+            raise InputError("surface.file", received, f"at most {rounded(MOST_POINTS, 2)} points", remedy)
         if max(measured.spacing) > spacing * (1 + 1e-9):
             ShortRecordWarning.warn(
-                f"the map's points are {max(measured.spacing) * 1e6:.3g} µm apart, more than contact.spacing "
-                f"= {spacing * 1e6:.3g} µm: shorter waves are missing. Coarsen contact.spacing."
+                f"the map's points are {rounded(max(measured.spacing) * 1e6)} µm apart, more than "
+                f"contact.spacing = {rounded(spacing * 1e6)} µm: shorter waves are missing. Coarsen "
+                "contact.spacing."
             )
         levelled = level(measured, surface.form)
         if surface.direction % QUARTER:  # no wave that the spacing holds suffers from turning

@@ -337,8 +337,9 @@ def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) 
     if found.miss > LARGEST_MISS:
         order = found.taps.shape[1] - 1
         ContactFilterWarning.warn(
-            f"the filter of the law {law} with J = {order} misses the fitted one by {found.miss:.2g} dB "
-            "above −30 dB: the report shows both. Leave out contact.filter_taps, or roll over a longer path."
+            f"the filter of the law {law} with J = {order} misses the fitted one by "
+            f"{rounded(found.miss, 2)} dB above −30 dB: the report shows both. Leave out "
+            "contact.filter_taps, or roll over a longer path."
         )
     estimated = found.contact_filter
     share = float(np.interp(working_approach, estimated.approaches, estimated.long_wave_share))

@@ -19,6 +19,7 @@ from asperity.spectra import psd
 from asperity.structures.rail_poles import POLES
 from asperity.surfaces.heightmap import HeightMap
 from asperity.units import written
+from asperity.written_numbers import rounded
 
 MOST_POINTS = 2**27
 """Points of a path that is held at once: 1 GiB."""
@@ -160,7 +161,8 @@ def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
     )
     more = Way(f"{count} → {2 * count}", {"contact.samples": 2 * count})
     denser = Way(f"{len(approaches)} → {len(every)} states", {"contact.approaches": tuple(every)})
-    shorter = Way(f"{1e6 * step:.4g} µs → {5e5 * step:.4g} µs", {"numerics.time_step": 0.5 * step})
+    steps = f"{rounded(1e6 * step, 4)} µs → {rounded(5e5 * step, 4)} µs"
+    shorter = Way(steps, {"numerics.time_step": 0.5 * step})
     reduced = [
         Setting("window", windows, laid_anew=True),
         Setting("samples", (more,)),
@@ -169,7 +171,7 @@ def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
     if not textures.maps:
         reduced = [Setting(each.name, (), NO_SAMPLES) for each in reduced]
     grid = Setting("grid", (Way(f"{_length(spacing)} → {_length(fine)}", finer),), laid_anew=True)
-    half_path = Way(f"{case.rolled_time:.3g} s → its first half")
+    half_path = Way(f"{rounded(case.rolled_time)} s → its first half")
     return [
         grid,
         *reduced,

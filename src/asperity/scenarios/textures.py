@@ -21,7 +21,7 @@ from asperity.surfaces import levelling, measured_lines, statistics, synthesis
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
-from asperity.written_numbers import count_of
+from asperity.written_numbers import count_of, rounded
 
 STRIP_WINDOWS = 16
 """Length of a strip for the filters, in windows: few bins of its spectra span the fall of a filter else."""
@@ -196,8 +196,9 @@ def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
         apart = "shorten the duration or start farther along the path"
         remedy = "set settling" if case.room is None else apart
         ShortRecordWarning.warn(
-            f"the record starts {settling * 1e3:.3g} ms after rest, less than {SETTLED * 1e3:.3g} ms: its "
-            f"levels hold the start. So that there is time for settling, {remedy}."
+            f"the record starts {rounded(settling * 1e3)} ms after rest, less than "
+            f"{rounded(SETTLED * 1e3)} ms: its levels hold the start. So that there is time for settling, "
+            f"{remedy}."
         )
     if not case.has_defect:
         return
@@ -211,9 +212,9 @@ def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
     length, window, a = case.defect_length, case.contact.window, shape.semi_axes[0]
     if seen and length and length + 2 * a > window:
         TruncatedContactWarning.warn(
-            f"the flat is {length * 1e3:.3g} mm long and the contact {2e3 * a:.3g} mm, together more than "
-            f"contact.window = {window * 1e3:.3g} mm: where the {case.ROLLING} stands on the flat's ends, "
-            f"{' and '.join(seen)} cut the contact off. Enlarge the window."
+            f"the flat is {rounded(length * 1e3)} mm long and the contact {rounded(2e3 * a)} mm, together "
+            f"more than contact.window = {rounded(window * 1e3)} mm: where the {case.ROLLING} stands on "
+            f"the flat's ends, {' and '.join(seen)} cut the contact off. Enlarge the window."
         )
 
 
@@ -405,8 +406,8 @@ def path_of(
             return like, "path synthesised in their likeness"
         if not wide or rows * ny > MOST_POINTS:
             narrow = f"{first.size[1] * 1e3:.4g} mm across" * (not wide)
-            allowed = f"a map as wide as the window, and paths of at most {MOST_POINTS:.2g} points"
-            received = narrow or f"{rows * ny:.2g} points"
+            allowed = f"a map as wide as the window, and paths of at most {rounded(MOST_POINTS, 2)} points"
+            received = narrow or f"{rounded(rows * ny, 2)} points"
             raise InputError("surface.continuation", received, allowed, "Leave it out, or roll shorter.")
     fade = min(ny, len(heights) // 2)  # a repeated one closes over a window
     laid, how = records.behind_run_in(heights, rows, run_in, continuation, fade)

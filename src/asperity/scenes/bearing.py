@@ -153,7 +153,8 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         ("tones", f"{tones}; cage {rounded(turning.cage, 4)} Hz"),
         (
             "time",
-            f"{steps} steps of {case.step * 1e6:.4g} µs, {case.settling:g} s of them before the record",
+            f"{steps} steps of {rounded(case.step * 1e6, 4)} µs, {case.settling:g} s of them "
+            "before the record",
         ),
         ("runs", f"{', '.join(case.laws)}, and {runs - len(case.laws)} by areal with parts alone"),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),

@@ -19,6 +19,7 @@ from asperity.schema import Values, spectra
 from asperity.spectra import HALF_BAND, nominal_frequency
 from asperity.structures.track import Track, decay_rate_en15461
 from asperity.surfaces.bands import likely_band
+from asperity.written_numbers import rounded
 
 LINES = 64
 """Frequencies in a band: they resolve the resonance of a rail whose loss factor is 1 %."""
@@ -199,8 +200,8 @@ def findings_of_measured(keys: TrackKeys, track: Track, band: Array) -> list[Fin
         found.append(
             Finding(
                 f"measured {quantity} over that of the computed track, farthest from 1",
-                f"{ratio[worst]:.2g} ({nominal_frequency(band[worst])})",
-                f"{1.0 / FACTOR:.2g} to {FACTOR:g}",
+                f"{rounded(ratio[worst], 2)} ({nominal_frequency(band[worst])})",
+                f"{rounded(1.0 / FACTOR, 2)} to {FACTOR:g}",
                 Grade.WARNING if off else None,
                 f"The contact force is that of another track than the one measured: see {off}.",
                 f"Fit pads, ballast and losses of [track] to it, or check track.{key}.",
@@ -295,7 +296,8 @@ def _of_roughness(over_frequency: xarray.Dataset) -> list[Condition]:
     apart = np.abs(np.log10(levels["surface_band"].values[:, None] / wavelength))
     known = apart.min(axis=0) < 0.03
     over = np.nan_to_num(of_rail[apart.argmin(axis=0)] - limit, nan=-np.inf)[known]
-    names, asked = [f"{1e3 * w:.3g} mm" for w in wavelength[known]], f"in {known.sum()} of {len(limit)} bands"
+    names = [f"{rounded(1e3 * w)} mm" for w in wavelength[known]]
+    asked = f"in {known.sum()} of {len(limit)} bands"
     condition = _banded("rail roughness", over, names, ("above", "dB"), f"at most the limit {asked}")
     return [condition | {"here": f"{condition['here']}{how}"}]
 

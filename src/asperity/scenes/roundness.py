@@ -13,6 +13,7 @@ from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import schema
 from asperity.schema import Values
 from asperity.spectra import level_of
+from asperity.written_numbers import rounded
 
 MOST_ORDERS = 60
 """Orders that are told; beyond, waves are roughness, which has its one-third octaves."""
@@ -56,7 +57,8 @@ class Orders:
         """Run-out and the largest orders: ``"run-out 80 µm; order 3 30 µm at 58.1 Hz, …"``."""
         largest = np.argsort(-self.amplitude, kind="stable")[:MOST_NAMED]
         told = [
-            f"order {n + 1} {data.engineering(self.amplitude[n], 'm')} at {(n + 1) * self.revolution:.3g} Hz"
+            f"order {n + 1} {data.engineering(self.amplitude[n], 'm')} at "
+            f"{rounded((n + 1) * self.revolution)} Hz"
             for n in largest.tolist()
             if self.amplitude[n] > SMALL * self.amplitude.max()
         ]

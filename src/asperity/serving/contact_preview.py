@@ -65,7 +65,7 @@ class PressedSample:
         carried = 0.9 * self.half_space.pressure_cap * self.half_space.cell_area * cells
         largest = min(shape.largest_force, carried)
         if largest <= shape.load:
-            received = f"{self.half_space.pressure_cap / 1e9:.3g} GPa"
+            received = f"{rounded(self.half_space.pressure_cap / 1e9)} GPa"
             allowed = f"a hardness with which the window carries the load of {rounded(shape.load)} N"
             raise InputError("contact.hardness", received, allowed)
         return largest

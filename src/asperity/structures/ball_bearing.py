@@ -12,6 +12,7 @@ from asperity.contact.hertz import Hertz, in_groove
 from asperity.diagnostics.hypotheses import Tone
 from asperity.parameters import Choice, MaterialOrName, Number, Quantity, checked_parameters, parameter
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.structures.bearing_statics import LoadedBearing
@@ -150,16 +151,21 @@ class BallBearing:
         most = 0.5 * self.groove_distance
         remedy = "Is the unit right? Or give larger conformities."
         clearance = self.radial_clearance
-        allowed = f"less than {most * 1e6:.4g} µm, where the balls touch at 41 deg"
-        require(clearance < most, "clearance", f"{clearance * 1e6:.4g} µm", allowed, remedy)
+        allowed = f"less than {rounded(most * 1e6, 4)} µm, where the balls touch at 41 deg"
+        require(clearance < most, "clearance", f"{rounded(clearance * 1e6, 4)} µm", allowed, remedy)
         if clearance < 0.0:
             load = self.series_stiffness * (-0.5 * clearance) ** 1.5
             contacts = self.inner_contact, self.outer_contact
             peak = max(each.peak_pressure(each.approach(load)) for each in contacts)
             # it grows with the root of the overlap
             elastic = -1e6 * clearance * (STATIC_PRESSURE / peak) ** 2
-            received = f"{clearance * 1e6:.4g} µm, which presses the balls with {peak / 1e9:.3g} GPa unloaded"
-            allowed = f"-{elastic:.3g} µm or more, {STATIC_PRESSURE / 1e9:g} GPa, where dents begin (ISO 76)"
+            received = (
+                f"{rounded(clearance * 1e6, 4)} µm, which presses the balls with "
+                f"{rounded(peak / 1e9)} GPa unloaded"
+            )
+            allowed = (
+                f"-{rounded(elastic)} µm or more, {STATIC_PRESSURE / 1e9:g} GPa, where dents begin (ISO 76)"
+            )
             require(peak <= STATIC_PRESSURE, "clearance", received, allowed, "Take a looser fit.")
 
     @classmethod

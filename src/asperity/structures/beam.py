@@ -16,6 +16,7 @@ from asperity.errors import InputError
 from asperity.kernels.curves import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
 from asperity.structures.modal import Modal, Pieces, modal_receptance, pieces_of, shapes_at
+from asperity.written_numbers import rounded
 
 SUPPORTS = ("simply-supported", "free", "clamped")
 
@@ -390,7 +391,7 @@ class SupportedBeam(_Uniform):
             raise InputError("positions of the supports (m)", "one place twice", "different places")
         object.__setattr__(self, "supports", ordered)
         if len(self._knots) > MOST_KNOTS:
-            received = f"{self.highest_frequency:.4g} Hz, {len(self._knots)} knots of splines"
+            received = f"{rounded(self.highest_frequency, 4)} Hz, {len(self._knots)} knots of splines"
             remedy = "Lower it, or take fewer supports."
             raise InputError("highest frequency of the beam (Hz)", received, f"{MOST_KNOTS} knots", remedy)
         self._needs_a_mode(self.natural_frequencies.size, self.highest_frequency)

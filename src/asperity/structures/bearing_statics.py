@@ -141,7 +141,8 @@ def load_distribution(
     except ComputationError as error:
         lift = bearing.centrifugal_force(speed)
         received = (
-            f"{rounded(radial, 4)} N radial and {rounded(preloaded, 4)} N axial at {60.0 * speed:.5g} 1/min"
+            f"{rounded(radial, 4)} N radial and {rounded(preloaded, 4)} N axial at "
+            f"{rounded(60.0 * speed, 5)} 1/min"
         )
         received += f", with {rounded(lift)} N of each ball outwards" * (lift > 0.0)
         remedy = f"Try {error.remedy}."
@@ -193,8 +194,8 @@ def _descended(
         place = place + share[..., None] * move
         energy, gradient, hessian = tried
     raise ComputationError(
-        f"{what}: {np.linalg.norm(gradient, axis=-1).max() / scale:.1g} of the load is out of balance after "
-        f"{MOST_STEPS} steps",
+        f"{what}: {rounded(np.linalg.norm(gradient, axis=-1).max() / scale, 1)} of the load is out of "
+        f"balance after {MOST_STEPS} steps",
         "another load, clearance or speed",
     )
 
@@ -306,13 +307,15 @@ def _doubt(found: LoadedBearing) -> None:
             hard, limit = peak > of.hardness, min(STATIC_PRESSURE, of.hardness) / 1e9
             means = "the hardness: the rings flow" if hard else "where dents begin (ISO 76)"
             grade = Grade.OUT if hard else Grade.WARNING
-            message = f"Balls press the {ring} ring with {peak / 1e9:.3g} GPa, above {limit:g} GPa, {means}."
+            message = (
+                f"Balls press the {ring} ring with {rounded(peak / 1e9)} GPa, above {limit:g} GPa, {means}."
+            )
             OutOfRangeWarning.warn(f"{message} {lighter}.", grade)
     if found.leaving_speed is not None:
         OutOfRangeWarning.warn(
-            f"At {60.0 * found.speed:.5g} 1/min centrifugal force lifts balls off the inner ring, all of "
-            f"which are pressed at rest; the first one leaves at {60.0 * found.leaving_speed:.5g} 1/min. "
-            "Raise axial load or preload."
+            f"At {rounded(60.0 * found.speed, 5)} 1/min centrifugal force lifts balls off the inner ring, "
+            "all of which are pressed at rest; the first one leaves at "
+            f"{rounded(60.0 * found.leaving_speed, 5)} 1/min. Raise axial load or preload."
         )
 
 
@@ -320,10 +323,10 @@ def _pressed_unloaded(found: LoadedBearing) -> dict[str, list[tuple[float, str]]
     """Forces of a ball on each ring, N, that come from no load, and what makes each of them smaller."""
     of = found.bearing
     squeezed = of.series_stiffness * max(-0.5 * of.radial_clearance, 0.0) ** 1.5
-    clearance = f"A clearance of {of.radial_clearance * 1e6:.4g} µm alone"
+    clearance = f"A clearance of {rounded(of.radial_clearance * 1e6, 4)} µm alone"
     fit = f"{clearance} presses each ball with {rounded(squeezed, 4)} N"
     thrown = of.centrifugal_force(found.speed)
-    turning = f"Centrifugal force alone is {rounded(thrown, 4)} N at {60.0 * found.speed:.5g} 1/min"
+    turning = f"Centrifugal force alone is {rounded(thrown, 4)} N at {rounded(60.0 * found.speed, 5)} 1/min"
     looser, slower = (squeezed, f"{fit}: take a looser fit"), (thrown, f"{turning}: run slower")
     return {"inner": [looser], "outer": [looser, slower]}
 
@@ -337,6 +340,7 @@ def doubt_speed(bearing: BallBearing, speed: float) -> None:
     factor = 60.0 * speed * 1e3 * bearing.pitch_diameter
     if factor > FASTEST:
         OutOfRangeWarning.warn(
-            f"speed = {speed:.5g} Hz is {60.0 * speed:.6g} 1/min, {factor:.2g} mm/min by the pitch diameter: "
-            f'few ball bearings run beyond {FASTEST:.0e}. Is it in 1/min? Then write "{speed:.5g} 1/min".'
+            f"speed = {rounded(speed, 5)} Hz is {rounded(60.0 * speed, 6)} 1/min, {rounded(factor, 2)} "
+            f"mm/min by the pitch diameter: few ball bearings run beyond {rounded(FASTEST)}. "
+            f'Is it in 1/min? Then write "{rounded(speed, 5)} 1/min".'
         )

@@ -12,6 +12,7 @@ import scipy
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real, real_array, require
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.curves import evaluate_pieces
+from asperity.written_numbers import rounded
 
 
 class Modal(Protocol):
@@ -109,7 +110,7 @@ def checked_flexibility(given: ArrayLike | None, count: int) -> Array | None:
             raise InputError(what, "a matrix that is not symmetric", "a symmetric one", remedy)
         least = np.linalg.eigvalsh(0.5 * (values + values.T))[0]
         if least < -ROUNDED * largest:
-            received = f"a matrix with an eigenvalue of {least:.2g} m/N"
+            received = f"a matrix with an eigenvalue of {rounded(least, 2)} m/N"
             raise InputError(what, received, "no negative one: it would create energy", remedy)
     return values if largest > 0.0 else None
 
@@ -370,10 +371,10 @@ def warn_of_coarse(at: Array, shapes: Array, natural: Array) -> None:
         points = np.pi / np.arcsin(min(0.5 * chord[coarse], 1.0))
         count = int(np.sum(chord > limit))
         CoarseSamplingWarning.warn(
-            f"The mode at {natural[coarse]:.4g} Hz has {points:.2g} points in a wavelength, fewer than "
-            f"{POINTS_PER_WAVELENGTH} ({count} of {natural.size} modes have so few): its shape between them "
-            "is a guess. Give mode shapes at more positions, or leave such modes out and give their "
-            "residual flexibility."
+            f"The mode at {rounded(natural[coarse], 4)} Hz has {rounded(points, 2)} points in a "
+            f"wavelength, fewer than {POINTS_PER_WAVELENGTH} ({count} of {natural.size} modes have so "
+            "few): its shape between them is a guess. Give mode shapes at more positions, or leave such "
+            "modes out and give their residual flexibility."
         )
 
 

@@ -16,6 +16,7 @@ from asperity.structures.modal import ModalStructure
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
+from asperity.written_numbers import rounded
 
 Dataset = dict[str, Any]
 
@@ -155,10 +156,10 @@ def _mode(
         ratio = -eigenvalue.real / abs(eigenvalue) if eigenvalue else 0.0
         shape, turn = _real_mode(values, frequency, source)
         mass = float((complex(mode["modal_a"]) * turn**2 / (2j * abs(eigenvalue.imag) or 1.0)).real)
-    received = f"a modal mass of {mass:.3g} of the mode at {frequency:.4g} Hz"
+    received = f"a modal mass of {rounded(mass)} of the mode at {rounded(frequency, 4)} Hz"
     require(mass > 0.0, source, received, "positive ones; 1 of mass-normalised modes", _EXPORT)
     known = damping is not None or 0.0 < ratio < 1.0 or frequency == 0.0
-    received = f"a damping ratio of {ratio:.3g} of the mode at {frequency:.4g} Hz"
+    received = f"a damping ratio of {rounded(ratio)} of the mode at {rounded(frequency, 4)} Hz"
     require(known, source, received, "above 0, below 1", "Give damping, for all modes.")
     return frequency, ratio if damping is None else damping, mass, shape
 
@@ -169,7 +170,7 @@ def _real_mode(values: Complex, frequency: float, source: str) -> tuple[Array, c
     turn = complex(np.exp(-0.5j * np.angle(squares)))
     turned = values * turn
     share = float(np.sum(turned.imag**2) / max(np.sum(np.abs(turned) ** 2), np.finfo(float).tiny))
-    received = f"{100 * share:.0f} % of the mode at {frequency:.4g} Hz out of phase"
+    received = f"{100 * share:.0f} % of the mode at {rounded(frequency, 4)} Hz out of phase"
     allowed = f"at most {100 * OUT_OF_PHASE:.0f} %: modes are taken as real"
     require(share <= OUT_OF_PHASE, source, received, allowed, "Give its receptance instead.")
     return turned.real.astype(float), turn

@@ -13,6 +13,7 @@ from asperity.arguments import Array, ArrayLike, Complex, NDArray, require
 from asperity.errors import ComputationError, InputError
 from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
+from asperity.written_numbers import rounded
 
 
 def vector_fit(
@@ -230,8 +231,12 @@ def check_range(frequency: Array, receptance: Complex) -> None:
     size = size[size > 0.0]
     low, high = float(size.min(initial=1.0)), float(size.max(initial=1.0))
     if not (low > 1.0 / LARGEST and high < LARGEST and SLOWEST < frequency[0] < frequency[-1] < LARGEST):
-        received = f"{low:.2g} to {high:.2g} m/N at {frequency[0]:.2g} to {frequency[-1]:.2g} Hz"
-        allowed = f"{1.0 / LARGEST:g} to {LARGEST:g} m/N from {SLOWEST:g} to {LARGEST:g} Hz"
+        received = (
+            f"{rounded(low, 2)} to {rounded(high, 2)} m/N at {rounded(frequency[0], 2)} to "
+            f"{rounded(frequency[-1], 2)} Hz"
+        )
+        limits = tuple(map(rounded, (1.0 / LARGEST, LARGEST, SLOWEST, LARGEST)))
+        allowed = "{} to {} m/N from {} to {} Hz".format(*limits)
         raise InputError("receptance", received, allowed, "Check the units, and the mass.")
 
 
@@ -241,10 +246,11 @@ def warn_of_short_band(what: str, frequency: Array, highest: float) -> None:
     if end >= REACH * highest:
         return
     told = (
-        f"The receptances of the {what} end at {frequency[-1]:.4g} Hz, {frequency[-1] / highest:.2g} times "
-        f"numerics.highest_frequency; {REACH:g} times it, {REACH * highest:.4g} Hz, are wanted. Of what is "
-        "above, little but the stiffness is known, and the highest bands may be decibels off. Give them to "
-        f"{REACH * highest:.4g} Hz, or lower numerics.highest_frequency to {end / REACH:.4g} Hz."
+        f"The receptances of the {what} end at {rounded(frequency[-1], 4)} Hz, "
+        f"{rounded(frequency[-1] / highest, 2)} times numerics.highest_frequency; {REACH:g} times it, "
+        f"{rounded(REACH * highest, 4)} Hz, are wanted. Of what is above, little but the stiffness is "
+        f"known, and the highest bands may be decibels off. Give them to {rounded(REACH * highest, 4)} Hz, "
+        f"or lower numerics.highest_frequency to {rounded(end / REACH, 4)} Hz."
     )
     grade = errors.Grade.WARNING if end >= highest else errors.Grade.OUT
     errors.ShortRecordWarning.warn(told, grade)
@@ -260,9 +266,10 @@ def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
         worst = int(np.argmin(width / apart))
         errors.CoarseSamplingWarning.warn(
             f"{int(narrow.sum())} of {own.size} modes are narrower at half their power than half a line of "
-            f"the receptance: that at {own[worst]:.4g} Hz is {width[worst]:.2g} Hz wide, of lines "
-            f"{apart[worst]:.3g} Hz apart. With noise its loss factor is a guess. Give lines at most "
-            f"{width[worst]:.2g} Hz apart there; they need not be even, and a netCDF file holds many.",
+            f"the receptance: that at {rounded(own[worst], 4)} Hz is {rounded(width[worst], 2)} Hz wide, "
+            f"of lines {rounded(apart[worst])} Hz apart. With noise its loss factor is a guess. Give lines "
+            f"at most {rounded(width[worst], 2)} Hz apart there; they need not be even, and a netCDF file "
+            "holds many.",
             errors.Grade.NOTE,
         )
 

@@ -15,6 +15,7 @@ from asperity.structures.cell_waves import CellWaves
 from asperity.structures.periodic_rail import PeriodicWaves
 from asperity.structures.track import Track
 from asperity.threads import thread_count
+from asperity.written_numbers import engineering
 
 ZONES = 4
 """Multiples of half the sampling frequency up to which the receptance near the contact is folded."""
@@ -166,7 +167,7 @@ def moving_kernel(
 def _refuse_size(track: Track, length: float, lines: int) -> None:
     """Refuse more bays that differ than fit into memory, for a kernel of a length, s, and its frequencies."""
     if track.bays and track.cell_bays * lines > MOST_LINES:
-        received = f"{track.cell_bays}, for a kernel of {length:.2g} s at {lines} frequencies"
+        received = f"{track.cell_bays}, for a kernel of {engineering(length, 's', 2)} at {lines} frequencies"
         remedy = "Take fewer bays, a lower highest frequency, or more damping, so that the kernel is shorter."
         raise InputError("bays that differ", received, f"at most {MOST_LINES // lines} of them", remedy)
 
@@ -220,7 +221,8 @@ def _weights(
             for number, found in zip(rows, pool.map(row, rows), strict=True):
                 weights[number] = found
                 if progress is not None:
-                    progress(number + 1, len(weights), f"moving kernel of {taps * time_step:.2g} s")
+                    length = engineering(taps * time_step, "s", 2)
+                    progress(number + 1, len(weights), f"moving kernel of {length}")
     return weights
 
 

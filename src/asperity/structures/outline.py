@@ -10,6 +10,7 @@ from asperity.arguments import Array, ArrayLike, NDArray, finite_array, one_of, 
 from asperity.errors import ComputationError, InputError
 from asperity.parameters import Number, Quantity, parameter
 from asperity.reference.railways import SECTIONS
+from asperity.written_numbers import rounded
 
 MOST_POINTS = 2000
 FINENESS = 0.25
@@ -171,10 +172,12 @@ def mesh_of(outline: Array, size: float | None = None, kept: ArrayLike = ()) -> 
     step = FINENESS * thick if size is None else size
     width, height = np.ptp(outline, axis=0)
     if width * height * _doubled_area(outline) / thick > MOST_CELLS * step**3:
-        received = f"a mean thickness of {thick * 1e3:.3g} mm on {max(width, height) * 1e3:.3g} mm"
+        received = f"a mean thickness of {rounded(thick * 1e3)} mm on {rounded(max(width, height) * 1e3)} mm"
         raise InputError("outline of the section", received, "a section that is not so thin or jagged")
     count = round(_doubled_area(outline) / (0.5 * np.sqrt(3.0) * step**2))
-    received = f"{count} triangles of {step * 1e3:.3g} mm, for a mean thickness of {thick * 1e3:.3g} mm"
+    received = (
+        f"{count} triangles of {rounded(step * 1e3)} mm, for a mean thickness of {rounded(thick * 1e3)} mm"
+    )
     allowed = f"at most {MOST_TRIANGLES}, some more than a disc of 3 mm has"
     require(count <= MOST_TRIANGLES, "outline of the section", received, allowed, "Is the unit right?")
     around = _divided(_straightened(outline, BLUNT * step, np.atleast_1d(np.asarray(kept, dtype=int))), step)

@@ -11,6 +11,7 @@ from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, pe
 from asperity.structures import modal, modal_fit
 from asperity.structures.body import Body, Wheel
 from asperity.structures.modal_fit import RESIDUAL_DAMPING, Modes
+from asperity.written_numbers import rounded
 
 INSIDE = 1.02
 """Of the highest frequency, up to which a mode is one of the band."""
@@ -273,7 +274,7 @@ def _check_energy(frequency: Array, at_forces: Complex) -> None:
         worst = int(np.argmax(created))
         EnergyWarning.warn(
             f"The receptance creates energy at {percent(float(np.mean(created > CREATED)))} of its "
-            f"frequencies, most at {frequency[worst]:.5g} Hz: its imaginary part there is up to "
+            f"frequencies, most at {rounded(frequency[worst], 5)} Hz: its imaginary part there is up to "
             f"{percent(float(created[worst]))} of it positive, more than {percent(CREATED)} of noise. The "
             "modes fitted to it create none. Check phases, and that forces and responses are counted in one "
             "direction at the same places."

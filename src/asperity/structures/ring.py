@@ -8,6 +8,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, not_negative, one_of, positive, real, require, whole
 from asperity.structures.modal import Modal
+from asperity.written_numbers import rounded
 
 Direction = Literal["radial", "axial"]
 
@@ -208,7 +209,7 @@ class Around(Modal):
         require(whole_turn, "angles of modes (rad)", f"{first:.6g} to {last:.6g}", "0 to 2π, a whole turn")
         shapes, _ = self.modes.shapes(np.linspace(first, last, 64))
         missed, allowed = float(np.abs(shapes[-1] - shapes[0]).max()), "the same shapes at 0 and 2π"
-        closed, received = missed <= CLOSED * np.abs(shapes).max(), f"ends {missed:.2g} apart"
+        closed, received = missed <= CLOSED * np.abs(shapes).max(), f"ends {rounded(missed, 2)} apart"
         require(closed, "modes around a circle", received, allowed, "Repeat the first row at the end.")
 
     @property

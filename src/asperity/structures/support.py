@@ -7,6 +7,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array
 from asperity.errors import InputError
+from asperity.written_numbers import rounded
 
 
 def keep_as_tuples(frozen: object, *names: str) -> None:
@@ -483,5 +484,5 @@ def measured_sleeper(frequency: Array, receptance: Complex, mass: float) -> Meas
     off = 20.0 * np.log10(np.abs(fitted / receptance))
     worst = int(np.argmax(np.abs(off)))
     words = f"{len(own)} modes on {mass:.4g} kg"
-    words += f" ({abs(off[worst]):.2g} dB off at most, at {frequency[worst]:.4g} Hz)"
+    words += f" ({rounded(abs(off[worst]), 2)} dB off at most, at {rounded(frequency[worst], 4)} Hz)"
     return replace(found, fit_error=modal_fit.level_error(fitted, receptance), fitted=words)

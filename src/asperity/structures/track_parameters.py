@@ -9,6 +9,7 @@ from asperity.arguments import Array, not_negative, require, shown, whole
 from asperity.errors import InputError
 from asperity.parameters import Flag, Number, Quantity, checked_parameters, keys_of, parameter
 from asperity.structures.support import MeasuredSleeper, Relaxation, StiffnessTable, keep_as_tuples
+from asperity.written_numbers import rounded
 
 MOST_BAYS = 100
 """Of a cell: waves are kept of each of them, some ten megabytes."""
@@ -38,7 +39,7 @@ class Bays:
             what, count = f"{each.name} of the bays", f"as many as bays, {len(self.spacing)}"
             require(len(values) == len(self.spacing), what, f"{len(values)} values", count)
             if wrong := np.flatnonzero(~((values > 0.0) & np.isfinite(values))).tolist():
-                received = f"{values[wrong[0]]:.3g} times the nominal one in bay {wrong[0] + 1}"
+                received = f"{rounded(values[wrong[0]])} times the nominal one in bay {wrong[0] + 1}"
                 raise InputError(what, received, "above zero", "Lower its scatter, or take another seed.")
         received, allowed = f"{np.mean(self.spacing):.6g} times the nominal one", "the nominal one"
         even = np.isclose(np.mean(self.spacing), 1.0, rtol=1e-9)

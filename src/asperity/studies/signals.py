@@ -41,6 +41,7 @@ from asperity.text_files import (
     write_csv,
 )
 from asperity.units import quantity, unit_in
+from asperity.written_numbers import rounded
 
 FORMATS = ("nc", "npy", "wav")
 LABELS = "labels.csv"
@@ -279,7 +280,7 @@ def _check_size(values: Array, source: str) -> None:
     """Refuse a signal whose squares no number holds."""
     largest = float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
     held, allowed = largest == 0.0 or LEAST_PEAK < largest < MOST_PEAK, f"{LEAST_PEAK:g} to {MOST_PEAK:g}"
-    require(held, source, f"values of up to {largest:.3g}", f"{allowed} at most", "Is its type right?")
+    require(held, source, f"values of up to {rounded(largest)}", f"{allowed} at most", "Is its type right?")
 
 
 def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None]:

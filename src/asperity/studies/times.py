@@ -10,6 +10,7 @@ from asperity.case.table_headings import unit_of
 from asperity.errors import InputError
 from asperity.surfaces.readers.positions import places
 from asperity.units import factor
+from asperity.written_numbers import rounded
 
 _TITLE = re.compile(r"\W*(time|zeit|temps|tiempo|tempo|t)(?![a-z])", re.IGNORECASE)
 BARE_RATES = (100.0, 1e7)
@@ -48,7 +49,7 @@ def rate_beside(given: float | None, of_times: float | None, source: str) -> flo
     remedy = 'Give the sampling rate, as in --rate "12 kHz", if the samples are even all the same.'
     require(given or of_times, f"times in {source}", "uneven ones", "equal steps", remedy)
     if given and of_times:
-        received, allowed = f"{given:g} Hz", f"{of_times:.6g} Hz, as its times say"
+        received, allowed = f"{given:g} Hz", f"{rounded(of_times, 6)} Hz, as its times say"
         same = abs(given / of_times - 1.0) <= SAME
         require(same, f"sampling rate of {source}", received, allowed, "Leave it out, or correct the times.")
     return float(of_times or given or 0.0)

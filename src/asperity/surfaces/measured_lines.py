@@ -18,6 +18,7 @@ from asperity.reference.cnossos import rail_roughness
 from asperity.surfaces.bands import LIKELY_WAVELENGTHS, band_levels_of, likely_band
 from asperity.surfaces.cleaning import nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.written_numbers import rounded
 
 ROLLED_RADIUS = 0.375
 """Radius of the circle that is rolled over a line, m."""
@@ -51,7 +52,7 @@ def process(
     done, lifts, trimmed, filled, removed, changed = [], [], 0, 0, 0, 0
     for profile in lines:
         if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
-            coarse = f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610"
+            coarse = f"spacing {rounded(profile.spacing * 1e3)} mm, more than the 1 mm of EN 15610"
             remedy = (
                 "spikes and short waves are not resolved; measure more finely or leave the processing out"
             )
@@ -74,7 +75,7 @@ def process(
         f"{trimmed} missing points trimmed at the ends",
         f"{filled} points filled" if "fill" in steps else "gaps not filled",
         f"{removed} spikes ({changed} points) removed" if "spikes" in steps else "spikes kept",
-        f"{rolled}, by up to {highest * 1e6:.3g} µm" if "curvature" in steps else "not rolled over",
+        f"{rolled}, by up to {rounded(highest * 1e6)} µm" if "curvature" in steps else "not rolled over",
     )
     return done, "EN 15610:2009: " + "; ".join(words)
 

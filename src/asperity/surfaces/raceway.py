@@ -16,6 +16,7 @@ from asperity.surfaces.likeness import likeness
 from asperity.surfaces.strip import places_across
 from asperity.surfaces.synthesis import LikeMaps, SelfAffine
 from asperity.surfaces.tiles import closed
+from asperity.written_numbers import rounded
 
 MOST_POINTS = 2**26
 """Points of a raceway: 512 MiB."""
@@ -155,8 +156,8 @@ def closed_trace(trace: ArrayLike) -> tuple[Array, Array]:
     once = turn - 1.5 * widest <= turned <= turn + 1e-3 * widest
     require(once, what, received, allowed, "Trim it to one turn.")
     open_by = abs(float(deviation[-1] - deviation[0]))
-    received = f"ends that differ by {open_by * 1e6:.3g} um"
-    allowed = f"ends that meet as its neighbours do, within {jumps.max() * 1e6:.3g} um"
+    received = f"ends that differ by {rounded(open_by * 1e6)} um"
+    allowed = f"ends that meet as its neighbours do, within {rounded(jumps.max() * 1e6)} um"
     require(open_by <= jumps.max(), what, received, allowed, "Take off what drifted, or measure anew.")
     n = len(angle) - (turned > turn - 0.5 * steps.min())  # without where it came back to its first place
     return np.append(angle[:n], angle[0] + turn), np.append(deviation[:n], deviation[0])

@@ -15,6 +15,7 @@ from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip, places_across
 from asperity.surfaces.tiles import GROUP, Tiling, Waves, deviates, fine, heights_at
+from asperity.written_numbers import rounded
 
 Continuation = Literal["refuse", "mirror", "repeat"]
 
@@ -194,7 +195,7 @@ class SelfAffine:
         require(fine, "shortest", self.shortest, f"at least two samples, {coarsest:.4g} m")
         sizes = [max(2.0 * each.length / self.shortest, FEWEST) for each in (self.along, self.across)]
         received = f"{self.longest:.4g} m with waves down to {self.shortest:.4g} m"
-        received += f", which take tiles of {sizes[0]:.3g} x {sizes[1]:.3g} points"
+        received += f", which take tiles of {rounded(sizes[0])} x {rounded(sizes[1])} points"
         remedy = "Shorten it, lengthen the shortest, or bring the anisotropy nearer to 1."
         allowed = f"at most {LARGEST_TILE} points"
         require(sizes[0] * sizes[1] <= LARGEST_TILE, "longest", received, allowed, remedy)

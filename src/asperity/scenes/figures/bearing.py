@@ -12,7 +12,7 @@ from asperity.diagnostics.kurtogram import LEAST_POWER
 from asperity.reporting import chart, data, panels
 from asperity.reporting.figure import Lines, Of, figure
 from asperity.reporting.headline import Answers, HeadlineNumber
-from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
 from asperity.schema import bearing, provenance, rolling, spectra
 from asperity.written_numbers import between, in_newtons, plain, rounded
 
@@ -281,7 +281,7 @@ def bands_table(tree: DataTree) -> ReportTable:
         velocities = np.concatenate([velocities, alone.values])
     columns = {"law": text_cells(law for law, _ in rows), "of": text_cells(what for _, what in rows)}
     for band, values in zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True):
-        columns[f"{band}, µm/s"] = number_cells(values, "{:.3g}")
+        columns[f"{band}, µm/s"] = number_cells(values, in_digits(3))
     note = (
         "Rms radial velocity of the outer ring; alone: at the first accelerometer, all other parts smooth. "
         "ISO 15242-2 measures it at 1800 1/min of the inner ring under an axial load, with filters whose "
@@ -316,7 +316,7 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
     degrees = _degrees(data.values(tree, bearing.AZIMUTH)[0])
     columns = {"ball at": number_cells(np.round(degrees) + 0.0, "{:.0f}°")}
     shown = (
-        (bearing.BALL_LOAD, "N", 1.0, "{:.4g}"), (bearing.BALL_ANGLE, "°", np.pi / 180.0, "{:.1f}"),
+        (bearing.BALL_LOAD, "N", 1.0, in_digits(4)), (bearing.BALL_ANGLE, "°", np.pi / 180.0, "{:.1f}"),
         (bearing.SEMI_AXIS_ALONG, "along, mm", 1e-3, "{:.3f}"),
         (bearing.SEMI_AXIS_ACROSS, "across, mm", 1e-3, "{:.3f}"),
         (bearing.PEAK_PRESSURE, "GPa", 1e9, "{:.2f}")

@@ -241,7 +241,7 @@ def contacts_table(tree: DataTree) -> ReportTable:
             data.values(tree, rolling.OFFSET), lambda offset: data.engineering(offset, "m", 4)
         ),
         "static force": number_cells(data.values(tree, rolling.STATIC_LOAD), "N"),
-        f"out of contact, {main}": number_cells(100.0 * lost, "{:.3g} %"),
+        f"out of contact, {main}": number_cells(lost, data.in_percent),
     }
     for lateral in Of(schema.LATERAL_CONTACT_SPREAD, optional=True)(tree):
         columns[f"lateral force, rms, {main}"] = number_cells(lateral.values, "N")

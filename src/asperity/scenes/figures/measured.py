@@ -67,7 +67,7 @@ def measured_table(tree: DataTree) -> tables.ReportTable:
             if entry.units == "dB":
                 columns[head] = tables.change_cells(found, doubtful)
             elif entry.units == "dB/m":
-                columns[head] = tables.number_cells(found, "{:.2g}")
+                columns[head] = tables.number_cells(found, tables.in_digits(2))
             else:
                 columns[head] = tables.number_cells(20.0 * np.log10(found), data.signed)
     note = (

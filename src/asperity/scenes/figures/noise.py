@@ -11,7 +11,7 @@ from asperity.reference.railways import HARD
 from asperity.reporting import chart, data, headline, panels
 from asperity.reporting.chart import INK, MUTED, Axis, Line, Mark, Note, Numbers, Panel, Rules
 from asperity.reporting.figure import Lines, Of, Series, figure
-from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.scenes.figures.measured import LOOKS, limit_sentence
 from asperity.scenes.figures.sources import BODIES, RAIL, WHOLE, Sources, decides, main_sources
@@ -379,7 +379,7 @@ def wheel_table(tree: DataTree) -> ReportTable:
         "mode at": text_cells(names + more),
         "nodal diameters": number_cells([*diameters[shown], *[np.nan] * len(more)], "{:.0f}"),
         "damping ratio": number_cells(
-            [*np.where(frequency, damping, np.nan)[shown], *[np.nan] * len(more)], "{:.2g}"
+            [*np.where(frequency, damping, np.nan)[shown], *[np.nan] * len(more)], in_digits(2)
         ),
         "dB(A)": number_cells(levels, "{:.1f}"),
         "share / %": number_cells(share, "{:.1f}"),

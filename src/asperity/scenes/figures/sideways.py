@@ -9,7 +9,7 @@ from asperity.arguments import Array
 from asperity.reporting import data, headline, panels
 from asperity.reporting.chart import BLUE, MUTED, VERMILLION, Axis, Line, Note, Panel
 from asperity.reporting.figure import Lines, Of, field, figure
-from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.reporting.tables import ReportTable, in_digits, number_cells, table, text_cells
 from asperity.reporting.texture_figures import map_panel
 from asperity.scenes import schema
 from asperity.scenes.figures import force
@@ -54,8 +54,8 @@ def lateral_force(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
             else f" of the tread, and {rounded(1e3 * head)} mm off that of the head"
         )
         yield (
-            f"The contact is {1e3 * place:.3g} mm off the middle{own}, positive towards the field side, and "
-            f"as stiff as {data.engineering(stiffness, 'N/m')} sideways (Mindlin)."
+            f"The contact is {rounded(1e3 * place)} mm off the middle{own}, positive towards the field "
+            f"side, and as stiff as {data.engineering(stiffness, 'N/m')} sideways (Mindlin)."
         )
     yield panels.shaded_words(tree)
 
@@ -103,7 +103,7 @@ def sideways_table(tree: DataTree) -> ReportTable:
     laws = data.held_laws(tree, FORCE)
     columns = {
         "law": text_cells(laws),
-        "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), "{:.3g}"),
+        "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), in_digits(3)),
         "beyond friction": text_cells(map(data.in_percent, data.values(tree, schema.SLIP_SHARE)), "number"),
     }
     alone, there = schema.SINGLE_FORCE_POWER_LEVEL_A, data.laws(tree, schema.SINGLE_FORCE_POWER_LEVEL_A)
@@ -230,9 +230,9 @@ def creep_answers(tree: DataTree) -> headline.Answers | None:
     fastest = ", ".join(_named(tree, n) for n in shapes[:3])
     ratio = max(float(growth[n] / (2.0 * np.pi * frequency[n])) for n in growing)
     more = (
-        f"Squeal: yes, {len(shapes)} of {modes} grow, by {cause} (linear stability); fastest {fastest}, the "
-        f"first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}; about {100.0 * ratio:.2g} % "
-        f"more of critical damping would stop all.{aside}"
+        f"Squeal: yes, {len(shapes)} of {modes} grow, by {cause} (linear stability); fastest {fastest}, "
+        f"the first e-fold in {data.engineering(1.0 / growth[growing[0]], 's')}; about "
+        f"{rounded(100.0 * ratio, 2)} % more of critical damping would stop all.{aside}"
     )
     return headline.Answers(more=more)
 
@@ -266,10 +266,10 @@ def squeal(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     damping, slope = (data.number(tree, fact) or 0.0 for fact in (schema.CREEP_DAMPING, schema.LOAD_SLOPE))
     yield (
         "Small motions of the wheel on the rail at mid-span, with nodal diameters where they grow; some "
-        "decay faster than the axis shows. As the wheel turns, a mode with nodal diameters is two. Linear, "
-        "by quasi-steady friction in line with the springs of the contact: it damps by "
-        f"{data.engineering(damping, 'N s/m')}, and follows the load by {slope:.3g}. Squeal is that of two "
-        "and more nodal diameters: the others move the axle, which is rigid here."
+        "decay faster than the axis shows. As the wheel turns, a mode with nodal diameters is two. "
+        "Linear, by quasi-steady friction in line with the springs of the contact: it damps by "
+        f"{data.engineering(damping, 'N s/m')}, and follows the load by {rounded(slope)}. Squeal is that "
+        "of two and more nodal diameters: the others move the axle, which is rigid here."
     )
 
 

@@ -297,7 +297,7 @@ def out_of_round(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     amplitude = np.sqrt(2.0) * 1e-6 * 10.0 ** (level / 20.0)
     largest = np.argsort(-np.nan_to_num(amplitude), kind="stable")[:NAMED].tolist()
     told = ", ".join(
-        f"{order[n]:.0f} with {data.engineering(float(amplitude[n]), 'm')} at {frequency[n]:.3g} Hz"
+        f"{order[n]:.0f} with {data.engineering(float(amplitude[n]), 'm')} at {rounded(frequency[n])} Hz"
         for n in largest
         if level[n] > np.nanmax(level) - SPAN
     )

@@ -14,6 +14,7 @@ from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, text
 from asperity.surfaces.readers.belief import judge_sizes
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.libraries import CLASSIC, read_apart
+from asperity.written_numbers import rounded
 
 __all__ = ["read_all", "read_surface"]
 
@@ -220,7 +221,8 @@ def _finished(
         if fill and ends:
             left = f"interpolated along the lines but for {ends} at their ends"
         what = (
-            f"{surfaces[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
+            f"{surfaces[0].source}: {missing} points ({rounded(100 * share)} % of all) have no "
+            "height, none should"
         )
         what += f" ({missing - before} of them were spikes)" * (missing > before)
         MissingPointsWarning.warn(f"{what}; {left}; {remedy}")

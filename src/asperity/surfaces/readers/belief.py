@@ -8,6 +8,7 @@ from asperity.arguments import Array
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers.hints import Hints, advice, spell
+from asperity.written_numbers import rounded
 
 SLOPES, USUAL_SLOPES = (1e-8, 10.0), (1e-6, 2.0)
 """Typical slopes from point to point: refused beyond the first, doubted beyond the second.
@@ -77,15 +78,15 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
     if slope is None:
         return
     rms = told_length(float(np.nanstd(surface.heights)))
-    found = f"heights of {rms} over {_extent(surface)}: slopes of {slope:.2g}"
+    found = f"heights of {rms} over {_extent(surface)}: slopes of {rounded(slope, 2)}"
     steep = slope > USUAL_SLOPES[1]
     remedy = _of_heights(surface, _thousands(slope / USUAL), hints) if steep else places
     if not SLOPES[0] <= slope <= SLOPES[1]:
-        allowed = f"slopes of {SLOPES[0]:g} to {SLOPES[1]:g} from point to point"
+        allowed = f"slopes of {rounded(SLOPES[0])} to {rounded(SLOPES[1])} from point to point"
         raise InputError(what, found, allowed, remedy)
     if not USUAL_SLOPES[0] <= slope <= USUAL_SLOPES[1]:
-        usual = "up to {1:g}" if steep else "from {0:g} on"
-        OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual.format(*USUAL_SLOPES)}. {remedy}")
+        usual = f"up to {rounded(USUAL_SLOPES[1])}" if steep else f"from {rounded(USUAL_SLOPES[0])} on"
+        OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual}. {remedy}")
 
 
 def _far_from_others(heights: Array) -> str:
