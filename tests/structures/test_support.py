@@ -148,7 +148,7 @@ def test_a_sleeper_that_loses_is_causal_passive_and_takes_its_part_of_the_power(
 test_sleepers_that_cannot_be_are_refused = refusals(
     (np.where(FREQUENCY < 300.0, 1.0, 1.0 + 0.2j), "imaginary part above zero from 3.* to 6000 Hz, by which"),
     (np.where(FREQUENCY < 300.0, 1.0, 0.0), "size of a receptance"),
-    (np.full(len(FREQUENCY), 1e30), "1e-20 to 1e+20 m/N"),
+    (np.full(len(FREQUENCY), 1e30), "1·10⁻²⁰ to 1·10²⁰ m/N"),
     (beam(), "remove sleeper_bending_stiffness"),
     of=lambda receptance: Track.named(
         "uic60",
