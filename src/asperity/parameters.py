@@ -15,6 +15,7 @@ from asperity.arguments import Array, NDArray, nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import factor, quantity, written
+from asperity.written_numbers import rounded
 
 _WORDS = {
     "m": ("a length", "25 mm"),
@@ -162,7 +163,9 @@ class Quantity(Bounded):
         if not math.isfinite(number) and not (self.infinite and number > 0):
             self.refuse(value, "Give a finite value.")
         if math.isfinite(number) and is_absurd(number):
-            self.refuse(value, f"In {self.dimension}, numbers lie between {LEAST:g} and {MOST:g}.")
+            self.refuse(
+                value, f"In {self.dimension}, numbers lie between {rounded(LEAST)} and {rounded(MOST)}."
+            )
         if not self.holds(number):
             self.refuse(value)
         return number

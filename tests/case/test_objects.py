@@ -11,14 +11,16 @@ from hypothesis import strategies as st
 import asperity
 from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail, laws
 from asperity.case.any_case import entries
-from asperity.case.cases import as_case, parse_case
+from asperity.case.cases import as_case, load_case, parse_case
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Choice, Flag, MaterialOrName, Number, Quantity, key
 from asperity.reference.materials import MATERIALS
 from asperity.scenarios.records import read_maps, spectrum_levels
 from asperity.studies.definition import study_of
+from asperity.surfaces.readers import read_all
 from asperity.units import quantity, written
 from refusals import refusals
+from small_cases import changed
 
 MAP = HeightMap(1e-7 * np.random.default_rng(1).normal(size=(40, 30)), 8e-6)
 ROUGH = BallOnBeam(surface={"rms": 0.5e-6})
@@ -125,6 +127,47 @@ class TestInMemory:
         assert digest not in BallOnBeam(surface={"file": HeightMap(2 * MAP.heights, 8e-6)}).text
         with pytest.raises(CaseError, match="no such file"):
             parse_case(case.text)
+
+    def test_it_is_saved_beside_its_case_which_computes_the_same_to_the_last_bit(self, tmp_path):
+        """A map, an ensemble, a line; files of an earlier save are written again."""
+        step = 0.1 + 0.2  # a number whose digits go on
+        line = Profile(1e-6 * np.random.default_rng(0).normal(size=(400)), 1e-3 * step)
+        maps = [HeightMap(sign * MAP.heights, 1e-5 * step) for sign in (1.0, -1.0)]
+        for surface in ({"file": maps[0]}, {"file": maps}, {"file": maps[0], "line": line}):
+            case = BallOnBeam(surface=surface)
+            saved = load_case(case.save(tmp_path / "new" / "case.toml"))
+            assert saved.in_memory == {}
+            for found, held in zip(read_maps(saved.surface), read_maps(case.surface), strict=True):
+                np.testing.assert_array_equal(found.heights, held.heights)
+                assert found.spacing == held.spacing
+        (found,) = read_all(saved.surface.line, height_unit="m", pixel=f"{saved.surface.line_spacing!r} m")
+        np.testing.assert_array_equal(found.heights, line.heights)
+        assert found.spacing == line.spacing
+        assert sorted(path.name for path in (tmp_path / "new").iterdir()) == [
+            "case.toml",
+            "case_surface_file.npy",
+            "case_surface_line.npy",
+        ]
+
+    def test_a_saved_case_runs_to_the_same_bits(self, own_cache, tmp_path):
+        """What the page of a run says under Make it again."""
+        rough = HeightMap(4e-8 * np.random.default_rng(1).normal(size=(80, 40)), 20e-6)
+        case = changed("ball-on-beam", laws=["areal", "linear-filtered"], surface={"file": rough})
+        first = asperity.run(case)
+        again = asperity.run(case.save(tmp_path / "case.toml"))
+        for group in first.children:
+            for name, values in first[group].data_vars.items():
+                np.testing.assert_array_equal(again[group][name].values, values.values, err_msg=str(name))
+
+    def test_what_no_array_holds_is_refused_with_what_to_save_first(self, tmp_path):
+        oblong = {"file": HeightMap(MAP.heights, (8e-6, 9e-6))}
+        table = {"spectrum": np.array([[0.1, 3.0], [0.08, 2.0], [0.063, 1.0]])}
+        for surface, named in ((oblong, "surface.file"), (table, "surface.spectrum")):
+            with pytest.raises(InputError, match=rf"{named}: received .*Save it first, as np.save"):
+                BallOnBeam(surface=surface).save(tmp_path / "case.toml")
+        with pytest.raises(InputError, match=r'path: received .*as "case.toml"'):
+            BallOnBeam(surface={"file": MAP}).save(tmp_path / "case.txt")
+        assert list(tmp_path.iterdir()) == []
 
     def test_a_map_gives_what_its_file_gives(self, tmp_path):
         np.save(tmp_path / "map.npy", MAP.heights)

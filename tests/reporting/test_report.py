@@ -200,6 +200,7 @@ def test_a_case_with_a_map_in_memory_says_what_to_save_first():
     assert (
         "with <code>surface.file</code> in memory: height map of 40 × 30 points, 8 um × 8 um apart" in again
     )
+    assert '<code>case.save("case.toml")</code>' in html.unescape(again)
     assert '<code>numpy.save("surface_file.npy", …)</code>' in html.unescape(again)
     assert "Then save the case below" in again
 

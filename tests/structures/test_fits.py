@@ -320,7 +320,10 @@ test_records_and_modes_that_are_none_are_refused = pytest.mark.filterwarnings(
         (changed("receptance", lambda h: h * CHANCE), "modes meet to .* dB only; .*along the force, not"),
         (changed("driven", lambda x: x + 0.004), r"forces at 0.129, .*different places among those"),
         (slow(1e300 * ONE), "10²⁹[⁶⁷] m/N at 20 to 58 Hz; allowed: 1·10⁻²⁰ to 1·10²⁰ m/N"),
-        (slow(1e-312 * ONE), "at 20 to 58 Hz; allowed: 1·10⁻²⁰ to 1·10²⁰ m/N.* Check the units, and the mass"),
+        (
+            slow(1e-312 * ONE),
+            "at 20 to 58 Hz; allowed: 1·10⁻²⁰ to 1·10²⁰ m/N.* Check the units, and the mass",
+        ),
         (slow(ONE, 1e-300 * SLOW), "at 2·10⁻²⁹⁹ to 5.8·10⁻²⁹⁹ Hz; allowed: .* from 1·10⁻⁶ to 1·10²⁰ Hz"),
         (slow(np.full(SLOW.size, -1j)), "values that 1 modes meet to .* dB only"),
         # without a mode left, scipy's non-negative least squares ended the process

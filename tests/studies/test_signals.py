@@ -313,9 +313,9 @@ test_signals_that_are_none = refusals(
     (
         "a.npy",
         1e308 * np.sin(np.arange(9.0)),
-        r"values of up to 9.89e\+307; allowed: 1e-60 to 1e\+60 at most",
+        r"values of up to 9.89·10³⁰⁷; allowed: 1·10⁻⁶⁰ to 1·10⁶⁰ at most",
     ),
-    ("a.npy", 1e-300 * np.sin(np.arange(9.0)), "values of up to 9.89e-301"),
+    ("a.npy", 1e-300 * np.sin(np.arange(9.0)), "values of up to 9.89·10⁻³⁰¹"),
     (
         "a.uff",
         b"    -1\n    58\nNONE\nNONE\n 0.1 0.2\n",

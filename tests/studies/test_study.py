@@ -16,7 +16,6 @@ from executors import BALL, Here
 
 import asperity
 from asperity.case.cases import parse_case
-from asperity.cli import studying
 from asperity.errors import ComputationError
 from asperity.laws import Role
 from asperity.running import run
@@ -24,6 +23,7 @@ from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES
 from asperity.store import Store
 from asperity.studies import member, running
 from asperity.studies.member import _weighted, _weighted_name
+from asperity.studies.words import in_words
 
 SWEEP = {"speed": ["0.5 m/s", "1 m/s"], "seed": [1, 2, 3]}
 
@@ -239,14 +239,26 @@ def test_differences_of_totals_are_over_the_bands_that_both_laws_have():
     ("heading", "value", "head", "written"),
     [
         ("force_level_a [dB(A) re 1 N]", 1.9364, "force level, A-weighted [dB(A) re 1 N]", "1.9"),
-        ("force_a_difference_to_linear [dB]", -18.0, "force, A-weighted over linear [dB]", "−18.0"),
+        ("force_a_difference_to_linear [dB]", -18.0, "force, A-weighted, over linear [dB]", "−18.0"),
         ("power_a total [dB(A) re 1 pW]", -0.02, "power, A-weighted total [dB(A) re 1 pW]", "0.0"),
         ("level [dB re 1e-6 m/s2]", float("nan"), "level [dB re 1 µm/s²]", "–"),
-        ("contact_loss_share [1]", 0.01234, "contact loss share", "0.01234"),
+        ("contact_loss_share [1]", 0.01234, "contact loss share [%]", "1.234"),
+        ("contact_loss_events [1]", 12.0, "contact loss events", "12"),
+        ("track_rms [m]", 3.2e-8, "track rms [nm]", "32"),
+        ("peak_force [N]", 123456.0, "peak force [kN]", "123.5"),
+        ("largest_growth [1/s]", 1234.0, "largest growth [1/s]", "1234"),
+        ("longest_loss [s]", 0.0, "longest loss [s]", "0"),
     ],
 )  # fmt: skip
-def test_the_table_of_a_page_has_words_and_the_levels_of_the_headline(heading, value, head, written):
+def test_the_tables_of_a_study_have_names_units_that_are_read_and_the_levels_of_the_headline(
+    heading, value, head, written
+):
     """The headline said 1.9 dB(A), the table 1.936 below "force level a"."""
-    assert studying._head(heading) == head
-    assert studying._written(heading, value, swept=False) == written
-    assert studying._written(heading, 85.7232, swept=True) == "85.72"
+    key = "ball.sample_load [km/h]"
+    assert in_words([key, heading], [[85.7232, value]], 1) == ([key, head], [["85.72", written]])
+
+
+def test_numbers_of_a_column_have_one_unit_and_their_scatter_has_it_too():
+    heads, cells = in_words(["law", "rms [m]"], [["a", 2e-6], ["b", 3e-8]], 1, [["a", 1e-7], ["b", np.nan]])
+    assert heads == ["law", "rms [µm]"]
+    assert cells == [["a", "2 ± 0.1"], ["b", "0.03"]]

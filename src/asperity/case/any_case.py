@@ -1,17 +1,20 @@
 """The case of any kind: its keys in and out of TOML, other values for some; and what computes it."""
 
+import os
 import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
 
-from asperity.arguments import nearest
+from asperity import files
+from asperity.arguments import file_path, nearest, require, shown
 from asperity.case.form import Section, content, described_value, holds_memory
 from asperity.case.toml import toml_text, toml_value
 from asperity.errors import InputError
 from asperity.parameters import GIVEN, Key, Number, Origin, Problems, Quantity, Text, key, name_of_numbers
 from asperity.reference.materials import MATERIALS, Material
+from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
 
 _UNIT = re.compile(r"\d\.? ([^\"',\]]+)")  # in an example, as "25 mm" or ["0.2 m", "0.4 m"]
@@ -124,6 +127,8 @@ def value_in_toml(value: Any, key: Key, *, exactly: bool = True) -> Any:
 def refused(dotted: str, value: object) -> NoReturn:
     """Refuse to write a case of something that stands in memory."""
     remedy = 'Save it first, as np.save("map.npy", heights), and name the file in the case.'
+    if isinstance(value, HeightMap | Profile):
+        remedy += ' case.save("case.toml") does both of a map or a line whose points are equally far apart.'
     raise InputError(dotted, described_value(value), "a file, where a case shall be written", remedy)
 
 
@@ -253,6 +258,48 @@ class AnyCase(Section):
             If a surface or a table stands in memory, which no case file can hold.
         """
         return toml_text({"kind": self.kind, **in_toml(self, in_memory=refused)})
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the case as a case file, with the maps and lines that stand in memory beside it.
+
+        Each of them is an array of heights in a file of its own, as ``case_surface_file.npy``, which the case
+        names with the distance of its points: ``asperity run`` computes from it what Python did, to the last
+        bit.
+
+        Parameters
+        ----------
+        path : path
+            The case file, ``….toml``; its folder is made if it is missing.
+
+        Returns
+        -------
+        Path
+            The case file.
+
+        Raises
+        ------
+        InputError
+            If something stands in memory that no array of heights holds: a table, modes, a map whose points
+            are not as far apart along as across.
+        ComputationError
+            If a file cannot be written.
+
+        Examples
+        --------
+        >>> case.save("saved/case.toml").name
+        'case.toml'
+        """
+        from asperity.case.beside import case_and_arrays
+
+        allowed = 'the path of a case file, as "case.toml"'
+        target = file_path("path", path, allowed)
+        require(target.suffix.lower() == ".toml", "path", shown(str(target)), allowed)
+        arrays, text = case_and_arrays(self, target.stem)
+        with files.together(target.parent, last=target.name) as new:
+            for name, content in arrays.items():
+                files.write_bytes(new / name, content)
+            files.write_bytes(new / target.name, text.encode())
+        return target
 
     @property
     def text(self) -> str:

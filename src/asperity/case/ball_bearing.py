@@ -438,5 +438,6 @@ class BallBearingCase(AnyCase):
                 yield InputError(f"shaft.{way}_stiffness", received, allowed)
         steps = (self.duration + self.settling) / self.step * self.bearing.bearing.balls
         if steps > MOST_STEPS:
-            received, allowed = f"{rounded(steps, 2)} time steps of balls", f"at most {MOST_STEPS:g}"
+            received = f"{rounded(steps, 2)} time steps of balls"
+            allowed = f"at most {rounded(MOST_STEPS)}"
             yield InputError("duration", received, allowed, "Record several shorter times.")

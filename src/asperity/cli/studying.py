@@ -1,7 +1,6 @@
 """Computes a study into a folder: its table, means and band over seeds, a page of figures; and prints it."""
 
 import json
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
@@ -31,6 +30,7 @@ from asperity.studies.effects import effects, weighted_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES
 from asperity.studies.signals import SignalSet
+from asperity.studies.words import MISSING, in_words
 from asperity.terminal import line_width, remark, say, say_files, say_table
 from asperity.text_files import write_csv
 
@@ -219,17 +219,14 @@ def _table(mean: xarray.Dataset, names: Sequence[str]) -> ReportTable:
     """Numbers of a study: a row for each place on its axes, as the page has them on paper, too."""
     shown = [name for name in names if name in mean and not {*PLACES} & {*mean[name].dims}]
     heading, rows = tables.columns_of(mean[shown], bands=False)
-    kept = [n for n in range(len(heading)) if any(_short(row[n]) != "–" for row in rows)]
-    axes = len(tables.axes_of(mean))
-    cells = {
-        _head(heading[n]): text_cells(
-            [_written(heading[n], row[n], swept=n < axes) for row in rows[:MOST_ROWS]],
-            "" if all(isinstance(row[n], str) for row in rows) else "number",
-        )
-        for n in kept
+    heads, cells = in_words(heading, rows[:MOST_ROWS], len(tables.axes_of(mean)))
+    columns = {
+        head: text_cells(column, "" if all(isinstance(row[n], str) for row in rows) else "number")
+        for n, (head, column) in enumerate(zip(heads, zip(*cells, strict=True), strict=True))
+        if any(cell != MISSING for cell in column)
     }
     note = f"{MOST_ROWS} of {len(rows)} rows; study.csv has all." if len(rows) > MOST_ROWS else ""
-    return report_table("numbers", "Numbers of the study", cells, note)
+    return report_table("numbers", "Numbers of the study", columns, note)
 
 
 def _figures(
@@ -291,45 +288,19 @@ def print_table(
     shown = [name for name in names if name in table and (asked or not {*PLACES} & {*table[name].dims})]
     heading, rows = tables.columns_of(table[shown])
     keys, title = len(tables.axes_of(table[shown])), "Study"
-    cells = [[*map(_short, row)] for row in rows]
+    spread: list[list[object]] = []
     if scatter is not None:
         title = f"Study: mean ± standard deviation over {table.attrs['members']} values of {SEED}"
-        for row, spread in zip(cells, tables.columns_of(scatter[shown])[1], strict=True):
-            reach = map(_short, spread[keys:])
-            row[keys:] = [
-                f"{word} ± {by}" if by != "–" else word for word, by in zip(row[keys:], reach, strict=True)
-            ]
-    heading[keys:] = [each.replace(tables.OVER, "dB(A) over ").replace("_", " ") for each in heading[keys:]]
-    columns = [n for n in range(len(heading)) if asked or any(row[n] != "–" for row in cells)]
-    needs = [_width(heading[n], [row[n] for row in cells[:MOST_ROWS]]) for n in range(len(heading))]
+        spread = tables.columns_of(scatter[shown])[1]
+    heads, cells = in_words(heading, rows[:MOST_ROWS], keys, spread[:MOST_ROWS])
+    columns = [n for n in range(len(heads)) if asked or any(row[n] != MISSING for row in cells)]
+    needs = [_width(heads[n], [row[n] for row in cells]) for n in range(len(heads))]
     for block in _side_by_side(needs, columns, keys):
-        rows_of_block = [[row[n] for n in block] for row in cells[:MOST_ROWS]]
+        rows_of_block = [[row[n] for n in block] for row in cells]
         widths = [needs[n] for n in block]
-        say_table(title, [heading[n] for n in block], rows_of_block, width=WIDTH, widths=widths)
+        say_table(title, [heads[n] for n in block], rows_of_block, width=WIDTH, widths=widths)
     if len(rows) > MOST_ROWS:
         say(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
-
-
-def _head(heading: str) -> str:
-    """Heading of a column for people: ``"force level, A-weighted [dB(A) re 1 N]"``."""
-    name, unit, rest = heading.partition(" [")
-    name = re.sub(r"_a(?=_difference|_by_chance|$| )", ", A-weighted", name)
-    name = name.replace("_difference_to_", " over ").replace("_", " ")
-    return name + unit + data.written_units(rest) if rest != "1]" else name
-
-
-def _written(heading: str, value: object, *, swept: bool) -> str:
-    """A value of a table on the page: levels with one decimal as in other tables, swept keys as typed."""
-    if isinstance(value, str) or swept or " [dB" not in heading:
-        return _short(value)
-    level = round(float(value), 1) + 0.0  # type: ignore[arg-type]
-    return "–" if level != level else f"{level:.1f}".replace("-", "−")
-
-
-def _short(value: object) -> str:
-    if isinstance(value, str):
-        return value
-    return "–" if value != value else data.plain(float(value), 4)  # type: ignore[arg-type]
 
 
 def _width(heading: str, cells: Sequence[str]) -> int:

@@ -215,6 +215,21 @@ def force_unit(largest: float) -> tuple[float, str]:
     return (1e3, "kN") if largest >= 5e3 else (1.0, "N")
 
 
+PREFIXED = ("m", "N", "N/m", "Pa", "s", "Hz", "W", "J", "m/s")
+"""Units before which a prefix is read."""
+
+
+def unit_of_quantity(name: str, units: str, numbers: chart.Numbers) -> tuple[float, str]:
+    """Unit in which a quantity of a study reads well: its size in SI, and its symbol, empty of a count."""
+    if units == "1":
+        return (0.01, "%") if name.endswith("share") else (1.0, "")
+    largest = float(np.max(np.abs(numbers), initial=0.0, where=np.isfinite(numbers)))
+    if units not in PREFIXED or not largest:
+        return 1.0, written_units(units)
+    power = min(max(3 * math.floor(math.log10(largest) / 3), -9), 9)
+    return 10.0**power, f"{PREFIXES[power]}{units}"
+
+
 def time_unit(duration: float) -> tuple[float, str]:
     """Unit in which a time of `duration` s reads well: its size in s and its symbol."""
     return (1.0, "s") if duration >= 0.5 else (1e-3, "ms")

@@ -1,7 +1,6 @@
 """Figures of studies, seeds and optimised textures."""
 
 import json
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -198,15 +197,8 @@ def _main(table: xarray.Dataset) -> str:
 def _scale(found: xarray.DataArray) -> tuple[float, str, str]:
     """Unit in which a quantity reads well, in SI, the name of the quantity and that of the unit."""
     what = str(found.attrs["long_name"]).removeprefix("A-weighted ").partition(",")[0].partition(":")[0]
-    units = str(found.attrs["units"])
-    if units == "1":
-        return 0.01, what, "%"
-    if units.startswith("dB"):
-        return 1.0, what, data.written_units(units)
-    largest = np.nanmax(np.abs(found.values))
-    power = 3 * math.floor(math.log10(largest) / 3) if largest > 0 else 0
-    power = min(max(power, -9), 9)
-    return 10.0**power, what, f"{data.PREFIXES[power]}{units}"
+    size, symbol = data.unit_of_quantity(str(found.name), str(found.attrs["units"]), found.values)
+    return size, what, symbol or "1"
 
 
 def _panel(mean: xarray.Dataset, scatter: xarray.Dataset | None, name: str, key: str, looks: Looks) -> Panel:

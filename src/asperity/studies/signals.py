@@ -279,8 +279,9 @@ def read_signal(
 def _check_size(values: Array, source: str) -> None:
     """Refuse a signal whose squares no number holds."""
     largest = float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
-    held, allowed = largest == 0.0 or LEAST_PEAK < largest < MOST_PEAK, f"{LEAST_PEAK:g} to {MOST_PEAK:g}"
-    require(held, source, f"values of up to {rounded(largest)}", f"{allowed} at most", "Is its type right?")
+    held = largest == 0.0 or LEAST_PEAK < largest < MOST_PEAK
+    allowed = f"{rounded(LEAST_PEAK)} to {rounded(MOST_PEAK)} at most"
+    require(held, source, f"values of up to {rounded(largest)}", allowed, "Is its type right?")
 
 
 def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None]:

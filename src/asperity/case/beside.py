@@ -1,0 +1,54 @@
+"""A case file with its measured maps and lines beside it, where these stand in memory."""
+
+import io
+from typing import Any
+
+import numpy as np
+
+from asperity.case.any_case import AnyCase, in_toml, refused
+from asperity.case.toml import toml_text
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.units import written
+
+OF_ARRAYS = {"file": ("pixel", "height_unit"), "line": ("line_spacing", "line_unit")}
+"""Keys that a section has for the distance of the points of a bare array, and its unit."""
+
+
+def case_and_arrays(case: AnyCase, stem: str) -> tuple[dict[str, bytes], str]:
+    """Files of the heights of each surface in memory, by name, and the text of a case that names them.
+
+    Their names begin with the stem of the case file. An `InputError` names what no array of heights holds:
+    a table, say, or points of a map that are not as far apart along as across.
+    """
+    found: dict[str, bytes] = {}
+    spacings: dict[str, float] = {}
+
+    def put_beside(dotted: str, value: Any) -> str:
+        heights, spacings[dotted] = _array_of(dotted, value)
+        np.save(stream := io.BytesIO(), heights)
+        found[name := f"{stem}_{dotted.replace('.', '_')}.npy"] = stream.getvalue()
+        return name
+
+    keys: dict[str, Any] = {"kind": case.kind, **in_toml(case, in_memory=put_beside)}
+    for dotted, spacing in spacings.items():
+        *sections, name = dotted.split(".")
+        section = keys
+        for title in sections:
+            section = section[title]
+        of_points, unit = OF_ARRAYS[name]
+        section |= {of_points: written(spacing, "m", "um", exactly=True), unit: "m"}
+    return found, toml_text(keys)
+
+
+def _array_of(dotted: str, value: Any) -> tuple[np.ndarray, float]:
+    """Heights, m, of a map, of maps of one size or of a line, and the distance of their points, m."""
+    surfaces = value if isinstance(value, tuple) else (value,)
+    if dotted.rpartition(".")[2] not in OF_ARRAYS:
+        refused(dotted, value)
+    if not all(isinstance(each, HeightMap | Profile) for each in surfaces):
+        refused(dotted, value)
+    spacings = {float(step) for each in surfaces for step in np.atleast_1d(each.spacing)}
+    if len(spacings) > 1 or len({each.shape for each in surfaces}) > 1:
+        refused(dotted, value)
+    heights = [each.heights for each in surfaces]
+    return np.stack(heights) if len(heights) > 1 else heights[0], spacings.pop()
