@@ -133,6 +133,18 @@ def test_the_verdict_compares_with_practice_first_and_names_the_secant(runs):
         assert f"{float(difference[at]):+.1f} dB ({band})".replace("-", "−") in verdict
 
 
+def test_the_verdict_tells_where_and_by_how_much_the_start_makes_levels_low(runs):
+    found = runs(changed("ball-on-beam", laws=["linear"], settling="10 ms"))
+    start = found["spectra/start_share"]
+    low = start > start.attrs["most"]
+    assert 0 < low.sum() < len(low)
+    named = ", ".join(nominal_frequency(float(band)) for band in start["band"][low])
+    size = -10.0 * np.log10(1.0 - float(start.max()))
+    assert f"Levels at {named} are up to {size:.1f} dB low: " in found.attrs["verdict"]
+    settled = runs(changed("ball-on-beam", laws=["linear"], beam={"loss_factor": 0.5}))
+    assert "dB low" not in settled.attrs["verdict"]
+
+
 class TestTrack:
     def test_its_points_are_judged_by_their_acceleration(self, wheel):
         velocity = wheel["spectra/point_velocity_psd"].sel(law="linear").mean("point")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.rail import preload_channels
@@ -264,13 +264,18 @@ def evaluations(prepared: Sequence[Prepared | SteppedLaw]) -> tuple[list[Evaluat
 
 
 def start_at_rest(
-    ground: Ground, bodies: Sequence[Body], system: System, prepared: Sequence[Prepared | SteppedLaw]
+    ground: Ground,
+    bodies: Sequence[Body],
+    system: System,
+    prepared: Sequence[Prepared | SteppedLaw],
+    *,
+    entering: bool = False,
 ) -> tuple[Array, Motion]:
     """Stiffnesses of contacts at rest at the start of their paths (n,), N/m, and the state that goes on.
 
     Modes and contacts move as under constant loads that have long rolled. Displacements of modes are the
-    static ones: what is left to ring is less by (k v/ω)² than that of a mode of wavenumber k. A force on a
-    support has just come onto a structure at rest; so are modes that nothing holds.
+    static ones: what is left to ring is less by (k v/ω)² than that of a mode of wavenumber k. A force that is
+    entering on a support has just come onto a structure at rest; modes that nothing holds are at rest, too.
     """
     n, s, shapes = len(system.loads), len(ground.natural), shapes_at_contacts(ground, system)
     held = system.stiffness > 0.0
@@ -289,8 +294,7 @@ def start_at_rest(
         change = np.abs(force - before).max()
         if change <= relative * np.abs(force).max():
             break
-    largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.slopes))
-    moving = force * (largest > ON_SUPPORT * steepest)
+    moving = force * ~_on_support(ground) if entering else force
     motion.push[:] = force @ shapes
     motion.displacement[:] = motion.push * softness
     motion.velocity[:s] = system.speed * (moving @ ground.slopes) * softness[:s]
@@ -305,6 +309,12 @@ def start_at_rest(
     motion.force[:] = motion.trial[:] = motion.elastic[:] = force
     motion.approach[:] = approach
     return stiffness, motion
+
+
+def _on_support(ground: Ground) -> NDArray[np.bool_]:
+    """Which contacts (n,) start where no mode of the structure moves."""
+    largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.slopes))
+    return np.asarray(largest <= ON_SUPPORT * steepest)
 
 
 def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tuple[Array, Array]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -109,8 +110,8 @@ def roll_bodies(
     ----------
     over : Modal or RailBetween or None
         What is rolled over: a structure by its modes, a rail (`asperity.structures.rail_poles`), or None
-        for a plane that does not move. Loads have rolled on it long enough to be steady; one that stands on a
-        support has just come on, and modes without stiffness are at rest.
+        for a plane that does not move. Loads have rolled on it long enough to be steady; without a run-in,
+        one that stands on a support has just come on. Modes without stiffness are at rest.
     bodies : sequence of Body
         What rolls, pressed down by its constant forces; contacts are numbered through the bodies.
     laws : sequence of Law
@@ -153,7 +154,8 @@ def roll_bodies(
     system = assembly.system_of(under, bodies, assembly.body_loads(bodies), time_step, speed)
     prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
     given, damping = (under, bodies, system, prepared), np.array([law.damping for law in laws])
-    started = assembly.softened(assembly.start_at_rest, *given, damping, highest_frequency)
+    at_rest = partial(assembly.start_at_rest, entering=not path.settled)
+    started = assembly.softened(at_rest, *given, damping, highest_frequency)
     stepper = Stepper(OnPaths(over, path, prepared), bodies, laws, prepared, *started, under.softest)
     energies = stepper.energies()
     try:
