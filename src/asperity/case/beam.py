@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from asperity.case.body import Rolling
 from asperity.case.form import section
-from asperity.case.rolled_over import FREQUENCY, RolledOver, sensors_along
+from asperity.case.rolled_over import FREQUENCY, Liveliness, RolledOver, sensors_along
 from asperity.case.scene import Case
 from asperity.case.surface import LENGTH, OF_RAILS, POSITION, Surface
 from asperity.errors import InputError
@@ -76,6 +76,14 @@ class BeamKeys(RolledOver):
     def highest_mode(self, highest_frequency: float) -> float:
         """Frequency up to which modes are kept, Hz, for spectra up to a highest one, Hz."""
         return self.modes_up_to or MODES_BEYOND * highest_frequency
+
+    def liveliest(self, highest_frequency: float) -> Liveliness:
+        """Of bending modes up to a wavenumber k, some k L/π, none moves by more than twice 1/√mass."""
+        highest, material = self.highest_mode(highest_frequency), self.material
+        stiffness = material.youngs_modulus * self.height**2 / (12.0 * material.density)
+        waves = math.sqrt(2.0 * math.pi * highest / math.sqrt(stiffness)) * self.length / math.pi
+        mass = material.density * self.length * self.width * self.height
+        return Liveliness(highest, 4.0 * (waves + 2.0) / mass)
 
     def model(self, highest_frequency: float) -> "Modal":
         """Build the beam: of one span, or on further supports."""

@@ -7,10 +7,11 @@ from asperity.case.beam import BeamKeys
 from asperity.case.body import OF_SEVERAL, Rolling
 from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
-from asperity.case.scene import Case, time_step_on_grid
+from asperity.case.scene import Case
 from asperity.case.sections import NoiseKeys
 from asperity.case.sideways import CreepKeys, SidewaysKeys
 from asperity.case.surface import Surface
+from asperity.case.time_steps import on_grid
 from asperity.errors import InputError
 from asperity.parameters import Choice, key
 from asperity.structures.body import GRAVITY
@@ -156,18 +157,16 @@ class WheelOnRail(OverTrack, defaults=DEFAULTS):
         return f"Wheel on rail at {rounded(self.speed)} m/s"
 
     @property
-    def time_step(self) -> float:
-        """Time step in s: as given, or near 1/(8 f_max).
+    def usual_step(self) -> float:
+        """Time step in s near 1/(8 f_max).
 
         Where that changes it by less than 20 %, the distance rolled in one step is a whole multiple, or a
         whole fraction, of ``contact.spacing``.
         """
-        if self.numerics.time_step is not None:
-            return self.numerics.time_step
         per_cell = self.contact.spacing / self.speed
         wanted = 1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency)
         cells = round(wanted / per_cell)
-        step = cells * per_cell if cells else time_step_on_grid(wanted, per_cell)
+        step = cells * per_cell if cells else on_grid(wanted, per_cell)
         return step if 1 / CLOSE <= step / wanted <= CLOSE else wanted
 
     def own_problems(self) -> Iterator[InputError]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from asperity.arguments import Array
 from asperity.case import tables
@@ -56,6 +56,13 @@ FREQUENCY = Quantity("Hz", above=0)
 _WIDTHS = "10 mm to 1 m: rails lie between"
 
 
+class Liveliness(NamedTuple):
+    """What no mode of a structure exceeds."""
+
+    frequency: float  # of the highest, Hz
+    inverse_mass: float  # squares of all mass-normalised shapes at one place, 1/kg
+
+
 class RolledOver(Section):
     """What is rolled over, of whatever kind: a new one is a section with these."""
 
@@ -97,6 +104,11 @@ class RolledOver(Section):
     def model(self, highest_frequency: float) -> Modal | Track | None:
         """Build it, as far as it moves below a frequency, Hz; None for a rigid plane."""
         return None
+
+    def liveliest(self, highest_frequency: float) -> Liveliness:
+        """Bounds of its modes below a frequency, Hz; infinite where they are not known before it is built."""
+        unknown = 0.0 if self.extent is None else math.inf
+        return Liveliness(unknown, unknown)
 
     def problems_of_run(self, speed: float, first: float, last: float) -> Iterator[InputError]:
         """What does not fit to a speed, m/s, and to places passed in the record, from and to, m."""

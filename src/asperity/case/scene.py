@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from asperity.case.any_case import AnyCase
 from asperity.case.body import Rolling
@@ -13,6 +13,7 @@ from asperity.case.form import Inner, Section, section
 from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.surface import INDEX, POSITION, Surface
+from asperity.case.time_steps import on_grid, resolving
 from asperity.contact.hertz import Hertz, relative_radius
 from asperity.errors import InputError
 from asperity.laws import Need, family_of, law_keys, names, spec_of
@@ -237,17 +238,32 @@ class Case(AnyCase):
 
     @property
     def time_step(self) -> float:
-        """Time step in s: as given, or near 1/(20 f_max), and a twelfth of the contact resonance's period.
+        """Time step in s: as given, or near 1/(20 f_max), of a wheel on a rail 1/(8 f_max).
 
-        The latter governs light rolling elements alone. The distance rolled in one step is then a whole
-        multiple, or a whole fraction, of ``contact.spacing``.
+        Shorter where a run could not resolve the contact resonance, modes, or the passing of sleepers:
+        `asperity.case.time_steps`. The distance rolled in one step is then a whole multiple, or a whole
+        fraction, of ``contact.spacing``.
         """
-        if self.numerics.time_step is not None:
-            return self.numerics.time_step
+        return self.chosen_step if self.numerics.time_step is None else self.numerics.time_step
+
+    @cached_property
+    def chosen_step(self) -> float:
+        """Time step in s of a case that gives none."""
+        return resolving(self, self.usual_step)
+
+    @property
+    def usual_step(self) -> float:
+        """Time step in s by the highest frequency, and by the resonance of what rolls."""
         per_cell = self.contact.spacing / self.speed
-        usual = time_step_on_grid(1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency), per_cell)
+        usual = on_grid(1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency), per_cell)
         finest = 1.0 / (STEPS_PER_RESONANCE * self.contact_resonance)
-        return usual if usual <= finest else time_step_on_grid(finest, per_cell)
+        return usual if usual <= finest else on_grid(finest, per_cell)
+
+    def with_chosen(self, **chosen: Any) -> Self:
+        """As of any section; what follows from what is chosen is found anew."""
+        made = super().with_chosen(**chosen)
+        made.__dict__.pop("chosen_step", None)
+        return made
 
     @property
     def record_start(self) -> float:
@@ -488,16 +504,3 @@ def _allowed(*, line: bool, samples: bool = True) -> list[str]:
 
 def _listed(*, line: bool, samples: bool = True) -> str:
     return ", ".join(f'"{name}"' for name in _allowed(line=line, samples=samples))
-
-
-def time_step_on_grid(wanted: float, per_cell: float) -> float:
-    """Time step, s, near the one wanted, with positions on the grid of the contact solution.
-
-    A whole multiple, rounded down, or a whole fraction of the time, s, in which one cell is rolled over.
-    """
-    if wanted >= per_cell:
-        return per_cell * math.floor(wanted / per_cell * (1 + 1e-9))
-    parts = math.ceil(per_cell / wanted * (1 - 1e-9))
-    # on the grid the texture needs no interpolation: rather a slightly longer step than a finer one
-    nearest = min((parts, max(parts - 1, 1)), key=lambda n: abs(math.log(per_cell / n / wanted)))
-    return per_cell / nearest

@@ -13,7 +13,7 @@ from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.rail import preload_channels
 from asperity.kernels.stepping import POWERS, Motion, System
 from asperity.laws.spec import Law, SteppedLaw
-from asperity.rolling import steps
+from asperity.rolling import resolution, steps
 from asperity.rolling.ground import Ground
 from asperity.structures.body import Body
 
@@ -39,15 +39,16 @@ def softened(
     least, thrown = ground.alternating + own, ground.thrown + own
     if ground.bay:
         on_bay = np.sqrt(float(stiffness.max()) / ground.bay) / (2.0 * np.pi)
-        resonance = "the contact resonance on a bay of rail", on_bay, 5.0
+        resonance = "the contact resonance on a bay of rail", on_bay, resolution.PER_RESONANCE_ON_RAIL
     else:
         direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
         resonances = steps.contact_resonance(stiffness, direct, least, system.time_step)
-        resonance = "the contact resonance", float(resonances.max()), 10.0
+        resonance = "the contact resonance", float(resonances.max()), resolution.PER_RESONANCE
     natural = np.concatenate([body.natural_frequencies for body in bodies])
     asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
-    own_mode = "the highest mode of a body", float(asked.max(initial=0.0)), 4.0
-    highest = "the highest frequency asked for", highest_frequency or 0.0, 5.0 if ground.bay else 10.0
+    own_mode = "the highest mode of a body", float(asked.max(initial=0.0)), resolution.PER_MODE
+    per_highest = resolution.PER_HIGHEST_ON_RAIL if ground.bay else resolution.PER_HIGHEST
+    highest = "the highest frequency asked for", highest_frequency or 0.0, per_highest
     steps.warn_if_coarse(system.time_step, (resonance, ground.limit, own_mode, highest))
     values = [steps.largest_values(*each) for each in zip(prepared, stiffness.tolist(), strict=True)]
     stiffest, impacts, forces = np.array(values).T

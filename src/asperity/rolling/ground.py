@@ -9,11 +9,13 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, positive, real
 from asperity.errors import InputError, LargeDeflectionWarning, percent
 from asperity.kernels.rail import Channels
+from asperity.rolling.resolution import PER_MODE, PER_SLEEPER
 from asperity.rolling.steps import Limit, alternating_of_modes, padded, resolved_step
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_period
+from asperity.structures.track import Track
 from asperity.written_numbers import rounded
 
 
@@ -61,7 +63,7 @@ class Path:
 PLACES = 256
 """Positions at which mode shapes are looked at."""
 LARGEST_DEFLECTION = 0.02
-"""Share of the length up to which a beam may be displaced: slopes are then below about 0.06."""
+"""Share of its length up to which a beam may be displaced: slopes are then below about 0.06."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +110,7 @@ def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
     softest = float(((along / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf
     frequencies = natural / (2.0 * np.pi)
     followed = frequencies[frequencies <= HIGHEST]  # others are meant to be static
-    limit = "the highest mode of the structure", float(followed.max(initial=0.0)), 4.0
+    limit = "the highest mode of the structure", float(followed.max(initial=0.0)), PER_MODE
     channels = no_channels(n)
     under, seen = shapes(path.starts), shapes(sensors)[0]
     return Ground(natural, ratios, *under, seen, channels, softest, least, least, limit, np.zeros((n, n)))
@@ -153,7 +155,7 @@ def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     none, modes, taps = np.zeros(0), np.zeros((n, 0)), kernel.weights.shape[1]
     softest = float(kernel.weights.sum(axis=1).max())
     least = float((kernel.weights @ (-1.0) ** np.arange(taps)).min())  # of all places in a bay
-    limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, 20.0
+    limit = "the passing of sleepers v/L", kernel.speed / kernel.track.sleeper_spacing, PER_SLEEPER
     yields = np.asarray((vectors * squares.clip(0.0)) @ vectors.T)
     bay = kernel.track.mass_per_length * kernel.track.sleeper_spacing
     of_modes = none, none, modes, modes, np.zeros((0, 0))
@@ -198,20 +200,46 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
     return channels, weights
 
 
-def share_bent(over: Modal | RailBetween | None, displaced: Array) -> float:
-    """Largest displacement of a beam under its contacts, m, over its length; zero of what is no beam."""
-    if not isinstance(over, Beam | SupportedBeam):
-        return 0.0
-    return float(np.abs(displaced).max()) / over.length
+@dataclass(frozen=True)
+class Small:
+    """Lengths against which displacements have to be small, of what is rolled over."""
+
+    name: str
+    of: str  # what the length is
+    length: float  # m
+    meaning: str  # of being more
+    check: str  # what to look at
 
 
-def warn_if_bent(over: Modal | RailBetween | None, displaced: Array) -> None:
-    """Compare the deflection of a beam under its contacts, m, with what beam theory allows."""
-    share = share_bent(over, displaced)
-    if share > LARGEST_DEFLECTION:
-        deflection = float(np.abs(displaced).max())
+def small_motion(over: Modal | RailBetween | Track | None) -> Small | None:
+    """Against what displacements have to be small; None of a plane, and of what has no ends."""
+    if isinstance(over, Beam | SupportedBeam):
+        check = "load, section, length and support of the beam"
+        return Small("beam", "its length", over.length, "Beam theory needs small slopes", check)
+    if isinstance(over, RailBetween):
+        return small_motion(over.kernel.track)
+    if isinstance(over, Track):
+        check = "load, rail, pads, ballast and subgrade"
+        return Small("rail", "its bow under a load", over.bow_length, "Beam theory needs small slopes", check)
+    if over is None or not np.isfinite(over.extent).all():
+        return None
+    (first, last), meaning = over.extent, "Modes are those of small motion"
+    return Small("structure", "its length", last - first, meaning, "load, modes and mass")
+
+
+def share_bent(over: Modal | RailBetween | Track | None, displaced: Array) -> float:
+    """Largest displacement under contacts, m, over the length against which it has to be small."""
+    small = small_motion(over)
+    return 0.0 if small is None else float(np.abs(displaced).max(initial=0.0)) / small.length
+
+
+def warn_if_bent(over: Modal | RailBetween | Track | None, displaced: Array) -> None:
+    """Compare the displacement of what is rolled over under its contacts, m, with what its theory allows."""
+    share, small = share_bent(over, displaced), small_motion(over)
+    if small is not None and share > LARGEST_DEFLECTION:
+        deflection = rounded(float(np.abs(displaced).max()))
+        meaning = f"{small.meaning[0].lower()}{small.meaning[1:]}"
         LargeDeflectionWarning.warn(
-            f"the beam is displaced by up to {rounded(deflection)} m under the contact, "
-            f"{percent(share)} of its length: beam theory needs small slopes, as up to "
-            f"{percent(LARGEST_DEFLECTION)}; check load, section, length and support of the beam"
+            f"the {small.name} is displaced by up to {deflection} m under the contact, {percent(share)} of "
+            f"{small.of}: {meaning}, as up to {percent(LARGEST_DEFLECTION)}; check {small.check}"
         )

@@ -17,6 +17,7 @@ from asperity.laws.spec import Law, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.rolling import assembly, roll, steps
 from asperity.rolling.ground import Ground, no_channels
+from asperity.rolling.resolution import PER_MODE
 from asperity.rolling.stepper import Stepper, sizes_of, stacked
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
@@ -289,7 +290,7 @@ def _ground(course: _OnEdges, sensors: Array, looked_at: Sequence[int]) -> Groun
         least = min(least, float(np.linalg.eigvalsh((shapes[0] * each) @ shapes[0].T).min()))
     frequencies = natural / (2.0 * np.pi)
     followed = frequencies[frequencies <= HIGHEST]
-    limit = "the highest mode of a structure", float(followed.max(initial=0.0)), 4.0
+    limit = "the highest mode of a structure", float(followed.max(initial=0.0)), PER_MODE
     under, channels = (shapes[0], slopes[0]), no_channels(n)
     return Ground(natural, ratios, *under, sensors, channels, np.inf, least, least, limit, np.zeros((n, n)))
 

@@ -20,6 +20,14 @@ from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress, duration
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.rolling.ground import warn_if_bent
+from asperity.rolling.resolution import (
+    PER_HIGHEST,
+    PER_HIGHEST_ON_RAIL,
+    PER_MODE,
+    PER_RESONANCE,
+    PER_RESONANCE_ON_RAIL,
+    PER_SLEEPER,
+)
 from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios import compiling, laws, reducing, running_in
 from asperity.scenarios.coverage import problems_of_coverage
@@ -28,7 +36,7 @@ from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, recorded_time, textures_of, warn_of_textures
 from asperity.spectra import HALF_BAND, lowest_band, nominal_frequency
 from asperity.store import MOST_HELD, Store
-from asperity.structures.beam import Beam, SupportedBeam
+from asperity.structures.modal import HIGHEST
 from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
@@ -263,35 +271,51 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
 
 
 def doubt_time_step(prepared: PreparedCase) -> None:
-    """Warn of a time step that is too long for the contact, as the run will.
+    """Warn of a time step that is too long for the contact, or for modes and sleepers, as the run will.
 
-    On a track of the smooth contact on a bay of rail; elsewhere on what rolls, which is less than together
-    with what yields under it.
+    The contact is the smooth one: on a track on a bay of rail; elsewhere on what rolls, which is less than
+    together with what yields under it.
     """
     case, over, shape = prepared.case, prepared.scene.over, prepared.shape
-    limit = "the contact resonance", case.contact_resonance, 10.0
+    highest = case.numerics.highest_frequency
+    own = np.concatenate([body.natural_frequencies for body in prepared.scene.rolling])
+    limits = [("the highest mode of a body", float(own[own <= highest].max(initial=0.0)), PER_MODE)]
     if isinstance(over, Track):
         stiffness = shape.hertz.tangent_stiffness(shape.hertz.approach(shape.load))
         on_bay = math.sqrt(stiffness / (over.mass_per_length * over.sleeper_spacing)) / (2.0 * math.pi)
-        limit = "the contact resonance on a bay of rail", on_bay, 5.0
-    warn_if_coarse(case.time_step, [limit])
+        limits += [
+            ("the contact resonance on a bay of rail", on_bay, PER_RESONANCE_ON_RAIL),
+            ("the passing of sleepers v/L", case.speed / over.sleeper_spacing, PER_SLEEPER),
+            ("the highest frequency asked for", highest, PER_HIGHEST_ON_RAIL),
+        ]
+    else:
+        modes = np.zeros(0) if over is None else over.natural_frequencies
+        highest_mode = float(modes[modes <= HIGHEST].max(initial=0.0))
+        limits += [
+            ("the contact resonance", case.contact_resonance, PER_RESONANCE),
+            ("the highest mode of the structure", highest_mode, PER_MODE),
+            ("the highest frequency asked for", highest, PER_HIGHEST),
+        ]
+    warn_if_coarse(case.time_step, limits)
 
 
 def doubt_deflection(prepared: PreparedCase) -> None:
-    """Warn of a beam that the loads at rest displace by more than beam theory allows, as the run will.
+    """Warn of what is rolled over where the loads at rest displace it by too much, as the run will.
 
-    Where the record begins, in its middle, and where it ends; supports are left out, on which nothing moves.
+    Where the record begins, in its middle, and where it ends; supports are left out, on which nothing moves,
+    and what nothing holds. A rail is looked at under one load.
     """
     scene, (first, last) = prepared.scene, prepared.case.rolled_range
-    if not isinstance(scene.over, Beam | SupportedBeam):
-        return
-    stiffness = (2.0 * math.pi * scene.over.natural_frequencies) ** 2
-    static = []
-    for start in np.linspace(first, last, 3):
-        shapes, _ = scene.over.shapes(start + np.asarray(scene.offsets))
-        held = stiffness > 0.0
-        static.append(shapes[:, held] @ (shapes[:, held].T @ scene.loads / stiffness[held]))
-    warn_if_bent(scene.over, np.array(static))
+    over, static = scene.over, list[Array]()
+    if isinstance(over, Track):
+        static.append(np.array(over.static_deflection(float(scene.loads.max()))))
+    elif over is not None:
+        stiffness = (2.0 * math.pi * over.natural_frequencies) ** 2
+        for start in np.linspace(first, last, 3):
+            shapes, _ = over.shapes(start + np.asarray(scene.offsets))
+            held = stiffness > 0.0
+            static.append(shapes[:, held] @ (shapes[:, held].T @ scene.loads / stiffness[held]))
+    warn_if_bent(over, np.array(static))
 
 
 @dataclass(frozen=True)

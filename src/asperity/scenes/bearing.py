@@ -24,7 +24,7 @@ from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_law
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes, scenario_group
-from asperity.scenes.validity import contacts_softened, energy_left
+from asperity.scenes.validity import beyond, contacts_softened, energy_left, load_missed
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -60,6 +60,8 @@ RESOLVED = 0.003
 """Share by which a line may lie beside the tone of pure rolling, beyond the slip of the cage."""
 SILENT = 1e-5
 """Amplitude of a line, m/s², that no accelerometer feels: what is left of rounding and of the start."""
+OFF = (0.1, 0.5)
+"""Shares of the diameter of a ball by which a ring may be off its place: warned of, and out of range."""
 BY_PARTS = "areal"
 """The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
 SOURCES = (
@@ -498,7 +500,29 @@ def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator
         yield energy_left(name, left, "time_step")
         stiffness = [each.tangent_stiffness(each.approach(load)) for each, load in case.contacts]
         yield from contacts_softened(name, float((run.softening.T * stiffness).max()), "time_step")
+        yield from _out_of_place(case, name, run)
     yield from _missed(runs)
+
+
+def _out_of_place(case: BallBearingCase, law: str, run: RolledBearing) -> Iterator[Finding]:
+    """Rings that are farther off than balls let them, and balls that do not carry the load in the mean."""
+    of, angle = case.bearing.bearing, case.static.contact_angle
+    moved = max(float(np.abs(each).max()) for each in (run.inner_motion, run.outer_motion))
+    yield from beyond(
+        "displacement of a ring over the diameter of a ball",
+        moved / of.ball_diameter,
+        OFF,
+        "A ring is not held, or by springs too soft for what drives it.",
+        "Check the stiffnesses of shaft and housing, loads and clearance.",
+        "a ring displaced by {} of a ball",
+        law,
+    )
+    azimuth = run.cage + 2.0 * np.pi * np.arange(of.balls)[:, None] / of.balls
+    radial, axial = np.cos(angle) * np.cos(azimuth), np.full(azimuth.shape, np.sin(angle))
+    for way, along, load in (("radial", radial, case.radial), ("axial", axial, case.axial + of.preload)):
+        if load > 0.0 and along.any():
+            mean = float(np.mean(np.sum(run.inner_force * along, axis=0))) / load
+            yield from load_missed(f"mean {way} force", "of the balls on the inner ring", mean, law)
 
 
 def _missed(runs: dict[str, RolledBearing]) -> Iterator[Finding]:

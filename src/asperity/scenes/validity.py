@@ -10,7 +10,7 @@ from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
 from asperity.reporting import data
-from asperity.rolling.ground import LARGEST_DEFLECTION, share_bent
+from asperity.rolling.ground import LARGEST_DEFLECTION, share_bent, small_motion
 from asperity.rolling.roll import RolledBodies
 from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice
 from asperity.scenarios.preparing import ContactTrial
@@ -31,7 +31,9 @@ RESIDUAL = 1e-3
 MISSED_LOAD = (0.5, 1.0)
 """Share of its load by which the mean contact force of a body may miss it: warned of, and out of range."""
 BENT = (LARGEST_DEFLECTION, 0.1)
-"""Share of the length that a beam may be displaced by: warned of, and out of range."""
+"""Share of its length that what is rolled over may be displaced by: warned of, and out of range."""
+PRESSED, THROWN = (0.05, 0.2), (0.5, 2.0)
+"""Shares of its radius by which what rolls may approach a surface, and be off it, likewise."""
 SOFTENED = (0.1, 0.5)
 """Share by which the time step may soften a contact: warned of, and out of range."""
 CELLS_PER_WAVE = 4
@@ -83,20 +85,44 @@ def energy_left(law: str, residual: float, key: str) -> Finding:
     )  # fmt: skip
 
 
+def beyond(
+    quantity: str, share: float, limits: tuple[float, float], meaning: str, remedy: str, brief: str, law: str,
+    *, warned: bool = False,
+) -> Iterator[Finding]:  # fmt: skip
+    """A share of a law that is warned of, and out of range, above limits; None where it is below both."""
+    if (grade := _grade(share, limits)) is not None:
+        value, limit = percent(share), f"up to {percent(limits[0])}"
+        told = brief.format(value)
+        yield Finding(f"{quantity}, {law}", value, limit, grade, meaning, remedy, told, (law,), warned=warned)
+
+
 def contacts_softened(law: str, share: float, key: str) -> Iterator[Finding]:
     """Contacts of a law that are softened to be stable, by a share of their compliance at rest.
 
     None where that is little; `key` is that of the time step.
     """
-    if (grade := _grade(share, SOFTENED)) is not None:
+    yield from beyond(
+        "softening of contacts by the time step",
+        share,
+        SOFTENED,
+        "The time step is too long for contacts as stiff on bodies as light, which are made softer.",
+        f"Take a smaller {key}.",
+        "contacts softened by {} for the time step",
+        law,
+    )
+
+
+def load_missed(what: str, of: str, mean: float, law: str) -> Iterator[Finding]:
+    """A mean force of contacts, in loads, that is far from one."""
+    if (grade := _grade(abs(mean - 1.0), MISSED_LOAD)) is not None:
         yield Finding(
-            f"softening of contacts by the time step, {law}",
-            percent(share),
-            f"up to {percent(SOFTENED[0])}",
+            f"{what} {of} over its load, {law}",
+            rounded(mean),
+            f"{1.0 - MISSED_LOAD[0]:g} to {1.0 + MISSED_LOAD[0]:g}",
             grade,
-            "The time step is too long for contacts as stiff on bodies as light, which are made softer.",
-            f"Take a smaller {key}.",
-            f"contacts softened by {percent(share)} for the time step",
+            "What rolls is thrown, sucked on, or a record shorter than it bounces.",
+            "Look for what drives it: supports, springs, a linear contact that pulls; or record longer.",
+            f"a {what} of {rounded(mean)} loads",
             (law,),
         )
 
@@ -115,30 +141,42 @@ def _of_motion(computed: Computed) -> Iterator[Finding]:
         loads = np.bincount(run.body, computed.scene.loads)
         share = np.bincount(run.body, run.contact_force.mean(axis=1)) / loads
         mean = float(share[np.argmax(np.abs(share - 1.0))])
-        if (grade := _grade(abs(mean - 1.0), MISSED_LOAD)) is not None:
-            yield Finding(
-                f"mean contact force of a body over its load, {law}",
-                rounded(mean),
-                f"{1.0 - MISSED_LOAD[0]:g} to {1.0 + MISSED_LOAD[0]:g}",
-                grade,
-                "What rolls is thrown, sucked on, or a record shorter than it bounces.",
-                "Look for what drives it: supports, springs, a linear contact that pulls; or record longer.",
-                f"a mean contact force of {rounded(mean)} loads",
-                (law,),
-            )
-        bent = share_bent(computed.over, run.over_displacement)
-        if (grade := _grade(bent, BENT)) is not None:
-            yield Finding(
-                f"displacement of the beam over its length, {law}",
-                percent(bent),
-                f"up to {percent(BENT[0])}",
-                grade,
-                "Beam theory needs small slopes.",
-                "Check load, section, length and support of the beam.",
-                f"a beam displaced by {percent(bent)} of its length",
-                (law,),
-                warned=True,
-            )
+        yield from load_missed("mean contact force", "of a body", mean, law)
+        yield from _displaced(computed, law, run)
+
+
+def _displaced(computed: Computed, law: str, run: RolledBodies) -> Iterator[Finding]:
+    """Displacements beyond what theory allows under the contacts, and beyond the size of what rolls."""
+    if (small := small_motion(computed.over)) is not None:
+        yield from beyond(
+            f"displacement of the {small.name} over {small.of}",
+            share_bent(computed.over, run.over_displacement),
+            BENT,
+            f"{small.meaning}.",
+            f"Check {small.check}.",
+            f"a {small.name} displaced by {{}} of {small.of}",
+            law,
+            warned=True,
+        )
+    radius, remedy = computed.case.rolling.radius, "Check heights, load, springs and supports."
+    yield from beyond(
+        f"approach of the surfaces over the radius of the {computed.case.ROLLING}",
+        float(run.relative_displacement.max()) / radius,
+        PRESSED,
+        "The contact is no small part of the bodies.",
+        remedy,
+        "an approach of {} of the radius",
+        law,
+    )
+    yield from beyond(
+        f"distance of the surfaces over the radius of the {computed.case.ROLLING}",
+        -float(run.relative_displacement.min()) / radius,
+        THROWN,
+        "What rolls is thrown off, or what it rolls over falls.",
+        remedy,
+        "surfaces apart by {} of the radius",
+        law,
+    )
 
 
 def choice_of(computed: Computed, *, brief: bool) -> LawChoice | None:

@@ -341,6 +341,11 @@ class Track(track_parameters.TrackParameters):
         static = np.mean([each.support.static for each in self.bay_tracks])
         return float(static) / self.sleeper_spacing
 
+    @property
+    def bow_length(self) -> float:
+        """Characteristic length of the rail under a load on a continuous foundation, (4 B/s)^(1/4), m."""
+        return float((4.0 * self.bending_stiffness / self.foundation_stiffness) ** 0.25)
+
     def static_deflection(self, force: float, x: float = 0.0) -> float:
         """Deflection under a constant force at rest, at the force.
 

@@ -1,0 +1,68 @@
+"""A time step that the case leaves to the program is never doubted by the program."""
+
+import json
+import warnings
+
+import pytest
+
+import asperity
+from asperity.case.cases import as_case
+from asperity.case.time_steps import longest_step
+from asperity.errors import PhysicsWarning
+from asperity.running import prepare_case
+from asperity.scenarios.preparing import doubt_time_step
+
+BRIEF = {"settling": "50 ms", "surface": {"smooth": True}, "laws": ["hertz"]}
+ON_RAIL = BRIEF | {"duration": "0.1 s", "contact": {"spacing": "1 mm"}}
+WHEEL = ON_RAIL | {"kind": "wheel-on-rail", "wheel": {"section": "rigid"}}
+BALL = BRIEF | {"kind": "ball-on-beam", "duration": "60 ms", "start": "0.4 m", "ball": {"load": "50 N"}}
+BOGIE = {"type": "bogie", "distance": "2.5 m", "masses": ["3000 kg"], "springs": ["1.2 MN/m"]}
+BOGIE |= {"radius": "0.46 m", "transverse_radius": "inf", "mass": "600 kg", "load": "65 kN"}
+COARSE = {
+    "a wheel, by the resonance of its contact": WHEEL
+    | {"numerics": {"highest_frequency": "300 Hz", "kernel": "scatter"}},
+    "a fast wheel, by sleepers": WHEEL
+    | {
+        "speed": "150 m/s",
+        "numerics": {"highest_frequency": "300 Hz", "kernel": "scatter"},
+        "track": {"pad_stiffness": "3 GN/m"},
+    },
+    "a bogie on a track": ON_RAIL
+    | {"kind": "bodies", "over": "track", "speed": "50 m/s", "body": BOGIE}
+    | {"numerics": {"highest_frequency": "200 Hz", "kernel": "scatter"}},
+    "modes of a beam": BALL | {"numerics": {"highest_frequency": "500 Hz"}, "beam": {"modes_up_to": "9 kHz"}},
+    "a ball on a light beam": BALL
+    | {"numerics": {"highest_frequency": "500 Hz"}, "beam": {"width": "10 mm", "height": "5 mm"}},
+}
+DOUBT = "time steps in a period", "softening"
+
+
+def foreseen(case):
+    """What a check says of the time step."""
+    with PhysicsWarning.caught() as caught:
+        doubt_time_step(prepare_case(case))
+    return [str(each.message) for each in caught]
+
+
+@pytest.mark.parametrize("name", COARSE)
+def test_a_time_step_by_default_is_doubted_neither_by_the_check_nor_by_the_run(name):
+    """Coarse spectra ask for a step by which contact, modes or sleepers would be lost."""
+    case = as_case(COARSE[name])
+    assert case.usual_step > case.time_step  # it is not the spectra that ask for it
+    assert foreseen(case) == []
+    assert foreseen(case.with_(**{"numerics.time_step": case.usual_step})) or case.over_name == "beam"
+    if case.kind == "wheel-on-rail":
+        return  # the check has all that the run looks at
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        tree = asperity.run(case, brief=True)
+    told = [each["message"] for each in json.loads(tree.attrs["warnings"])]
+    assert not [message for message in told if any(words in message for words in DOUBT)]
+
+
+@pytest.mark.parametrize(("keys", "step"), [(WHEEL, 1 / 40e3), (BALL, 1e-5)])
+def test_a_step_that_resolves_all_is_as_long_as_it_was(keys, step):
+    """Near 1/(8 f) of a wheel and 1/(20 f) elsewhere, with positions on the grid of the contact."""
+    case = as_case(keys)
+    assert case.time_step == case.usual_step == pytest.approx(step, rel=0.3)
+    assert case.time_step < longest_step(case, case.time_step)
