@@ -9,7 +9,7 @@ import pytest
 
 import asperity
 import small_cases
-from asperity import Beam, HalfSpace, material
+from asperity import Beam, HalfSpace, ModalStructure, Track, material
 from asperity.case.cases import as_case, parse_case
 from asperity.cli.running import planned
 from asperity.contact.scan import Counts, warn_of_flaws, window_for
@@ -18,6 +18,8 @@ from asperity.running import prepare_case
 from asperity.scenarios.preparing import try_contacts
 from asperity.scenes.validity import _contact, _doubts, _of_motion
 from asperity.spectra import band_levels, lowest_band, psd, spectrum_segment
+from asperity.structures.moving_kernel import MovingKernel
+from asperity.structures.rail_poles import RailBetween
 from command_line import call
 
 STEEL = material("steel")
@@ -234,6 +236,7 @@ def test_a_motion_that_cannot_be_is_no_verdict_without_a_doubt(force, moved, wor
         energy=SimpleNamespace(residual=0.0),
         body=np.zeros(1, dtype=int),
         over_displacement=np.array([[moved]]),
+        relative_displacement=np.zeros((1, 2)),
         contact_force=np.full((1, 2), force * 5.0),
         softening=np.zeros(1),
         in_contact=np.zeros((1, 2), dtype=bool),
@@ -241,12 +244,41 @@ def test_a_motion_that_cannot_be_is_no_verdict_without_a_doubt(force, moved, wor
     )
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=500.0)
     computed = SimpleNamespace(runs={"linear": run}, scene=SimpleNamespace(loads=[5.0]), over=beam)
-    computed.stiffness = 1e6
+    computed.stiffness, computed.case = 1e6, small_cases.changed("ball-on-beam")
     found = list(_of_motion(computed))
     told = "; ".join(_doubts(computed, found))
     assert all(each in told for each in words), told
     assert bool(told) is bool(words)
     assert _contact(run, "ball") == "The ball loses contact 1 time, 100 % of the time"
+
+
+def test_what_is_moved_too_far_is_doubted_over_rails_and_structures_and_on_a_plane():
+    """A rail by 6 % of its bow (4 B/s)^(1/4), a structure by half its length, a ball thrown far."""
+    track = Track.named("uic60")
+    bow = (4.0 * track.bending_stiffness * track.sleeper_spacing / track.support.static) ** 0.25
+    places = np.linspace(0.0, 2.0, 21)
+    guide = ModalStructure(places, [100.0], 0.01, np.ones((21, 1)), modal_masses=[20.0])
+    rail = RailBetween(MovingKernel(track, 50.0, 1e-4, np.ones((2, 8))), {})
+    for over, moved, apart, words in (
+        (rail, 0.06 * bow, 0.0, ["Doubtful", "a rail displaced by 6 % of its bow under a load"]),
+        (guide, -1.0, 0.0, ["Out of range", "a structure displaced by 50 % of its length"]),
+        (None, 0.0, -0.05, ["Doubtful", "surfaces apart by 200 % of the radius"]),
+        (None, 0.0, 2e-3, ["Doubtful", "an approach of 8 % of the radius"]),
+        (rail, 0.01 * bow, 1e-4, []),
+    ):
+        run = SimpleNamespace(
+            energy=SimpleNamespace(residual=0.0),
+            body=np.zeros(1, dtype=int),
+            over_displacement=np.array([[moved]]),
+            relative_displacement=np.array([[0.0, apart]]),
+            contact_force=np.full((1, 2), 5.0),
+            softening=np.zeros(1),
+        )
+        computed = SimpleNamespace(runs={"linear": run}, scene=SimpleNamespace(loads=[5.0]), over=over)
+        computed.stiffness, computed.case = 1e6, small_cases.changed("ball-on-beam")
+        told = "; ".join(_doubts(computed, list(_of_motion(computed))))
+        assert all(each in told for each in words), told
+        assert bool(told) is bool(words)
 
 
 @pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")

@@ -15,6 +15,7 @@ from asperity.running import prepare_case
 from asperity.scenarios import raceway_laws
 from asperity.scenes.bearing import (
     CELL_TIME,
+    _out_of_place,
     bearing_rings,
     cage_slip,
     expected,
@@ -296,3 +297,23 @@ def test_the_time_told_counts_the_contacts_that_are_solved_over_faults(monkeypat
     assert 0.95 * sum(solved) < told <= sum(solved)  # a few more hold what areal takes them for
     _, work = expected(prepare_case(case.with_(fault=None)))
     assert work.parts["contacts over the faults"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("share", "moved", "words"),
+    [(1.0, 1e-5, []), (0.3, 1e-5, ["a mean radial force of 0.3 loads"]), (1.0, D, ["by 100 % of a ball"])],
+)
+def test_a_bearing_whose_rings_or_forces_cannot_be_is_doubted(share, moved, words):
+    """Nine balls that carry 100 N, or a part of it, along the load; a ring that is off by a ball."""
+    case = as_case(SMOOTH)
+    cage = np.linspace(0.0, 2.0 * math.pi, 50)
+    along = np.cos(cage + 2.0 * math.pi / BALLS * np.arange(BALLS)[:, None]).clip(0.0)
+    run = SimpleNamespace(
+        cage=cage,
+        inner_force=share * 100.0 * along / np.sum(along**2, axis=0),
+        inner_motion=np.full((3, 50), moved),
+        outer_motion=np.zeros((3, 50)),
+    )
+    told = [finding.brief for finding in _out_of_place(case, "hertz", run)]
+    assert len(told) == len(words)
+    assert all(words[n] in each for n, each in enumerate(told)), told
