@@ -111,3 +111,20 @@ test_what_is_wrong_is_said = refusals(
     (lambda: spectra.band_levels(LINES, LINES, reference=0.0), "reference"),
     (lambda: spectra.a_weighting([-1.0]), "0 Hz or more"),
 )
+
+
+def test_a_record_beyond_memory_is_a_mean_of_segments_that_fill_it(monkeypatch):
+    """Of at most 4 million samples each; its variance stays, and a shorter one is taken as it is."""
+    assert spectra.longest_segment(2**22) == 2**22
+    for samples in (2**22 + 1, 8_000_000, 33_554_432):
+        length = spectra.longest_segment(samples)
+        assert length <= 2**22
+        advance = length - length // 2
+        unused = (samples - length) % advance
+        assert unused < 0.02 * samples
+    monkeypatch.setattr(spectra, "LONGEST_SEGMENT", 2**10)
+    monkeypatch.setattr(spectra, "ROUND", 2**4)
+    noise = np.random.default_rng(3).standard_normal(8_000)
+    frequency, density = spectra.psd(noise, 0.1)
+    assert len(frequency) <= 2**9 + 1
+    assert density.sum() * frequency[1] == pytest.approx(noise.var(), rel=0.03)

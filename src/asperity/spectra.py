@@ -35,9 +35,9 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     is in U² per Hz or per cycle per metre. The mean over the whole record is removed. The sum of the PSD
     times the frequency step is the variance of the signal, weighted by the squared windows.
 
-    By default the whole record is one segment. Segments of fewer samples, which overlap by half, give a
-    smoother estimate and a coarser frequency step, 1/(segment · spacing). P. D. Welch, IEEE Trans. Audio
-    Electroacoust. 15 (1967) 70-73.
+    By default the whole record is one segment, see `longest_segment`. Segments of fewer samples, which
+    overlap by half, give a smoother estimate and a coarser frequency step, 1/(segment · spacing). P. D.
+    Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
     """
     from scipy.fft import rfft  # not where only bands are looked up
 
@@ -48,21 +48,44 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
     require(finite, "signal", "NaN or infinite values", "finite values", remedy)
     require(0.0 < spacing < np.inf, "spacing", spacing, "a positive finite step")
     samples = values.shape[-1]
-    length = samples if segment is None else int(segment)
+    length = longest_segment(samples) if segment is None else int(segment)
     require(2 <= length <= samples, "segment", length, f"2 to {samples} samples", "Shorten the segment.")
-    values = values - values.mean(axis=-1, keepdims=True)
+    mean = values.mean(axis=-1, keepdims=True)[..., None, :]
     window, advance = hann_window(length), length - length // 2
     segments = sliding_window_view(values, length, axis=-1)[..., ::advance, :]
     count, together = segments.shape[-2], max(1, TOGETHER // max(1, values[..., 0].size * length))
     power = np.zeros((*values.shape[:-1], length // 2 + 1))
     for first in range(0, count, together):
-        spectra = rfft(segments[..., first : first + together, :] * window)
-        power += (spectra.real**2 + spectra.imag**2).sum(axis=-2)
-    density = power * (2.0 * spacing / (count * (window**2).sum()))
-    density[..., 0] *= 0.5
+        windowed = segments[..., first : first + together, :] - mean
+        windowed *= window
+        spectra = rfft(windowed, overwrite_x=True)
+        del windowed
+        np.square(spectra.real, out=spectra.real)  # in place: records may be as long as memory allows
+        np.square(spectra.imag, out=spectra.imag)
+        spectra.real += spectra.imag
+        power += spectra.real.sum(axis=-2)
+    power *= 2.0 * spacing / (count * (window**2).sum())
+    power[..., 0] *= 0.5
     if length % 2 == 0:
-        density[..., -1] *= 0.5  # zero and half the sampling frequency have no other side
-    return np.asarray(np.fft.rfftfreq(length, spacing), dtype=np.float64), density
+        power[..., -1] *= 0.5  # zero and half the sampling frequency have no other side
+    return np.asarray(np.fft.rfftfreq(length, spacing), dtype=np.float64), power
+
+
+LONGEST_SEGMENT = 2**22
+"""Samples that are transformed in one piece."""
+ROUND = 2**14
+"""Numbers of samples that are multiples of this are transformed fast."""
+
+
+def longest_segment(samples: int) -> int:
+    """Samples of a segment by default: the whole record, of one of more than 4 million samples fewer.
+
+    Such segments are as long as possible, and reach from its beginning nearly to its end.
+    """
+    if samples <= LONGEST_SEGMENT:
+        return samples
+    segments = math.ceil(2 * samples / LONGEST_SEGMENT) - 1
+    return 2 * samples // (segments + 1) // ROUND * ROUND
 
 
 SEGMENT = (0.025, 0.2)
@@ -100,7 +123,7 @@ def averaging_time(samples: int, spacing: float, *, segment: int | None = None) 
     of the mean square of noise in a band is 1/sqrt(B T), as long as the band is some lines wide: J. S. Bendat
     and A. G. Piersol, Random Data, 4th ed. (2010).
     """
-    length = samples if segment is None else int(segment)
+    length = longest_segment(samples) if segment is None else int(segment)
     window = hann_window(length) ** 2
     weight = np.zeros(samples)
     for first in range(0, samples - length + 1, length - length // 2):

@@ -4,6 +4,7 @@ import csv
 import importlib
 import json
 import re
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -184,3 +185,24 @@ def test_small_maps_and_lines_have_all_statistics_but_slopes(shape, told):
     assert told in out
     assert re.search(r"[SR]q +0\.0\d+ µm +rms height", out)
     assert re.search(r"[SR]dq +– +rms slope", out)
+
+
+@pytest.mark.parametrize("points", [200_000])
+def test_a_column_of_short_numbers_takes_few_times_the_memory_of_its_heights(points, monkeypatch):
+    """Beside what it was read from: as many arrays, whatever its length, as the largest spectrum needs."""
+    for module in ("levelling", "statistics"):
+        monkeypatch.setattr(f"asperity.surfaces.{module}.PIECE", 2**12)
+    monkeypatch.setattr("asperity.surfaces.measured_lines.TOGETHER", 2**12)
+    monkeypatch.setattr("asperity.surfaces.readers.belief.MOST_POINTS", 2**12)
+    monkeypatch.setattr("asperity.spectra.LONGEST_SEGMENT", 2**16)
+    monkeypatch.setattr("asperity.spectra.ROUND", 2**8)
+    digits = np.random.default_rng(0).integers(0, 10, points)
+    Path("column.txt").write_text("\n".join(map(str, digits)))
+    module = importlib.import_module("asperity.cli.surface")
+    module.show_surface(Path("column.txt"), Path("a.png"), height_unit="nm", pixel="1 um")  # imports
+    tracemalloc.start()
+    try:
+        module.show_surface(Path("column.txt"), Path("a.png"), height_unit="nm", pixel="1 um")
+        assert tracemalloc.get_traced_memory()[1] < 4.5 * 8 * points + 2e6
+    finally:
+        tracemalloc.stop()

@@ -180,3 +180,62 @@ HOLED = Profile([*np.zeros(40), *20 * [np.nan], *np.zeros(40)], MM)
 test_what_is_wrong_is_said = refusals(
     (lambda: process([HOLED]), "20 missing points inside"),
 )
+
+
+def dilated(line, radius=0.375):
+    """Each point by what a circle around every other one says: the definition, by brute force."""
+    number = np.arange(len(line.heights))
+    away = np.abs(number[:, None] - number) * line.spacing
+    circle = np.where(away <= radius, np.sqrt(np.maximum(radius**2 - away**2, 0.0)) - radius, -np.inf)
+    return (line.heights + circle).max(axis=1)
+
+
+@pytest.mark.parametrize("spacing", [1e-6, 1e-4, MM, 0.1])
+@pytest.mark.parametrize("height", [UM, MM, 1.0])
+def test_a_circle_rolls_as_by_its_definition_over_any_heights(spacing, height, monkeypatch):
+    monkeypatch.setattr(measured_lines, "TOGETHER", 100)
+    rng = np.random.default_rng(5)
+    walk = np.cumsum(rng.standard_normal(701))
+    bumps = np.where(rng.random(702) > 0.99, 5.0, 0.1 * rng.standard_normal(702))
+    for heights in (walk / np.ptp(walk), rng.standard_normal(703), bumps, np.ones(5), np.arange(2.0)):
+        line = Profile(height * heights, spacing)
+        np.testing.assert_allclose(roll_over(line).heights, dilated(line), rtol=0, atol=2e-16)
+
+
+class Looked:
+    """An arc that counts how often it is looked at."""
+
+    def __init__(self, arc):
+        self.arc, self.count = arc, 0
+
+    def __len__(self):
+        return len(self.arc)
+
+    def __getitem__(self, at):
+        self.count += at.size
+        return self.arc[at]
+
+
+@pytest.mark.parametrize("size", [2_000, 32_000])
+def test_rolling_takes_time_like_the_length_of_a_line(size):
+    """However far the circle reaches: each point is looked at twice for each halving of their distances."""
+    arc = Looked(-(np.linspace(0.0, 0.3, size) ** 2))
+    heights = np.cumsum(np.random.default_rng(1).standard_normal(size))
+    envelope = measured_lines._upper_envelope(heights, arc)
+    assert arc.count < 2 * size * np.log2(size)
+    assert (envelope >= heights).all()
+
+
+def test_spikes_side_by_side_share_a_foot_and_go_as_one_by_one(monkeypatch):
+    """Each from foot to foot by its own straight line, whatever is looked at in one go."""
+    rng = np.random.default_rng(8)
+    heights = WAVE + 0.3 * UM * rng.standard_normal(2000)
+    at = [300, 302, 304, 1000, 1003, 1998]
+    heights[at] += 60 * UM
+    whole = remove_spikes(Profile(heights, MM))
+    monkeypatch.setattr(measured_lines, "TOGETHER", 1)
+    single = remove_spikes(Profile(heights, MM))
+    assert_array_equal(whole[0].heights, single[0].heights)
+    assert whole[1:] == single[1:]
+    assert whole[1] == len(at)
+    assert (whole[0].heights[at] < heights[at] - 50 * UM).all()

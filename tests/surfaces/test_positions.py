@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as some
 
 from asperity import read_surface
-from asperity.errors import InputError
+from asperity.errors import InputError, OutOfRangeWarning
 from asperity.studies.signals import read_signal
 from asperity.surfaces.readers import positions
 
@@ -183,8 +183,10 @@ def test_times_without_a_title_are_seconds(tmp_path, kind):
     values, rate = read_signal(file)
     assert len(values) == len(SIGNAL)
     assert rate == pytest.approx(12e3, rel=1e-4)
-    _, rate = read_signal(file, 24e3, column=2)  # without a title, what is given is stronger
+    with pytest.warns(OutOfRangeWarning, match="rises as times of 12000 Hz do, and 24000 Hz was given"):
+        _, rate = read_signal(file, 24e3, column=2)  # without a title, what is given is stronger
     assert rate == 24e3
+    assert read_signal(file, 12e6)[1] == 12e6  # of times in ms, say
 
 
 @pytest.mark.parametrize(("text", "rate", "column", "message"), [

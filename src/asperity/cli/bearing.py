@@ -22,7 +22,7 @@ from asperity.scenes.figures.bearing import ball_contacts_table, envelope_spectr
 from asperity.schema import tree
 from asperity.structures.ball_bearing import PARTS, PRINTED_BY, Kinematics
 from asperity.structures.bearing_statics import doubt_speed
-from asperity.studies.signals import read_signal
+from asperity.studies.signals import read_record
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
@@ -126,7 +126,8 @@ def _heard(
     told = float(keys.speed or 0.0)
     given = None if rate is None else quantity(rate, "Hz")
     with spelled(on_command_line):
-        values, sampled = read_signal(signal, given, array=array, column=column)
+        record = read_record(signal, given, array=array, column=column)
+    values, sampled = record.values, record.rate
     tones, edges = keys.bearing.tones(axial=keys.axial > 0.0), _band(band, sampled)
     diagnosis = diagnostics.diagnose(values, sampled, tones, told, band=edges)
     speed, within = diagnosis.speed, diagnosis.record.limits
@@ -137,6 +138,7 @@ def _heard(
         "contradicted": f"by what its lines fit, not {rounded(60.0 * told, 5)} 1/min as given",
     }[diagnosis.speed_is]
     recorded = f"{values.size} samples, {rounded(length, 4)} s at {rounded(sampled, 6)} Hz"
+    recorded += f", as {record.rate_by}" * bool(record.rate_by)
     say(f"{name}: {recorded}; {rounded(60.0 * speed, 5)} 1/min {origin}")
     struck = diagnostics.envelope_spectrum(values, sampled, within)
     found = _lines_of(struck, tones, diagnosis)

@@ -16,7 +16,7 @@ from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.parameters import Origin
 from asperity.reporting.figure import write_chart
-from asperity.reporting.texture_figures import lines_chart, surface_chart
+from asperity.reporting.texture_figures import lines_chart, surface_chart, together
 from asperity.spectra import nominal
 from asperity.surfaces import cleaning, likeness, statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -63,33 +63,18 @@ def show_surface(
         picture = Path("-".join([file.stem, *chosen, "surface.png"]))
     if picture.resolve() == file.resolve():
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
-    with spelled(on_command_line):
-        read: Surfaces = read_all(file, **steps.hints)
-        lines = _side_by_side(read, steps.lines)
-        surfaces = [steps.stepped(each) for each in lines or read]
+    title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
+    levelled, sizes = _levelled(file, steps, title)
     if store is not None:
         write_bytes(store, recipes.recipe_text(typed).encode())
         say(f"Recipe: {store.resolve()}")
-    title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
-    contents, spectra = _show(surfaces, title, picture, steps)
+    contents, spectra = _show(levelled, sizes["count"], title, picture, steps)
     say(f"Picture: {picture.resolve()}")
     files = {"picture": picture}
     if psd:
         files["psd"] = _write_spectra(spectra, picture)
         say(f"Spectra: {files['psd'].resolve()}")
-    told = read if lines else surfaces
-    return {
-        "file": file.resolve(),
-        "array": array,
-        "index": index,
-        "count": len(told),
-        "shape": told[0].shape,
-        "size": np.atleast_1d(told[0].size),
-        "spacing": np.atleast_1d(told[0].spacing),
-        "missing_share": max(surface.missing_share for surface in told),
-        **contents,
-        "files": files,
-    }
+    return {"file": file.resolve(), "array": array, "index": index, **sizes, **contents, "files": files}
 
 
 def _typed(recipe: Path | None, options: dict[str, Any]) -> dict[str, Any]:
@@ -104,6 +89,30 @@ def _typed(recipe: Path | None, options: dict[str, Any]) -> dict[str, Any]:
     return recipes.typed_recipe(recipe) | given
 
 
+def _levelled(file: Path, steps: recipes.Recipe, title: str) -> tuple[Surfaces, dict[str, Any]]:
+    """Read a file, say what it holds, and return its lines or its first map, levelled, and sizes of all.
+
+    Heights as they were read are kept no longer: evaluations take no more memory than they need.
+    """
+    with spelled(on_command_line):
+        read: Surfaces = read_all(file, **steps.hints)
+        lines = _side_by_side(read, steps.lines)
+        surfaces = [steps.stepped(each) for each in lines or read]
+    say(f"{title}: {described(surfaces)}")
+    if told := scale_in_words(surfaces[0]):
+        say(told)
+    sized = read if lines else surfaces
+    sizes = {
+        "count": len(sized),
+        "shape": sized[0].shape,
+        "size": np.atleast_1d(sized[0].size),
+        "spacing": np.atleast_1d(sized[0].spacing),
+        "missing_share": max(surface.missing_share for surface in sized),
+    }
+    shown = surfaces if isinstance(surfaces[0], Profile) else surfaces[:1]
+    return [each.levelled() for each in shown], sizes
+
+
 def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...]:
     """Lines side by side, where the user or the shape of an array says so; else none."""
     first = surfaces[0]
@@ -116,26 +125,23 @@ def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...
 
 
 def _show(
-    surfaces: Surfaces, title: str, picture: Path, steps: recipes.Recipe
+    levelled: Surfaces, count: int, title: str, picture: Path, steps: recipes.Recipe
 ) -> tuple[dict[str, Any], Spectra]:
-    """Print what is in lines, or in the first of maps, and draw it; return numbers and spectra."""
-    say(f"{title}: {described(surfaces)}")
-    if told := scale_in_words(surfaces[0]):
-        say(told)
-    lines = [each.levelled() for each in surfaces if isinstance(each, Profile)]
-    first, several, beside = surfaces[0].levelled(), len(surfaces) > 1, len(lines) > 1
+    """Print what is in lines, or in the first of a count of maps, and draw it; return numbers and spectra."""
+    first, lines = levelled[0], [each for each in levelled if isinstance(each, Profile)]
+    beside = len(lines) > 1
     if beside and steps.lines is None:
         say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
-    elif several and not beside:
-        say(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
-        title += f", the first of {len(surfaces)} maps"
+    elif count > 1 and not beside:
+        say(f"Statistics of the first of {count} maps; choose another one with --index.")
+        title += f", the first of {count} maps"
     (band, section), octaves = _filtered(first, steps), _third_octaves(lines)
     if isinstance(first, HeightMap):
         heights, spectra = first.heights, _spectra_of_map(first)
         items = [(item, item.value, item.value) for item in statistics.areal_statistics(first, band)]
         chart = surface_chart(heights, first.spacing, spectra)
     else:
-        heights, spectra = np.concatenate([line.heights for line in lines]), _spectra_of_lines(lines)
+        heights, spectra = together([line.heights for line in lines]), _spectra_of_lines(lines)
         items = statistics.line_statistics(lines, band, section)
         chart = lines_chart([line.heights for line in lines], first.spacing, spectra, octaves)
     lead, waves = "Each line levelled" if beside else "Levelled", _band(items[0][0])

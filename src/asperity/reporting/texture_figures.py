@@ -59,7 +59,8 @@ def height_scale(heights: Numbers) -> tuple[float, str, float, float]:
     """Unit of heights and its symbol; limits in it about the mean that leave out 0.1 % at either end."""
     finite = heights[np.isfinite(heights)]
     middle = finite.mean()
-    reach = np.abs(np.percentile(finite, [0.1, 99.9]) - middle).max() or 1e-9
+    ends = np.percentile(finite, [0.1, 99.9], overwrite_input=True)
+    reach = np.abs(ends - middle).max() or 1e-9
     size, symbol = length_unit(reach)
     return size, symbol, float(middle - reach) / size, float(middle + reach) / size
 
@@ -262,8 +263,13 @@ def lines_chart(
 
     Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
     """
-    above, together = _lines_panel(lines, spacing), np.concatenate(lines)
-    return _with_statistics(above, together, spectra, octaves, beside=True)
+    above = _lines_panel(lines, spacing)
+    return _with_statistics(above, together(lines), spectra, octaves, beside=True)
+
+
+def together(lines: Sequence[Numbers]) -> Numbers:
+    """Heights of lines, one line behind the other."""
+    return np.concatenate(lines) if len(lines) > 1 else lines[0]
 
 
 def _with_statistics(
@@ -316,16 +322,17 @@ def _octaves_panel(octaves: ThirdOctaves, **place: Any) -> Panel:
 
 def _lines_panel(lines: Sequence[Numbers], spacing: float) -> Panel:
     """Lines below each other, and a bar that says how high they are drawn."""
-    together = np.concatenate(lines)
-    size, symbol = height_scale(together)[:2]
-    reach = float(np.ptp(np.nanpercentile(together, [0.1, 99.9]))) / size or 1.0
+    heights = together(lines)
+    size, symbol = height_scale(heights)[:2]
+    ends = np.percentile(heights[np.isfinite(heights)], [0.1, 99.9], overwrite_input=True)
+    reach = float(np.ptp(ends)) / size or 1.0
     along, along_symbol = length_unit(longest := max(map(len, lines)) * spacing)
     end = longest / along
     marks: list[Mark] = []
     for row, (line, (colour, _)) in enumerate(zip(lines, cycle(LOOKS), strict=False)):
-        starts, low, high = chart.envelope(line / size, STRETCHES)
+        starts, low, high = chart.envelope(line, STRETCHES)
         at, down = np.asarray(starts * spacing / along), row * reach
-        marks.append(chart.Area(at, low - down, high - down, colour=colour, opacity=1.0))
+        marks.append(chart.Area(at, low / size - down, high / size - down, colour=colour, opacity=1.0))
     tall = 0.45 * reach  # cut down to a round length
     decade = 10.0 ** np.floor(np.log10(tall))
     tall = float(decade * max(step for step in (1, 2, 5) if step * decade <= tall))

@@ -18,7 +18,17 @@ import numpy as np
 import xarray
 
 from asperity import files
-from asperity.arguments import Array, ArrayLike, file_path, finite_array, one_of, positive, require, shown
+from asperity.arguments import (
+    Array,
+    ArrayLike,
+    NDArray,
+    file_path,
+    finite_array,
+    one_of,
+    positive,
+    require,
+    shown,
+)
 from asperity.case import any_case
 from asperity.case.ball_bearing import BallBearingCase
 from asperity.case.table_headings import heading_of
@@ -26,10 +36,11 @@ from asperity.errors import InputError
 from asperity.results import save, variable
 from asperity.store import content_key
 from asperity.structures.ball_bearing import PARTS
+from asperity.studies import rates
 from asperity.studies.axes import AS_IT_IS, VARIANT, written_out
 from asperity.studies.definition import Member
 from asperity.studies.member import SIGNAL
-from asperity.studies.times import clock_of, rate_beside
+from asperity.studies.times import clock_of, doubt_rate, rate_beside
 from asperity.surfaces.readers import arrays, guards, matlab, text
 from asperity.text_files import (
     blocks_of_lines,
@@ -123,7 +134,9 @@ class SignalSet:
         rate = quantity(rate, "Hz") if isinstance(rate, str) else rate
         if rate is not None or file.suffix.lower() == ".wav":
             return read_signal(file, rate)
-        values, titles, _ = _recorded(file, None)
+        values, titles, stated, _ = _recorded(file, None)
+        if stated and values.ndim == 1:
+            return values, stated
         received, allowed = f"an array of shape {values.shape}", "a column of times (s), then the response"
         columns = values.ndim == 2 and values.shape[1] == 2
         require(columns, file.name, received, allowed, "Or give the sampling rate.")
@@ -262,18 +275,40 @@ def read_signal(
     several, from 1. A column of times gives the rate, see `clock_of`. Samples of a WAV file are in shares of
     full scale.
     """
+    found = read_record(path, rate, array=array, column=column)
+    return found.values, found.rate
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """A signal from a file."""
+
+    values: Array  # (n,)
+    rate: float  # Hz
+    rate_by: str  # what says so in the file, with the verb; empty where it was given alone
+
+
+def read_record(
+    path: Path, rate: float | None = None, *, array: str | None = None, column: int | None = None
+) -> Recorded:
+    """Read a signal as `read_signal` does, and what tells its rate."""
     file = guards.readable_file(path)
-    values, titles, stated = _recorded(file, array)
-    rate = rate or stated
+    values, titles, stated, teller = _recorded(file, array)
+    if stated:
+        rate = rate_beside(rate, stated, file.name, teller)
     if values.ndim == 2:
         clock = clock_of(values, titles, file.name)
+        of_times = clock and clock[1]
         if clock is not None and (titles or not rate):
-            rate = rate_beside(rate, clock[1], file.name)
+            rate = rate_beside(rate, of_times, file.name)
+            teller = "its times say" if of_times else ""
+        elif rate and of_times:
+            doubt_rate(rate, of_times, file.name)
         values = values[:, _column(column, values.shape[1], clock, file.name)]
     require(rate, "sampling rate", "nothing", "samples per second", 'Give it, as in --rate "12 kHz".')
     require(values.ndim == 1, file.name, f"an array of shape {values.shape}", "a signal, or columns of them")
     _check_size(values, file.name)
-    return values, float(rate or 0.0)
+    return Recorded(values, float(rate or 0.0), teller)
 
 
 def _check_size(values: Array, source: str) -> None:
@@ -284,22 +319,29 @@ def _check_size(values: Array, source: str) -> None:
     require(held, source, f"values of up to {rounded(largest)}", allowed, "Is its type right?")
 
 
-def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None]:
-    """What a file holds, with titles of its columns and the sampling rate, Hz, as far as it states them."""
-    kind, titles, rate = _kind_of(file), list[str](), None
+def _recorded(file: Path, array: str | None) -> tuple[Array, list[str], float | None, str]:
+    """What a file holds, titles of its columns, and the sampling rate, Hz, if it states it, and what does."""
+    kind, titles, rate, teller = _kind_of(file), list[str](), None, ""
+    beside: dict[str, NDArray[Any]] = {}
     with guards.hostile(file.name, kind.lstrip(".") or "text"):
         if kind == ".wav":
             rate, values = _of_wav(file)
+            teller = "its head says"
         elif kind == ".npz":
-            values = arrays.array_in(arrays.array_of_archive(file, array, "signals")[1], file.name)
+            name, data = arrays.array_of_archive(file, array, "signals")
+            values = arrays.array_in(data, file.name)
+            beside = arrays.beside_in_archive(file, rates.WORDS)
+            beside.pop(name, None)
         elif kind == ".npy":
             values = arrays.array_in(file.read_bytes(), file.name)
         elif kind == ".mat":
-            values = matlab.array_of_matlab(file, array, "signals")[1]
+            _, values, beside = matlab.array_of_matlab(file, array, "signals", rates.WORDS)
             values = values.ravel() if 1 in values.shape else values
         else:
             values, titles = _of_text(file)
-    return guards.scaled(values, 1.0, file.name), titles, rate
+        if (told := rates.rate_in(beside, len(values), file.name)) is not None:
+            rate, teller = told[0], f"'{told[1]}' says"
+    return guards.scaled(values, 1.0, file.name), titles, rate, teller
 
 
 def _kind_of(file: Path) -> str:

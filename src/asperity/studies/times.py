@@ -7,7 +7,7 @@ import numpy as np
 
 from asperity.arguments import Array, require
 from asperity.case.table_headings import unit_of
-from asperity.errors import InputError
+from asperity.errors import InputError, OutOfRangeWarning
 from asperity.surfaces.readers.positions import places
 from asperity.units import factor
 from asperity.written_numbers import rounded
@@ -28,14 +28,14 @@ def clock_of(values: Array, titles: Sequence[str], source: str) -> tuple[int, fl
     named = [number for number, title in enumerate(titles) if _TITLE.match(title)]
     if named:
         unit = unit_of(titles[named[0]], "s") or "s"
-        return named[0], _rate(values[:, named[0]] * factor(unit, "s"), source)
+        return named[0], rate_of(values[:, named[0]] * factor(unit, "s"), source)
     if titles or values.shape[1] < 2:
         return None
-    rate = _rate(values[:, 0], source)
+    rate = rate_of(values[:, 0], source)
     return (0, rate) if rate and BARE_RATES[0] <= rate <= BARE_RATES[1] else None
 
 
-def _rate(times: Array, source: str) -> float | None:
+def rate_of(times: Array, source: str) -> float | None:
     """Samples per second, Hz, at times that rise evenly, as they were printed; None at others."""
     try:
         index, step = places(times, f"times in {source}")
@@ -44,12 +44,22 @@ def _rate(times: Array, source: str) -> float | None:
     return 1.0 / step if len(times) > 2 and (index == np.arange(len(times))).all() else None
 
 
-def rate_beside(given: float | None, of_times: float | None, source: str) -> float:
-    """Sampling rate, Hz, that is given beside a column of times, or that of these."""
+def rate_beside(given: float | None, told: float | None, source: str, teller: str = "its times say") -> float:
+    """Sampling rate, Hz, that is given, beside the one that something in the file tells, or this one."""
     remedy = 'Give the sampling rate, as in --rate "12 kHz", if the samples are even all the same.'
-    require(given or of_times, f"times in {source}", "uneven ones", "equal steps", remedy)
-    if given and of_times:
-        received, allowed = f"{given:g} Hz", f"{rounded(of_times, 6)} Hz, as its times say"
-        same = abs(given / of_times - 1.0) <= SAME
-        require(same, f"sampling rate of {source}", received, allowed, "Leave it out, or correct the times.")
-    return float(of_times or given or 0.0)
+    require(given or told, f"times in {source}", "uneven ones", "equal steps", remedy)
+    if given and told:
+        received, allowed = f"{given:g} Hz", f"{rounded(told, 6)} Hz, as {teller}"
+        remedy = "Leave it out, or correct the file: save the signal alone."
+        require(abs(given / told - 1.0) <= SAME, f"sampling rate of {source}", received, allowed, remedy)
+    return float(told or given or 0.0)
+
+
+def doubt_rate(given: float, of_column: float, source: str) -> None:
+    """Warn of a rate, Hz, that is given beside a column without a title that rises as times of another do."""
+    same = any(abs(given / (of_column * unit) - 1.0) <= SAME for unit in (1.0, 1e3, 1e6))  # s, ms, µs
+    if not same:
+        OutOfRangeWarning.warn(
+            f"{source}: its first column rises as times of {rounded(of_column, 6)} Hz do, and {given:g} Hz was given "
+            "and is taken. If it holds times, leave the rate out."
+        )

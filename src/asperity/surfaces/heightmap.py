@@ -352,10 +352,18 @@ def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> Array:
     require(not np.isinf(array).any(), what, "infinite values", finite, "Mark them as NaN.")
     nothing = "no valid height: every point is missing"
     require(not np.isnan(array).all(), what, nothing, allowed, "Check the measurement.")
-    if array.flags.writeable or not array.flags.owndata:  # one that nobody can write to needs no copy
+    made_here = isinstance(heights, np.ndarray) and not np.may_share_memory(array, heights)
+    if not made_here and not _is_fixed(array):
         array = array.copy()
-        array.flags.writeable = False
+    array.flags.writeable = False
     return array
+
+
+def _is_fixed(array: Array) -> bool:
+    """Whether an array, or most of one that it is a view of, needs no copy, as nobody can write to it."""
+    owner = array if array.base is None else array.base
+    own = isinstance(owner, np.ndarray) and owner.flags.owndata and 2 * array.size >= owner.size
+    return own and not owner.flags.writeable and not array.flags.writeable
 
 
 def _window(what: str, start: float, size: float, step: float, points: int) -> slice:

@@ -24,6 +24,8 @@ MIRRORED = 8
 QUARTER = 0.5 * math.pi
 ROUNDING = 1e-9
 """Difference from a whole number of quarter turns that is rounding, rad."""
+PIECE = 2**20
+"""Points of a surface that are looked at in one go."""
 ORDER = 5
 """Degree of the spline that turns a map: a wave of four points is then right within 0.2 %."""
 
@@ -38,7 +40,7 @@ def level(surface: S, degree: int | str = "plane") -> S:
     allowed = "0, the mean, or " + ", ".join(f'"{word}" (or {each})' for word, each in FORMS.items())
     offered = isinstance(degree, int | str | np.integer) and degree in degrees
     require(offered, "degree", shown(degree), allowed)
-    return replace(surface, heights=surface.heights - _polynomial(surface.heights, degrees[degree]))
+    return replace(surface, heights=_without_polynomial(surface.heights, degrees[degree]))
 
 
 def band_limit(surface: S, longest: float | None = None, shortest: float | None = None) -> S:
@@ -129,20 +131,43 @@ def _resample_axis(heights: Array, old_step: float, new_step: float, axis: int) 
     return np.moveaxis(spline((np.arange(count) + 0.5) * new_step), -1, axis)
 
 
-def _polynomial(heights: Array, degree: int) -> Array:
-    """Heights, m, of the least-squares polynomial of a total degree through the valid points."""
-    valid = np.isfinite(heights)
+def _without_polynomial(heights: Array, degree: int) -> Array:
+    """Heights, m, less the least-squares polynomial of a total degree through the valid points.
+
+    By normal equations, in pieces along the first axis: a Legendre basis on the grid is nearly orthogonal,
+    and large maps stay in memory.
+    """
     powers = [p for p in product(range(degree + 1), repeat=heights.ndim) if sum(p) <= degree]
-    received, allowed = f"{valid.sum()} valid points", f"at least {len(powers)} for this form"
-    require(valid.sum() >= len(powers), "surface", received, allowed)
-    # normal equations: a Legendre basis on the grid is nearly orthogonal, and long maps stay in memory
-    bases = [np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, n), degree) for n in heights.shape]
-    factors = [[basis[:, k] for basis, k in zip(bases, power, strict=True)] for power in powers]
-    terms = [reduce(np.multiply.outer, each) for each in factors]
-    matrix = np.array([[np.sum(a * b, where=valid) for a in terms] for b in terms])
-    right = np.array([np.sum(term * heights, where=valid) for term in terms])
+    received, allowed = f"{np.isfinite(heights).sum()} valid points", f"at least {len(powers)} for this form"
+    require(np.isfinite(heights).sum() >= len(powers), "surface", received, allowed)
+    others = [_legendre(0, n, n, degree) for n in heights.shape[1:]]
+    rows = max(1, PIECE // math.prod(heights.shape[1:]))
+    pieces = [slice(first, min(first + rows, len(heights))) for first in range(0, len(heights), rows)]
+
+    def terms(piece: slice) -> list[Array]:
+        bases = [_legendre(piece.start, piece.stop, len(heights), degree), *others]
+        factors = [[basis[:, k] for basis, k in zip(bases, power, strict=True)] for power in powers]
+        return [reduce(np.multiply.outer, each) for each in factors]
+
+    matrix, right = np.zeros((len(powers), len(powers))), np.zeros(len(powers))
+    for piece in pieces:
+        known, of_piece = np.isfinite(heights[piece]), terms(piece)
+        matrix += [[np.sum(a * b, where=known) for a in of_piece] for b in of_piece]
+        right += [np.sum(term * heights[piece], where=known) for term in of_piece]
     weights = np.linalg.lstsq(matrix, right, rcond=None)[0]
-    return sum((w * term for w, term in zip(weights, terms, strict=True)), np.zeros(heights.shape))
+    left = np.empty(heights.shape)
+    for piece in pieces:
+        weighted = (w * term for w, term in zip(weights, terms(piece), strict=True))
+        left[piece] = heights[piece] - sum(weighted, np.zeros(heights[piece].shape))
+    left.flags.writeable = False  # it need not be copied
+    return left
+
+
+def _legendre(first: int, stop: int, count: int, degree: int) -> Array:
+    """Legendre polynomials (stop - first, degree + 1) at some of so many points evenly from -1 to 1."""
+    points = np.arange(first, stop) * (2.0 / (count - 1)) - 1.0
+    points[count - 1 - first :] = 1.0  # as it is
+    return np.asarray(np.polynomial.legendre.legvander(points, degree))
 
 
 def rotated(surface: "HeightMap", direction: float) -> "HeightMap":

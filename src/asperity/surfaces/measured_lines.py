@@ -6,7 +6,7 @@ Later editions of the standard have not been compared.
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 import scipy
@@ -26,6 +26,8 @@ SPIKE_CURVATURE = -10.0
 """Second derivative below which a point may be a spike, 1/m (-10^7 µm/m²)."""
 SPIKE_SCALE = 3.0
 """A spike is higher than its width squared over this, m; 8 · 0.375 m: the circle does not fit it."""
+TOGETHER = 2**17
+"""Points that a circle is rolled over at a time, at least, and feet between which spikes are sought."""
 COARSEST_SPACING = 1e-3
 """m."""
 FEWEST_BANDS = 6
@@ -49,7 +51,7 @@ def process(
     applied after it counts that effect twice in part. Leave "curvature" out for laws that solve the contact
     on the heights themselves.
     """
-    done, lifts, trimmed, filled, removed, changed = [], [], 0, 0, 0, 0
+    done, lifted, highest, trimmed, filled, removed, changed = [], [], [], 0, 0, 0, 0
     for profile in lines:
         if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
             coarse = f"spacing {rounded(profile.spacing * 1e3)} mm, more than the 1 mm of EN 15610"
@@ -68,22 +70,24 @@ def process(
             line, spikes, points = remove_spikes(line)
             removed, changed = removed + spikes, changed + points
         done.append(roll_over(line) if "curvature" in steps else line)
-        lifts.append(done[-1].heights - line.heights)
-    lifted, highest = np.mean([np.mean(lift > 1e-12) for lift in lifts]), max(lift.max() for lift in lifts)
-    rolled = f"rolled over with a circle of {ROLLED_RADIUS:g} m: {lifted:.1%} of the points lifted"
+        lift = done[-1].heights - line.heights
+        lifted.append(np.mean(lift > 1e-12))
+        highest.append(lift.max())
+    rolled = f"rolled over with a circle of {ROLLED_RADIUS:g} m: {np.mean(lifted):.1%} of the points lifted"
     words = (
         f"{trimmed} missing points trimmed at the ends",
         f"{filled} points filled" if "fill" in steps else "gaps not filled",
         f"{removed} spikes ({changed} points) removed" if "spikes" in steps else "spikes kept",
-        f"{rolled}, by up to {rounded(highest * 1e6)} µm" if "curvature" in steps else "not rolled over",
+        f"{rolled}, by up to {rounded(max(highest) * 1e6)} µm" if "curvature" in steps else "not rolled over",
     )
     return done, "EN 15610:2009: " + "; ".join(words)
 
 
 def trim(profile: Profile) -> Profile:
     """Cut missing points off both ends."""
-    valid = np.flatnonzero(np.isfinite(profile.heights))
-    return replace(profile, heights=profile.heights[valid[0] : valid[-1] + 1], start=None)
+    known = np.isfinite(profile.heights)
+    first, stop = int(np.argmax(known)), len(known) - int(np.argmax(known[::-1]))
+    return replace(profile, heights=profile.heights[first:stop], start=None)
 
 
 def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
@@ -95,20 +99,28 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
     feet. EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of
     where a spike ends.
     """
-    heights = np.array(profile.heights)
+    heights, count = profile.heights, len(profile.heights)
     bend = np.diff(heights, 2)
-    foot = (bend > 0.0) & (bend >= np.append(0.0, bend[:-1])) & (bend >= np.append(bend[1:], 0.0))
-    feet = np.concatenate([[0], np.flatnonzero(foot) + 1, [len(heights) - 1]])
-    sharp = np.flatnonzero(bend < SPIKE_CURVATURE * profile.spacing**2) + 1
-    spikes = points = 0
-    for k in np.unique(np.searchsorted(feet, sharp)):
-        first, last = int(feet[k - 1]), int(feet[k])
-        width = (last - first) * profile.spacing
-        chord = np.linspace(heights[first], heights[last], last - first + 1)
-        if np.max(heights[first : last + 1] - chord) > width**2 / SPIKE_SCALE:
-            heights[first : last + 1] = chord
-            spikes, points = spikes + 1, points + last - first - 1
-    return replace(profile, heights=heights), spikes, points
+    sharp = np.zeros(count, dtype=bool)
+    sharp[1:-1] = bend < SPIKE_CURVATURE * profile.spacing**2
+    foot = bend > 0.0
+    foot[1:] &= bend[1:] >= bend[:-1]
+    foot[:-1] &= bend[:-1] >= bend[1:]
+    del bend
+    feet = np.concatenate([[0], np.flatnonzero(foot) + 1, [count - 1]])
+    cut, removed, changed = heights.copy(), 0, 0
+    for number in range(0, len(feet) - 1, TOGETHER) if sharp.any() else ():
+        some = feet[number : number + TOGETHER + 1]
+        first, last, points = some[0], some[-1], np.diff(some)
+        chord = np.interp(np.arange(first, last), some, heights[some])
+        rise = np.maximum.reduceat(heights[first:last] - chord, some[:-1] - first)
+        spikes = np.logical_or.reduceat(sharp[first:last], some[:-1] - first)
+        spikes &= rise > (points * profile.spacing) ** 2 / SPIKE_SCALE
+        within = np.repeat(spikes, points)
+        cut[first:last][within] = chord[within]
+        removed, changed = removed + int(spikes.sum()), changed + int((points[spikes] - 1).sum())
+    cut.flags.writeable = False  # it need not be copied
+    return replace(profile, heights=cut), removed, changed
 
 
 def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
@@ -118,13 +130,46 @@ def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
     carries. EN 15610:2009 (curvature processing). Contact is found at points of the line: the height between
     them is off by at most spacing²/8R, 0.3 µm at 1 mm.
     """
-    heights = profile.heights
+    heights, count = profile.heights, len(profile.heights)
     depth = min(float(np.ptp(heights)), radius)
-    reach = min(math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing), len(heights) - 1)
-    across = np.minimum(np.arange(-reach, reach + 1) * profile.spacing, radius)
+    touched = math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing)
+    reach = min(touched, math.floor(radius / profile.spacing), count - 1)
+    across = np.arange(reach + 1) * profile.spacing
     circle = np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - radius
-    rolled = scipy.ndimage.grey_dilation(heights, structure=circle, mode="constant", cval=-np.inf)
+    rolled = np.empty(count)
+    step = max(TOGETHER, 2 * reach)
+    for first in range(0, count, step):
+        before = max(first - reach, 0)
+        envelope = _upper_envelope(heights[before : first + step + reach], circle)
+        rolled[first : first + step] = envelope[first - before :][:step]
+    rolled.flags.writeable = False  # it need not be copied
     return replace(profile, heights=rolled)
+
+
+def _upper_envelope(heights: Array, arc: Array) -> Array:
+    """Highest of arcs of one shape that lie on heights (n,), each (k,) from its top on to either side.
+
+    Two of them cross once at most, the left one being above on the left: the point whose arc is the highest
+    moves on with the place. Places are halved between those that are known, and of each no points count but
+    those between the points of its neighbours.
+    """
+    count, reach = len(heights), len(arc) - 1
+    envelope, highest = np.empty(count), np.zeros(count, dtype=np.int64)
+    distances = (1 << n for n in reversed(range((count - 1).bit_length())))
+    halved = ((distance, np.arange(distance, count, 2 * distance)) for distance in distances)
+    for distance, places in chain([(count, np.zeros(1, dtype=np.int64))], halved):
+        low = np.where(places < distance, 0, highest[places - distance])
+        behind = np.minimum(places + distance, count - 1)
+        high = np.where(places + distance < count, highest[behind], count - 1)
+        low, high = np.maximum(low, places - reach), np.minimum(high, places + reach)
+        sizes = np.maximum(high - low, 0) + 1
+        starts = np.cumsum(sizes) - sizes
+        points = np.arange(sizes.sum()) + np.repeat(low - starts, sizes)
+        values = heights[points] + arc[np.abs(points - np.repeat(places, sizes))]
+        envelope[places] = np.maximum.reduceat(values, starts)
+        tops = np.flatnonzero(values == np.repeat(envelope[places], sizes))
+        highest[places] = points[tops[np.searchsorted(tops, starts)]]
+    return envelope
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +193,8 @@ def full_lines(lines: Sequence[Profile]) -> list[Profile]:
     longest = max(len(line.heights) for line in cut)
     whole = [nearly_complete(line) for line in cut if len(line.heights) >= FULL_LINE * longest]
     complete = [line for line in whole if line is not None]
-    return [Profile(each, complete[0].spacing) for each in common_length(complete)] if complete else []
+    shortest = min((len(line.heights) for line in complete), default=0)
+    return [Profile(line.heights[:shortest], complete[0].spacing) for line in complete]
 
 
 def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
@@ -162,8 +208,8 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
     if not full or 4.0 * full[0].spacing > LIKELY_WAVELENGTHS[1] or full[0].size < LIKELY_WAVELENGTHS[0]:
         return None
     with PhysicsWarning.ignored():  # of a spacing beyond 1 mm
-        processed, _ = process(full)
-    (wavelength, before), (_, after) = map(_levels, (full, processed))
+        wavelength, before = _levels([line.levelled() for line in full])
+        _, after = _levels([line.levelled() for line in process(full)[0]])
     nominal, limits = rail_roughness("iso3095")
     nominal, limits = nominal[likely_band(nominal)], limits[likely_band(nominal)]
     same = np.abs(np.log10(wavelength[:, None] / nominal)) < 0.03
@@ -174,10 +220,10 @@ def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
 
 def _levels(lines: list[Profile]) -> tuple[Array, Array]:
     """Wavelengths, m, and levels, dB re 1 µm, of levelled lines, mean over their powers."""
-    levelled, spacing = [line.levelled().heights for line in lines], lines[0].spacing
     if len(lines) == 1:
-        return band_levels_of(Profile(levelled[0], spacing))
-    return band_levels_of(HeightMap(np.array(levelled).T, (spacing, spacing)))
+        return band_levels_of(lines[0])
+    heights, spacing = np.array([line.heights for line in lines]), lines[0].spacing
+    return band_levels_of(HeightMap(heights.T, (spacing, spacing)))
 
 
 def lines_of(surface: HeightMap) -> tuple[Profile, ...]:

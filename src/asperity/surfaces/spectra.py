@@ -17,15 +17,21 @@ def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     The heights are complete and levelled, m; the mean of each line is removed. The integral of the PSD is
     Rq², weighted by the squared Hann window.
     """
-    lines = np.moveaxis(_complete(surface), axis, -1)
+    _require_complete(surface)
+    lines = np.moveaxis(surface.heights, axis, -1)
     wavenumber, density = psd(lines, float(np.atleast_1d(surface.spacing)[axis]))
     return wavenumber, density.reshape(-1, wavenumber.size).mean(axis=0)
 
 
 def _complete(surface: HeightMap | Profile) -> Array:
+    """Heights about their mean."""
+    _require_complete(surface)
+    return surface.heights - surface.heights.mean()
+
+
+def _require_complete(surface: HeightMap | Profile) -> None:
     received, allowed = f"{surface.missing_share:.2%} missing points", "complete heights for a spectrum"
     require(not np.isnan(surface.heights).any(), "surface", received, allowed, "Use fill first.")
-    return surface.heights - surface.heights.mean()
 
 
 def psd_2d(surface: HeightMap) -> tuple[Array, Array, Array]:

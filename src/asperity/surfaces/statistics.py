@@ -1,7 +1,7 @@
 """Roughness parameters of maps, lines and strips of any length; whether a map is the same everywhere."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import pairwise, starmap
@@ -13,6 +13,7 @@ from asperity.arguments import Array, require
 from asperity.spectra import psd
 from asperity.surfaces import cleaning, levelling, spectra, synthesis
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import PIECE
 from asperity.surfaces.strip import Strip
 
 SEVEN_POINTS = ((3, 1.0), (2, -9.0), (1, 45.0))
@@ -101,17 +102,18 @@ def profile_statistics(
     filtered, the nesting index of the L-filter. Slopes are by the seven-point formula of ISO 4287:1997, NaN
     where no seven are in a row.
     """
-    rms_slope = np.sqrt(_mean(_slopes(profile.heights, profile.spacing, 0) ** 2))
     values = _amplitudes(*_powers(profile.heights))
-    heights = profile.heights - np.nanmean(profile.heights)
-    points = max(1, min(round(section / profile.spacing) if section else heights.size // 5, heights.size))
-    pieces = heights[: heights.size // points * points].reshape(-1, points)
-    pieces = pieces[np.isfinite(pieces).any(axis=1)]
-    peak, valley = float(np.nanmax(pieces, axis=1).mean()), float(-np.nanmin(pieces, axis=1).mean())
-    values |= {"t": values.pop("z"), "z": peak + valley, "p": peak, "v": valley, "dq": rms_slope}
-    mean = f", mean of {len(pieces)} sections of {1e3 * points * profile.spacing:.4g} mm"
+    mean, count = _mean_height(profile.heights), profile.heights.size
+    points = max(1, min(round(section / profile.spacing) if section else count // 5, count))
+    sections = profile.heights[: count // points * points].reshape(-1, points)
+    peaks = np.fmax.reduce(sections, axis=1) - mean
+    valleys = np.fmin.reduce(sections, axis=1) - mean
+    whole = np.isfinite(peaks)
+    peak, valley = float(peaks[whole].mean()), float(-valleys[whole].mean())
+    values |= {"t": values.pop("z"), "z": peak + valley, "p": peak, "v": valley, "dq": _rms_slope_of(profile)}
+    means = f", mean of {whole.sum()} sections of {1e3 * points * profile.spacing:.4g} mm"
     band = bandwidth or (2.0 * profile.spacing, profile.size)
-    return _statistics("R", values | stratified(heights), band, mean)
+    return _statistics("R", values | stratified(profile.heights, mean), band, means)
 
 
 def line_statistics(
@@ -130,12 +132,31 @@ def line_statistics(
     return means
 
 
+def _known(heights: Array) -> Iterator[Array]:
+    """Heights that are known, of any shape, piece by piece."""
+    flat = heights.reshape(-1)
+    for first in range(0, flat.size, PIECE):
+        piece = flat[first : first + PIECE]
+        yield piece[np.isfinite(piece)]
+
+
+def _mean_height(heights: Array) -> float:
+    """Mean of the heights that are known."""
+    sums = [(piece.sum(), piece.size) for piece in _known(heights)]
+    total, count = map(sum, zip(*sums, strict=True))
+    return float(total / count)
+
+
 def _powers(heights: Array) -> tuple[Array, float]:
     """Means of |z|, z², z³ and z⁴ about the mean, and the total height."""
-    z = heights[np.isfinite(heights)]
-    z = z - z.mean()
-    require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
-    return np.array([np.abs(z).mean(), *(np.mean(z**n) for n in (2, 3, 4))]), float(np.ptp(z))
+    mean, sums, count, low, high = _mean_height(heights), np.zeros(4), 0, np.inf, -np.inf
+    for piece in _known(heights):
+        z = piece - mean
+        sums += [np.abs(z).sum(), *(np.sum(z**n) for n in (2, 3, 4))]
+        count += z.size
+        low, high = min(low, z.min(initial=np.inf)), max(high, z.max(initial=-np.inf))
+    require(sums[0], "surface", "equal heights everywhere", "a surface with roughness")
+    return sums / count, float(high - low)
 
 
 def _amplitudes(powers: Array, total: float) -> dict[str, float]:
@@ -163,6 +184,16 @@ def _square_slopes(heights: Array, spacing: tuple[float, float]) -> Array:
     return along**2 + _slopes(heights[MARGIN:-MARGIN], spacing[1], 1) ** 2
 
 
+def _rms_slope_of(line: Profile) -> float:
+    """Rms slope of a line by the seven-point formula, of all points with three neighbours on either side."""
+    total, known, count = 0.0, 0, len(line.heights)
+    for first in range(0, count - 2 * MARGIN, PIECE):
+        slopes = _slopes(line.heights[first : first + PIECE + 2 * MARGIN], line.spacing, 0)
+        total += float(np.nansum(slopes**2))
+        known += int(np.isfinite(slopes).sum())
+    return math.sqrt(total / known) if known else math.nan
+
+
 def _slopes(heights: Array, spacing: float, axis: int) -> Array:
     """Seven-point derivative along an axis, without the three points at either end; heights, spacing in m."""
     z = np.moveaxis(heights, axis, 0)
@@ -175,37 +206,51 @@ def _slopes(heights: Array, spacing: float, axis: int) -> Array:
 
 def material_ratio_curve(heights: Array, points: int = 201) -> tuple[Array, Array]:
     """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed."""
-    ratio = np.linspace(0.0, 1.0, points)
-    return ratio, np.quantile(heights[np.isfinite(heights)], 1.0 - ratio)
+    ratio, known = np.linspace(0.0, 1.0, points), heights[np.isfinite(heights)]
+    return ratio, np.quantile(known, 1.0 - ratio, overwrite_input=True)
 
 
-def stratified(heights: Array) -> dict[str, float]:
+def stratified(heights: Array, mean: float = 0.0) -> dict[str, float]:
     """Core, peaks and valleys by the straight line through the flattest 40 % of the material ratio curve.
 
     ISO 25178-2:2021 and ISO 21920-2:2021, as ISO 13565-2:1996 has it: of all secants over 40 % the first of
     least slope, the line of least squares of the heights there, from 0 to 100 % the core; peaks and valleys
-    are as high as triangles of the same area over the share that they have. Heights of any shape, m; missing
-    ones are left out. By the symbols of `PARAMETERS`: k, pk and vk, m, and the material ratios mr1, where
-    peaks end, and mr2, where valleys begin.
+    are as high as triangles of the same area over the share that they have. Heights of any shape, m, from
+    their mean on; missing ones are left out. By the symbols of `PARAMETERS`: k, pk and vk, m, and the
+    material ratios mr1, where peaks end, and mr2, where valleys begin.
     """
-    falling = np.sort(heights[np.isfinite(heights)])[::-1]
-    count = falling.size
-    ratio = (np.arange(count) + 0.5) / count
+    rising = heights[np.isfinite(heights)]
+    rising.sort()
+    rising -= mean
+    falling, count = rising[::-1], rising.size
     width = min(max(2, round(CORE * count)), count - 1)
-    drop = falling[:-width] - falling[width:]
-    first = int(np.argmax(drop <= drop.min() + 1e-9 * (falling[0] - falling[-1])))
-    part = slice(first, first + width + 1)
-    slope, top = np.polyfit(ratio[part], falling[part], 1)
+    first = _flattest(falling, width)
+    core = falling[first : first + width + 1]
+    about = (np.arange(width + 1) - 0.5 * width) / count
+    slope = float(about @ core / (about @ about))
+    top = float(core.mean()) - slope * (first + 0.5 * width + 0.5) / count
     bottom = top + slope
-    above, below = np.maximum(falling - top, 0.0), np.maximum(bottom - falling, 0.0)
-    peak_ratio, valley_ratio = np.mean(above > 0.0), 1.0 - np.mean(below > 0.0)
-    peaks = 2.0 * above.mean() / peak_ratio if peak_ratio else 0.0
-    valleys = 2.0 * below.mean() / (1.0 - valley_ratio) if valley_ratio < 1.0 else 0.0
-    return {"k": top - bottom, "pk": peaks, "vk": valleys, "mr1": peak_ratio, "mr2": valley_ratio}
+    above = falling[: count - np.searchsorted(rising, top, side="right")] - top
+    below = bottom - rising[: np.searchsorted(rising, bottom, side="left")]
+    peaks, valleys = (2.0 * float(each.mean()) if each.size else 0.0 for each in (above, below))
+    ratios = {"mr1": above.size / count, "mr2": 1.0 - below.size / count}
+    return {"k": top - bottom, "pk": peaks, "vk": valleys} | ratios
 
 
-PIECE = 2**20
-"""Points of a strip that are looked at in one go."""
+def _flattest(falling: Array, width: int) -> int:
+    """First point of a falling curve from which on it falls least, or nearly, over a width, points."""
+    count = len(falling) - width
+    pieces = [slice(first, min(first + PIECE, count)) for first in range(0, count, PIECE)]
+
+    def drops(piece: slice) -> Array:
+        return falling[piece] - falling[piece.start + width : piece.stop + width]
+
+    least = min(float(drops(piece).min()) for piece in pieces)
+    most = least + 1e-9 * (falling[0] - falling[-1])
+    flat = next(piece for piece in pieces if (drops(piece) <= most).any())
+    return flat.start + int(np.argmax(drops(flat) <= most))
+
+
 FEWEST_ROWS = 1024
 """Rows of such a piece, at least: correlations are known up to half of them."""
 

@@ -1,6 +1,8 @@
 """Bare arrays, ``.npy`` and ``.npz``, never unpickled."""
 
 import io
+import re
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -53,7 +55,25 @@ def array_of_archive(path: Path, name: str | None, what: str = "heights") -> tup
 def _has_axes(opened: ZipFile, name: str) -> bool:
     """Whether an array holds more than a single number; nothing but its header is unpacked."""
     with opened.open(f"{name}.npy") as stream:
-        return "'shape': ()" not in stream.read(HEADER).decode("latin-1")
+        return not _SINGLE.search(stream.read(HEADER).decode("latin-1"))
+
+
+_SINGLE = re.compile(r"'shape': \((?:1, ?)*1?\)")
+
+
+def beside_in_archive(path: Path, words: Collection[str]) -> dict[str, NDArray[Any]]:
+    """Arrays of numbers in a ``.npz`` archive whose names are some words, see `plain_word`."""
+    with guards.archive(path) as opened:
+        names = [name.removesuffix(".npy") for name in opened.namelist() if name.endswith(".npy")]
+        wanted = [name for name in names if plain_word(name) in words]
+        held = {name: guards.member_bytes(opened, f"{name}.npy", path.name) for name in wanted}
+    found = {name: array_in(data, path.name) for name, data in held.items()}
+    return {name: array for name, array in found.items() if array.dtype.kind in "fiu"}
+
+
+def plain_word(name: str) -> str:
+    """Letters of a name, or of its last part if dots are in it, all small: ``"samplingrate"``."""
+    return re.sub(r"[^a-zµ]", "", name.rpartition(".")[2].lower()).replace("µ", "u")
 
 
 def only_one(names: list[str], source: str, what: str = "heights") -> str:

@@ -77,8 +77,7 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
         OutOfRangeWarning.warn(f"{what}: a map of {told_length(field)} and more. {places}")
     if slope is None:
         return
-    rms = told_length(float(np.nanstd(surface.heights)))
-    found = f"heights of {rms} over {_extent(surface)}: slopes of {rounded(slope, 2)}"
+    found = f"heights of {told_length(_rms(surface))} over {_extent(surface)}: slopes of {rounded(slope, 2)}"
     steep = slope > USUAL_SLOPES[1]
     remedy = _of_heights(surface, _thousands(slope / USUAL), hints) if steep else places
     if not SLOPES[0] <= slope <= SLOPES[1]:
@@ -89,15 +88,29 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
         OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual}. {remedy}")
 
 
+def _sample(heights: Array) -> Array:
+    """Heights of `MOST_POINTS` points, evenly spread over all, that have one."""
+    flat = heights.reshape(-1)
+    sample = flat[:: max(1, math.ceil(flat.size / MOST_POINTS))]
+    return sample[np.isfinite(sample)]
+
+
+def _rms(surface: HeightMap | Profile) -> float:
+    sample = _sample(surface.heights)
+    return float(sample.std()) if sample.size else 0.0
+
+
 def _far_from_others(heights: Array) -> str:
     """Say which single height, of one point or many, is far from all others; empty without one."""
-    flat = heights[np.isfinite(heights)]
-    sample = flat[:: max(1, math.ceil(flat.size / MOST_POINTS))]
+    flat, sample = heights.reshape(-1), _sample(heights)
     middle = float(np.median(sample)) if sample.size else 0.0
     spread = _NORMAL * float(np.median(np.abs(sample - middle))) if sample.size else 0.0
-    for end in (float(flat.min()), float(flat.max())) if spread else ():
-        far = flat[(flat - middle) / (end - middle) > 0.5] if end != middle else flat
-        if abs(end - middle) > APART * spread and (far == end).all():
+    for end in (float(np.fmin.reduce(flat)), float(np.fmax.reduce(flat))) if spread else ():
+        if abs(end - middle) <= APART * spread:
+            continue
+        half = 0.5 * (end + middle)
+        far = flat[flat > half if end > middle else flat < half]
+        if (far == end).all():
             points = "a point has" if far.size == 1 else f"{far.size} points have"
             received = f"{points} the height {told_length(end)}, where others spread by {told_length(spread)}"
             return f"{received}. If it marks what is missing, write NaN there."
@@ -114,7 +127,7 @@ def _of_heights(surface: HeightMap | Profile, factor: float, hints: Hints) -> st
     given = hints.height_unit or 1.0
     while factor > 1e3 and given / factor < 0.9 * min(_UNITS):
         factor /= 1e3
-    usual = told_length(float(np.nanstd(surface.heights)) / factor)
+    usual = told_length(_rms(surface) / factor)
     unit = _UNITS.get(float(f"{given / factor:.3g}"), "um")
     lead = f"Were they in {unit.replace('u', 'µ')}, {usual}? Give"
     return advice("height_unit", unit, lead, f"Were they {usual}? Correct their unit.")

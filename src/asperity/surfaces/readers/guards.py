@@ -138,8 +138,9 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
     """Wrap a bare array of heights, m: one axis is a line, two are a map, x first, three are maps.
 
     A 2-D array with a single row or column is a line, too: of the spacing (dx, dy), m, one along x takes dx,
-    one along y dy.
+    one along y dy. Nobody else writes to the array: it is kept as it is.
     """
+    array.flags.writeable = False
     if array.ndim == 3 and len(array):
         return [HeightMap(sample, spacing, f"{source}[{i}]") for i, sample in enumerate(array)]
     if array.ndim == 2 and array.shape[0] == 1:
@@ -160,8 +161,13 @@ The largest numbers of both floating point types do so, 1.70141e38 of Surfer, 1e
 
 
 def without_marks(array: NDArray[Any]) -> NDArray[Any]:
-    """Array with NaN where numbers with a floating point stand that are beyond any height, of either sign."""
-    if array.dtype.kind != "f" or array.dtype.itemsize < 4:
+    """Array with NaN where numbers with a floating point stand that are beyond any height, of either sign.
+
+    One without such numbers is returned as it is.
+    """
+    if array.dtype.kind != "f" or array.dtype.itemsize < 4 or not array.size:
+        return array
+    if np.fmin.reduce(array, axis=None) > -MARKED and np.fmax.reduce(array, axis=None) < MARKED:
         return array
     return np.where(np.isfinite(array) & (np.abs(array) >= MARKED), np.array(np.nan, array.dtype), array)
 
@@ -171,5 +177,7 @@ def scaled(array: NDArray[Any], unit: float, source: str) -> Array:
     remedy = advice("array", "name", "Select another one, as in", "Keep numbers alone in the file.")
     real_numbers = array.dtype.kind in "fiu"
     require(real_numbers, source, f"data of type {array.dtype}", "real numbers", remedy)
+    numbers = array.astype(np.float64)
     with np.errstate(over="ignore", invalid="ignore"):  # infinite heights are refused by name afterwards
-        return np.asarray(array.astype(np.float64) * unit)
+        numbers *= unit
+    return np.asarray(numbers)
