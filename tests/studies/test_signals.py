@@ -6,6 +6,7 @@ import struct
 import tomllib
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray
@@ -18,7 +19,7 @@ from asperity.case.toml import toml_text
 from asperity.errors import InputError
 from asperity.reporting.study_figures import key_figure
 from asperity.studies.axes import AS_IT_IS
-from asperity.studies.signals import SignalSet, read_signal, through_path, with_noise
+from asperity.studies.signals import SignalSet, read_record, read_signal, through_path, with_noise
 from command_line import call
 from refusals import refusals
 from small_cases import BEARING
@@ -330,3 +331,58 @@ def test_a_signal_has_one_row_under_the_name_of_a_variant_where_the_case_as_it_i
     told = [(row["variant"], float(row["radial [N]"])) for row in labels]
     assert told == [(AS_IT_IS, 50.0), ("heavy", 100.0)]
     assert len({row["file"] for row in labels}) == 2
+
+
+def in_this_process(function, path, arguments, **_):
+    return function(str(path), *arguments)
+
+
+BESIDE = {
+    "fs": 12e3, "Fs": np.array([[12_000]]), "sample_rate": np.array([12_000.0]), "sr": 12_000, "fs_kHz": 12.0,
+    "SamplingFrequency": 12e3, "rate": 12e3, "dt": 1 / 12e3, "dt_ms": 1 / 12,
+    "t": np.arange(TIME.size) / 12e3, "time": np.arange(TIME.size)[:, None] / 12e3,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", ["npz", "mat", "struct", "hdf5"])
+@pytest.mark.parametrize("name", BESIDE)
+def test_what_stands_beside_a_signal_gives_its_sampling_rate(tmp_path, monkeypatch, kind, name):
+    """A number or times, by the names that people give them; a shaft's rate, and another speed, are none."""
+    monkeypatch.setattr("asperity.surfaces.readers.matlab.sandboxed", in_this_process)
+    file, held = (
+        tmp_path / "run.mat",
+        {"gs": TIME[:, None], "load": 270.0, "frequency": 25.0, name: BESIDE[name]},
+    )
+    if kind == "npz":
+        file = tmp_path / "run.mat.npz"
+        np.savez(file, **held | {"gs": TIME})
+    elif kind == "hdf5":
+        with h5py.File(file, "w") as opened:
+            for each, value in held.items():
+                opened["/bearing/" + each] = np.atleast_2d(value).T
+    else:
+        savemat(file, {"bearing": held} if kind == "struct" else held)
+    array = {"npz": "gs", "mat": "gs"}.get(kind, "bearing.gs")
+    found = read_record(file, array=array)
+    np.testing.assert_array_equal(found.values, TIME)
+    assert found.rate == pytest.approx(12e3, rel=1e-6)
+    assert name in found.rate_by
+    assert read_signal(file, 12_050.0, array=array)[1] == pytest.approx(12e3)
+    with pytest.raises(InputError, match=f"received 48000 Hz; allowed: 12000 Hz, as '.*{name}' says"):
+        read_signal(file, 48e3, array=array)
+
+
+def test_what_is_no_sampling_rate_is_none_and_two_that_differ_are_refused(tmp_path):
+    file = tmp_path / "run.npz"
+    np.savez(file, gs=TIME, rate=25.0, fs=-1.0, dt=0.0, t=np.zeros(TIME.size), sr=np.nan, speed=1797.0)
+    with pytest.raises(InputError, match="sampling rate: received nothing"):
+        read_signal(file, array="gs")
+    np.savez(file, gs=TIME, fs=12e3, dt=1 / 48e3)
+    with pytest.raises(InputError, match=r"sampling rates in run.npz: received fs 12000 Hz, dt 48000 Hz"):
+        read_signal(file, 12e3, array="gs")
+
+
+def test_the_head_of_a_wav_file_is_not_overruled_in_silence(tmp_path):
+    (tmp_path / "a.wav").write_bytes(wav())
+    with pytest.raises(InputError, match=r"received 48000 Hz; allowed: .* as its head says"):
+        read_signal(tmp_path / "a.wav", 48e3)
