@@ -6,6 +6,7 @@ from typing import Any
 from asperity.arguments import NDArray, require
 from asperity.studies.times import BARE_RATES, SAME, rate_of
 from asperity.surfaces.readers.arrays import plain_word
+from asperity.written_numbers import rounded
 
 _RATES = {
     "fs", "sr", "sps", "fsamp", "fsample", "fsampling", "srate", "samprate", "samplerate", "samplesrate",
@@ -48,7 +49,7 @@ def rate_in(beside: Mapping[str, NDArray[Any]], count: int, source: str) -> tupl
     if not found:
         return None
     name, rate = next(iter(found.items()))
-    received = ", ".join(f"{each} {told:.6g} Hz" for each, told in found.items())
+    received = ", ".join(f"{each} {rounded(told, 6)} Hz" for each, told in found.items())
     same = all(abs(each / rate - 1.0) <= SAME for each in found.values())
     remedy = "Save the signal with the one that is right."
     require(same, f"sampling rates in {source}", received, "the same rate", remedy)

@@ -49,7 +49,7 @@ def rate_beside(given: float | None, told: float | None, source: str, teller: st
     remedy = 'Give the sampling rate, as in --rate "12 kHz", if the samples are even all the same.'
     require(given or told, f"times in {source}", "uneven ones", "equal steps", remedy)
     if given and told:
-        received, allowed = f"{given:g} Hz", f"{rounded(told, 6)} Hz, as {teller}"
+        received, allowed = f"{rounded(given, 6)} Hz", f"{rounded(told, 6)} Hz, as {teller}"
         remedy = "Leave it out, or correct the file: save the signal alone."
         require(abs(given / told - 1.0) <= SAME, f"sampling rate of {source}", received, allowed, remedy)
     return float(told or given or 0.0)
@@ -59,7 +59,6 @@ def doubt_rate(given: float, of_column: float, source: str) -> None:
     """Warn of a rate, Hz, that is given beside a column without a title that rises as times of another do."""
     same = any(abs(given / (of_column * unit) - 1.0) <= SAME for unit in (1.0, 1e3, 1e6))  # s, ms, µs
     if not same:
-        OutOfRangeWarning.warn(
-            f"{source}: its first column rises as times of {rounded(of_column, 6)} Hz do, and {given:g} Hz was given "
-            "and is taken. If it holds times, leave the rate out."
-        )
+        rises = f"its first column rises as times of {rounded(of_column, 6)} Hz do"
+        taken = f"and {rounded(given, 6)} Hz was given and is taken"
+        OutOfRangeWarning.warn(f"{source}: {rises}, {taken}. If it holds times, leave the rate out.")
