@@ -206,3 +206,24 @@ def test_a_column_of_short_numbers_takes_few_times_the_memory_of_its_heights(poi
         assert tracemalloc.get_traced_memory()[1] < 4.5 * 8 * points + 2e6
     finally:
         tracemalloc.stop()
+
+
+@pytest.mark.parametrize(("titles", "told"), [
+    ("x (mm);z (um);Intensity;Quality", "'x (mm)', 'z (um)', without 'Intensity', 'Quality'"),
+    ("Intensity;x (mm);Quality;Height (um)", "'x (mm)', 'Height (um)', without 'Intensity', 'Quality'"),
+    ("valid;x (mm);a;z (um)", "'x (mm)', 'valid', 'z (um)', without 'a'"),
+])  # fmt: skip
+def test_columns_that_are_left_out_are_named(titles, told):
+    place, height = (
+        next(n for n, each in enumerate(titles.split(";")) if unit in each) for unit in ("mm", "um")
+    )
+    rows = np.ones((40, 4))
+    rows[:, place] = 1e-3 * np.arange(40)
+    rows[:, height] = np.round(noise(40), 4)
+    text = "\n".join([titles, *(";".join(f"{cell:g}" for cell in row) for row in rows)])
+    Path("a.csv").write_text(text)
+    said = call("surface", "a.csv").stdout
+    assert "a.csv: a line of 40 points, 40 µm" in said
+    assert f"Columns taken: {told}." in said
+    Path("a.csv").write_text("x (mm);z (um)\n0;1\n1e-3;2\n2e-3;1.5\n")
+    assert "Columns" not in call("surface", "a.csv").stdout

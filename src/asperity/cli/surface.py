@@ -25,6 +25,7 @@ from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of,
 from asperity.surfaces.readers import read_all
 from asperity.surfaces.readers.belief import typical_slope
 from asperity.surfaces.readers.hints import on_command_line, spelled
+from asperity.surfaces.readers.text import COLUMNS
 from asperity.surfaces.spectra import psd_1d, psd_radial
 from asperity.terminal import say
 from asperity.text_files import write_csv
@@ -99,6 +100,8 @@ def _levelled(file: Path, steps: recipes.Recipe, title: str) -> tuple[Surfaces, 
         lines = _side_by_side(read, steps.lines)
         surfaces = [steps.stepped(each) for each in lines or read]
     say(f"{title}: {described(surfaces)}")
+    if COLUMNS in (source := surfaces[0].source):
+        say(f"Columns taken: {source.partition(COLUMNS)[2]}.")
     if told := scale_in_words(surfaces[0]):
         say(told)
     sized = read if lines else surfaces

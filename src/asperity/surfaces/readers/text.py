@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from asperity.arguments import Array, require
+from asperity.arguments import Array, listed, require
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
@@ -32,6 +32,8 @@ MISSING = {"", "nan", "bad", "na", "n/a", "#n/a", "n.a.", "#nv", "null", "none",
            "invalid", "no data", "nodata", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind"}  # fmt: skip
 """Words for a missing height, beside any number of asterisks, and of dashes in a line with numbers."""
 COMMENT = ("#", "%", "//")
+COLUMNS = ", columns "
+"""What stands in the source of heights before the columns that they were taken from."""
 MAX_TEXT_BYTES = 1 << 28
 MAX_HEADER = 1 << 20  # characters of headings and comments
 PROBE = 1 << 13  # bytes at either end of a file that say whether it is text
@@ -107,22 +109,31 @@ def read(path: Path, hints: Hints) -> list[guards.Surface]:
     dialect = _dialect(_last_numbers(content), hints.decimal, path.name)
     header_lines, table = _table(content, dialect, path.name)
     table = guards.without_marks(table)
-    table, titles = columns_of_heights(table, titles_of(header_lines, dialect.delimiter, table.shape[1]))
+    all_titles = titles_of(header_lines, dialect.delimiter, table.shape[1])
+    table, titles = columns_of_heights(table, all_titles)
+    source = path.name + _columns_told(all_titles, titles)
     table, titles = without_invalid(table, titles)
     if (units := units_of_lines(titles)) is not None:
-        return _lines(table, *units, hints, path.name)
+        return _lines(table, *units, hints, source)
     header = parsed_header(header_lines, titles)
     if not titles and "width" in header and "height" in header:
-        return _map_of_a_size(table.T, header, hints, path.name)
-    if table.shape[1] > 3 and (found := _with_positions(table, titles, header, hints, path.name)):
+        return _map_of_a_size(table.T, header, hints, source)
+    if table.shape[1] > 3 and (found := _with_positions(table, titles, header, hints, source)):
         return found
     try:
-        return _surfaces(table, header, hints, path.name)
+        return _surfaces(table, header, hints, source)
     except InputError as error:
         if error.received != positions.UNEVEN or "dx" not in header or "z" not in header:
             raise
-    heights = table * hints.heights_in(path.name, header["z"])  # lines without their positions
-    return guards.surfaces_of(heights, hints.spacing_in(path.name, (header["dx"], header["dy"])), path.name)
+    heights = table * hints.heights_in(source, header["z"])  # lines without their positions
+    return guards.surfaces_of(heights, hints.spacing_in(source, (header["dx"], header["dy"])), source)
+
+
+def _columns_told(titles: list[Title], kept: list[Title]) -> str:
+    """Say which columns are taken where others with a title are left out; nothing else."""
+    left = [f"'{title.name}'" for title in titles if title.name and title not in kept]
+    taken = [f"'{title.name}'" for title in kept]
+    return f"{COLUMNS}{listed(taken)}, without {listed(left)}" if left else ""
 
 
 def _unquoted(content: str) -> str:
