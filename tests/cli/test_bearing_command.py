@@ -30,8 +30,9 @@ speed = "3000 1/min"
 def drawn(monkeypatch):
     """Charts and titles of pictures, which are not drawn here."""
     found = []
-    module = importlib.import_module("asperity.cli.bearing")
-    monkeypatch.setattr(module, "write_chart", lambda chart, title, path: found.append((chart, title)))
+    for name in ("bearing", "heard"):
+        module = importlib.import_module(f"asperity.cli.{name}")
+        monkeypatch.setattr(module, "write_chart", lambda chart, title, path: found.append((chart, title)))
     return found
 
 
@@ -177,10 +178,9 @@ def test_a_record_of_a_tenth_of_a_second_says_what_is_too_short_and_judges_the_r
     np.save("run.npy", signal)
     words = ("bearing", "6205", "--speed", "1800 1/min", "--signal", "run.npy", "--rate", "25.6 kHz")
     assert re.match(
-        r"The record of 0.1 s is too short for the line of the shaft at 30 Hz \(1800 1/min\), which takes "
-        r"0.2 s: the speed "
-        r"is not confirmed. If it is right, there are lines of the outer ring at 1\d\d Hz, resolved to 10 "
-        r"Hz: \d+ % sure.",
+        r"The record of 0.1 s, 3 turns, is too short for the line of the shaft at 30 Hz \(1800 1/min\), "
+        r"which takes 0.2 s: the speed is not confirmed. If it is right, there are lines of the outer ring "
+        r"at 1\d\d Hz, resolved to 10 Hz: \d+ % sure.",
         last_line(call(*words).stdout),
     )
     np.save("run.npy", signal[:256])
@@ -189,6 +189,75 @@ def test_a_record_of_a_tenth_of_a_second_says_what_is_too_short_and_judges_the_r
         "duration of the signal: received 0.01 s; allowed: at least 0.0369 s, to resolve the lines of the "
         "inner ring" in said
     )
+
+
+SEVERAL = ("bearing", "6205", "--speed", "1800 1/min", "--rate", "12 kHz", "--signal", "a.npy", "b.npy")
+
+
+def test_several_files_of_one_measurement_are_judged_one_by_one_and_together():
+    files = [f"{name}.npy" for name in "abcdefgh"]
+    for seed, name in enumerate(files):
+        np.save(name, faulty_signal("outer", 30.0, RATE, 0.2, noise=0.5, slip=0.002, seed=seed))
+    np.save("i.npy", np.zeros(5))
+    said = call(*SEVERAL, *files[2:], "i.npy").stdout
+    told = [line for line in said.splitlines() if re.match(r"[a-i].npy", line)]
+    assert [line[:5] for line in told] == ["i.npy", *files]
+    assert told[0].startswith("i.npy is left out. signal: received 5 samples; allowed: at least 64.")
+    silent = sum("no sign of a fault" in line for line in told)
+    assert silent >= 6
+    assert "All 8 together: 19200 samples, 1.6 s at 12000 Hz, read in 8 pieces of 0.2 s; " in said
+    assert f"Of 8 signals, {silent} name no part" in said
+    assert "lines of the outer ring at 10" in last_line(said)
+    document = json.loads(call(*SEVERAL, *files[2:], "--json").stdout)
+    assert (document["faults"], document["turns"]) == (["outer"], pytest.approx(6.0))
+    assert [each["signal"] for each in document["signals"]] == files
+    assert [each["faults"] for each in document["signals"]].count([]) == silent
+    assert last_line(said) == document["verdict"]
+    by_option = [word for name in files[1:] for word in ("--signal", name)]
+    assert last_line(call(*SEVERAL[:-1], *by_option).stdout) == document["verdict"]
+
+
+def test_files_of_unlike_speeds_rates_or_none_are_told():
+    for name, speed in (("a", 29.4), ("b", 30.5)):
+        np.save(f"{name}.npy", faulty_signal("outer", speed, RATE, 2.0, noise=0.1))
+    said = words_of(call(*SEVERAL).stdout)
+    assert (
+        "Of 2 signals, 2 name the outer ring. Their shafts turn at 29.4 to 30.5 Hz: lines of unlike" in said
+    )
+    wavfile.write("c.wav", 16_000, np.round(30_000 * np.sin(TIME)).astype("<i2"))
+    wavfile.write("d.wav", 8_000, np.round(30_000 * np.sin(TIME)).astype("<i2"))
+    refused = call(*SEVERAL[:4], "--signal", "c.wav", "d.wav", code=2).stderr
+    assert "sampling rates of the signals: received 16000 Hz and 8000 Hz; allowed: one for all" in refused
+    assert "--signal: received 1 twice; allowed: each file once" in call(*SEVERAL, "a.npy", code=2).stderr
+    refused = call("bearing", "6205", "a.npy", code=2).stderr
+    assert "bearing: received 6205 and a.npy; allowed: one. Files of signals follow --signal." in refused
+    for name in "ab":
+        np.save(f"{name}.npy", np.ones(500))
+    assert "the same number throughout" in call(*SEVERAL, code=2).stderr
+
+
+def test_what_is_wrong_with_a_recording_is_told_last_and_to_programs():
+    signal = np.clip(faulty_signal("outer", 30.0, RATE, 2.0, noise=0.1), -0.5, 0.5)
+    signal[5_000:5_100] = np.nan
+    said = last_line(heard(10.0 + signal))
+    assert re.search(
+        r"outer ring at 10\d\.\d Hz, resolved to 0\.63 Hz: \d+ % sure\. Samples are missing or left out, "
+        r"first at 0\.417 s: read in 2 stretches without a gap \(0\.417, 1\.57 s\)\. The signal is clipped "
+        r"at 9\.5 and 10\.5, where [\d.]+ % of its samples lie: blows are higher\. Its mean of 10, ",
+        said,
+    )
+    document = json.loads(heard(10.0 + signal, "--json"))
+    assert len(document["doubts"]) == 3
+    assert document["doubts"] == document["signals"][0]["doubts"]
+
+
+def test_progress_is_shown_where_there_is_much_to_do_unless_it_shall_be_quiet(monkeypatch):
+    np.save("run.npy", pulses(108.0))
+    words = ("bearing", "6205", "--speed", "30 Hz", "--rate", "12 kHz", "--signal", "run.npy")
+    assert call(*words).stderr == "reading signals …\n"
+    monkeypatch.setattr("asperity.cli.heard.MANY", TIME.size)
+    assert "envelope of the whitened signal …" in call(*words).stderr
+    assert call(*words, "--quiet").stderr == ""
 
 
 @pytest.mark.parametrize("kind", ["npz", "txt", "wav"])

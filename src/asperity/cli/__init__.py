@@ -164,13 +164,19 @@ def wheel(section: str, highest: str | None, table: Path | None, picture: Path |
     show_wheel(section, highest, table, picture)
 
 
-@_begin("What a ball bearing carries, its tones, and what its signal says.", params=commands.BEARING)
+@_begin(
+    "What a ball bearing carries, its tones, and what its signal says.",
+    params=commands.BEARING,
+    long_work=True,
+)
 @click.argument("bearing", metavar="NAME|FILE")
+@click.argument("more", type=PATH, nargs=-1, metavar="[SIGNAL]...")
 @commands.picture("Picture of the load zone, or of the envelope spectrum.")
 def bearing(
     bearing: str,
+    more: tuple[Path, ...],
     picture: Path | None,
-    signal: Path | None,
+    signal: tuple[Path, ...],
     radial: str | None,
     axial: str | None,
     speed: str | None,
@@ -182,6 +188,8 @@ def bearing(
     A bearing has a NAME, or its dimensions stand in a FILE (TOML): balls, ball_diameter, pitch_diameter,
     inner_conformity, outer_conformity, clearance or contact_angle, preload, material, turning, radial, …
 
+    Several files of one measurement, at one speed, are judged one by one and all together.
+
     Examples
     --------
     # loads, contact ellipses, pressures, stiffness, tones
@@ -190,11 +198,16 @@ def bearing(
     asperity bearing own.toml --axial '50 N' -o load.png
     # is there a fault? lines of the envelope beside those expected
     asperity bearing 6205 --speed '1797 1/min' --signal run.npz --rate '12 kHz' -o envelope.png
+    # several files of one measurement: each one, and all together
+    asperity bearing 6205 --speed '1797 1/min' --signal run-1.wav run-2.wav run-3.wav
     """
     from asperity.cli.bearing import show_bearing
 
     options = {"radial": radial, "axial": axial, "speed": speed, "clearance": clearance}
-    return show_bearing(bearing, signal, picture, options, **hints)
+    if more and not signal:
+        received = " and ".join([bearing, *map(str, more)])
+        raise InputError("bearing", received, "one", "Files of signals follow --signal.")
+    return show_bearing(bearing, (*signal, *more), picture, options, **hints)
 
 
 @_begin("Creep force over creepage of what rolls in a case.", document=False, long_work=True)

@@ -338,7 +338,12 @@ BEARING = [
     click.Option(["--axial"], metavar="FORCE", help="Axial load on it."),
     click.Option(["--speed"], metavar="SPEED", help="Of the ring that turns, as '1800 1/min'."),
     click.Option(["--clearance"], metavar="LENGTH", help="Diametral clearance, as '10 um'."),
-    click.Option(["--signal"], type=PATH, help="Acceleration of it: .npz, .npy, .mat, .wav or text."),
+    click.Option(
+        ["--signal"],
+        type=PATH,
+        multiple=True,
+        help="Acceleration of it: .npz, .npy, .mat, .wav or text; more files of it may follow.",
+    ),
     click.Option(
         ["--rate"],
         metavar="FREQUENCY",

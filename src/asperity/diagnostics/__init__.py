@@ -5,7 +5,7 @@ are expected (`lines`), what else stands out (`prominence`), what it may mean (`
 of it (`decision`, `confidence`, `verdict`).
 """
 
-from asperity.diagnostics.decision import Diagnosis, diagnose
+from asperity.diagnostics.decision import Diagnosis, diagnose, diagnose_together
 from asperity.diagnostics.envelopes import (
     ISO_BANDS,
     Spectrum,
@@ -31,6 +31,7 @@ __all__ = [
     "band_velocities",
     "clear_families",
     "diagnose",
+    "diagnose_together",
     "diagnosis_sentence",
     "envelope_spectrum",
     "explained_lines",

@@ -1,18 +1,19 @@
 """What is said of a record: whether its speed is confirmed, which parts are struck, and how sure that is."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, positive, require
-from asperity.diagnostics.confidence import sure
-from asperity.diagnostics.envelopes import above_frequency, checked_signal
+from asperity.diagnostics.confidence import Basis
+from asperity.diagnostics.envelopes import above_frequency
 from asperity.diagnostics.hypotheses import FINE, NEAR, BearingRecord, Hypothesis, Tone
-from asperity.diagnostics.kurtogram import impulsive_band
+from asperity.diagnostics.kurtogram import Kurtogram, kurtogram
 from asperity.diagnostics.prominence import HARMONICS, LOWEST_PLACE
+from asperity.diagnostics.recording import Recording, equal_pieces
+from asperity.progress import Progress, counted
 from asperity.written_numbers import rounded
 
 SUPPORTED = 15.0
@@ -29,6 +30,11 @@ AHEAD, AHEAD_OF_SHAFT = 10.0, 25.0
 at the speed given, another shaft may be near, and more is asked."""
 HUM = 400.0
 """Frequency up to which lines of the mains and of motors are, Hz."""
+MAINS = (50.0, 60.0, 100.0, 120.0)
+"""Hz, at which motors and inverters hum."""
+RESOLVED = 2.0 * LOWEST_PLACE
+"""Turns of a record from which on it holds the line of the shaft, and side bands at its speed apart from
+what they stand beside."""
 LONGEST = 500.0
 """Turns of a piece of a record: blows that slip have wide lines in longer ones."""
 LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
@@ -68,13 +74,15 @@ class Diagnosis:
         Frequency of blows that are those of no part at this speed, Hz; 0 for none.
     multiple : bool
         Whether lines of the shaft are where the speed says, but clearer by far at half or twice of it.
-    confidence : float
-        That this is so, 0 to 1.
+    basis : Basis
+        What this rests on.
     resolution : float
         Distance of two lines that are told apart, Hz: one over the duration, or that of the pieces of a long
         record.
     record : BearingRecord
         What was looked at.
+    doubts : tuple of str
+        What is wrong with the recording, in sentences.
     """
 
     told: float
@@ -85,9 +93,30 @@ class Diagnosis:
     faint: Hypothesis | None
     blows: float
     multiple: bool
-    confidence: float
+    basis: Basis
     resolution: float
     record: BearingRecord
+    doubts: tuple[str, ...] = ()
+
+    @property
+    def turns(self) -> float:
+        """Turns of the shaft in a piece of the record, at the speed given."""
+        return self.record.duration * self.told
+
+    @property
+    def confidence(self) -> float:
+        """That this is so, 0 to 1."""
+        return self.basis.confidence
+
+    @property
+    def undecided(self) -> bool:
+        """Whether no part is named of a record that is too short for lines of the shaft and side bands."""
+        return self.turns < RESOLVED and not self.parts and not self.blows
+
+    @property
+    def by_made_signals(self) -> bool:
+        """Whether its confidence rests on made signals: none with a fault of a ball was measured."""
+        return any(each.part == "ball" for each in self.parts)
 
 
 def diagnose(
@@ -97,13 +126,14 @@ def diagnose(
     speed: float,
     *,
     band: tuple[float, float] | None = None,
+    progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which part of a bearing is struck in a record, at which speed, and how sure that is.
 
     Parameters
     ----------
     signal : array_like (n,)
-        Acceleration, in any unit.
+        Acceleration, in any unit; NaN where a sample is missing.
     rate : float
         Samples per second, Hz.
     tones : dict
@@ -112,6 +142,8 @@ def diagnose(
         Of the shaft, as told, Hz.
     band : (float, float), optional
         Of the second envelope, Hz; by default that of the largest kurtosis (`impulsive_band`).
+    progress : callable, optional
+        Called as ``progress(done, total, message)``.
 
     Returns
     -------
@@ -133,18 +165,52 @@ def diagnose(
     wrong speed or sampling rate, and a second ring beside the right one, whose lines f_i = Z f_r − f_o are
     those of the right one and the shaft's.
     """
-    values, rate = checked_signal(signal, rate)
+    return diagnose_together([signal], rate, tones, speed, band=band, progress=progress)
+
+
+def diagnose_together(
+    signals: Sequence[ArrayLike],
+    rate: float,
+    tones: Mapping[str, Tone],
+    speed: float,
+    *,
+    band: tuple[float, float] | None = None,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Find which part of a bearing is struck by several records of it, at one speed and sampling rate.
+
+    Parameters
+    ----------
+    signals : sequence of array_like (n,)
+        As of `diagnose`: files of one measurement, or several sensors. Their spectra are averaged, each by
+        its own level, over pieces of one length; a signal with less than half the length of the longest is
+        left out.
+    rate, tones, speed, band, progress
+        As of `diagnose`.
+
+    Returns
+    -------
+    Diagnosis
+        Of all together.
+    """
     told = positive("speed (Hz)", speed)
-    duration = values.size / rate
+    recordings = [Recording.of(each, rate, still=1.0 / told) for each in signals]
+    stretches = [each for recording in recordings for each in recording.stretches]
+    pieces = equal_pieces(stretches, LONGEST * rate / told)
+    duration = pieces[0].size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
     needed = 2.0 * LOWEST_PLACE / (tone.order * told)
     lines = f"the lines of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
     received, allowed = f"{rounded(duration)} s", f"at least {rounded(needed)} s, to resolve {lines}"
     require(duration >= needed, "duration of the signal", received, allowed, "Record longer.")
-    values = _without_clicks(values, duration * told)
-    edges = band or _ringing_band(values, rate, HARMONICS * tone.order * told)
-    record = BearingRecord.of(values, rate, edges, pieces=math.ceil(duration * told / LONGEST))
-    return decided(record, record.read(tones, told), tones, told)
+    stretches = [_without_clicks(each, each.size / rate * told) for each in stretches]
+    pieces = equal_pieces(stretches, LONGEST * rate / told)
+    reached = HARMONICS * tone.order * told
+    seen = Kurtogram.mean(_kurtograms(pieces, rate, reached, progress))
+    record = BearingRecord.of(pieces, rate, seen, band or _ringing_band(seen, rate, reached), progress)
+    found = decided(record, record.read(tones, told), tones, told)
+    doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
+    return replace(found, doubts=tuple(doubts))
 
 
 def _without_clicks(values: Array, turns: float) -> Array:
@@ -158,14 +224,27 @@ def _without_clicks(values: Array, turns: float) -> Array:
     return np.clip(values, -reached, reached)
 
 
-def _ringing_band(values: Array, rate: float, reached: float) -> tuple[float, float]:
-    """Most impulsive band above the lines that its envelope shall show, Hz.
+def _kurtograms(
+    pieces: Sequence[Array], rate: float, reached: float, progress: Progress | None
+) -> Iterator[Kurtogram]:
+    """Kurtogram of each piece above the lines that an envelope shall show, up to a frequency, Hz.
 
     Below lie the shaft's own lines, hum and the tone of balls that pass the load: each beats with the others.
     """
-    above = min(max(reached, HUM), rate / 8.0)
-    low, high = impulsive_band(above_frequency(values, rate, above), rate, reached)
-    return max(low, above), high
+    above = _above(reached, rate)
+    for piece in counted(pieces, len(pieces), "kurtogram", progress):
+        yield kurtogram(above_frequency(piece, rate, above), rate, reached)
+
+
+def _above(reached: float, rate: float) -> float:
+    """Frequency above which the band of an envelope lies that shall show lines up to another one, Hz."""
+    return min(max(reached, HUM), rate / 8.0)
+
+
+def _ringing_band(seen: Kurtogram, rate: float, reached: float) -> tuple[float, float]:
+    """Most impulsive band above the lines that its envelope shall show, Hz."""
+    low, high = seen.best
+    return max(low, _above(reached, rate)), high
 
 
 def decided(
@@ -173,14 +252,16 @@ def decided(
 ) -> Diagnosis:
     """Decide what the hypotheses of a record say of the speed given."""
     ranked = sorted(found, key=lambda each: -_worth(each, told))
-    struck = _likely([each for each in ranked if _deep(each, tones, record.duration)])
-    shaft, support, alone = shaft_near(record, told)
     resolution = 1.0 / record.duration
+    struck = _likely([each for each in ranked if _deep(each, tones, record.duration * record.pieces)])
+    struck = [each for each in struck if not _of_shaft_or_mains(each, told, resolution)]
+    shaft, support, alone = shaft_near(record, told)
     seen = support >= SUPPORTED and all(
         _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
     )
     there = seen and alone
     seen_at = record.speed(shaft)
+    turns = record.duration * told
     bare = Diagnosis(
         told=told,
         speed=seen_at if there and _at(seen_at, told) else told,
@@ -190,7 +271,7 @@ def decided(
         faint=None,
         blows=0.0,
         multiple=seen and not alone,
-        confidence=sure("sound" if seen else "nothing"),
+        basis=Basis("sound" if seen else "nothing", turns),
         resolution=resolution,
         record=record,
     )
@@ -206,19 +287,15 @@ def decided(
     if unresolved and _agrees(best.speed, told, resolution):
         return _of_parts(bare, unresolved[0], rivals, tones, 0.0)
     if best.support >= SUPPORTED and margin >= ahead:
-        confidence = sure("elsewhere", margin, best.support, best.depth)
-        elsewhere = replace(
-            bare, speed=record.speed(best.speed), speed_is=CONTRADICTED, confidence=confidence
-        )
+        basis = Basis("elsewhere", turns, margin, best.support, best.depth)
+        elsewhere = replace(bare, speed=record.speed(best.speed), speed_is=CONTRADICTED, basis=basis)
         return replace(elsewhere, parts=(best,), blows=best.blows)
     if here and _worth(here[0], told) >= _worth(best, told) - AHEAD:
         return _of_parts(bare, here[0], [each for each in struck if not _same(each, here[0])], tones, 0.0)
-    if abs(best.tone - round(best.tone / told) * told) <= resolution:  # blows of the shaft, as of a coupling
-        return bare
     faint = [each for each in ranked if _near(each, told) and abs(each.tone - best.tone) <= resolution]
     if faint:
         return replace(bare, faint=faint[0])
-    return replace(bare, blows=best.tone, confidence=sure("blows"))
+    return replace(bare, blows=best.tone, basis=Basis("blows", turns))
 
 
 def _of_parts(
@@ -231,8 +308,9 @@ def _of_parts(
     close = [each for each in near if abs(each.tone - best.tone) <= 2.0 * resolution]
     alike = {each.part: each for each in close if _worth(each, told) >= _worth(best, told) - ALIKE}
     seconds = () if alike else tuple(_seconds(near, best, tones, resolution))
-    confidence = sure("fault" if there else "fault, shaft not found", margin, best.support, best.depth)
-    found = replace(bare, parts=(best, *seconds), alike=tuple(alike.values()), confidence=confidence)
+    kind = "ball" if best.part == "ball" else "fault" if there else "fault, shaft not found"
+    basis = Basis(kind, bare.turns, margin, best.support, best.depth)
+    found = replace(bare, parts=(best, *seconds), alike=tuple(alike.values()), basis=basis)
     if not there:
         return found
     speed = bare.record.speed(best.speed)
@@ -241,6 +319,16 @@ def _of_parts(
     if _agrees(speed, told, resolution):
         return replace(found, speed=told, speed_is=CONFIRMED)
     return replace(found, speed=speed, speed_is=CONTRADICTED)
+
+
+def _of_shaft_or_mains(each: Hypothesis, told: float, resolution: float) -> bool:
+    """Whether blows are those of a shaft with the speed given, as of a coupling or a fan, or of the mains."""
+    turns = round(each.tone / told)
+    if _near(each, told):
+        return False
+    if turns <= 1:
+        return abs(each.tone - told) <= resolution
+    return min(abs(each.tone - line) for line in (turns * told, *MAINS)) <= 0.5 * resolution
 
 
 def _worth(each: Hypothesis, told: float) -> float:

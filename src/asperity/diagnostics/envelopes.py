@@ -1,5 +1,7 @@
 """Spectra of a bearing's signal: its lines, those of its envelope, and velocities in bands."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, one_of, positive, require
@@ -47,30 +49,32 @@ def amplitude_spectrum(signal: ArrayLike, rate: float) -> Spectrum:
     return frequency, np.asarray(amplitude, dtype=np.float64)
 
 
-def mean_spectrum(signal: ArrayLike, rate: float, pieces: int) -> Spectrum:
-    """Root mean square, over equal pieces of a signal, of their amplitude spectra.
+def mean_spectrum(signals: Iterable[tuple[Array, float]], rate: float) -> tuple[Spectrum, float]:
+    """Root mean square of the amplitude spectra of signals of one length, each over its level.
 
     Lines of blows that come by their own clock widen as a record grows longer; in pieces they stay lines.
 
     Parameters
     ----------
-    signal : array_like (n,)
-        In any unit.
+    signals : iterable of (ndarray (n,), float)
+        With the level of each, in its unit: a louder one counts no more than the others.
     rate : float
         Samples per second, Hz.
-    pieces : int
-        How many, 1 for the spectrum of the whole.
 
     Returns
     -------
-    frequency, amplitude : ndarray (f,)
-        As of `amplitude_spectrum` of a piece.
+    spectrum : (ndarray, ndarray)
+        As of `amplitude_spectrum`, of a signal that has the mean level.
+    level : float
+        The mean level.
     """
-    values, rate = checked_signal(signal, rate)
-    size = values.size // pieces
-    spectra = [amplitude_spectrum(values[n * size : (n + 1) * size], rate) for n in range(pieces)]
-    power = np.mean([amplitude**2 for _, amplitude in spectra], axis=0)
-    return spectra[0][0], np.sqrt(power)
+    frequency, power, levels = np.zeros(0), np.zeros(()), list[float]()
+    for signal, level in signals:
+        levels.append(level)
+        frequency, amplitude = amplitude_spectrum(signal, rate)
+        power = power + (amplitude * (levels[0] / level)) ** 2
+    mean = float(np.mean(levels))
+    return (frequency, np.sqrt(power / len(levels)) * (mean / levels[0])), mean
 
 
 def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] | None = None) -> Spectrum:
@@ -78,10 +82,8 @@ def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] 
 
     Parameters
     ----------
-    signal : array_like (n,)
-        Acceleration, in any unit.
-    rate : float
-        Samples per second, Hz.
+    signal, rate
+        As of `amplitude_spectrum`: acceleration.
     band : (float, float), optional
         Part of its frequencies that is taken, as around a resonance, Hz; all by default.
 
@@ -116,10 +118,14 @@ def envelope_spectrum(signal: ArrayLike, rate: float, band: tuple[float, float] 
 
 def analytic_signal(values: Array, rate: float, low: float, high: float) -> Array:
     """Analytic signal (n,) of what lies between two frequencies, Hz."""
-    from scipy.fft import fft, ifft
+    from scipy.fft import ifft, rfft
 
-    lines, frequency = fft(values), np.fft.fftfreq(values.size, 1.0 / rate)
-    return np.asarray(ifft(np.where((frequency >= low) & (frequency <= high), 2.0, 0.0) * lines))
+    lines = np.zeros(values.size, dtype=np.complex128)
+    below_half = (values.size + 1) // 2
+    frequency = np.arange(below_half) * (rate / values.size)
+    held = (frequency >= low) & (frequency <= high)
+    lines[:below_half][held] = 2.0 * rfft(values)[:below_half][held]
+    return np.asarray(ifft(lines, overwrite_x=True))
 
 
 def above_frequency(values: Array, rate: float, lowest: float) -> Array:
@@ -137,10 +143,8 @@ def prewhitened(signal: ArrayLike, rate: float) -> Array:
 
     Parameters
     ----------
-    signal : array_like (n,)
-        In any unit.
-    rate : float
-        Samples per second, Hz.
+    signal, rate
+        As of `amplitude_spectrum`.
 
     Returns
     -------

@@ -8,8 +8,10 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.diagnostics.envelopes import mean_spectrum, prewhitened
+from asperity.diagnostics.kurtogram import Kurtogram
 from asperity.diagnostics.lines import STANDS_OUT
 from asperity.diagnostics.prominence import LOWEST_PLACE, Prominence
+from asperity.progress import Progress, counted
 
 RANGE = 4.2
 """Factor by which the speed is sought off the one given, either way."""
@@ -116,28 +118,45 @@ class BearingRecord:
         Of a piece, s.
     spectrum, white, band : Prominence
         Of the signal, of the envelope of the prewhitened signal, and of that of a band.
+    kurtogram : Kurtogram
+        Of the signal above the lines of the parts.
     limits : (float, float)
-        Of the band, Hz.
+        Of the band, Hz: its most impulsive one, or one that was given.
+    pieces : int
+        How many there are: all of these are means over them.
     """
 
     duration: float
     spectrum: Prominence
     white: Prominence
     band: Prominence
+    kurtogram: Kurtogram
     limits: tuple[float, float]
+    pieces: int
 
     @classmethod
-    def of(cls, signal: Array, rate: float, limits: tuple[float, float], pieces: int = 1) -> "BearingRecord":
-        """A record (n,) at a sampling rate, Hz, the band of its second envelope, and in how many pieces it is
-        read."""
-        values = signal - signal.mean()
-        white = prewhitened(values, rate)
+    def of(
+        cls,
+        pieces: Sequence[Array],
+        rate: float,
+        kurtogram: Kurtogram,
+        limits: tuple[float, float],
+        progress: Progress | None = None,
+    ) -> "BearingRecord":
+        """Pieces (n,) of a record without their means, at a sampling rate, Hz, their kurtogram, and the
+        band of the second envelope."""
+        views = "spectrum", "envelope of the whitened signal", "envelope of the band"
+        plain, loud, ringing = (counted(pieces, len(pieces), view, progress) for view in views)
+        levels = ((each, float(each.std())) for each in plain)
+        white = (prewhitened(each, rate) for each in loud)
         return cls(
-            duration=values.size // pieces / rate,
-            spectrum=Prominence.of(mean_spectrum(values, rate, pieces)),
-            white=Prominence.of_envelope(white, rate, (0.0, 0.5 * rate), pieces),
-            band=Prominence.of_envelope(values, rate, limits, pieces),
+            duration=pieces[0].size / rate,
+            spectrum=Prominence.of(mean_spectrum(levels, rate)[0], means=len(pieces)),
+            white=Prominence.of_envelopes(white, rate, (0.0, 0.5 * rate), len(pieces)),
+            band=Prominence.of_envelopes(ringing, rate, limits, len(pieces)),
+            kurtogram=kurtogram,
             limits=limits,
+            pieces=len(pieces),
         )
 
     @property
@@ -216,7 +235,7 @@ class BearingRecord:
             clear = view.combs(tones, WEAK)
             if clear.max() > 0.0:
                 tone = view.refined(float(tones[clear.argmax()]))
-                if view.true_fundamental(tone) == tone:
+                if view.true_fundamental(tone, told) == tone:
                     found.append((float(clear.max()), tone))
         return max(found)
 

@@ -1,6 +1,7 @@
 """The kurtogram: how impulsive a signal is in each of many bands, and which one is the most."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,6 +41,14 @@ class Kurtogram:
         """Band of the largest kurtosis of those that hold at least 2 % of the mean square, Hz."""
         at = int(np.argmax(np.where(self.power >= LEAST_POWER, self.kurtosis, -np.inf)))
         return float(self.low[at]), float(self.high[at])
+
+    @classmethod
+    def mean(cls, several: Iterable["Kurtogram"]) -> "Kurtogram":
+        """Mean over kurtograms of the same bands, as of the pieces of a record: a loud one counts no more."""
+        found = list(several)
+        kurtosis = np.mean([each.kurtosis for each in found], axis=0)
+        power = np.mean([each.power for each in found], axis=0)
+        return replace(found[0], kurtosis=kurtosis, power=power)
 
 
 def kurtogram(signal: ArrayLike, rate: float, least_width: float = 0.0) -> Kurtogram:
@@ -89,12 +98,8 @@ def impulsive_band(signal: ArrayLike, rate: float, least_width: float = 0.0) -> 
 
     Parameters
     ----------
-    signal : array_like (n,)
-        In any unit.
-    rate : float
-        Samples per second, Hz.
-    least_width : float
-        Width of the band, at least, Hz: an envelope holds frequencies up to it.
+    signal, rate, least_width
+        As of `kurtogram`.
 
     Returns
     -------

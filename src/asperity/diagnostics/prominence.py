@@ -1,5 +1,6 @@
 """How far the lines of a spectrum stand out, and which combs of harmonics they form."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +18,27 @@ PER_STEP = 3
 """Fundamentals that are tried in the width by which the last harmonic may be beside its place."""
 CANDIDATES = 5
 """Combs that are looked at, the clearest first."""
+BESIDE = 2
+"""Side bands on either side of a line that a shaft makes clear."""
+SPREAD = 2 * WITHIN + 2
+"""Places by which a line reaches beside its own: half the main lobe of the window, and where it is sought."""
 COMPARABLE = 0.3
 """Share of the lines of a comb that those between them must have to be told as its true fundamental."""
+
+
+def _as_of_one(ratio: Array, means: int) -> Array:
+    """Amplitudes over the median of the mean of so many power spectra, as high as those of one spectrum that
+    noise reaches as seldom.
+
+    The power of noise has a gamma distribution: of one spectrum it exceeds r² medians in one of 2^(r²)
+    places.
+    """
+    from scipy.special import gammaincc, gammainccinv
+
+    if means == 1:
+        return ratio
+    chance = gammaincc(means, ratio**2 * gammainccinv(means, 0.5))
+    return np.asarray(np.sqrt(-np.log2(np.maximum(chance, 1e-300))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +65,9 @@ class Prominence:
     level: float
 
     @classmethod
-    def of(cls, spectrum: Spectrum, level: float = 1.0) -> "Prominence":
-        """How far the lines of a spectrum stand out."""
+    def of(cls, spectrum: Spectrum, level: float = 1.0, means: int = 1) -> "Prominence":
+        """How far the lines of a spectrum stand out, or of the mean of so many: noise has higher lines in one
+        than in the mean of many."""
         from scipy.ndimage import maximum_filter1d
 
         frequency, amplitude = spectrum
@@ -62,18 +83,25 @@ class Prominence:
         ratio = amplitude / np.maximum(background, 1e-300)
         ratio[: LOWEST_PLACE - 1] = 0.0
         highest = maximum_filter1d(ratio, 2 * WITHIN + 1)
-        log_ratio = np.log(np.clip(highest, 1.0, COUNTED))
+        log_ratio = np.log(np.clip(_as_of_one(highest, means), 1.0, COUNTED))
         return cls(float(frequency[1]), amplitude, background, log_ratio, level)
 
     @classmethod
-    def of_envelope(
-        cls, signal: Array, rate: float, band: tuple[float, float], pieces: int = 1
+    def of_envelopes(
+        cls, signals: Iterable[Array], rate: float, band: tuple[float, float], means: int = 1
     ) -> "Prominence":
-        """How far the lines of the envelope of a signal (n,) in a band, Hz, stand out, over pieces of it."""
-        envelope = np.abs(analytic_signal(signal, rate, *band))
-        frequency, amplitude = mean_spectrum(envelope, rate, pieces)
+        """How far lines in the mean of so many envelopes, of signals of one length in a band, Hz, stand
+        out."""
+        envelopes = (np.abs(analytic_signal(signal, rate, *band)) for signal in signals)
+        levelled = ((each, float(each.mean())) for each in envelopes)
+        (frequency, amplitude), level = mean_spectrum(levelled, rate)
         held = frequency <= band[1] - band[0]
-        return cls.of((frequency[held], amplitude[held]), float(envelope.mean()))
+        return cls.of((frequency[held], amplitude[held]), level, means)
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """Frequencies (f,), Hz, and amplitudes (f,)."""
+        return np.arange(float(self.amplitude.size)) * self.step, self.amplitude
 
     def at(self, frequency: Array) -> Array:
         """Logarithms of ratios at frequencies of any shape, Hz; NaN beyond the spectrum."""
@@ -115,19 +143,33 @@ class Prominence:
         weight = np.log(np.maximum(amplitude / np.maximum(self.background[place], 1e-300), 1.0)) + 1e-9
         return float((weight * order * place).sum() / (weight * order**2).sum() * self.step)
 
-    def true_fundamental(self, fundamental: float) -> float:
-        """Half or a third of a fundamental where lines as high lie between those of its comb."""
+    def true_fundamental(self, fundamental: float, shaft: float = 0.0) -> float:
+        """Half or a third of a fundamental where lines as high lie between those of its comb.
+
+        Those of a shaft that turns so often, Hz, and side bands at its speed say nothing of that.
+        """
         own = np.log(self.lines_of(fundamental)[1] + 1e-300).mean()
         for share in (2, 3):
             between = np.array([n for n in range(1, 2 * share) if n % share]) * fundamental / share
-            if np.nan_to_num(self.at(between)).mean() < np.log(STANDS_OUT):
+            if shaft:
+                between = between[~self._beside_shaft(between, fundamental, shaft)]
+            if not between.size or np.nan_to_num(self.at(between)).mean() < np.log(STANDS_OUT):
                 continue
             place = np.rint(between / self.step).astype(int)
             around = place[:, None] + np.arange(-WITHIN, WITHIN + 1)
             height = self.amplitude[np.clip(around, 0, self.amplitude.size - 1)].max(axis=1)
             if np.log(height + 1e-300).mean() >= own + np.log(COMPARABLE):
-                return self.true_fundamental(fundamental / share)
+                return self.true_fundamental(fundamental / share, shaft)
         return fundamental
+
+    def _beside_shaft(self, frequency: Array, fundamental: float, shaft: float) -> NDArray[np.bool_]:
+        """Which frequencies are not resolved from multiples of a shaft's speed, Hz, and side bands of a
+        comb."""
+        side = np.arange(-BESIDE, BESIDE + 1) * shaft
+        lines = (np.arange(HARMONICS + 1)[:, None] * fundamental + side).ravel()
+        off = np.abs(frequency[:, None] - lines).min(axis=1)
+        off = np.minimum(off, np.abs(frequency - np.rint(frequency / shaft) * shaft))
+        return np.asarray(off <= SPREAD * self.step)
 
     def depth(self, fundamental: float) -> float:
         """Share by which the envelope rises and falls with a comb: root of the squares of its lines over its

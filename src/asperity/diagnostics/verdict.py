@@ -3,9 +3,8 @@ resolved."""
 
 import math
 
-from asperity.diagnostics.decision import NAMES, Diagnosis
+from asperity.diagnostics.decision import NAMES, RESOLVED, Diagnosis
 from asperity.diagnostics.hypotheses import Hypothesis
-from asperity.diagnostics.prominence import LOWEST_PLACE
 from asperity.written_numbers import rounded
 
 ASKED = "is the speed or the sampling rate wrong?"
@@ -26,13 +25,13 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
     str
         What is not confirmed of the speed comes first; each verdict has its confidence.
     """
-    words = [*_of_speed(found), _of_parts(found)]
+    words = [_too_short(found)] if found.undecided else [*_of_speed(found), _of_parts(found)]
     named = {each.part for each in (*found.parts, *found.alike)}
     if known and known not in named:
         words.append(
             f"Of the fault of the {NAMES[known]} that is known to be there, the record holds no sign."
         )
-    return " ".join(words)
+    return " ".join([*words, *found.doubts])
 
 
 def turns(speed: float) -> str:
@@ -62,6 +61,15 @@ def _half(each: Hypothesis) -> str:
     return " and at half of it (one ring strikes harder)" if each.every > 1 else ""
 
 
+def _too_short(found: Diagnosis) -> str:
+    """What is said of a record in which no part is found, nor could be."""
+    held = (
+        f"The record of {rounded(found.record.duration)} s holds {rounded(found.turns, 2)} turns of the shaft"
+    )
+    needed = f"{RESOLVED:.0f} turns, {rounded(RESOLVED / found.told, 2)} s, or more"
+    return f"{held} at {turns(found.told)}: too short to tell whether there is a fault. Record {needed}."
+
+
 def _of_speed(found: Diagnosis) -> list[str]:
     """What is said of the speed where its lines are not where it says."""
     if found.speed_is == "contradicted":
@@ -70,11 +78,13 @@ def _of_speed(found: Diagnosis) -> list[str]:
     if found.speed_is == "confirmed":
         here = f"Lines of the shaft are at {turns(found.speed)}"
         return [f"{here}, but do not explain all blows: {ASKED}"] if found.blows else []
-    needed = 2.0 * LOWEST_PLACE / found.told
-    if found.record.duration < needed:
-        short = f"The record of {rounded(found.record.duration)} s is too short for the line of the shaft"
-        takes = f"which takes {rounded(needed, 2)} s: the speed is not confirmed."
-        return [f"{short} at {turns(found.told)}, {takes}"]
+    if found.turns < RESOLVED:
+        needed = f"which takes {rounded(RESOLVED / found.told, 2)} s"
+        short = (
+            f"The record of {rounded(found.record.duration)} s, {rounded(found.turns, 2)} turns, is too short"
+        )
+        line = f"for the line of the shaft at {turns(found.told)}, {needed}"
+        return [f"{short} {line}: the speed is not confirmed."]
     if found.multiple and not found.blows:
         return [f"Lines of the shaft are at {turns(found.told)}; half or twice of it would have them, too."]
     missed = f"The line of the shaft is not found at {turns(found.told)}"
@@ -86,7 +96,7 @@ def _of_speed(found: Diagnosis) -> list[str]:
 def _of_parts(found: Diagnosis) -> str:
     """What is said of the parts, and how sure that is."""
     resolved = f"resolved to {rounded(found.resolution, 2)} Hz"
-    sure = f"{100.0 * found.confidence:.0f} % sure"
+    sure = f"{100.0 * found.confidence:.0f} % sure{', by made signals' * found.by_made_signals}"
     if found.alike:
         both = " and the ".join(NAMES[each.part] for each in (found.parts[0], *found.alike))
         lines = f"Lines at {_hertz(found.parts[0].blows, found)}, {resolved}"

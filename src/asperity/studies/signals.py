@@ -40,7 +40,7 @@ from asperity.studies import rates
 from asperity.studies.axes import AS_IT_IS, VARIANT, written_out
 from asperity.studies.definition import Member
 from asperity.studies.member import SIGNAL
-from asperity.studies.times import clock_of, doubt_rate, rate_beside
+from asperity.studies.times import Clock, clock_of, doubt_rate, rate_beside
 from asperity.surfaces.readers import arrays, guards, matlab, text
 from asperity.text_files import (
     blocks_of_lines,
@@ -141,7 +141,8 @@ class SignalSet:
         columns = values.ndim == 2 and values.shape[1] == 2
         require(columns, file.name, received, allowed, "Or give the sampling rate.")
         times = clock_of(values, titles or ["time (s)", ""], file.name)
-        return values[:, 1], rate_beside(None, times and times[1], file.name)
+        even = times.rate if times and not times.gaps else None
+        return values[:, 1], rate_beside(None, even, file.name)
 
     @cached_property
     def _noise(self) -> dict[str, float]:
@@ -272,8 +273,8 @@ def read_signal(
     """Read a signal (n,) and its sampling rate, Hz, from ``.npy``, ``.npz``, ``.mat``, ``.wav`` or text.
 
     `rate` is that which a file does not state, `array` the one of several in an archive, `column` the one of
-    several, from 1. A column of times gives the rate, see `clock_of`. Samples of a WAV file are in shares of
-    full scale.
+    several, from 1. A column of times gives the rate, see `clock_of`; NaN stands for samples that it leaves
+    out, and for empty cells. Samples of a WAV file are in shares of full scale.
     """
     found = read_record(path, rate, array=array, column=column)
     return found.values, found.rate
@@ -298,13 +299,12 @@ def read_record(
         rate = rate_beside(rate, stated, file.name, teller)
     if values.ndim == 2:
         clock = clock_of(values, titles, file.name)
-        of_times = clock and clock[1]
-        if clock is not None and (titles or not rate):
-            rate = rate_beside(rate, of_times, file.name)
-            teller = "its times say" if of_times else ""
-        elif rate and of_times:
-            doubt_rate(rate, of_times, file.name)
         values = values[:, _column(column, values.shape[1], clock, file.name)]
+        if clock is not None and (titles or not rate):
+            rate, values = rate_beside(rate, clock.rate, file.name), clock.filled(values)
+            teller = "its times say" if clock.rate else ""
+        elif rate and clock is not None and clock.rate:
+            doubt_rate(rate, clock.rate, file.name)
     require(rate, "sampling rate", "nothing", "samples per second", 'Give it, as in --rate "12 kHz".')
     require(values.ndim == 1, file.name, f"an array of shape {values.shape}", "a signal, or columns of them")
     _check_size(values, file.name)
@@ -360,14 +360,14 @@ def _kind_of(file: Path) -> str:
     return ""
 
 
-def _column(chosen: int | None, count: int, clock: tuple[int, float | None] | None, source: str) -> int:
+def _column(chosen: int | None, count: int, clock: Clock | None, source: str) -> int:
     """Column of a signal, from zero: that which was chosen, from one, or the only one that holds no times."""
-    signals = [number for number in range(count) if clock is None or number != clock[0]]
+    signals = [number for number in range(count) if clock is None or number != clock.column]
     if chosen is None and len(signals) == 1:
         return signals[0]
     received, allowed = f"{count} columns", f"one of 1 to {count}"
     if clock is not None:
-        allowed += f", of which {clock[0] + 1} holds the times"
+        allowed += f", of which {clock.column + 1} holds the times"
     within = chosen is not None and chosen - 1 in signals
     require(within, f"column in {source}", received, allowed, "Choose it with --column.")
     return (chosen or 0) - 1
@@ -435,7 +435,7 @@ def _of_text(file: Path) -> tuple[Array, list[str]]:
             continue
         for number, cells in lines_of_cells("".join(lines), line):
             try:
-                row = [number_in(cell) for cell in cells]
+                row = [np.nan if columns and not cell.strip() else number_in(cell) for cell in cells]
             except ValueError:
                 require(not columns, file.name, f"words in line {number}", "numbers below the heading")
                 words.append(cells)

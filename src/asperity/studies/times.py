@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,12 +16,41 @@ from asperity.written_numbers import rounded
 _TITLE = re.compile(r"\W*(time|zeit|temps|tiempo|tempo|t)(?![a-z])", re.IGNORECASE)
 BARE_RATES = (100.0, 1e7)
 """Hz, at which a first column without a title that rises evenly holds times, s."""
+MOST_GAPS = 100
+"""Places at which samples may be missing from times that are even."""
+MOST_MISSING = 10_000
+"""Samples that stand for a gap: how long it was in truth changes nothing beyond."""
 SAME = 0.01
 """Share by which a rate that is given may differ from that of the times."""
 
 
-def clock_of(values: Array, titles: Sequence[str], source: str) -> tuple[int, float | None] | None:
-    """Column of times, s, of a table (n, k), and the sampling rate, Hz, if they are even; None without one.
+@dataclass(frozen=True)
+class Clock:
+    """Times beside a signal.
+
+    Attributes
+    ----------
+    column : int
+        That holds them.
+    rate : float or None
+        Samples per second, Hz; None of times that are not even.
+    gaps : tuple of (int, int)
+        Places before which samples are missing, and how many at least.
+    """
+
+    column: int
+    rate: float | None
+    gaps: tuple[tuple[int, int], ...] = ()
+
+    def filled(self, values: Array) -> Array:
+        """Values (n,) with NaN where samples are missing."""
+        before = [place for place, count in self.gaps for _ in range(count)]
+        return np.insert(values, before, np.nan) if before else values
+
+
+def clock_of(values: Array, titles: Sequence[str], source: str) -> Clock | None:
+    """Column of times, s, of a table (n, k), with the sampling rate and gaps, if they are even; None without
+    one.
 
     Titles name it, with its unit, else seconds. Without titles it is the first of several columns, if it
     rises evenly.
@@ -28,20 +58,46 @@ def clock_of(values: Array, titles: Sequence[str], source: str) -> tuple[int, fl
     named = [number for number, title in enumerate(titles) if _TITLE.match(title)]
     if named:
         unit = unit_of(titles[named[0]], "s") or "s"
-        return named[0], rate_of(values[:, named[0]] * factor(unit, "s"), source)
+        return Clock(named[0], *_rate_and_gaps(values[:, named[0]] * factor(unit, "s"), source))
     if titles or values.shape[1] < 2:
         return None
-    rate = rate_of(values[:, 0], source)
-    return (0, rate) if rate and BARE_RATES[0] <= rate <= BARE_RATES[1] else None
+    rate, gaps = _rate_and_gaps(values[:, 0], source)
+    return Clock(0, rate, gaps) if rate and BARE_RATES[0] <= rate <= BARE_RATES[1] else None
 
 
 def rate_of(times: Array, source: str) -> float | None:
     """Samples per second, Hz, at times that rise evenly, as they were printed; None at others."""
+    rate, gaps = _rate_and_gaps(times, source)
+    return None if gaps else rate
+
+
+def _rate_and_gaps(times: Array, source: str) -> tuple[float | None, tuple[tuple[int, int], ...]]:
+    """Samples per second, Hz, at times that rise evenly, as they were printed, but for few gaps; None at
+    others."""
+    if len(times) > 2 and (step := _even_spacing(times, source)):
+        return 1.0 / step, ()
+    steps = np.diff(times)
+    typical = float(np.median(steps)) if steps.size else 0.0
+    after = 1 + np.flatnonzero(np.abs(steps - typical) > 0.5 * np.abs(typical))
+    if not typical > 0.0 or after.size > MOST_GAPS:
+        return None, ()
+    parts = [each for each in np.split(times, after) if each.size > 2]
+    spacings = [_even_spacing(each, source) for each in parts]
+    if not parts or not all(spacings):
+        return None, ()
+    step = spacings[int(np.argmax([each.size for each in parts]))]
+    lost = np.rint(steps[after - 1] / step) - 1.0
+    missing = np.clip(lost, 1, MOST_MISSING).astype(int)  # fewer where a clock begins anew
+    return 1.0 / step, tuple(zip(after.tolist(), missing.tolist(), strict=True))
+
+
+def _even_spacing(times: Array, source: str) -> float:
+    """Distance, s, of times that rise evenly, as they were printed; 0 of others."""
     try:
         index, step = places(times, f"times in {source}")
     except InputError:
-        return None
-    return 1.0 / step if len(times) > 2 and (index == np.arange(len(times))).all() else None
+        return 0.0
+    return step if (index == np.arange(len(times))).all() else 0.0
 
 
 def rate_beside(given: float | None, told: float | None, source: str, teller: str = "its times say") -> float:

@@ -18,7 +18,7 @@ from asperity.diagnostics import (
     kurtogram,
     prewhitened,
 )
-from asperity.diagnostics.confidence import COEFFICIENTS, sure
+from asperity.diagnostics.confidence import COEFFICIENTS, Basis
 from asperity.diagnostics.decision import Diagnosis
 from asperity.structures.ball_bearing import BallBearing
 from faulty_signals import faulty_signal, orders
@@ -211,8 +211,9 @@ def test_tones_allow_for_contact_angle_and_slip():
 
 
 OUTER = Hypothesis("outer", 30.0, 107.66, 3.0, 40.0, 1.0)
+BASIS = SimpleNamespace(confidence=0.834)
 SOUND = Diagnosis(
-    30.0, 30.0, "confirmed", (), (), None, 0.0, False, 0.834, 0.25, SimpleNamespace(duration=4.0)
+    30.0, 30.0, "confirmed", (), (), None, 0.0, False, BASIS, 0.25, SimpleNamespace(duration=4.0)
 )
 
 
@@ -227,12 +228,12 @@ SOUND = Diagnosis(
         (
             {"parts": (OUTER, replace(OUTER, part="ball", tone=142.0))},
             "There are lines of the outer ring at 107.7 Hz and lines of the ball at 142.0 Hz, resolved to "
-            "0.25 Hz: 83 % sure.",
+            "0.25 Hz: 83 % sure, by made signals.",
         ),
         (
             {"parts": (replace(OUTER, part="ball", tone=70.7, every=2),)},
             "There are lines of the ball at 141.4 Hz and at half of it (one ring strikes harder), resolved "
-            "to 0.25 Hz: 83 % sure.",
+            "to 0.25 Hz: 83 % sure, by made signals.",
         ),
         (
             {"parts": (OUTER,), "alike": (replace(OUTER, part="ball"),)},
@@ -277,32 +278,46 @@ SOUND = Diagnosis(
             "lines of rings or balls stand out: no sign of a fault, 83 % sure.",
         ),
         (
-            {"speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.1), "resolution": 10.0},
-            "The record of 0.1 s is too short for the line of the shaft at 30 Hz (1800 1/min), which "
-            "takes 0.2 s: the speed "
-            "is not confirmed. No lines of rings or balls stand out: no sign of a fault if it is right, "
-            "83 % sure.",
+            {"parts": (OUTER,), "speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.1)},
+            "The record of 0.1 s, 3 turns, is too short for the line of the shaft at 30 Hz (1800 1/min), "
+            "which takes 0.2 s: the speed is not confirmed. If it is right, there are lines of the outer "
+            "ring at 107.7 Hz, resolved to 0.25 Hz: 83 % sure.",
+        ),
+        (
+            {"speed_is": "unconfirmed", "record": SimpleNamespace(duration=0.1)},
+            "The record of 0.1 s holds 3 turns of the shaft at 30 Hz (1800 1/min): too short to tell whether "
+            "there is a fault. Record 6 turns, 0.2 s, or more.",
+        ),
+        (
+            {"doubts": ("The signal is clipped at 1.",)},
+            "No lines of rings or balls stand out: no sign of a fault, 83 % sure. The signal is clipped at "
+            "1.",
         ),
     ],
 )
 def test_each_kind_of_verdict_says_the_speed_first_then_the_part_and_how_sure(change, said):
     diagnosis = replace(SOUND, **change)
     assert diagnosis_sentence(diagnosis) == said
-    assert (
-        diagnosis_sentence(diagnosis, "inner")
-        == f"{said} Of the fault of the inner ring that is known to be there, the record holds no sign."
+    unseen = "Of the fault of the inner ring that is known to be there, the record holds no sign."
+    assert diagnosis_sentence(diagnosis, "inner") == " ".join(
+        [diagnosis_sentence(replace(diagnosis, doubts=())), unseen, *diagnosis.doubts]
     )
     if diagnosis.parts:
         assert diagnosis_sentence(diagnosis, diagnosis.parts[0].part) == said
 
 
 def test_confidence_rises_with_what_speaks_for_it_and_is_never_all_or_nothing():
+    def sure(kind, *basis):
+        return Basis(kind, *basis).confidence
+
     for kind in COEFFICIENTS:
-        told = [sure(kind, margin, margin) for margin in (0.0, 10.0, 40.0, 1e6)]
-        assert told == sorted(told)
-        assert 0.03 <= told[0] <= told[-1] <= 0.97
-    assert sure("fault", 5.0, 5.0, 0.2) < sure("fault", 5.0, 5.0, 0.8)
-    assert sure("nothing") < sure("sound")  # a shaft that is found makes it no less sure
+        told = [sure(kind, 50.0, margin, margin) for margin in (0.0, 10.0, 40.0, 1e6)]
+        told += [sure(kind, turns, 1e6, 1e6, 1.0) for turns in (1.0, 3.0, 50.0, 1e6)]
+        assert told[:4] == sorted(told[:4])
+        assert told[4:] == sorted(told[4:])
+        assert 0.03 <= min(told) <= max(told) <= 0.97
+    assert sure("fault", 50.0, 5.0, 5.0, 0.2) < sure("fault", 50.0, 5.0, 5.0, 0.8)
+    assert sure("nothing", 50.0) < sure("sound", 50.0)  # a shaft that is found makes it no less sure
 
 
 # --- band and whitening
@@ -333,7 +348,7 @@ def test_whitening_makes_lines_alike_and_leaves_blows():
 
 # --- measured records
 
-DATA = Path(__file__).parents[2] / "shared" / "data"
+DATA = Path(__file__).parents[3] / "shared" / "data"
 FILES = {"cwru_6205_12k.npz": RATE, "mfpt_nice_48k.npz": 48_828.0, "hit_6205_51k.npz": 51_200.0}
 measured = pytest.mark.skipif(
     not all((DATA / each).is_file() for each in FILES), reason="no measured bearings in shared/data"

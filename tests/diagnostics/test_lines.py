@@ -22,7 +22,7 @@ RATE = 12_000.0
 TIME = np.arange(48_000) / RATE
 B6205 = BallBearing.named("6205")
 CARRIER = (1.0 + 0.6 * np.cos(2 * np.pi * 87.0 * TIME)) * np.cos(2 * np.pi * 2500.0 * TIME)
-MEASURED = Path(__file__).parents[2] / "shared" / "data" / "cwru_6205_12k.npz"
+MEASURED = Path(__file__).parents[3] / "shared" / "data" / "cwru_6205_12k.npz"
 
 
 def noise(seed=0):

@@ -1,0 +1,187 @@
+"""What is wrong with a recording, whatever it was of: samples that are missing, stand still, are clipped."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.arguments import Array, ArrayLike, positive, real_array, require
+from asperity.written_numbers import rounded
+
+Mask = NDArray[np.bool_]
+
+FEWEST = 64
+"""Samples of a signal, at least."""
+BRIDGED = 3
+"""Missing samples in a row that a straight line stands for."""
+CLIPPED = 8
+"""Samples at an end of a signal, at least, that tell that it is clipped there, …"""
+AT_THE_END = 1e-3
+"""… within this share of its height, …"""
+BELOW = 1e-2
+"""… and those in the next share, which are fewer by …"""
+FEWER = 4.0
+"""… this factor at least: what nothing clips thins out towards its ends."""
+OFFSET = 1.0
+"""Mean over the rms about it from which on it is told."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """A signal by its stretches without a gap, and what is wrong with it.
+
+    Attributes
+    ----------
+    stretches : tuple of ndarray (n,)
+        In their order, each without its mean, in the unit of the signal.
+    doubts : tuple of str
+        What is wrong with it, in sentences.
+    clipped : float
+        Share of its samples that lie at an end at which it is clipped.
+    """
+
+    stretches: tuple[Array, ...]
+    doubts: tuple[str, ...]
+    clipped: float
+
+    @classmethod
+    def of(cls, signal: ArrayLike, rate: float, still: float = np.inf) -> "Recording":
+        """A signal (n,), in which NaN stands for what is missing, at a sampling rate, Hz.
+
+        What does not move for so long, s, is no signal: a channel that was stuck, or filled up.
+        """
+        values, rate = _given(signal, rate)
+        missing, told_missing = _bridged(values)
+        stuck, told_stuck = _stands_still(values, rate, still)
+        left_out = missing | stuck
+        whole = values[~left_out]
+        allowed, remedy = "a signal that varies", "Is the sensor connected?"
+        moves = whole.size > 0 and np.ptp(whole) > 0.0
+        require(moves, "signal", "the same number throughout", allowed, remedy)
+        between = _between(left_out, values)
+        stretches = [each for each in between if each.size >= FEWEST and np.ptp(each) > 0.0]
+        longest = f"{max(map(len, between))} samples without a gap at most"
+        require(stretches, "signal", longest, f"at least {FEWEST} that vary")
+        clipped, told_clipped = _clipped(whole)
+        told = (told_missing, told_stuck, _in_stretches(stretches, left_out, rate), told_clipped)
+        doubts = (*told, _offset(whole))
+        return cls(
+            tuple(each - each.mean() for each in stretches),
+            tuple(each for each in doubts if each),
+            clipped,
+        )
+
+
+def equal_pieces(stretches: Sequence[Array], longest: float) -> list[Array]:
+    """Cut stretches (n,) into pieces of one length, of so many samples at most.
+
+    It is that of the shortest that has half the length of the longest one, or a part of it; what is shorter
+    is left out.
+    """
+    most = max(each.size for each in stretches)
+    size = min(each.size for each in stretches if each.size >= 0.5 * most)
+    size //= int(np.ceil(size / longest))
+    return [each[n * size : (n + 1) * size] for each in stretches for n in range(each.size // size)]
+
+
+def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
+    """A copy of a signal of numbers and NaN, and its sampling rate, Hz."""
+    allowed = "a series of numbers, NaN where one is missing"
+    values = np.array(real_array("signal", signal, allowed), dtype=float)
+    require(values.ndim == 1, "signal", f"shape {values.shape}", allowed)
+    require(values.size >= FEWEST, "signal", f"{values.size} samples", f"at least {FEWEST}")
+    known = values[~np.isnan(values)]
+    require(known.size, "signal", "no number, NaN throughout", allowed)
+    endless = known[~np.isfinite(known)]
+    require(not endless.size, "signal", f"{endless[:1].sum()}", allowed)
+    return values, positive("sampling rate (Hz)", rate)
+
+
+def _runs(held: Mask) -> NDArray[np.intp]:
+    """First place of each run of a condition (n,), and the one behind its last, (runs, 2)."""
+    edges = np.diff(np.concatenate([[0], held.astype(np.int8), [0]]))
+    return np.stack([np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)], axis=1)
+
+
+def _between(left_out: Mask, values: Array) -> list[Array]:
+    """Stretches of values that are not left out."""
+    return [values[first:last] for first, last in _runs(~left_out)]
+
+
+def _bridged(values: Array) -> tuple[Mask, str]:
+    """Fill in few missing values, in place; which others are missing (n,), and what is told of those filled
+    in."""
+    missing = np.isnan(values)
+    if not missing.any():
+        return missing, ""
+    few = [
+        (first, last)
+        for first, last in _runs(missing)
+        if last - first <= BRIDGED and first > 0 and last < values.size
+    ]
+    for first, last in few:
+        ends = values[[first - 1, last]]
+        values[first:last] = np.interp(np.arange(first, last), [first - 1, last], ends)
+    count = sum(last - first for first, last in few)
+    told = f"{count} missing samples, up to {BRIDGED} in a row, are replaced by straight lines."
+    return np.isnan(values), told if count else ""
+
+
+def _stands_still(values: Array, rate: float, still: float) -> tuple[Mask, str]:
+    """Where values do not move for so long, s, and what is told of that."""
+    stuck = np.zeros(values.size, dtype=bool)
+    least = max(still * rate, FEWEST)
+    runs = [(first, last + 1) for first, last in _runs(np.diff(values) == 0.0) if last + 1 - first >= least]
+    for first, last in runs:
+        stuck[first:last] = True
+    if not runs:
+        return stuck, ""
+    first, last = max(runs, key=lambda each: each[1] - each[0])
+    when = f"for {rounded((last - first) / rate)} s, from {rounded(first / rate)} s on"
+    where = f"at {rounded(values[first], 4)} {when}"
+    return stuck, f"The signal stands still {where}, as of a channel that is stuck: that is left out."
+
+
+def _in_stretches(stretches: Sequence[Array], left_out: Mask, rate: float) -> str:
+    """What is told of a record with gaps."""
+    if not left_out.any():
+        return ""
+    first = _runs(left_out)[0, 0] / rate
+    lengths = ", ".join(rounded(each.size / rate) for each in stretches[:5])
+    more = ", …" if len(stretches) > 5 else ""
+    where = f"Samples are missing or left out, first at {rounded(first)} s"
+    number = f"{len(stretches)} stretch{'es' * (len(stretches) > 1)}"
+    return f"{where}: read in {number} without a gap ({lengths}{more} s)."
+
+
+def _clipped(values: Array) -> tuple[float, str]:
+    """Share of values (n,) at an end at which they are clipped, and what is told of it."""
+    middle, ends, count = np.median(values), [], 0
+    for end in (values.min(), values.max()):
+        within = np.abs(end - values) / max(abs(end - middle), 1e-300)
+        here = int((within <= AT_THE_END).sum())
+        # of coarse steps the next one is farther away than that share
+        steps = within[within > AT_THE_END]
+        next_step = float(steps.min(initial=1.0)) + AT_THE_END
+        beside = int((steps <= max(BELOW, next_step)).sum())
+        if here >= CLIPPED and here > FEWER * beside:
+            ends.append(rounded(end, 4))
+            count += here
+    share = count / values.size
+    where = " and ".join(ends)
+    told = f"The signal is clipped at {where}, where {_percent(share)} of its samples lie: blows are higher."
+    return share, told if ends else ""
+
+
+def _percent(share: float) -> str:
+    return f"{rounded(100.0 * share, 2)} %"
+
+
+def _offset(values: Array) -> str:
+    """What is told of a mean that is large beside what moves."""
+    mean, rest = float(values.mean()), float(values.std())
+    if abs(mean) < OFFSET * rest:
+        return ""
+    times = f"{rounded(abs(mean) / rest, 2)} times the rms of the rest"
+    return f"Its mean of {rounded(mean)}, {times}, is taken off."
