@@ -69,6 +69,19 @@ def test_the_time_left_of_a_study_does_not_jump(clock):
         assert 0.7 < promised[done] / real[done] < 1.4, done
 
 
+def test_the_next_piece_of_the_same_name_has_a_time_of_its_own(clock):
+    """Law after law rolls: after 200 s the second one had "about 39 min left" of a minute."""
+    laws = [(0, 1), (100, 50), (200, 100), (201, 1), (231, 51), (261, 99)]
+    told = shown(clock, *((time, done, 100, "rolling") for time, done in laws))
+    assert told == [
+        "rolling …",
+        "rolling: 50 of 100, about 2 min left",
+        "rolling: 100 of 100",
+        "rolling: 51 of 100, about 29 s left",
+        "rolling: 99 of 100, about 1 s left",
+    ]
+
+
 def test_before_anything_is_done_no_time_is_promised(clock):
     assert shown(clock, (0.0, 3, 10, "scan"), (50.0, 3, 10, "scan"))[-1] == "scan: 3 of 10"
 

@@ -2,6 +2,7 @@
 
 import ast
 import re
+import textwrap
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,7 +11,16 @@ import xarray as xr
 
 import asperity
 from asperity.reporting.data import typed_words
-from asperity.written_numbers import between, capital, count_of, engineering, in_newtons, plain, rounded
+from asperity.written_numbers import (
+    between,
+    capital,
+    count_of,
+    engineering,
+    in_newtons,
+    plain,
+    rounded,
+    unbroken,
+)
 
 
 @pytest.mark.parametrize(
@@ -35,6 +45,15 @@ def test_areas_are_in_a_unit_that_is_read():
 def test_a_sentence_begins_with_a_capital_and_keeps_its_names():
     assert capital("sound power by CNOSSOS-EU") == "Sound power by CNOSSOS-EU"
     assert capital("") == ""
+    assert capital("contact.spacing = 1 mm is coarse") == "contact.spacing = 1 mm is coarse"
+
+
+def test_a_number_and_its_unit_are_on_one_line_of_a_title():
+    """The title of an envelope's picture broke "97 / % sure"."""
+    told = "cwru.mat: the outer ring, 107.7 Hz, resolved to 0.5 Hz: 97 % sure"
+    for width in range(12, len(told)):
+        rows = textwrap.fill(unbroken(told), width).splitlines()
+        assert not [row for row in rows if row.startswith(("%", "Hz"))]
 
 
 def test_ends_counts_and_forces_are_in_words():

@@ -105,8 +105,14 @@ class _Piece:
         self._seen = deque([(self.begun, done)])
 
     def report(self, done: int, total: int, interval: float) -> bool:
-        """Take down that so many steps are done now; return whether that is to be shown."""
-        now, self.done, self.total = time.monotonic(), done, total
+        """Take down that so many steps are done now; return whether that is to be shown.
+
+        Fewer than before are those of another piece of the same kind, as of the next law that rolls.
+        """
+        now = time.monotonic()
+        if done < self.done:
+            self._seen.clear()
+        self.done, self.total = done, total
         self._seen.append((now, done))
         while len(self._seen) > 2 and self._seen[1][0] < now - WINDOW and self._is_told_by_others():
             self._seen.popleft()

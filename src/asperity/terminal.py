@@ -106,7 +106,7 @@ def write(stream: TextIO | None, text: str, *, lines: bool = False) -> None:
 def say_files(files: Mapping[str, Path]) -> None:
     """Say what was written, by what it is, and where."""
     for what, path in files.items():
-        say(f"{what.capitalize() + ':':9}{path.resolve()}")
+        say(f"{what.capitalize() + ':':8} {path.resolve()}")
 
 
 def line_width(otherwise: int) -> int:

@@ -7,7 +7,9 @@ PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G",
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _SMALLEST, _LARGEST = 1e-4, 1e6
 """Sizes between which all digits are written out."""
-_BEFORE_A_UNIT = re.compile(r"(?<=\d) (?=(?:[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g)(?!\w))")
+_BEFORE_A_UNIT = re.compile(
+    r"(?<=\d) (?=(?:[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|km/h|[GM]?Pa|[µm]?s|mm²|µm²|g)(?!\w))"
+)
 
 
 def rounded(value: float, digits: int = 3) -> str:
@@ -68,8 +70,13 @@ def between(low: str, high: str) -> str:
 
 
 def capital(sentence: str) -> str:
-    """Begin a sentence with a capital; names in it stay as they are written: ``"CNOSSOS-EU"``."""
-    return f"{sentence[:1].upper()}{sentence[1:]}"
+    """Begin a sentence with a capital; names in it stay as they are written: ``"CNOSSOS-EU"``.
+
+    So does a key of a case at its beginning, ``"contact.spacing = …"``.
+    """
+    first = sentence.partition(" ")[0].rstrip(".:,")
+    is_key = "." in first or "_" in first
+    return sentence if is_key else f"{sentence[:1].upper()}{sentence[1:]}"
 
 
 def count_of(count: int, thing: str) -> str:

@@ -81,7 +81,7 @@ def test_what_was_computed_is_printed(computed):
         "hertz-filtered",
         " ± ",
         "–",
-        "dB(A) over",
+        "over linear",
     ):
         assert text in told
     assert "100 Hz" not in told

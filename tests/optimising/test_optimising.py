@@ -18,6 +18,7 @@ from asperity.cli import main, optimising
 from asperity.optimising import running
 from asperity.optimising.allocation import rms_of
 from asperity.written_numbers import signed
+from browser import assert_accessible, pages_of
 from small_cases import COARSE, WHEEL
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
@@ -68,6 +69,11 @@ def test_it_beats_the_start_by_table_with_its_limit_active(folder):
     again = asperity.run(load_case(out / "case.toml").with_(laws=("areal",)))
     found, same = (run["rolling/contact_force"].sel(law="areal") for run in (again, runs[1]))
     np.testing.assert_allclose(found, same, rtol=1e-6, atol=1e-3)
+
+
+def test_nothing_on_its_page_bars_anybody(folder, browser):
+    with pages_of(browser, (folder[0] / "bands.html").as_uri()) as opened:
+        assert_accessible(opened(390))
 
 
 def test_its_document_and_its_page_are_what_the_documentation_says(folder):

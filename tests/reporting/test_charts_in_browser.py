@@ -325,5 +325,3 @@ def test_every_figure_is_drawn_and_readable_on_screens_and_paper(browser, report
         page.set_viewport_size({"width": 688, "height": 1000})  # of A4 between its margins
         assert_readable(page, 688)
         assert not page.locator("figure.chart details").first.is_visible()
-        page.emulate_media(media="screen")
-        assert_accessible(page)

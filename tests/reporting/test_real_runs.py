@@ -1,4 +1,7 @@
-"""The report of a real run of each kind: whole, by itself, its numbers exact, and what lacks left out."""
+"""Pages of real runs of each kind: whole, by themselves, their numbers exact, and what lacks left out.
+
+None bars anybody, nor does any other page that is made of runs.
+"""
 
 import json
 import re
@@ -8,7 +11,10 @@ from report_reading import Reader, computers_exponents, own_scripts, without
 
 from asperity.reporting.figure import columns_text
 from asperity.results import read_result, save
-from asperity.scenes.report import CHAPTERS, figures_of, page_of
+from asperity.scenes.report import CHAPTERS, compare, figures_of, page_of, report, write_summary
+from browser import assert_accessible, pages_of
+from command_line import call
+from small_cases import BEARING, CASES
 
 TABLES = {
     "ball-on-beam": {"statistics", "contact_loss", "energy_balance"},
@@ -91,3 +97,60 @@ def test_one_group_alone_makes_a_page(real_run, group):
     for other in set(tree.children) - {group}:
         del tree[other]
     assert "</html>" in page_of(tree)
+
+
+# --- nothing bars anybody: the rules of axe-core
+
+
+def page_of_a_study(folder, sweep):
+    """Write the page of a study of a smooth ball."""
+    (folder / "study.toml").write_text(f"[case]\n{SMOOTH}\n[sweep]\n{sweep}\n")
+    call("study", str(folder / "study.toml"), "-o", str(folder), "--workers", "1")
+    return folder / "study.html"
+
+
+SMOOTH = """kind = "ball-on-beam"
+laws = ["hertz", "linear"]
+start = "0.45 m"
+duration = "20 ms"
+settling = "0 s"
+surface.spectrum = "iso3095"
+"""
+SWEEPS = {
+    "study of speeds": 'speed = ["0.9 m/s", "1 m/s", "1.1 m/s"]',
+    "study over seeds": 'speed = ["0.9 m/s", "1.1 m/s"]\nseed = [1, 2, 3, 4, 5, 6, 7, 8]',
+    "what helps": '[sweep.variant."calm"]\nsurface.level = "minus 30 dB"',
+}
+BEARINGS = "ball-bearing"
+
+
+@pytest.fixture
+def page(request, real_runs, reports, runs, tmp_path):
+    """A page of a kind that is named."""
+    what, _, kind = request.param.partition(" of ")
+    if request.param in SWEEPS:
+        return page_of_a_study(tmp_path, SWEEPS[request.param])
+    if what == "comparison":
+        ball, bogie = real_runs["ball-on-beam"], real_runs["bodies"]
+        compare(ball, bogie, names=["ball", "bogie"], path=tmp_path)
+        return tmp_path / "comparison.html"
+    result = runs(BEARING) if kind == BEARINGS else real_runs[kind]
+    if what == "summary":
+        return write_summary(result, tmp_path / "summary.html")
+    return report(result, tmp_path) if kind == BEARINGS else reports[kind] / "report.html"
+
+
+KINDS = (*CASES, BEARINGS)
+PAGES = [f"{what} of {kind}" for what in ("run", "summary") for kind in KINDS]
+
+
+@pytest.mark.parametrize("page", [*PAGES, "comparison", *SWEEPS], indirect=True)
+def test_nothing_bars_anybody(browser, members_in_this_process, own_cache, page):
+    """With all that is folded open; on a phone everything that is wider scrolls in itself.
+
+    Pages of `asperity serve` are looked at in ``serving``, that of an optimisation in ``optimising``.
+    """
+    with pages_of(browser, page.as_uri()) as opened:
+        shown = opened(390, "dark")
+        assert shown.evaluate("document.documentElement.scrollWidth") <= 390
+        assert_accessible(shown)

@@ -10,6 +10,7 @@ from asperity.reporting import chart, data
 from asperity.reporting.tables import OFF, ReportTable, error_on_map, setting_names, setting_numbers
 from asperity.schema import bearing, contact, convergence, provenance, rolling
 from asperity.spectra import nominal_frequency
+from asperity.written_numbers import capital
 
 IN_RANGE, NOTE, WARNING, OUT, UNKNOWN = "in range", "note", "warning", "out of range", "not checked"
 _LOOKS = {
@@ -86,7 +87,7 @@ def _warnings(tree: DataTree, checks: Sequence[Light]) -> Iterator[Light]:
             check.value and message.startswith(f"{check.quantity}: {check.value}") for check in checks
         ):
             times = f"{count} times" if (count := warning.get("count", 1)) != 1 else ""
-            yield Light(message[:1].upper() + message[1:], times, "", grade if grade in _LOOKS else WARNING)
+            yield Light(capital(message), times, "", grade if grade in _LOOKS else WARNING)
 
 
 def _expected(tree: DataTree) -> Iterator[Light]:
@@ -179,7 +180,10 @@ def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
 
 
 def deciding_bands(bands: chart.Numbers, level: chart.Numbers) -> str:
-    """The fewest one-third octaves (b,), Hz, that hold half the energy of levels (b,), dB, in words."""
+    """The fewest one-third octaves (b,), Hz, that hold half the energy of levels (b,), dB, in words.
+
+    As ``"the band of 1.6 kHz"``, ``"the bands of 500 Hz and 800 Hz to 1.25 kHz"``.
+    """
     energy = np.nan_to_num(10.0 ** (level / 10.0))
     loudest = np.argsort(-energy, kind="stable")
     held = np.cumsum(energy[loudest])
@@ -187,4 +191,5 @@ def deciding_bands(bands: chart.Numbers, level: chart.Numbers) -> str:
     runs = np.split(kept, np.flatnonzero(np.diff(kept) > 1) + 1)
     ends = [dict.fromkeys(nominal_frequency(float(bands[i])) for i in (run[0], run[-1])) for run in runs]
     words = [" to ".join(each) for each in ends]
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+    listed = " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+    return f"the {'band' if kept.size == 1 else 'bands'} of {listed}"

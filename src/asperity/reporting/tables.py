@@ -256,7 +256,7 @@ def loss_table(tree: DataTree) -> ReportTable:
     if pulling:
         note = f"{' and '.join(pulling)} cannot lose contact, but {verb} where others let go."
     note = " ".join(filter(None, [note, data.of_first_contact(tree)]))
-    return table("contact_loss", "Loss of contact", {"law": text_cells(laws), **columns}, note)
+    return table("contact_loss", "Loss of contact", {"law": text_cells(laws, "name"), **columns}, note)
 
 
 # --- how sure a result is: convergence, chance, and what is not known

@@ -39,7 +39,7 @@ def in_words(
         heads[n] = _called(name) + (f" [{symbol}]" if symbol else "")
         places = 1 if units.startswith("dB") else None
         cells = [_written(value, places) for value in numbers / size]
-        for row, by in enumerate(_written(each[n] / size, places) for each in spread):  # type: ignore[operator]
+        for row, by in enumerate(_written(each[n] / size, places, 2) for each in spread):  # type: ignore[operator]
             cells[row] += f" ± {by}" if by != MISSING else ""
         columns.append(cells)
     return heads, [list(row) for row in zip(*columns, strict=True)]
@@ -47,18 +47,19 @@ def in_words(
 
 def _called(name: str) -> str:
     """Name of a quantity for people: ``"force level, A-weighted, over linear"``."""
-    name = re.sub(r"_a(?=_difference|_by_chance|$| )", ", A-weighted", name)
-    return name.replace("_difference_to_", ", over ").replace("_", " ")
+    name, to, law = name.partition("_difference_to_")
+    name = re.sub(r"_a(?=_by_chance|$| )", ", A-weighted", name).replace("_", " ")
+    return f"{name}, over {law.replace('_', '-')}" if to else name
 
 
 def _as_typed(value: object) -> str:
     return value if isinstance(value, str) else _written(float(value), None)  # type: ignore[arg-type]
 
 
-def _written(value: float, places: int | None) -> str:
-    """A number with so many decimals, or with four digits; a dash where there is none."""
+def _written(value: float, places: int | None, digits: int = 4) -> str:
+    """A number with so many decimals, or with so many digits; a dash where there is none."""
     if not np.isfinite(value):
         return MISSING
     if places is None:
-        return data.plain(value, 4)
+        return data.plain(value, digits)
     return f"{round(value, places) + 0.0:.{places}f}".replace("-", "−")

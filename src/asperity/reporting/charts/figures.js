@@ -24,7 +24,7 @@ async function show(found, root = document) {  // what `charts_json` wrote, in t
 class Figure {
   constructor(element, chart, get, light) {
     Object.assign(this, { element, get, light, area: element.querySelector(".plot"), visible: false, colours: {} });
-    this.title = element.querySelector("h3")?.textContent ?? "";
+    this.title = element.querySelector("h2, h3")?.textContent ?? "";
     this.hidden = new Set();  // marks that are no law's
     this.spans = new Map();  // what is seen along x, where it is not all
     this.area.replaceChildren();

@@ -233,8 +233,25 @@ function drawShape(view, mark) {
   if (mark.colour !== "") stroked(view, mark.width ?? 0.8, mark.dashes);
 }
 
-// Notes stand a little beside their places, inside the panel, and clear of those written before them.
-function drawNotes(view, notes) {
+// Lowest and highest place of lines between two places along x; between points they are straight.
+function reachOver(view, lines, left, right) {
+  return lines.flatMap((mark) => {
+    const [from, to] = reach(view, mark), found = [Infinity, -Infinity];
+    for (let i = from; i + 1 < to; i++) {
+      const [a, b] = [view.x(mark.x[i]), view.x(mark.x[i + 1])], [p, q] = [view.y(mark.y[i]), view.y(mark.y[i + 1])];
+      if (!Number.isFinite(p + q) || Math.max(a, b) < left || Math.min(a, b) > right) continue;
+      for (const at of [within(left, Math.min(a, b), Math.max(a, b)), within(right, Math.min(a, b), Math.max(a, b))]) {
+        const y = a === b ? p : p + ((q - p) * (at - a)) / (b - a);
+        found[0] = Math.min(found[0], y);
+        found[1] = Math.max(found[1], y);
+      }
+    }
+    return found[0] <= found[1] ? [found] : [];
+  });
+}
+
+// Notes stand a little beside their places, inside the panel, clear of those written before them and, with room, of lines.
+function drawNotes(view, notes, lines) {
   const { ctx, unit } = view, line = 14 * unit, taken = [];
   ctx.save();
   ctx.font = `${11.5 * unit}px system-ui, sans-serif`;
@@ -256,7 +273,9 @@ function drawNotes(view, notes) {
     const usual = within(y + above, view.top + 2 * unit, Math.max(view.bottom - height - 2 * unit, view.top + 2 * unit));
     const meets = (top) => taken.some((box) => left < box.right && left + width > box.left && top < box.bottom && top + height > box.top);
     const tries = [0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5].map((n) => usual + n * line);
-    const top = tries.find((each) => each >= view.top && each + height <= view.bottom && !meets(each));
+    const free = tries.filter((each) => each >= view.top && each + height <= view.bottom && !meets(each));
+    const crossed = note.y_share ? reachOver(view, lines, left, left + width) : [];
+    const top = free.find((each) => crossed.every(([high, low]) => low < each || high > each + height)) ?? free[0];
     if (top === undefined) continue;  // no room: what it says stands in the caption, too
     taken.push({ left, right: left + width, top, bottom: top + height });
     ctx.save();

@@ -142,7 +142,7 @@ function plotOf(panel, outer, height, colour, k) {
     ctx.clip();
     const shown = panel.marks.filter(panel.figure.shows);
     for (const mark of shown) if (mark.kind !== "note" && endless(mark) !== front) drawMark(view, mark);
-    if (front) drawNotes(view, shown.filter((mark) => mark.kind === "note"));
+    if (front) drawNotes(view, shown.filter((mark) => mark.kind === "note"), shown.filter((mark) => mark.kind === "line" && mark.width !== 0));
     ctx.restore();
     if (front) for (const mark of shown) if (mark.kind === "field") drawScale({ ...view, colour }, mark);
     const { style } = ctx.canvas.parentElement;  // on paper drawn larger, and seen in its size: sharp

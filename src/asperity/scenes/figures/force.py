@@ -231,10 +231,12 @@ def contact_levels(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     yield panels.shaded_words(tree)
 
 
-def contacts_table(tree: DataTree) -> ReportTable:
-    """Where the contacts are, what they carry, and how long they are lost."""
+def contacts_table(tree: DataTree) -> ReportTable | None:
+    """Where the contacts are, what they carry, and how long they are lost; nothing of a single one."""
     main = data.main_law(tree, rolling.CONTACT_LOSS_SHARE)
     lost = next(Of(rolling.CONTACT_LOSS_SHARE)(tree)).values
+    if len(lost) < 2:
+        return None
     columns = {
         "contact": text_cells(range(1, len(lost) + 1)),
         "ahead of the position of the run": number_cells(

@@ -13,6 +13,7 @@ from asperity.scenes import schema
 from asperity.scenes.figures.sources import WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting
+from asperity.written_numbers import capital
 
 MEASURED = "measured, in one-third octaves"
 _LOOK: tuple[Any, ...] = (chart.INK, (), 2.0)
@@ -197,9 +198,9 @@ def limits_table(tree: DataTree) -> ReportTable | None:
         "met": [_verdict(row.get("met")) for row in rows],
     }
     note = (
-        f"{_vehicle(tree)}, main law: rolling noise alone, to which traction and air add. Normalised by "
-        "30 lg v, from 250 km/h on by 50 lg v, of wagons to 0.225 axles per metre, and compared as a whole "
-        "decibel (Regulation (EU) No 1304/2014, points 4.2.3 and 6.2.2.3). Where roughness or decay rate are "
-        "not as asked, a measured level would be marked non-comparable."
+        f"{capital(_vehicle(tree))}, main law: rolling noise alone, to which traction and air add. "
+        "Normalised by 30 lg v, from 250 km/h on by 50 lg v, of wagons to 0.225 axles per metre, and "
+        "compared as a whole decibel (Regulation (EU) No 1304/2014, points 4.2.3 and 6.2.2.3). Where "
+        "roughness or decay rate are not as asked, a measured level would be marked non-comparable."
     )
     return table("limits", "Limit of TSI Noise, and conditions of a test", columns, note)

@@ -82,7 +82,7 @@ def energy_table(tree: DataTree) -> ReportTable:
     laws = data.held_laws(tree, schema.ENERGY)
     energies = np.transpose([data.of_law(tree, schema.ENERGY, law) for law in laws])
     terms = zip(data.words(tree, schema.ENERGY_TERM), energies, strict=True)
-    columns = {"law": text_cells(laws), **{term: number_cells(energy, "J") for term, energy in terms}}
+    columns = {"law": text_cells(laws, "name"), **{term: number_cells(energy, "J") for term, energy in terms}}
     note = (
         "A check of the steps in time, from the start of the run-in to the end of the run: the first term, "
         "the work of the loads, is the sum of the others: energy that has been gained (positive) or "
@@ -238,9 +238,10 @@ def acceleration_answers(tree: DataTree) -> Answers | None:
     strongest = data.engineering(rms[most], "m/s²")
     lead = (
         f"The structure vibrates most at {places[most]}: {strongest} rms, half of "
-        f"its energy in the bands of {deciding_bands(bands, levels[most])}."
+        f"its energy in {deciding_bands(bands, levels[most])}."
     )
-    note = f"{weighted[most]:.1f} dB(A) re 1 µm/s², at {places[most]}, the most of {len(places)} sensors"
+    where = f"at {places[most]}" + (f", the largest rms of {len(places)} sensors" if len(places) > 1 else "")
+    note = f"{weighted[most]:.1f} dB(A) re 1 µm/s² {where}"
     columns = {
         "sensor at": text_cells(places),
         "rms": number_cells(rms, "m/s²"),

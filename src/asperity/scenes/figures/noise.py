@@ -173,7 +173,8 @@ def sound_power_table(tree: DataTree, main: bool = False) -> ReportTable:
         raise data.Missing(OWN_A.path)
     laws = list(dict.fromkeys(law for law, _ in powers))
     rows = {of: levels for of, levels in powers.items() if not main or of[0] == laws[0]}
-    columns = dict(zip(("law", "model"), map(text_cells, zip(*rows, strict=True)), strict=True))
+    names, models = zip(*rows, strict=True)
+    columns = {"law": text_cells(names, "name"), "model": text_cells(models)}
     for part in _PARTS:
         if any(part in levels for levels in rows.values()):
             columns[part] = number_cells((each.get(part, np.nan) for each in rows.values()), "{:.1f}")
@@ -220,9 +221,13 @@ def _passing_parts(tree: DataTree) -> list[str]:
 def pass_by_level(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     """Level over time: the total by each law, the parts of the main law, and when axles pass."""
     *parts, whole = _passing_parts(tree)
+    main = data.main_law(tree, PASSING)
     totals = panels.styled(tree, lines.at, lines.of(PASSING, radiator=whole))
-    dashes = {part: LOOKS[part][1] for part in parts}
-    of_parts = _of_parts(lines, PASSING, data.main_law(tree, PASSING), dashes)
+    of_parts = [
+        Line(lines.at, series.values, series.label, width=1.6, **look)  # in no colour of a law
+        for part, look in zip(parts, chart.sequence_styles(len(parts)), strict=True)
+        for series in lines.of(PASSING, law=main, radiator=part)
+    ]
     label = "sound pressure level, F / dB(A) re 20 µPa"
     axis = panels.levels_axis(label, [line.y for line in totals], span=SPAN, step=5.0)
     time = Axis("time since the first axle was opposite / s", lines.at[0], lines.at[-1])
@@ -262,7 +267,7 @@ def pass_by_table(tree: DataTree) -> ReportTable:
     beside = any(level is not None for level in heard.values())
     further = [("measured", "all"), ("computed over measured", whole)] if beside else []
     names, radiating = zip(*shown, *further, strict=True)
-    columns = {"law": text_cells(names), "what radiates": text_cells(radiating)}
+    columns = {"law": text_cells(names, "name"), "what radiates": text_cells(radiating)}
     for head, entry in SINGLE_NUMBERS.items():
         if data.present(tree, entry):
             found, own = data.variable_of(tree, entry), heard.get(head) or np.nan
@@ -323,7 +328,7 @@ def _by_vibration(tree: DataTree, of: Sources | None) -> str:
     share, parts = "half of it", [part for name in names for part in BODIES[name] if part in of.parts]
     if len(names) > 1:
         share = "half of these"
-    return f"By vibration {decides(names)}: {of_whole}, {share} in the bands of {_bands(tree, parts)}."
+    return f"By vibration {decides(names)}: {of_whole}, {share} in {_bands(tree, parts)}."
 
 
 def _bands(tree: DataTree, parts: Sequence[str]) -> str:

@@ -102,7 +102,7 @@ def sideways_table(tree: DataTree) -> ReportTable:
     """Lateral force and slip, per law."""
     laws = data.held_laws(tree, FORCE)
     columns = {
-        "law": text_cells(laws),
+        "law": text_cells(laws, "name"),
         "lateral force, rms / N": number_cells(data.values(tree, schema.LATERAL_FORCE_SPREAD), in_digits(3)),
         "beyond friction": text_cells(map(data.in_percent, data.values(tree, schema.SLIP_SHARE)), "number"),
     }

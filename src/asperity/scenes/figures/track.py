@@ -51,7 +51,7 @@ def split_rules(tree: DataTree, low: float, high: float) -> list[Mark]:
     return [Rules(np.array(split)), Note("f_pp ∓ v/2L", split[1], 0.97, y_share=True)]
 
 
-TONES = 20
+TONES = 12
 """Multiples of sleeper passing that are marked: further ones lie too close on an axis by octaves."""
 
 
