@@ -63,9 +63,15 @@ test_what_cannot_be_is_told = refusals(
 
 
 test_what_no_raceway_has_is_refused = refusals(
-    ({"outer_raceway": {"waviness": "0.5 mm"}}, r"outer raceway: waves all around: .* at most 100.* unit"),
-    ({"balls": {"waves": [1], "amplitudes": ["0.5 mm"]}}, r"balls: waves all around: received 500 µm"),
-    ({"inner_raceway": {"roughness": "90 um", "shortest": "50 um"}}, r"inner raceway: waves all around"),
+    (
+        {"outer_raceway": {"waviness": "0.5 mm"}},
+        r"outer_raceway.waviness: .* all around.* at most 100.* unit",
+    ),
+    ({"balls": {"waves": [1], "amplitudes": ["0.5 mm"]}}, r"balls.amplitudes: received 500 µm"),
+    (
+        {"inner_raceway": {"roughness": "90 um", "shortest": "50 um"}},
+        r"inner_raceway.roughness: .* all around",
+    ),
     of=lambda keys: prepare_bearing(as_case(CASE | keys)),
     error=(CaseError, InputError),
 )
@@ -241,8 +247,11 @@ def test_a_roundness_trace_is_read_with_its_units(tmp_path):
 
 
 test_a_fault_off_the_raceway_is_refused_before_the_run = refusals(
-    ({"on": "outer", "length": "0.2 mm", "depth": "10 um", "offset": "5 mm"}, r"outer raceway: offset of"),
-    ({"on": "inner", "length": "5 mm", "depth": "10 um", "count": 90}, r"inner raceway: length of the fault"),
+    ({"on": "outer", "length": "0.2 mm", "depth": "10 um", "offset": "5 mm"}, r"fault.offset: received 5 mm"),
+    (
+        {"on": "inner", "length": "5 mm", "depth": "10 um", "count": 90},
+        r"fault.length: received 5 mm, 90",
+    ),
     of=lambda fault: prepare_bearing(as_case(CASE | {"fault": fault})),
 )
 

@@ -402,7 +402,8 @@ class BallBearingCase(AnyCase):
         try:
             leaving = self.static.leaving_speed
         except InputError as error:
-            yield error.about("radial") if error.what == "load" else error
+            heavier = "radial" if self.radial >= self.axial else "axial"
+            yield error.about(heavier) if error.what in ("load", "contact") else error
             return
         if leaving is not None:
             received = f"{rounded(60.0 * self.speed, 5)} 1/min, which lifts balls off the inner ring"

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING, ClassVar
 
 from asperity.case.body import Rolling
@@ -12,11 +13,14 @@ from asperity.case.surface import LENGTH, OF_RAILS, POSITION, Surface
 from asperity.errors import InputError
 from asperity.parameters import Choice, ListOf, MaterialOrName, Number, Quantity, key, optional
 from asperity.reference.materials import Material
+from asperity.units import written
 
 if TYPE_CHECKING:
     from asperity.structures.beam import Support
     from asperity.structures.modal import Modal
 
+LEAST_SPAN = 1e-3
+"""Least distance of supports over the length of a beam: closer ones clamp it."""
 MODES_BEYOND = 4.0
 """Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
 
@@ -120,9 +124,13 @@ class BeamKeys(RolledOver):
             return
         ends = () if self.support == "free" else (0.0, self.length)
         places = [*ends, *self.supports]
-        if len(set(places)) < len(places) or max(places, default=0.0) > self.length:
+        ordered = sorted(places)
+        apart = min((b - a for a, b in pairwise(ordered)), default=self.length)
+        if not apart > LEAST_SPAN * self.length or max(places, default=0.0) > self.length:
             received = ", ".join(f"{x:g} m" for x in self.supports)
-            allowed = f"different positions on the beam of {self.length:g} m, none where an end is held"
+            least = written(LEAST_SPAN * self.length, "m", "mm")
+            on_it = f"different positions on the beam of {self.length:g} m"
+            allowed = f"{on_it}, {least} or more apart, none where an end is held"
             yield InputError("supports", received, allowed)
         elif len(places) < 2:
             remedy = "A beam on one support rocks: add another."

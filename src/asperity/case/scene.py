@@ -385,11 +385,13 @@ class Case(AnyCase):
                 'Name a measured map (file = "…"), synthesise one (rms = "0.5 um"), or set smooth = true.'
             )
             yield InputError("surface", "no texture", allowed, remedy)
-        for name, unit in (("shortest", "um"), ("corrugation_wavelength", "mm")):
+        # a sine of two points a wave may be zero at each of them
+        for name, unit, least in (("shortest", "um", 2), ("corrugation_wavelength", "mm", SAMPLING)):
             wave = getattr(surface, name)
-            if wave is not None and wave < 2 * spacing * (1 - 1e-9):
+            if wave is not None and wave < least * spacing * (1 - 1e-9):
                 received = f"{written(wave, 'm', unit)} on a spacing of {written(spacing, 'm', unit)}"
-                allowed = f"at least two spacings, {written(2 * spacing, 'm', unit)}"
+                count = "two" if least == 2 else f"{least:g}"
+                allowed = f"at least {count} spacings, {written(least * spacing, 'm', unit)}"
                 yield InputError(f"surface.{name}", received, allowed)
 
     def _problems_of_sampling(self) -> Iterator[InputError]:

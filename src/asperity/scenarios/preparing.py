@@ -14,11 +14,10 @@ from asperity.case.chosen_lengths import with_chosen
 from asperity.case.scene import Case
 from asperity.contact.batched import find_device
 from asperity.contact.scan import FILTER_SHARE, ScanJob, rtol_for, scan_forces
-from asperity.errors import CaseError, InputError, PhysicsWarning
+from asperity.errors import InputError, PhysicsWarning
 from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress, duration
-from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.rolling.ground import warn_if_bent
 from asperity.rolling.resolution import (
     PER_HIGHEST,
@@ -32,28 +31,15 @@ from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios import compiling, laws, reducing, running_in
 from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.geometry import geometry_of, window_cells
+from asperity.scenarios.problems import by_key, problems, refuse
 from asperity.scenarios.scene import PreparedCase, scene_of
-from asperity.scenarios.textures import Textures, recorded_time, textures_of, warn_of_textures
-from asperity.spectra import HALF_BAND, lowest_band, nominal_frequency
+from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
 from asperity.structures.modal import HIGHEST
 from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
-from asperity.units import written
-from asperity.written_numbers import in_newtons, rounded
 
-STEEPEST = 1.0
-"""Rms slope up to which surfaces are taken for such: the half-space is for small ones."""
-ROUGHEST = 100.0
-"""Rms height within the window up to which contacts are solved, in approaches of the smooth bodies."""
-_UNITS = {
-    "file": 'Are the heights in µm? Then set height_unit = "um", and the pixel with its unit.',
-    "rms": 'Is rms in µm? Then write it so: rms = "0.5 um".',
-    "line": 'Are the heights in µm? Then set line_unit = "um", and line_spacing with its unit.',
-    "spectrum": "Are the levels in dB re 1 µm, and the wavelengths in their unit?",
-}
-"""What to ask about heights that are too large, by the key that they come from."""
 NEIGHBOUR = 0.4
 """Time of a contact that starts from its neighbour's pressure to that of one that does not."""
 STEP_TIME = 1e-6
@@ -78,22 +64,16 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
             try:
                 made.append(make())
             except InputError as error:
-                errors.append(error)
+                errors.append(by_key(case, error))
         refuse(errors, source)
         prepared = PreparedCase(case, *made[:3])
         if (smaller := _within_the_map(case, prepared.textures)) is not None:
             return prepare(smaller, source)
-        refuse(list(_problems(prepared)), source)
+        refuse([*problems(prepared), *_problem_of_disk(prepared)], source)
         warn_of_textures(case, prepared.shape, prepared.textures)
         refuse(list(problems_of_coverage(case, prepared.textures)), source)
     seconds, processor = {"textures": time.perf_counter() - begin}, time.process_time() - spent
     return replace(prepared, caught=tuple(caught), seconds=seconds, processor=processor)
-
-
-def refuse(errors: Sequence[InputError], source: str) -> None:
-    """Raise errors, all at once; none where there are none."""
-    if errors:
-        raise errors[0] if len(errors) == 1 else CaseError(source, [str(error) for error in errors])
 
 
 def _within_the_map(case: Case, textures: Textures) -> Case | None:
@@ -105,87 +85,13 @@ def _within_the_map(case: Case, textures: Textures) -> Case | None:
     return with_chosen(case, {"contact": {"window": cells * case.contact.spacing}})
 
 
-def _problems_of_record(prepared: PreparedCase) -> Iterator[InputError]:
-    """A record that holds no one-third octave up to the highest frequency."""
-    case = prepared.case
-    recorded, highest = recorded_time(case, prepared.textures), case.numerics.highest_frequency
-    samples = math.floor(recorded / case.time_step * (1.0 + 1e-12)) + 1
-    lowest = lowest_band(samples, case.time_step)
-    if highest * HALF_BAND < lowest:
-        received = f"{rounded(highest, 4)} Hz with a record of {recorded:.4g} s"
-        allowed = (
-            "a record that holds a one-third octave up to it; of this the lowest is at "
-            f"{rounded(lowest, 4)} Hz"
-        )
-        least = f"at least {nominal_frequency(lowest)}"
-        remedy = f"Record longer (duration), or ask for {least}."
-        yield InputError("numerics.highest_frequency", received, allowed, remedy)
-
-
-def _problem_of_heights(prepared: PreparedCase) -> InputError | None:
-    """Heights that no surface has on which bodies roll: most often in another unit."""
-    case, shape, textures = prepared.case, prepared.shape, prepared.textures
-    (nx, ny), maps = shape.body.shape, textures.maps
-    slope, rough = float(np.sqrt(np.mean(np.diff(textures.line) ** 2))) / case.contact.spacing, 0.0
-    if maps:
-        slope = textures.rms_slope
-        rough = float(np.mean([np.std(sample.heights[:nx, :ny]) for sample in maps]))
-    approach = shape.hertz.approach(shape.load)
-    if slope <= STEEPEST and rough <= ROUGHEST * approach:
-        return None
-    received = f"heights with an rms slope of {rounded(slope)}"
-    allowed = f"slopes up to {STEEPEST:g}"
-    if slope <= STEEPEST:
-        received = f"heights of {rounded(1e6 * rough)} um rms within the window"
-        allowed = f"up to {ROUGHEST:g} approaches of the bodies, {rounded(1e6 * approach)} um each"
-    of_wheel, of_rail = (np.std(np.diff(textures.parts[part])) for part in ("wheel", "rail"))
-    section, name = (case.rolling, case.ROLLING) if of_wheel > of_rail else (case.surface, "surface")
-    key = next((key for key in _UNITS if getattr(section, key, None) is not None), "")
-    return InputError(f"{name}.{key}".rstrip("."), received, allowed, _UNITS.get(key, ""))
-
-
-def _problems(prepared: PreparedCase) -> Iterator[InputError]:
-    """What fits neither samples nor window; a record too short for its spectra."""
-    contact, shape, textures = prepared.case.contact, prepared.shape, prepared.textures
-    yield from _problems_of_record(prepared)
-    nx, ny = shape.body.shape
-    if (steep := _problem_of_heights(prepared)) is not None:
-        yield steep
-        return
-    smallest = min((min(sample.shape) for sample in textures.maps), default=nx)
-    if smallest < nx:
-        allowed = f"at most the measured map, {rounded(smallest * contact.spacing * 1e6, 4)} um"
-        received = written(contact.window, "m", "um")
-        yield InputError("contact.window", received, allowed, "Choose a smaller one, or measure wider maps.")
-        return
-    if textures.strips and any(strip.heights.any() for strip in textures.strips):
-        rows, stride = min(strip.shape[0] for strip in textures.strips), reducing.filter_stride(shape)
-        if (rows - nx) // stride + 1 < FEWEST_POSITIONS:
-            least = (nx + (FEWEST_POSITIONS - 1) * stride) * contact.spacing
-            received = f"strips of {rounded(rows * contact.spacing * 1e6, 4)} um"
-            allowed = f"at least {rounded(least * 1e6, 4)} um, in which the contact is filtered"
-            yield InputError(
-                "contact.sample_length", received, allowed, "Lengthen it, or measure larger maps."
-            )
+def _problem_of_disk(prepared: PreparedCase) -> Iterator[InputError]:
+    """A disk that does not hold the scan of the path."""
     path, root = scan_sizes(prepared).get("path"), Store().root
     if path is not None and (free := free_space(root)) < path.bytes > MOST_HELD:
         remedy = "Set $ASPERITY_CACHE to a folder on another disk, or free some space."
         allowed = f"{amount(path.bytes)} for the scan of the path"
         yield InputError("disk of the cache", f"{amount(free)} free in {root}", allowed, remedy)
-    if contact.running_in is not None and not textures.strips:
-        allowed = "only together with a surface that asperities are known of: file, or rms"
-        yield InputError(
-            "contact.running_in", str(contact.running_in), allowed, "Remove the key, or name one."
-        )
-    if contact.hardness is not None:
-        largest = contact.hardness * contact.spacing**2 * nx * ny
-        needed = shape.load if contact.approaches is not None else shape.largest_force
-        if needed >= largest:
-            received = (
-                f"{contact.hardness / 1e9:.4g} GPa, with which the window carries {in_newtons(largest)}"
-            )
-            allowed = f"more than the {rounded(needed, 4)} N that are needed"
-            yield InputError("contact.hardness", received, allowed, "Enlarge contact.window.")
 
 
 # --- what a run will take

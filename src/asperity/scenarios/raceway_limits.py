@@ -5,7 +5,7 @@ import numpy as np
 from asperity.arguments import require
 from asperity.errors import OutOfRangeWarning
 from asperity.scenarios.geometry import HIGHEST_FORCE
-from asperity.scenarios.preparing import ROUGHEST, STEEPEST
+from asperity.scenarios.problems import ROUGHEST, STEEPEST
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import Raceway
 from asperity.written_numbers import rounded

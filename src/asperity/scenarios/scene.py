@@ -9,6 +9,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex
 from asperity.case.scene import Case
+from asperity.errors import InputError
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
 from asperity.structures.body import Body, Wheel
@@ -99,7 +100,10 @@ class Scene:
 def scene_of(case: Case) -> Scene:
     """Build what rolls and what it rolls over, of a case."""
     body, over, highest = case.rolling, case.rolled_over, case.numerics.highest_frequency
-    model = over.model(highest)
+    try:
+        model = over.model(highest)
+    except InputError as error:
+        raise _of_modes(case, error) from None
     on_track, (place, _) = isinstance(model, Track), case.contact_places
     one = body.model(case.upper_stiffness, highest, case.speed, case.ROLLING, place)
     degrees = body.degrees if len(body.degrees) > 1 or case.ROLLING == "body" else {case.ROLLING: 1.0}
@@ -110,6 +114,15 @@ def scene_of(case: Case) -> Scene:
         degrees,
         body.tread(highest, case.speed, place) if on_track else None,
         body.turning_modes(highest, case.speed) if on_track else None,
+    )
+
+
+def _of_modes(case: Case, error: InputError) -> InputError:
+    """Error about a beam of which no mode is kept, by the key that says how many are."""
+    given = getattr(case.rolled_over, "modes_up_to", None) is not None
+    key = f"{case.over_name}.modes_up_to" if given else "numerics.highest_frequency"
+    return (
+        error.about(key, f"modes up to {error.received} Hz") if "highest frequency" in error.what else error
     )
 
 

@@ -13,13 +13,14 @@ import xarray
 
 from asperity import diagnostics
 from asperity.arguments import Array
-from asperity.case.ball_bearing import BallBearingCase
+from asperity.case.ball_bearing import AroundKeys, BallBearingCase
 from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
 from asperity.errors import Finding, Grade, InputError, PhysicsWarning, percent, warn_of_findings
 from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
 from asperity.scenarios import compiling, preparing, reducing
+from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
@@ -114,12 +115,26 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
                 made.append(raceway_on(contact, load, radius, keys.texture(), faults, seed=seed))
                 doubt_surface(made[-1], contact.approach(load))
             except InputError as error:
-                errors.append(error.about(f"{NAMES[name]}: {error.what}"))
+                errors.append(_by_key(case, name, keys, error))
             apart = 2.0 * np.pi * radius / of.balls
             for fault in faults if name != "ball" else ():
                 doubt_fault(fault, apart, NAMES[name])
-    preparing.refuse(errors, source)
+    refuse(errors, source)
     return PreparedBearing(case, (made[0], made[1]), tuple(made[2:]), tuple(caught))
+
+
+def _by_key(case: BallBearingCase, part: str, keys: AroundKeys, error: InputError) -> InputError:
+    """An error about what is on a part, by the key of the case that it is about."""
+    section = "balls" if part == "ball" else f"{part}_raceway"
+    what, _, of = error.what.partition(" of the fault")
+    if of:
+        damaged = (name for name, each in case.faults.items() if each.on == part)
+        return error.about(f"{next(damaged, 'fault')}.{what}")
+    heights = ("waviness", "amplitudes", "trace", "roughness", "map")
+    sources = {"rms slope": heights[::-1], "waves per turn": ("last_order", "waves")}
+    given = (name for name in (error.what, *sources.get(error.what, heights)) if name in keys.given_names)
+    told = error.received if error.what in keys.keys else f"{error.received} ({error.what})"
+    return error.about(f"{section}.{next(given, 'waviness')}", told)
 
 
 def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparing.Work]:

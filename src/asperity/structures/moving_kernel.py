@@ -164,6 +164,15 @@ def moving_kernel(
     return kernel
 
 
+def refuse_kernel(track: Track, time_step: float) -> None:
+    """Refuse a track of which no moving kernel can be computed in such time steps, s, however short it is.
+
+    Waves at the highest frequency of the transform die away within a bay, or bays that differ are too many.
+    """
+    _refuse_size(track, SHORTEST, ZONES * max(8, round(SHORTEST / time_step)) + 1)
+    track.waves(np.array([np.pi * ZONES / time_step]))
+
+
 def _refuse_size(track: Track, length: float, lines: int) -> None:
     """Refuse more bays that differ than fit into memory, for a kernel of a length, s, and its frequencies."""
     if track.bays and track.cell_bays * lines > MOST_LINES:
