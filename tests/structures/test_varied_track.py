@@ -7,7 +7,8 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.structures.cell_waves import cell_waves
+from asperity.radiation.track import squared_mobility
+from asperity.structures.cell_waves import CellWaves, cell_waves
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import decay_rate, decay_rate_en15461
@@ -204,3 +205,41 @@ test_bays_that_cannot_be_are_refused = refusals(
     (lambda: Bays((1.0, 1.2), (1.0, 1.0), (1.0, 1.0)), "mean spacing"),
     (lambda: Bays((1.0,), (np.nan,), (1.0,)), "pad of the bays"),
 )
+
+
+# --- what many bays cost
+
+
+@pytest.fixture
+def evaluated(monkeypatch):
+    """How often waves of a cell were evaluated at a place, and carried from bay to bay."""
+    counts = {"_shape": 0, "carried": 0}
+
+    def counting(name, method):
+        def counted(self, *arguments):
+            counts[name] += 1
+            return method(self, *arguments)
+
+        return counted
+
+    for name in counts:
+        monkeypatch.setattr(CellWaves, name, counting(name, getattr(CellWaves, name)))
+    return counts
+
+
+VARIED = replace(Track.named("x2000"), bays=Bays.drawn(3, spacing=0.05, pad=0.1, seed=1))
+
+
+def test_the_mobility_of_many_bays_is_integrated_from_places_that_all_forces_share(evaluated):
+    """For each place of a force, waves were evaluated at places of its own: it took six times as many."""
+    frequency = np.array([30.0, 300.0, 3000.0])
+    squared_mobility(VARIED, frequency)
+    assert evaluated["_shape"] <= 10 * 3 * 40  # 20 places of a force in each bay, twice as many of the rail
+
+
+def test_waves_are_carried_to_the_bays_ahead_once_for_all_forces_in_a_bay(evaluated):
+    kernel = moving_kernel(VARIED, 56.0, 1e-4, duration=0.03, positions=4)
+    assert len(kernel.weights) == 12
+    assert (
+        evaluated["carried"] <= 3 * 6
+    )  # for each of 3 bays to those passed in 1.7 m, and one on either side

@@ -401,10 +401,13 @@ def _radiated(computed: compute.Computed) -> tuple[Array, Array]:
     case, track, stiffness = computed.case, computed.track.nominal, computed.stiffness
     used = (computed.frequency > 0.0) & (computed.frequency <= 1.13 * computed.band[-1])
     lines, force = computed.frequency[used], computed.force_psd[..., used]
-    exciting = force.sum(axis=1)
+    exciting, known = force.sum(axis=1), dict[bytes, Array]()
 
     def spread(x: Array) -> Array:
-        return np.abs(force_transfer(lines, computed.scene.first, track, stiffness, x)) ** 2
+        """Of rail and sleepers the places are the same."""
+        if (at := x.tobytes()) not in known:
+            known[at] = np.abs(force_transfer(lines, computed.scene.first, track, stiffness, x)) ** 2
+        return known[at]
 
     density = np.zeros((len(force), 3, len(used)))
     rail, top = rail_section(case, track), sleeper_top(case, track)

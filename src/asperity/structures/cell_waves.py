@@ -96,8 +96,9 @@ class CellWaves:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from the first support, m."""
         whole = replace(self, start=0.0)
         first, last = whole._span(min(x, x0)), whole._span(max(x, x0))
-        decaying = self._shape(self.decaying, last[0], self._parts(*last))
-        waves = decaying * self._shape(self.growing, first[0], self._parts(*first))
+        parts = self._parts(*last)
+        decaying = self._shape(self.decaying, last[0], parts)
+        waves = decaying * self._shape(self.growing, first[0], parts if x == x0 else self._parts(*first))
         return np.sum(waves * self._carried(first[0], last[0]), axis=0)
 
     def _span(self, x: float) -> tuple[int, float]:

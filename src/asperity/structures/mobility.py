@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -33,6 +34,7 @@ class Mobility:
         self.omega, self.steps, self.spans = omega, waves.steps, waves.spans
         self.edges, shortest = waves.edges, float(np.abs(waves.wavenumbers).max())
         self.count = FEWEST_NODES + math.ceil(shortest * float(np.diff(waves.edges).max()))
+        self.nodes, self.weights = np.polynomial.legendre.leggauss(2 * self.count)
 
     def gauss(self, begin: float, end: float) -> tuple[Array, Array]:
         """Nodes and weights between two places."""
@@ -47,16 +49,36 @@ class Mobility:
         """Integral along the rail of the square of what spans make of the waves of a force."""
         ahead, behind = self._beyond(*(self._forms(spans, waves) for waves in ("outgoing", "incoming")))
 
+        @lru_cache(maxsize=1)  # places come span after span
+        def within(number: int) -> tuple[Complex, Complex]:
+            return self._shapes(spans[number], "outgoing"), self._shapes(spans[number], "incoming")
+
         def squares(number: int, x0: float) -> Array:
-            (right, left), span = _sent(self.spans[number], x0), spans[number]
+            (right, left), length = _sent(self.spans[number], x0), spans[number].spacing
+            to_x0 = length * self._up_to(x0 / length)
+            shares = length * 0.5 * self.weights - to_x0, to_x0
             total = _squared(right, ahead[number]) + _squared(left, behind[number])
-            for x, length in zip(*self.gauss(x0, span.spacing), strict=True):
-                total = total + length * np.abs(np.sum(right * span.outgoing(x), axis=0)) ** 2
-            for x, length in zip(*self.gauss(0.0, x0), strict=True):
-                total = total + length * np.abs(np.sum(left * span.incoming(x), axis=0)) ** 2
+            for sent, shapes, share in zip((right, left), within(number), shares, strict=True):
+                moved = sent[0] * shapes[:, 0] + sent[1] * shapes[:, 1]
+                total = total + share @ (moved.real**2 + moved.imag**2)
             return total
 
         return squares
+
+    def _shapes(self, span: Span, waves: str) -> Complex:
+        """Waves (nodes, 2, f) at nodes by which products of two are integrated from any place on."""
+        return np.array([getattr(span, waves)(0.5 * span.spacing * (x + 1.0)) for x in self.nodes])
+
+    def _up_to(self, place: float) -> Array:
+        """Weights (nodes,) of an integral from zero to a place of a span, both in its lengths.
+
+        Of the polynomial through all nodes, by Legendre coefficients: ∫ P_k = (P_{k+1} − P_{k−1})/(2k + 1).
+        """
+        count, x = len(self.nodes), 2.0 * place - 1.0
+        at = np.polynomial.legendre.legvander(np.array([x]), count)[0]
+        integral = np.concatenate([[x + 1.0], at[2:] - at[:-2]])  # times 2k + 1, of each k below count
+        basis = np.polynomial.legendre.legvander(self.nodes, count - 1)
+        return np.asarray(0.25 * self.weights * (basis @ integral))
 
     def sleepers(self, track: Track, force: ForceOverBay | None) -> Array:
         """Sum over all half sleepers of the squared mobility (f,), mean over the places of the force."""

@@ -1,5 +1,6 @@
 """Response of a track to a hat of force in time, from its receptance in frequency."""
 
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -43,14 +44,21 @@ class HatResponse:
 
     def response(self, spectra: Complex) -> Array:
         """Response to the hat at lags 0 … taps − 1 from receptances times the hat, (k, f) → (k, taps)."""
-        n = self.taps
-        response = fft.irfft(_folded(spectra, n), 2 * n, axis=1)[:, :n]
-        return np.asarray(response * np.exp(self.shift * self.time_step * np.arange(n)))
+        return self.windowed(spectra) * self.growth
+
+    def windowed(self, spectra: Complex) -> Array:
+        """The same over `growth` (taps,), which the exponential window took; spectra are folded in place."""
+        return np.asarray(fft.irfft(_folded(spectra, self.taps), 2 * self.taps, axis=1)[:, : self.taps])
+
+    @property
+    def growth(self) -> Array:
+        """What the exponential window takes from each lag, (taps,)."""
+        return np.asarray(np.exp(self.shift * self.time_step * np.arange(self.taps)))
 
 
 def _folded(spectra: Complex, n: int) -> Complex:
-    """Sum over all frequencies that look alike at the time steps, up to half the sampling frequency."""
-    folded = spectra[:, : n + 1].copy()
+    """Sum in place over frequencies that look alike at the time steps, up to half the sampling frequency."""
+    folded = spectra[:, : n + 1]
     folded[:, n] = 2.0 * folded[:, n].real
     for first in range(n, spectra.shape[1] - 1, n):
         zone = spectra[:, first : first + n + 1]
@@ -192,6 +200,8 @@ def _weights(
     mirrored = not (distance or track.bays)
     begin = int(np.floor(distance / spacing)) - 1
     shapes: dict[tuple[HatResponse, int], tuple[Complex, Complex]] = {}
+    amplitudes: dict[int, Complex] = {}
+    growth, rooms = far.growth, threading.local()
     end = int(distance / spacing + positions + taps * speed * time_step / spacing) + 2
 
     def row(number: int) -> Array:
@@ -199,32 +209,42 @@ def _weights(
         at = start + distance / spacing + np.arange(taps) * (speed * time_step / spacing)  # in nodes
         base = np.floor(at).astype(int)
         cubic, result = lagrange_weights(at - base), np.zeros(taps)
+        if not hasattr(
+            rooms, "spectra"
+        ):  # once for a thread: fresh memory costs more than what is done in it
+            rooms.spectra, rooms.part = np.empty((2, positions, near.omega.size), complex)
         first = 0 if mirrored else int(base[0] - 1) // positions
         for bay in range(first, int(base[-1] + 2) // positions + 1):
             grid = near if bay in (-1, 0) else far
             here, (outgoing, incoming) = shapes[grid, own], shapes[grid, (own + bay) % bays]
-            amplitude = grid.hat * grid.waves.coefficients * grid.waves.carried(own, own + bay)
+            forwards, backwards = (amplitudes[bay] * here[side][start] for side in (1, 0))
             low = 0 if mirrored else max(int(base[0]) - 1 - bay * positions, 0)
             high = min(int(base[-1]) + 3 - bay * positions, positions)  # others are not passed
             behind = min(positions if bay < 0 else start if bay == 0 else 0, high)  # by reciprocity
-            spectra = _over_waves(amplitude * here[1][start], outgoing[low:high])
+            spectra, part = (each[: high - low, : grid.omega.size] for each in (rooms.spectra, rooms.part))
+            _add_waves(forwards, outgoing[low:high], spectra, part)
             if behind > low:
-                spectra[: behind - low] = _over_waves(amplitude * here[0][start], incoming[low:behind])
-            response = grid.response(spectra)
-            for weight, offset in zip(cubic, range(-1, 3), strict=True):
-                node = base + offset - bay * positions
+                _add_waves(backwards, incoming[low:behind], spectra[: behind - low], part[: behind - low])
+            response = grid.windowed(spectra)
+            passed = slice(*np.searchsorted(base, [bay * positions - 2, (bay + 1) * positions + 1]))
+            lags = np.arange(passed.start, passed.stop)
+            for weight, offset in zip(cubic[:, passed], range(-1, 3), strict=True):
+                node = base[passed] + offset - bay * positions
                 if bay == 0 and start == 0 and mirrored:
                     node = np.abs(node)  # the track is symmetric about a sleeper
-                within = np.flatnonzero((node >= low) & (node < high))
-                result[within] += weight[within] * response[node[within] - low, within]
+                found = (node >= low) & (node < high)
+                within = lags[found]
+                result[within] += weight[found] * (response[node[found] - low, within] * growth[within])
         return result
 
     weights = np.zeros((bays * positions, taps))
     with ThreadPoolExecutor(thread_count()) as pool:
         for own in range(bays):
-            needed = {(grid, own) for grid in (near, far)}
+            needed, amplitudes = {(grid, own) for grid in (near, far)}, {}
             for bay in range(begin // positions, end // positions + 1):
-                needed.add((near if bay in (-1, 0) else far, (own + bay) % bays))
+                grid = near if bay in (-1, 0) else far
+                needed.add((grid, (own + bay) % bays))
+                amplitudes[bay] = grid.hat * grid.waves.coefficients * grid.waves.carried(own, own + bay)
             shapes = {each: shapes.get(each) or _shapes(*each, nodes) for each in needed}
             rows = range(own * positions, (own + 1) * positions)
             for number, found in zip(rows, pool.map(row, rows), strict=True):
@@ -241,12 +261,12 @@ def _shapes(grid: HatResponse, bay: int, nodes: Array) -> tuple[Complex, Complex
     return outgoing[:-1], incoming[:-1]
 
 
-def _over_waves(amplitude: Complex, shapes: Complex) -> Complex:
-    """Sum (p, f) over the waves of a track, (w, f), each of its shape (p, w, f), one after the other."""
-    total = amplitude[0] * shapes[:, 0]
+def _add_waves(amplitude: Complex, shapes: Complex, total: Complex, part: Complex) -> None:
+    """Set a sum (p, f) over the waves of a track, (w, f), each of its shape (p, w, f); `part` is room."""
+    np.multiply(amplitude[0], shapes[:, 0], out=total)
     for wave in range(1, len(amplitude)):
-        total += amplitude[wave] * shapes[:, wave]
-    return np.asarray(total)
+        np.multiply(amplitude[wave], shapes[:, wave], out=part)
+        np.add(total, part, out=total)
 
 
 def lagrange_weights(share: Array) -> Array:
