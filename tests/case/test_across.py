@@ -3,12 +3,14 @@
 import math
 
 import numpy as np
+import printed_sections
 import pytest
 
-from asperity import Profile, WheelOnRail
+from asperity import Profile, WheelOnRail, WheelSection
 from asperity.case import across
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.scenarios.geometry import geometry_of
+from asperity.structures.outline import doubts_of
 from refusals import refusals
 from small_cases import HEARD
 
@@ -182,3 +184,92 @@ def test_the_window_that_is_chosen_holds_the_contact_of_measured_sections():
     assert 2.2 * max(shape.semi_axes) < case.contact.window <= 72e-3
     sharp = WheelOnRail(**HEARD | {"track": HEARD["track"] | {"rail_profile": circle(0.08)}, "contact": {}})
     assert sharp.contact.spacing <= min(geometry_of(sharp).semi_axes) / 8.0
+
+
+# --- a wheel and a rail as standards print them
+
+Y, ACROSS = np.arange(-65.0, 60.01, 0.25), np.arange(-33.0, 33.01, 0.25)
+
+
+def printed(shape, places, *, by=1.0, moved=0.0, mirrored=False, kept=(-np.inf, np.inf), unit=1e-3):
+    """A section of a standard, its heights times a number, its places moved, turned round or left out, mm."""
+    inside = (places >= kept[0]) & (places <= kept[1])
+    y, z = places[inside] + moved, by * shape(places[inside])
+    y, z = (-y[::-1], z[::-1]) if mirrored else (y, z)
+    return Profile(unit * z, unit * 0.25, "", unit * float(y[0]))
+
+
+def wheel_of(**how):
+    return printed(printed_sections.s1002, Y, **how)
+
+
+def rail_of(**how):
+    return printed(printed_sections.head_60e1, ACROSS, **how)
+
+
+def chosen(wheel, rail, rail_inclination="1:40", **keys):
+    """A case whose window is chosen."""
+    sideways = {} if rail_inclination is None else {"rail_inclination": rail_inclination}
+    parts = {"wheel": HEARD["wheel"] | {"profile": wheel} | keys}
+    parts |= {"track": HEARD["track"] | {"rail_profile": rail}, "sideways": sideways, "contact": {}}
+    return WheelOnRail(**HEARD | parts)
+
+
+@pytest.mark.parametrize("way", [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)], ids=str)
+@pytest.mark.parametrize("inclination", [None, "0", "1:40", "1:20"])
+def test_printed_sections_each_way_up_have_one_contact_that_the_chosen_window_holds(way, inclination):
+    """S1002 on 60E1: convex, near the middle of the head, and the same whichever way heights count."""
+    case = chosen(wheel_of(by=way[0]), rail_of(by=way[1]), inclination)
+    right = chosen(wheel_of(), rail_of(), inclination)
+    with PhysicsWarning.ignored():
+        shape, expected = geometry_of(case), geometry_of(right)
+    places = across.meeting_of(case).places
+    assert places == pytest.approx(across.meeting_of(right).places, abs=1e-9)
+    assert abs(places[1]) < 20e-3
+    assert shape.semi_axes == pytest.approx(expected.semi_axes, rel=1e-6)
+    assert 2.2 * max(shape.semi_axes) < case.contact.window
+
+
+@pytest.mark.parametrize(("wheel", "message"), [
+    ({"by": 2.0}, r"a flange 56 mm high; allowed: .* to 42 mm. Are its heights diameters.* Halve"),
+    ({"by": -2.0}, "a flange 56 mm high"),
+    ({"moved": 70.0}, "the top of a flange at 15 mm; .*count from the back of the flange.* Subtract 70 mm"),
+    ({"mirrored": True}, "a flange at 55 mm, on the field side"),
+    ({"mirrored": True, "by": -1.0}, "a flange at 55 mm, on the field side"),
+    ({"mirrored": True, "kept": (-25.0, 40.0)}, "rises to the field side by 1:21, where treads fall. Is it"),
+    ({"unit": 1.0}, "a section 125 m wide"),
+])  # fmt: skip
+@pytest.mark.parametrize("inclination", ["0", "1:40"])
+def test_a_printed_wheel_that_is_given_wrongly_is_refused_with_the_cause(wheel, message, inclination):
+    with pytest.raises((CaseError, InputError), match=message):
+        chosen(wheel_of(**wheel), rail_of(), inclination)
+
+
+def told_of(case):
+    with PhysicsWarning.caught() as caught:
+        geometry_of(case)
+    return " ".join(str(each.message) for each in caught)
+
+
+def test_sections_that_are_hardly_meant_are_doubted():
+    """Upside down without a flange to show it, places from an edge of the head, a diameter for a radius."""
+    flat = {"kept": (-25.0, 40.0)}
+    assert "the tread rises to the field side by 1:21" in told_of(
+        chosen(wheel_of(by=-1.0, **flat), rail_of())
+    )
+    assert "the middle of the head lies at 36 mm" in told_of(chosen(wheel_of(), rail_of(moved=36.0)))
+    assert "Is it the diameter?" in told_of(chosen(wheel_of(), rail_of(), radius="0.66 m"))
+    for wheel in (wheel_of(), wheel_of(**flat)):
+        assert not told_of(chosen(wheel, rail_of()))
+
+
+def test_a_flange_over_a_head_that_is_a_circle_is_told_as_the_cause():
+    with pytest.raises((CaseError, InputError), match="A head that is a circle meets the flange"):
+        chosen(wheel_of(), None)
+
+
+def test_the_flange_of_an_outline_in_diameters_is_doubted():
+    drawn = WheelSection.named("straight-web").outline(0.33)
+    assert not list(doubts_of(drawn, 0.33))
+    doubled = drawn * [2.0, 1.0]
+    assert any("a flange 56 mm high" in each for each in doubts_of(doubled, 0.66))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ import scipy
 from asperity.arguments import Array, ArrayLike, NDArray, require
 from asperity.case.sideways import INCLINATIONS
 from asperity.errors import InputError
+from asperity.structures.outline import HIGHEST_FLANGE
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.readers import hints, read_surface
@@ -33,8 +35,18 @@ POINTS = 2001
 """Of a circle, and of the gap, among which the lowest is looked for."""
 WIDEST, NARROWEST = 1.0, 2e-3
 """Widths of sections, m: wheels and rails are 60 to 150 mm wide, and their contact some 10 mm."""
+OF_TRAINS = ("wheel.profile", "track.rail_profile")
+"""Keys of sections that are those of wheels and rails."""
 FLANGE = 10e-3
 """Least height over the rest of a tread that is a flange's, m: they are 25 mm high, chamfers 5 mm."""
+FLANGE_PLACES = (-90e-3, -30e-3)
+"""Where the top of a flange lies from the running circle, m: its back is 70 mm off, its top some 55 mm."""
+RISING = 0.01
+"""Slope to the field side from which on a tread without a flange is doubted: treads fall, by 1:40 say."""
+FALLEN = 5e-3
+"""Depth below its top at which the middle of a rail's head is sought, m."""
+OFF = 10e-3
+"""How far that middle may lie from where places begin, m."""
 TREAD = 25e-3
 """Half the width of a tread about its running circle, m, which no flange reaches."""
 HOLLOW = 2e-3
@@ -77,7 +89,7 @@ def read_section(measured: Path | Profile, key: str) -> Profile:
 
 def _refuse_beyond_belief(section: Profile, key: str) -> None:
     """Refuse a section wider than any, or one of wheel or rail that is narrower than their contact."""
-    least = NARROWEST if key in ("wheel.profile", "track.rail_profile") else 0.0
+    least = NARROWEST if key in OF_TRAINS else 0.0
     wide = f"{rounded(section.size)} m" if section.size > WIDEST else told_length(section.size)
     received = f"a section {wide} wide"
     allowed = f"sections up to {WIDEST:g} m wide, of wheel and rail from {told_length(NARROWEST)} on"
@@ -130,13 +142,48 @@ def _is_head_down(y: Array, z: Array) -> bool:
     return bool((away.max() - at_middle) - (at_middle - away.min()) > HOLLOW)
 
 
-def _refuse_mirrored(key: str, y: Array, z: Array, side: int) -> None:
-    """Refuse a tread whose flange is on the field side."""
-    top = float(y[np.argmax(z)])
+def _refuse_strange_flange(key: str, section: Profile, y: Array, side: int) -> None:
+    """Refuse a tread whose flange is on the field side, too high, or away from where flanges are."""
+    z = section.heights
+    top, height = float(y[np.argmax(z)]), float(_away_from_rest(y, z).max())
+    if section.start is not None and y[0] < 0.0 < y[-1]:
+        height = float(z.max() - np.interp(0.0, y, z))
     received = f"a flange at {rounded(1e3 * top)} mm, on the field side"
     allowed = "places positive to the field side: a flange is on the side of negative ones"
     remedy = "Change the sign of its places, and of those of the rail if both count the same way."
     require(side <= 0, key, received, allowed, remedy)
+    received, most = f"a flange {rounded(1e3 * height)} mm high", rounded(1e3 * HIGHEST_FLANGE)
+    remedy = "Are its heights diameters? Halve them. Else check their unit."
+    require(height <= HIGHEST_FLANGE, key, received, f"flanges of up to {most} mm", remedy)
+    low, high = FLANGE_PLACES
+    received = f"the top of a flange at {rounded(1e3 * top)} mm"
+    allowed = f"{rounded(1e3 * low)} to {rounded(1e3 * high)} mm, as places count from the running circle"
+    remedy = "Do they count from the back of the flange? Subtract 70 mm from them."
+    require(section.start is None or low <= top <= high, key, received, allowed, remedy)
+
+
+def _doubts_of_tread(key: str, y: Array, z: Array) -> Iterator[str]:
+    """Say where a tread without a flange falls to the wrong side, by places (n,) and heights (n,), m."""
+    near = np.abs(y) <= TREAD
+    slope = float(np.polynomial.polynomial.polyfit(y[near], z[near], 1)[1]) if near.sum() > 1 else 0.0
+    if slope > RISING:
+        yield (
+            f"{key}: the tread rises to the field side by 1:{rounded(1.0 / slope, 2)}, where treads fall. Is "
+            "it upside down, or are its places mirrored?"
+        )
+
+
+def _doubts_of_head(key: str, y: Array, z: Array) -> Iterator[str]:
+    """Say where a rail's head that falls to both sides has not its middle where its places begin."""
+    top, low = int(np.argmax(z)), float(z.max()) - FALLEN
+    left, right = np.flatnonzero(z[:top] < low), np.flatnonzero(z[top:] < low)
+    if left.size and right.size:
+        middle = 0.5 * float(y[left[-1]] + y[top + right[0]])
+        if abs(middle) > OFF:
+            yield (
+                f"{key}: the middle of the head lies at {rounded(1e3 * middle)} mm of its places, which "
+                "count from it. Do they count from an edge? Subtract as much from them."
+            )
 
 
 # --- the contact
@@ -150,6 +197,9 @@ class Lying:
     # that middle, m, and place on the section itself, m
     section: Any
     turned: bool = False  # whether its heights came into the material
+    flanged: bool = False  # whether it is a tread with its flange
+    measured: bool = True  # or a circle
+    doubts: tuple[str, ...] = ()  # what is hardly meant, in sentences
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,6 +257,11 @@ class Meeting:
         received = f"sections that meet {1e3 * inside:.1f} mm from an edge of what is known of them"
         allowed = f"a contact at least {rounded(1e3 * clear)} mm inside, half of contact.window"
         remedy = "Measure more of them, shift them less, or shrink contact.window."
+        if tread.flanged and not head.measured:
+            remedy = (
+                "A head that is a circle meets the flange: give the rail's section, or cut the flange off."
+            )
+        remedy = next(iter(tread.doubts + head.doubts), remedy)
         require(inside >= clear, keys, received, allowed, remedy)
         return cls(tread, head, float(found), float(inside))
 
@@ -253,7 +308,8 @@ def _lying(
     for wheel and rail come into the material of one of them: they are turned where its shape shows that, the
     flange of a tread or the corners of a head.
     """
-    turned = False
+    turned, way = False, 0
+    doubts: Iterable[str] = ()
     if measured is None:
         y, z = _circle(radius)
     else:
@@ -262,7 +318,11 @@ def _lying(
         way, side = (0, 0) if head else flange_of(y, section.heights)
         turned = _is_head_down(y, section.heights) if head else way < 0
         section = replace(section, heights=-section.heights) if turned else section
-        _refuse_mirrored(key, y, section.heights, side)
+        if side:
+            _refuse_strange_flange(key, section, y, side)
+        if key in OF_TRAINS and not way and angle is not None and section.start is not None:
+            doubts_of = _doubts_of_head if head else _doubts_of_tread
+            doubts = doubts_of(key, y, section.heights)
         y, z = (y, section.heights) if angle is not None else _levelled(section, y, way != 0)
         z = z - np.interp(0.0, y, z)
     angle = angle or 0.0
@@ -271,7 +331,8 @@ def _lying(
     allowed = f"heights over places that rise, turned by {rounded(1e3 * angle)} mrad, too"
     remedy = "Leave flanks out that are as steep, and check the units."
     require((np.diff(across) > 0.0).all(), key, "a section that overhangs", allowed, remedy)
-    return Lying(scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3), turned)
+    spline = scipy.interpolate.make_interp_spline(across, np.column_stack([depth, y]), k=3)
+    return Lying(spline, turned, way != 0, measured is not None, tuple(doubts))
 
 
 def meeting_of(case: Case, clear: float | None = None) -> Meeting:

@@ -199,6 +199,8 @@ def _measured_gap(case: scene.Case, hertz: Hertz, load: float) -> tuple[Array, H
     met = case.meeting or across.meeting_of(case)
     for sentence in across.turned_sections(case, met):
         OutOfRangeWarning.warn(sentence, Grade.NOTE)
+    for sentence in (*met.tread.doubts, *met.head.doubts):
+        OutOfRangeWarning.warn(sentence)
     gap = met.gap(y)
     allowed = "sections that touch in one place, convex against each other"
     require(gap.min() >= -1e-9, both, "bodies that touch outside the window's middle", allowed)

@@ -23,8 +23,10 @@ MOST_TRIANGLES = 5000
 """Most triangles of a section: wheels have some 600, and each mode takes time like their number."""
 MOST_SPLITS = 12
 """Times that edges of an outline are halved until triangles meet them."""
-LARGEST_WHEEL = 0.7
+LARGEST_WHEEL = 0.65
 """Largest radius of the wheels that run today, with some room, m: locomotives have 0.625 m."""
+HIGHEST_FLANGE = 42e-3
+"""m: flanges are 19 to 38 mm high; one in a table of diameters has twice that."""
 TO_AND_FRO = 5
 """Turns one after the other, each the other way, that no section has: steps of a hub are fewer."""
 STANDS_OUT = 0.05
@@ -84,6 +86,11 @@ def doubts_of(outline: Array, radius: float) -> Iterator[str]:
         yield (
             f"a wheel with a radius of {radius * 1e3:.4g} mm: wheels of trains have 170 mm to 625 mm. Is it "
             "the diameter, or are the radii of its section diameters? Then halve them."
+        )
+    if (height := float(outline[:, 0].max() - radius)) > HIGHEST_FLANGE:
+        yield (
+            f"a flange {height * 1e3:.4g} mm high: flanges are 19 mm to 38 mm high. Are the radii of its "
+            "section diameters? Then halve them, and the radius."
         )
     if (beside := _web_beside(outline)) > STANDS_OUT:
         yield (
