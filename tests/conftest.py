@@ -3,6 +3,8 @@
 import io
 import os
 import signal
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -15,6 +17,9 @@ from browser import chromium
 os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pytest_cache" / "kernels"))
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
 os.environ["ASPERITY_CACHE"] = _cache.name
+# what children import stays compiled: each starts a second sooner
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 # workers share the cores: threads of linear algebra would wait for one another
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -34,6 +39,30 @@ def pytest_configure():
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, lambda number, frame: None)
+
+
+SLIDING = """
+import numpy as np
+from asperity.contact.halfspace import HalfSpace
+from asperity.contact.solved import Contact, Outcome
+from asperity.contact.tangential import FrictionalHalfSpace
+from asperity.reference.materials import material
+steel, flat = material("steel"), np.zeros((4, 4))
+space = HalfSpace(flat.shape, (1e-3, 1e-3), 0.5 * steel.youngs_modulus / (1.0 - steel.poisson_ratio**2))
+pressed = Contact(flat + 1e8, 1600.0, 1e-6, 1.6e-5, 1, 0.0, Outcome.CONVERGED, space, flat)
+FrictionalHalfSpace(space, (steel, steel), 0.3).roll(pressed, (1e-3, 0.0))
+"""
+"""Compiles what slides, beside what presses and rolls."""
+
+
+def pytest_sessionstart(session):
+    """Compile what most tests call before there are workers, each of which would compile all of it."""
+    if getattr(session.config.option, "numprocesses", None):
+        from asperity.scenarios.compiling import compile_kernels
+
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        with subprocess.Popen([sys.executable, "-W", "ignore", "-c", SLIDING], env=environment):
+            compile_kernels(lambda *_: None)
 
 
 def pytest_unconfigure():
