@@ -6,15 +6,18 @@ None bars anybody, nor does any other page that is made of runs.
 import json
 import re
 
+import numpy as np
 import pytest
 from report_reading import Reader, computers_exponents, own_scripts, without
 
 from asperity.reporting.figure import columns_text
+from asperity.reporting.page import answers_of
 from asperity.results import read_result, save
 from asperity.scenes.report import CHAPTERS, compare, figures_of, page_of, report, write_summary
+from asperity.written_numbers import engineering
 from browser import assert_accessible, pages_of
 from command_line import call
-from small_cases import BEARING, CASES
+from small_cases import BEARING, CASES, changed
 
 TABLES = {
     "ball-on-beam": {"statistics", "contact_loss", "energy_balance"},
@@ -97,6 +100,45 @@ def test_one_group_alone_makes_a_page(real_run, group):
     for other in set(tree.children) - {group}:
         del tree[other]
     assert "</html>" in page_of(tree)
+
+
+NUMBER = r"(−?[\d.]+) ?(k?N|%)"
+
+
+def in_si(words):
+    """A force, N, or a share, as it is written."""
+    number, unit = re.fullmatch(NUMBER, words.replace("\u00a0", " ")).groups()
+    return float(number.replace("−", "-")) * {"N": 1.0, "kN": 1e3, "%": 0.01}[unit]
+
+
+def test_tiles_verdict_and_table_of_a_page_are_of_all_contacts_of_the_main_law(real_run):
+    """Each number of the top is computed here anew, from the forces that the result holds."""
+    tiles = {each.name.partition(" ")[0]: each for each in answers_of(real_run, CHAPTERS).numbers}
+    force = real_run["rolling/contact_force"].values[0]
+    rms = np.sqrt(np.mean(np.var(force, axis=-1)))
+    name = "contact" if len(force) == 1 else "forces"
+    said = [tiles[name].value, *(f"{n} {unit}" for n, unit in re.findall(NUMBER, tiles[name].note))]
+    for words, number in zip(said, [rms, rms / force.mean(), force.mean(), force.max()], strict=True):
+        assert in_si(words) == pytest.approx(number, rel=6e-3, abs=6e-4)
+    verdict = real_run.attrs["verdict"]
+    told = re.search(rf"contact forces? var(?:y|ies) by ({NUMBER}) rms", verdict)
+    assert in_si(told[1]) == pytest.approx(rms, rel=6e-3)
+    lost = real_run["rolling/contact_loss_share"].values[0].max()
+    never = re.search("never loses|is ever lost", verdict) is not None
+    assert never == (lost == 0.0) == (tiles["time"].note == "contact is never lost")
+    assert in_si(tiles["time"].value) == pytest.approx(lost, rel=0.1)
+    if "vibration," in tiles:
+        shaken = np.sqrt((real_run["rolling/acceleration"].values[0] ** 2).mean(axis=-1))
+        assert f"{engineering(shaken.max(), 'm/s²')} rms, half" in answers_of(real_run, CHAPTERS).lead
+
+
+def test_a_law_that_may_pull_is_said_to_lose_no_contact_everywhere(runs):
+    """The tile said that it cannot be lost, the verdict that none ever was."""
+    tree = runs(changed("bodies", laws=["linear"]))
+    assert tree.attrs["verdict"].startswith("By linear no contact can be lost: its force may pull; ")
+    (tile,) = (each for each in answers_of(tree, CHAPTERS).numbers if each.name == "time without contact")
+    assert tile.note == "linear cannot lose it: its force may pull"
+    assert "What the choice of the contact law changes" not in page_of(tree)
 
 
 # --- nothing bars anybody: the rules of axe-core

@@ -329,7 +329,10 @@ def verdict(
     main, run = next(iter(computed.runs.items()))
     sentences = list(_doubts(computed, found))
     forces = "the contact force varies" if len(run.contact_force) == 1 else "the contact forces vary"
-    sentences.append(f"{_contact(run, computed.case.ROLLING)} ({main}); {forces} by {_varies(run)} rms")
+    contact = f"{_contact(run, computed.case.ROLLING)} ({main})"
+    if spec_of(main).may_pull:
+        contact = f"By {main} no contact can be lost: its force may pull"
+    sentences.append(f"{contact}; {forces} by {_varies(run)} rms")
     secant = " (linear with the stiffness F/r)" if computed.case.contact.linearise == "secant" else ""
     others = {law: difference_to(law).name for law in baselines(computed.runs) if law != main}
     others = {law: name for law, name in others.items() if name in over_frequency}

@@ -272,7 +272,8 @@ function drawNotes(view, notes, lines) {
     left = within(left, view.left + 2 * unit, Math.max(view.right - width - 2 * unit, view.left + 2 * unit));
     const usual = within(y + above, view.top + 2 * unit, Math.max(view.bottom - height - 2 * unit, view.top + 2 * unit));
     const meets = (top) => taken.some((box) => left < box.right && left + width > box.left && top < box.bottom && top + height > box.top);
-    const tries = [0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5].map((n) => usual + n * line);
+    const most = Math.ceil((view.bottom - view.top) / line);  // rows of words that the panel holds
+    const tries = Array.from({ length: 2 * most + 1 }, (_, n) => usual + (n % 2 ? 1 : -1) * Math.ceil(n / 2) * line);
     const free = tries.filter((each) => each >= view.top && each + height <= view.bottom && !meets(each));
     const crossed = note.y_share ? reachOver(view, lines, left, left + width) : [];
     const top = free.find((each) => crossed.every(([high, low]) => low < each || high > each + height)) ?? free[0];

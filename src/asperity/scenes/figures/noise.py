@@ -179,11 +179,12 @@ def sound_power_table(tree: DataTree, main: bool = False) -> ReportTable:
         if any(part in levels for levels in rows.values()):
             columns[part] = number_cells((each.get(part, np.nan) for each in rows.values()), "{:.1f}")
     for base in [] if main else data.baselines_among(tree, laws):
-        over = (
+        over = [
             levels[WHOLE] - powers[base, model][WHOLE] if law != base and (base, model) in powers else np.nan
             for (law, model), levels in rows.items()
-        )
-        columns[f"over {base}"] = number_cells(over, data.signed)
+        ]
+        if np.isfinite(over).any():
+            columns[f"over {base}"] = number_cells(over, data.signed)
     note = "dB(A) re 1 pW, over the bands that were computed" + (
         "." if main else "; differences of the total."
     )
