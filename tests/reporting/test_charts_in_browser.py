@@ -135,6 +135,32 @@ def test_every_mark_is_drawn_in_the_colours_of_the_page_and_no_text_over_another
         assert_accessible(page)
 
 
+CROSSED = """([figure, said, colour]) => {  // pixels of a colour where words stand
+  const canvas = document.querySelector(`#${figure} .uplot canvas`);
+  const { left, top, right, bottom } = canvas.texts.find(({ text }) => text === said);
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+  copy.drawImage(canvas, 0, 0);
+  const { data } = copy.getImageData(left, top, right - left, bottom - top);
+  const parts = [1, 3, 5].map((n) => parseInt(colour.slice(n, n + 2), 16));
+  const has = (i) => parts.every((part, k) => Math.abs(data[i + k] - part) < 12);
+  return data.filter((_, i) => i % 4 === 0 && has(i)).length;
+}"""
+
+
+@pytest.mark.parametrize("width", [360, 1280])
+def test_words_stand_clear_of_lines_where_there_is_room(browser, tmp_path, width):
+    """A line ran through "says little", which stood at the bottom whatever was drawn there."""
+    low = Line(BANDS, np.linspace(1.0, 40.0, BANDS.size), marker="o", **AREAL)
+    panel = Panel(
+        panels.band_axis(BANDS), Axis("level / dB", 0, 60), (*panels.doubtful_boxes(BANDS, BANDS < 60), low)
+    )
+    path = tmp_path / "page.html"
+    figure = PageFigure("low", "Low", "", Chart((panel,)), "", NUMBERS)
+    path.write_text(figures_page("Charts", "All.", [figure], {}), encoding="utf-8")
+    with pages_of(browser, path.as_uri()) as opened:
+        assert opened(width).evaluate(CROSSED, ["low", "says little", BLUE]) == 0
+
+
 def test_a_law_is_shown_or_not_in_all_figures_at_once_and_what_is_no_law_in_its_own(opened):
     page = opened()
     places = [("run", 0), ("run", 1), ("spectrum", 0), ("bands", 0), ("words", 0)]

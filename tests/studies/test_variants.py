@@ -1,5 +1,6 @@
 """Named changes of a case, what they do to what is heard, and how sure that is."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -265,6 +266,17 @@ def test_the_quietest_comes_first_and_what_is_left_out_last(table):
     assert of.best == f"Helps most: smooth, −5.0 dB(A). {rows[1][-1]} {silent}"
     assert effects_table(of).note.endswith(silent)
     assert Effects(found.isel(variant=[2, 3])).best == ""
+
+
+def test_a_reason_that_several_keys_have_is_told_once_in_a_cell(cache):
+    """Of a measured track neither stiffness nor damping of the pads can be others, for one reason."""
+    rates = np.array([[100.0, 5.0], [125.0, 5.0], [160.0, 5.0]])
+    measured = RAIL.with_(track={"decay_rates": rates})
+    found = asperity.study(measured, {"variant": {"soft": VARIANTS["soft"]}}, executor=Here())
+    reason = "track.decay_rates was measured on the track as it is: leave it out to ask for another"
+    (failure,) = json.loads(found.attrs["failures"])
+    assert failure["message"].count(reason) == 2
+    assert effects_table(Effects(effects(found))).rows[1][-1].text == f"Left out: {reason}."
 
 
 def test_the_order_is_that_of_the_whole():
