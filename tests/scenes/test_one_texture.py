@@ -25,7 +25,12 @@ def case(kind="ball-on-beam", **keys):
         (
             "wheel-on-rail",
             ("40 um", "80 um"),
-            {"wheel": {"roughness": None}, "contact": {"spacing": "1 mm"}, "duration": "20 ms"},
+            {
+                "wheel": {"roughness": None},
+                "contact": {"spacing": "1 mm"},
+                "duration": "20 ms",
+                "settling": "40 ms",
+            },
         ),
     ],
 )
@@ -119,7 +124,7 @@ def runs():
 
 @pytest.mark.parametrize(
     ("name", "another"),
-    [("other seed", True), ("longer waves", True), ("louder", False), ("smooth", False), ("one", False)],
+    [("other seed", True), ("longer waves", False), ("louder", False), ("smooth", False), ("one", False)],
 )
 def test_comparison_says_where_another_texture_was_drawn(runs, name, another):
     found = comparison_of([runs["one"], runs[name]], ["first", name])

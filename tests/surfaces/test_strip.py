@@ -13,7 +13,7 @@ from scipy.stats import kstest
 from asperity.spectra import psd
 from asperity.surfaces import statistics, synthesis
 from asperity.surfaces import strip as module
-from asperity.surfaces.bands import BandTexture
+from asperity.surfaces.bands import RangeOfBands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.spectra import psd_2d
 from asperity.surfaces.statistics import areal_statistics, survey_strip
@@ -91,7 +91,7 @@ def test_shorter_waves_are_added_to_the_same_surface(shortest):
         synthesis.self_affine((160, 160), (DX, DX), **TEXTURE | {"shortest": each}, seed=3).heights
         for each in (TEXTURE["shortest"], shortest)
     ]
-    share = coarse._mean_square / fine._mean_square
+    share = coarse.mean_square / fine.mean_square
     rest = both[0] - both[1] * np.sqrt(share)
     assert np.mean(rest**2) / np.mean(both[0] ** 2) == pytest.approx(1.0 - share, rel=0.4)
     qx, qy, density = psd_2d(HeightMap(rest, (DX, DX)))
@@ -103,9 +103,10 @@ def test_bands_are_added_to_the_same_line_and_none_of_its_waves_changes():
         synthesis.long_strip_from_bands((9, 1), (dx, dx), list(LEVELS), list(LEVELS.values()), seed=3).drawn
         for dx in (20e-3, 2e-3)
     )
-    few, many = coarse.waves(0, np.zeros(1)), fine.waves(0, np.zeros(1))
-    assert len(few) < 0.6 * len(many)
-    np.testing.assert_array_equal(few, many[: len(few)])
+    few, many = ([part.waves(0, np.zeros(1)) for part in each.ranges] for each in (coarse, fine))
+    assert len(few[-1]) < 0.6 * len(many[-1])
+    for less, more in zip(few, many, strict=False):
+        np.testing.assert_array_equal(less, more[: len(less)])
 
 
 @pytest.mark.parametrize("factor", [2.0, 1e-3])
@@ -122,20 +123,30 @@ def test_heights_are_proportional_to_the_rms_and_to_the_level(factor):
     np.testing.assert_allclose(louder, factor * line, rtol=0, atol=1e-18 * factor)
 
 
+def strongest(texture):
+    """Range of waves that holds most of a self-affine surface."""
+    return max(texture.ranges, key=lambda each: each.power.sum())
+
+
 def test_variance_and_spectrum_are_those_of_one_large_surface_in_blends_too():
     made = strip(rows=200000, ny=9)
-    heights, along = made.rows(0, 200000), made.drawn.along
+    heights, along = made.rows(0, 200000), strongest(made.drawn).along
     in_blend = (DX * np.arange(200000) - along.start) % along.stride < along.blend
     inside, outside = heights[in_blend], heights[~in_blend]
-    assert 0.1 < np.mean(in_blend) < 0.2
+    assert 0.4 < np.mean(in_blend) < 0.45
     assert np.sqrt(np.mean(outside**2)) == pytest.approx(1e-6, rel=0.03)
     assert np.sqrt(np.mean(inside**2)) == pytest.approx(1e-6, rel=0.08)
-    one = synthesis.self_affine((100000, 9), (DX, DX), **TEXTURE, seed=5).heights
-    (wavenumber, found), (_, wanted) = (densities(each, DX, 1024) for each in (heights, one))
-    band = np.digitize(wavenumber, np.geomspace(300, 24e3, 20))
-    for i in np.unique(band)[1:-1]:
+    wavenumber, found = densities(heights, DX, 1024)
+    q = 2 * np.pi * wavenumber[:, None]
+    areal = np.maximum(np.hypot(q, q.T), 2 * np.pi / TEXTURE["longest"]) ** (-2.0 - 2.0 * TEXTURE["hurst"])
+    areal[np.hypot(q, q.T) > 2 * np.pi / TEXTURE["shortest"]] = 0.0
+    areal[:, 0] *= 0.5
+    wanted = areal.sum(axis=1) / areal.sum() * 1e-12 / wavenumber[1]
+    band = np.digitize(wavenumber, np.geomspace(350, 24e3, 16))
+    for i in range(1, 16):
         ratio = found[band == i].sum() / wanted[band == i].sum()
-        assert 10 * np.log10(ratio) == pytest.approx(0.0, abs=0.5)
+        scatter = 4.34 / np.sqrt(np.sum(band == i) * wavenumber[1] * DX * 200000)  # of one line, dB
+        assert abs(10 * np.log10(ratio)) < 4.0 * scatter + 0.05
 
 
 def expected_spectrum(shape, *, hurst, longest, shortest, anisotropy, lay, **_):
@@ -159,7 +170,7 @@ def expected_spectrum(shape, *, hurst, longest, shortest, anisotropy, lay, **_):
 def test_the_mean_of_draws_is_the_spectrum_in_every_bin(anisotropy, lay, where):
     """By an estimator of its own, in bins of size and direction of the wavenumber, in steps of one."""
     keys = {"hurst": 0.8, "longest": 24.0, "shortest": 3.0, "anisotropy": anisotropy, "lay": lay}
-    shape, along = (64, 32), synthesis.SelfAffine(1.0, **keys).along
+    shape, along = (64, 32), strongest(synthesis.SelfAffine(1.0, **keys)).along
     before = 0 if where == "middle" else 32 - round(along.start + along.stride + 0.5 * along.blend)
     windows = np.hanning(66)[1:-1, None] * np.hanning(34)[1:-1]
     drawn = [
@@ -182,10 +193,11 @@ def test_pieces_are_independent_and_join_without_a_step():
     made = strip()
     heights = made.rows(0, 20000)
     steps = np.abs(np.diff(heights, axis=0)).max(axis=1)
-    along = made.drawn.along
-    joints = [round((along.start + k * along.stride + b) / DX) for k in (1, 2, 3) for b in (0, along.blend)]
-    assert steps[np.array(joints) - 1].max() < 1.2 * np.quantile(steps, 0.999)
-    apart = round(along.stride / DX)
+    for along in (each.along for each in made.drawn.ranges):
+        ends = (along.start + k * along.stride + b for k in (1, 2, 3) for b in (0, along.blend))
+        joints = np.array([round(end / DX) for end in ends])
+        assert steps[joints[joints < len(steps)] - 1].max(initial=0.0) < 1.2 * np.quantile(steps, 0.999)
+    apart = round(strongest(made.drawn).along.stride / DX)
     assert abs(np.corrcoef(heights[:4000].ravel(), heights[apart : apart + 4000].ravel())[0, 1]) < 0.2
 
 
@@ -196,7 +208,7 @@ def test_likeness_has_the_measured_distribution():
     once = synthesis.from_map(skewed, (20000, 9), seed=2).heights
     heights = long.rows(0, 60000)
     assert kstest(heights[::40, 4], once[::40, 4]).pvalue > 1e-3
-    along = long.drawn.along
+    along = long.drawn.ranges[0].along
     at = round((along.start + along.stride) / DX)
     blends = heights[at : at + round(along.blend / DX)]
     lowest, highest = np.quantile(skewed.levelled().heights, (0, 1))
@@ -207,19 +219,19 @@ def test_a_long_strip_from_bands_has_their_levels():
     made = bands(60000, before=10)
     wavenumber, density = densities(made.rows(0, 60000), 2e-3, 4096)
     for wavelength, level in LEVELS.items():
-        low, high = (10 ** (round(-10 * np.log10(wavelength)) / 10 + s / 20) for s in (-3, 3))
+        low, high = (10 ** (round(-10 * np.log10(wavelength)) / 10 + s / 20) for s in (-1, 1))
         energy = density[(wavenumber > low) & (wavenumber < high)].sum() * wavenumber[1]
         assert 10 * np.log10(energy / 1e-12) == pytest.approx(level, abs=0.4)
 
 
 def test_strips_of_one_texture_share_pieces(monkeypatch):
-    made, whole = [], BandTexture.waves
+    made, whole = [], RangeOfBands.waves
 
-    def counted(texture, tile, across):
-        made.append(tile)
-        return whole(texture, tile, across)
+    def counted(part, tile, across):
+        made.append((part.number, tile))
+        return whole(part, tile, across)
 
-    monkeypatch.setattr(BandTexture, "waves", counted)
+    monkeypatch.setattr(RangeOfBands, "waves", counted)
     for before in (500, 600):
         bands(3000, before=before, seed=77).rows(0, 3000)
     assert len(made) == len(set(made)) > 2
@@ -347,7 +359,9 @@ def test_pieces_change_nothing_but_the_correlation_and_hold_every_row_once(surfa
     wavenumber, density = densities(part.heights, 2e-6, 200)
     np.testing.assert_allclose(found.wavenumber, wavenumber)
     strong = np.flatnonzero(density > 1e-3 * density.max())[1:]
-    np.testing.assert_allclose(found.spectrum[strong], density[strong], rtol=0.1)
+    # over 24 draws the line that differs most does so by 0.08 to 0.21
+    np.testing.assert_allclose(found.spectrum[strong], density[strong], rtol=0.3)
+    assert found.spectrum[strong].sum() == pytest.approx(density[strong].sum(), rel=0.05)
 
 
 @pytest.mark.filterwarnings("ignore::asperity.errors.ShortRecordWarning")

@@ -277,7 +277,7 @@ def test_a_rougher_half_or_a_trend_is_found(surface, factor):
     found = homogeneity(rough)
     assert not found.homogeneous
     assert found.p_value == 1 / 40
-    assert found.variation > 2 * found.expected
+    assert found.variation > 1.6 * found.expected  # over ten draws of each 1.7 to 2.8 times
     tiles = level(rough).heights.reshape(4, len(factor) // 4, 4, -1)
     assert_allclose(found.tile_rms, np.sqrt(np.mean(tiles**2, axis=(1, 3))), rtol=1e-9)
 
@@ -316,10 +316,9 @@ test_what_is_wrong_is_said = refusals(
     (lambda: affine(shape=(1, 32)), r"shape: received \(1, 32\)"),
     (lambda: affine(spacing=(UM, -UM)), "spacing"),
     (
-        lambda: affine(longest=10.0),
-        r"longest: received 10 m with waves down to 4e-06 m, which take tiles of 8·10⁷ x",
+        lambda: affine(anisotropy=1e9, lay=0.5),
+        r"anisotropy: received 1·10⁹, which takes tiles .*at most 134217728 waves.*nearer to 1",
     ),
-    (lambda: affine(anisotropy=1e9), r"allowed: at most 134217728 points.*nearer to 1"),
     (lambda: from_map(HeightMap(HOLED, UM), (50, 50), seed=1), r"0\.01% missing points in a map"),
     (lambda: from_map([texture(0), OTHER], (50, 50), seed=1), "one spacing for all"),
     (lambda: from_map([], (50, 50), seed=1), "maps: received none"),

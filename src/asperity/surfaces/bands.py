@@ -1,18 +1,18 @@
 """One-third-octave levels in wavelength, dB re 1 µm: those of surfaces, and surfaces that have given ones."""
 
 import math
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable
 from dataclasses import dataclass
-from functools import cached_property
-from itertools import pairwise
+from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray, require
-from asperity.spectra import HALF_BAND, band_energies, band_levels, psd
+from asperity.spectra import HALF_BAND, band_levels, psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import places_across
-from asperity.surfaces.tiles import Tiling, Waves, closed, deviates, random_of
+from asperity.surfaces.tiles import Tiling, Waves, closed, deviates, random_of, range_of, start_of
 
 MICROMETRE = 1e-6
 """Reference of roughness levels, m (ISO 3095:2013, EN 15610:2009)."""
@@ -22,20 +22,20 @@ SAME_COHERENCE = 1.05
 """Wavenumbers within this ratio share one lateral coherence."""
 SAMPLES = 2.06
 """Samples that the shortest wave of a band has at least, where a spacing holds the band."""
-BAND_LENGTHS = 20.0
-"""Length of a tile along in longest wavelengths: each band has waves enough."""
-BLEND_LENGTHS = 2.0
-"""Length of the blend of two tiles along in longest wavelengths."""
-FEW = 500
-"""Waves up to which those on the edges of bands matter."""
+TILE = 79.5
+"""Length of a tile along in longest waves of its range, which then holds waves 80 to 316 whole."""
+WHOLE = 0.99
+"""Share of a wave's width in the bands that are given, from which it is in them."""
 TILE_ACROSS = 36.0
 """Width of a tile across, in 1/κ: the coherence is below 0.0001 at a third of it."""
-BLEND_ACROSS = 12.0
-"""Width of the blend of two tiles across, in 1/κ."""
+BLEND_ACROSS = 1.0 / 3.0
+"""Width of the blend of two tiles across, in tiles."""
 HIGHEST_ACROSS = 16.0
 """Largest wavenumber across, in κ: the mean square beyond, 0.2 %, goes to the others."""
 MIDDLE = 2**40
 """Number of the random numbers of the middle line, which no block of waves beside it has."""
+ALL = 2**20
+"""Number of the range of all waves around a circumference."""
 
 
 def band_levels_of(surface: Profile | HeightMap) -> tuple[Array, Array]:
@@ -81,17 +81,37 @@ class BandTexture:
         return self
 
     @property
-    def along(self) -> Tiling:
-        """Tiles along x."""
-        if self.around is not None:
-            return Tiling(self.around, 0.0, 0.0)
-        longest = max(self.wavelengths)
-        return Tiling.from_zero(BAND_LENGTHS * longest, BLEND_LENGTHS * longest)
-
-    @property
     def draw(self) -> str:
         """What its random numbers belong to."""
-        return f"bands in {self.along}, seed {self.seed}"
+        around = "" if self.around is None else f" around {self.around:.6g} m"
+        return f"bands{around}, seed {self.seed}"
+
+    @cached_property
+    def ranges(self) -> "tuple[RangeOfBands, ...]":
+        """Ranges that hold some of its bands, the longest waves first; one around a circumference."""
+        centres, low, _, _ = _wavenumber_bands(self.wavelengths, self.levels)
+        if self.around is not None:
+            return (RangeOfBands(self, ALL, tuple(range(len(centres)))),)
+        number = [range_of(each) for each in low.tolist()]
+        bands = {n: tuple(i for i, each in enumerate(number) if each == n) for n in sorted(set(number))}
+        found = (RangeOfBands(self, *each) for each in bands.items())
+        return tuple(each for each in found if each.mean_squares.size)
+
+
+@dataclass(frozen=True)
+class RangeOfBands:
+    """Waves of those bands of a surface that lie in one range."""
+
+    surface: BandTexture
+    number: int
+    bands: tuple[int, ...]
+
+    @property
+    def along(self) -> Tiling:
+        """Tiles along x."""
+        if self.surface.around is not None:
+            return Tiling(self.surface.around, 0.0, 0.0)
+        return Tiling.from_zero(TILE / start_of(self.number))
 
     @cached_property
     def mean_squares(self) -> Array:
@@ -100,69 +120,71 @@ class BandTexture:
         Each wave has its share of every band that it lies in, of those too that are left out here: more bands
         change none of the waves.
         """
-        length = self.along.length
-        _, low, high, levels = _wavenumber_bands(self.wavelengths, self.levels)
-        held = high * SAMPLES * self.finest < 1.0
-        count = math.ceil(length * high[held].max() + 0.5) if held.any() else 1
+        length, surface = self.along.length, self.surface
+        _, low, high, levels = (
+            each[list(self.bands)] for each in _wavenumber_bands(surface.wavelengths, surface.levels)
+        )
+        held = high * SAMPLES * surface.finest < 1.0
+        if not held.any():
+            return np.zeros(0)
         targets = MICROMETRE**2 * 10.0 ** (levels / 10.0)
-        return _shared_out(low * length, high * length, targets, max(count, FEW))[:count]
+        count = math.floor(length * high[held].max() + 0.5) + 1
+        return _shared_out(low * length, high * length, targets)[:count]
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny), m, of a tile at places across (ny,), m."""
-        size = np.sqrt(2.0 * self.mean_squares)
-        turns = random_of(self.seed, MIDDLE, 0, tile).random(len(size))
-        middle = np.exp(2j * np.pi * turns)[:, None]
-        if not np.isfinite(self.lateral) or not across.any():
-            return np.asarray(size[:, None] * np.broadcast_to(middle, (len(size), len(across))))
-        found = np.empty((len(size), len(across)), np.complex128)
-        for number, block in _blocks(len(size), self.along.length):
-            scale = 2.0 * np.pi * SAME_COHERENCE ** (number + 0.5) / self.lateral
-            found[block] = self._beside(middle[block], (number, tile), scale * across)
-        found[0] = 0.0
+        size, lateral = np.sqrt(2.0 * self.mean_squares), self.surface.lateral
+        first = 1 if self.number == ALL else math.ceil(TILE)
+        found = np.zeros((len(size), len(across)), np.complex128)
+        turns = random_of(self.surface.seed, MIDDLE + self.number, 0, tile).random(max(len(size) - first, 0))
+        found[first:] = np.exp(2j * np.pi * turns)[:, None]
+        if np.isfinite(lateral) and across.any():
+            scale = 2.0 * np.pi * first / (self.along.length * lateral)
+            found[first:] = self._beside(found[first:, :1], tile, (scale * across).tobytes())
         return size[:, None] * found
 
-    def _beside(self, middle: Waves, place: tuple[int, int], z: Array) -> Waves:
-        """Waves of one coherence (k, ny), mean square one, at distances z from where they are `middle`."""
-        number, tile = place
-        tiling = Tiling.around_zero(TILE_ACROSS, BLEND_ACROSS)
-        u, weight = _across_waves()
-        found = np.zeros((len(middle), len(z)), np.complex128)
-        for side in tiling.touching(z.min(), z.max()):
-            shape = (len(middle), len(u))
-            noise = deviates(self.seed, shape, number, side, tile) * np.sqrt(0.5 * weight)
-            process = noise @ np.exp(1j * u[:, None] * z)
-            if side == 0:
-                coherence = weight @ np.cos(u[:, None] * z)
-                process += coherence * (middle - noise.sum(axis=1, keepdims=True))
-            found += tiling.weight(side, z) * process
+    def _beside(self, middle: Waves, tile: int, z: bytes) -> Waves:
+        """Waves (k, ny), mean square one, at distances z of the first, from where they are `middle`."""
+        first = 1 if self.number == ALL else math.ceil(TILE)
+        _, weight = _across_waves()
+        blocks, lines = _blocks_across(first, len(middle), z)
+        found, size = np.zeros((len(middle), lines), np.complex128), np.sqrt(0.5 * weight)
+        noises = {
+            side: size * deviates(self.surface.seed, (len(middle), len(size)), self.number, side, tile)
+            for side in sorted({each.side for each in blocks})
+        }
+        missing = middle - noises[0].sum(axis=1, keepdims=True)
+        for block in blocks:
+            part = found[block.waves, block.lines]
+            part += noises[block.side][block.waves] @ block.basis
+            if block.side == 0:
+                part += block.coherence * missing[block.waves]
         return found
 
 
-def _shared_out(low: Array, high: Array, targets: Array, count: int) -> Array:
-    """Mean squares (count,), m², of waves 0, 1, 2, … that give bands theirs; edges in waves.
+def _shared_out(low: Array, high: Array, targets: Array) -> Array:
+    """Mean squares (k,), m², of waves 0, 1, 2, … that give bands theirs, and no more; edges in waves.
 
-    A wave has the width of one; what lies on an edge belongs to two bands, which matters where waves are few.
-    There the bands are scaled until each has its own.
+    A wave has the width of one. One on the edge of two bands belongs to both, and these are scaled until each
+    has its own. One that no band holds beyond an edge is left out, where the band has others.
     """
-    index = np.arange(count)
-    shares = []
+    covered, bands = np.zeros(math.floor(high.max() + 0.5) + 1), []
     for begin, end, target in zip(low, high, targets, strict=True):
-        there = slice(max(math.floor(begin), 1), math.ceil(end) + 1)
-        beside = np.arange(there.start, there.stop)
-        overlap = np.clip(np.minimum(beside + 0.5, end) - np.maximum(beside - 0.5, begin), 0.0, None)
-        part = (
-            (target * overlap / overlap.sum())[: max(count - there.start, 0)]
-            if overlap.any()
-            else overlap[:0]
-        )
-        shares.append((slice(there.start, there.start + len(part)), part))
-    factors, few = np.ones(len(targets)), (high < FEW) & (targets > 0.0)
+        beside = np.arange(max(math.floor(begin + 0.5), 1), math.floor(end + 0.5) + 1)
+        width = np.clip(np.minimum(beside + 0.5, end) - np.maximum(beside - 0.5, begin), 0.0, None)
+        if target > 0.0 and width.any():
+            covered[beside] += width
+            bands.append((beside, width, target))
+    whole = covered >= WHOLE
+    within = [np.where(whole[beside], width, 0.0) for beside, width, _ in bands]
+    shares = [each if each.any() else width for each, (_, width, _) in zip(within, bands, strict=True)]
+    factors = [target / each.sum() for each, (_, _, target) in zip(shares, bands, strict=True)]
     for _ in range(50):
-        found = np.zeros(count)
-        for (there, part), factor in zip(shares, factors, strict=True):
-            found[there] += factor * part
-        ratio = targets[few] / band_energies(index[:FEW], found[:FEW], low[few], high[few])
-        factors[few] *= ratio
+        found = np.zeros_like(covered)
+        for (beside, _, _), each, factor in zip(bands, shares, factors, strict=True):
+            found[beside] += factor * each
+        ratio = [target / np.sum(found[beside] * width) for beside, width, target in bands]
+        factors = [factor * each for factor, each in zip(factors, ratio, strict=True)]
         if np.allclose(ratio, 1.0, rtol=0.0, atol=1e-5):
             break
     return found
@@ -176,14 +198,39 @@ def _across_waves() -> tuple[Array, Array]:
     return np.asarray(u), weight / weight.sum()
 
 
-def _blocks(count: int, length: float) -> Iterator[tuple[int, slice]]:
-    """Runs of waves whose wavenumbers are nearly the same, with the number of each, on whatever length."""
-    if count < 2:
-        return
-    number = np.floor(np.log(np.arange(1, count) / length) / math.log(SAME_COHERENCE) + 1e-9).astype(int)
-    starts = 1 + np.flatnonzero(np.diff(number, prepend=number[0] - 1))
-    for first, stop in pairwise([*starts.tolist(), count]):
-        yield int(number[first - 1]), slice(first, stop)
+def _across_basis(z: Array) -> Waves:
+    """exp(i u z) (j, ny) of all waves u across a tile: products of few, in two steps."""
+    turn, most = 2.0 * np.pi / TILE_ACROSS, round(HIGHEST_ACROSS * TILE_ACROSS / (2.0 * np.pi))
+    step = math.isqrt(2 * most) + 1
+    small = np.exp(1j * turn * np.arange(step)[:, None] * z)
+    large = np.exp(1j * turn * np.arange(-most, most + 1, step)[:, None] * z)
+    return (large[:, None] * small).reshape(-1, len(z))[: 2 * most + 1]
+
+
+class _Block(NamedTuple):
+    """Waves of nearly one wavenumber in a tile across, weighted as the tile is."""
+
+    waves: slice
+    side: int  # number of the tile
+    lines: slice
+    basis: Waves  # exp(i u z) (j, ny)
+    coherence: Array  # with the middle of the tile
+
+
+@lru_cache(maxsize=1)  # of a range, until it is laid along the path
+def _blocks_across(first: int, count: int, z: bytes) -> tuple[list[_Block], int]:
+    """Blocks of so many waves, `first` the number of the first on a tile, z its distances; and lines."""
+    tiling, (_, weight) = Tiling.around_zero(TILE_ACROSS, BLEND_ACROSS), _across_waves()
+    number = np.log(np.arange(first, first + count) / first) / math.log(SAME_COHERENCE)
+    blocks, number, near = list[_Block](), np.floor(number + 1e-9), np.frombuffer(z)
+    for each in np.unique(number).tolist():
+        waves = slice(*np.searchsorted(number, (each, each + 1.0)).tolist())
+        distance = SAME_COHERENCE ** (each + 0.5) * near
+        for side in tiling.touching(distance[0], distance[-1]):
+            lines = tiling.held(side, distance)
+            basis, share = _across_basis(distance[lines]), tiling.weight(side, distance[lines])
+            blocks.append(_Block(waves, side, lines, basis * share, share * (weight @ basis.real)))
+    return blocks, len(near)
 
 
 def from_bands(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayLike, seed: int) -> Profile:
@@ -196,7 +243,7 @@ def from_bands(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayL
     one adds them to the same line.
     """
     texture = band_texture(wavelengths, levels_db, math.inf, seed, spacing, n * spacing)
-    heights = closed(texture.waves(0, np.zeros(1)), n)[:, 0]
+    heights = closed(texture, n, np.zeros(1))[:, 0]
     return Profile(heights, spacing, f"{range_of_bands(wavelengths)}, seed {seed}")
 
 
@@ -232,7 +279,7 @@ def strip_from_bands(
     """
     nx, ny = shape
     texture = band_texture(wavelengths, levels_db, lateral, seed, spacing[0], around or nx * spacing[0])
-    heights = closed(texture.waves(0, places_across(ny, spacing[1])), nx)
+    heights = closed(texture, nx, places_across(ny, spacing[1]))
     return HeightMap(heights, spacing, f"{range_of_bands(wavelengths)}, lateral {lateral:g}, seed {seed}")
 
 

@@ -46,7 +46,7 @@ def corrugation(
         heights = math.sqrt(2.0) * size * np.sin(2.0 * np.pi * x / wavelength)
         return Profile(heights, spacing, f"corrugation of {wavelength:.4g} m")
     band = _BandOfWaves(wavelength, half, size, seed)
-    heights = heights_at(band.along, x, 1, lambda tile: fine(band.waves(tile, np.zeros(1))))[:, 0]
+    heights = heights_at((band,), x, 1, lambda _, tile: fine(band.waves(tile, np.zeros(1))))[:, 0]
     return Profile(heights, spacing, f"corrugation of {wavelength:.4g} m, {bandwidth:g} octaves, seed {seed}")
 
 
@@ -64,7 +64,7 @@ class _BandOfWaves:
         """Tiles that hold some waves of the band."""
         width = (self.half - 1.0 / self.half) / self.wavelength
         length = max(WAVES_OF_BAND / width, WAVES_OF_BAND * self.wavelength)
-        return Tiling.from_zero(length, 0.2 * length)
+        return Tiling.from_zero(length)
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny), m, of a tile."""

@@ -102,7 +102,11 @@ class AroundTexture:
     def draw(self) -> str:
         """What its random numbers belong to, beside a seed; empty where there are none."""
         waves = "waves" * bool(self.waves or self.waviness)
-        rough = f"self-affine from {self.longest:.6g} m" if self.roughness else "map" * bool(self.map)
+        rough = (
+            f"self-affine, drawn out {self.anisotropy:.6g} times"
+            if self.roughness
+            else "map" * bool(self.map)
+        )
         return " and ".join(filter(None, (waves, rough)))
 
     def line(self, rows: int, seed: int) -> NDArray[np.complex128]:
@@ -132,13 +136,13 @@ class AroundTexture:
         across = places_across(shape[1], spacing[1])
         if self.map is not None:
             like = likeness(map_of(self.map).levelled(), spacing)
-            return like.transform(closed(LikeMaps(like, seed, shape[0]).waves(0, across), shape[0]))
+            return like.transform(closed(LikeMaps(like, seed, shape[0]), shape[0], across))
         texture = SelfAffine(
             rms=self.roughness or 0.0, hurst=self.hurst, longest=self.longest, shortest=self.shortest,
             anisotropy=self.anisotropy, seed=seed, around=around,
         )  # fmt: skip
         texture.check(spacing)
-        return closed(texture.waves(0, across), shape[0])
+        return closed(texture, shape[0], across)
 
 
 def closed_trace(trace: ArrayLike) -> tuple[Array, Array]:

@@ -4,7 +4,6 @@ import tempfile
 import threading
 import weakref
 from collections.abc import Callable, Hashable
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import IO, Protocol
 
@@ -30,6 +29,7 @@ class Fields:
         self._file: IO[bytes] | None = None
         self._close: Callable[[], object] = lambda: None
         self._length = 0  # of the file, bytes
+        self.nbytes = 0  # that are held in memory
 
     def rows(self, name: Hashable, make: Callable[[], Array]) -> Array:
         """Heights of all rows of a field, m, not to be written to; unknown ones are made.
@@ -46,19 +46,13 @@ class Fields:
             # mapped: a position in the file would be shared with forked processes
             return np.memmap(self._file, np.float64, "r", *held)
 
-    @property
-    def nbytes(self) -> int:
-        """Bytes that are held in memory."""
-        return sum(held.nbytes for held in self._held.values() if isinstance(held, np.ndarray))
-
     def _put(self, name: Hashable, heights: Array) -> None:
         size = heights.nbytes
         full = self._length + size > BYTES_KEPT or self.nbytes + size > BYTES_IN_MEMORY
         if full and len(self._held) >= FEWEST:
             self._close()
-            self._held, self._file, self._length = {}, None, 0
-        self._held[name] = heights
-        with suppress(OSError):
+            self._held, self._file, self._length, self.nbytes = {}, None, 0, 0
+        try:
             if self._file is None:
                 self._file = tempfile.TemporaryFile(prefix="asperity-")  # noqa: SIM115  closed below
                 self._close = weakref.finalize(self, self._file.close)
@@ -67,6 +61,9 @@ class Fields:
             self._file.flush()
             self._held[name] = self._length, heights.shape
             self._length += size
+        except OSError:
+            self._held[name] = heights
+            self.nbytes += size
 
 
 fields = Fields()
@@ -149,14 +146,15 @@ class LongStrip:
         heights = np.zeros((0, self.shape[1]))
         if stop > first:
             place = np.asarray(self.spacing[0] * (np.arange(first, stop) - self.before))
-            heights = heights_at(self.drawn.along, place, self.shape[1], self._tile)
+            heights = heights_at(self.drawn.ranges, place, self.shape[1], self._tile)
         return heights if self.transform is None else self.transform(heights)
 
-    def _tile(self, tile: int) -> Array:
-        """Heights of a tile on its own fine grid, m."""
+    def _tile(self, which: int, tile: int) -> Array:
+        """Heights of a range of waves in a tile on its own fine grid, m."""
         lines, dy = self.shape[1], self.spacing[1]
-        name = self.drawn.name, tile, dy, lines
-        return fields.rows(name, lambda: fine(self.drawn.waves(tile, places_across(lines, dy))))
+        name = self.drawn.name, which, tile, dy, lines
+        waves = self.drawn.ranges[which]
+        return fields.rows(name, lambda: fine(waves.waves(tile, places_across(lines, dy))))
 
 
 def places_across(lines: int, spacing: float) -> Array:

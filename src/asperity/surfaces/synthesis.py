@@ -1,34 +1,36 @@
 """Textures that are made: records continued, self-affine surfaces, likenesses of maps, and long strips."""
 
 import math
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Literal
+from functools import cached_property, lru_cache
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, require, two_lengths
+from asperity.arguments import Array, ArrayLike, NDArray, require, two_lengths
 from asperity.surfaces.bands import band_texture, range_of_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip, places_across
-from asperity.surfaces.tiles import GROUP, Tiling, Waves, deviates, fine, heights_at
+from asperity.surfaces.tiles import RANGE, Tiling, Waves, deviates, fine, heights_at, range_of, start_of
 from asperity.written_numbers import rounded
 
 Continuation = Literal["refuse", "mirror", "repeat"]
 
-TILE_REACHES = 16.0, 6.0
-"""Size of a tile along and across in reaches of the longest waves."""
+TILE = np.array([40.0, 24.0])
+"""Size of a tile along and across in reaches of the longest waves of its range."""
+FLAT = 16.0
+"""Waves that are drawn, in longest waves: the spectrum is flat there, and longer ones hold 0.2 % at most."""
 MAP_LENGTHS = 10.0, 4.0
 """Size of a tile along and across in lengths of a measured map."""
-BLEND_REACHES = 2.0
-"""Length of the blend of two tiles in reaches."""
-LARGEST_TILE = 2**27
-"""Points of a tile: as many numbers are drawn for it, and a few seconds go by."""
-FEWEST = 2**6
-"""Points that each side of a tile counts for at least: those of a few waves cost as much."""
+MOST_WAVES = 2**27
+"""Waves of a tile: as many are looked at, and a few seconds go by."""
+TOGETHER = 2**21
+"""Waves of a tile that are summed at a time."""
+GROUP = 16
+"""Waves along that share a stream of random numbers, in the likeness of maps."""
 
 
 def extend(
@@ -163,66 +165,146 @@ class SelfAffine:
     @property
     def draw(self) -> str:
         """What its random numbers belong to."""
-        return f"self-affine in {self.along}, across in {self.across}, seed {self.seed}"
+        around = "" if self.around is None else f" around {self.around:.6g} m"
+        stretch = f"drawn out {self.anisotropy:.6g} times at {math.degrees(self.lay):.6g} deg"
+        return f"self-affine{around}, {stretch}, seed {self.seed}"
 
-    @property
-    def drawn_out(self) -> Array:
-        """Matrix that draws a circle out and turns it by the lay."""
-        stretch, cosine, sine = np.sqrt(self.anisotropy), np.cos(self.lay), np.sin(self.lay)
-        return np.array([[stretch * cosine, -sine / stretch], [stretch * sine, cosine / stretch]])
+    @cached_property
+    def ranges(self) -> "tuple[AffineRange, ...]":
+        """Ranges of q' that hold its waves, the longest first."""
+        most = math.sqrt(max(self.anisotropy, 1.0 / self.anisotropy)) / self.shortest
+        numbers = range(range_of(1.0 / (FLAT * self.longest)), range_of(most) + 1)
+        return tuple(AffineRange(self, number) for number in numbers)
 
-    @property
-    def reach(self) -> Array:
-        """How far the longest waves reach along x and y, m; not less than the shortest do."""
-        return np.maximum(self.longest * np.hypot(*self.drawn_out.T), self.shortest)
+    def check(self, spacing: tuple[float, float]) -> None:
+        """Refuse a spacing, m, too coarse for the shortest waves, and an anisotropy out of all proportion."""
+        coarsest = 2.0 * max(spacing)
+        fine = self.shortest >= coarsest * (1 - 1e-9)
+        require(fine, "shortest", self.shortest, f"at least two samples, {coarsest:.4g} m")
+        along, across = max((each.tile.most for each in self.ranges), key=math.prod)
+        waves = f"{rounded(along)} x {rounded(2.0 * across)} waves"
+        received = f"{rounded(self.anisotropy)}, which takes tiles of {waves}"
+        remedy = "Bring it nearer to 1, or lengthen the shortest wave."
+        allowed = f"at most {MOST_WAVES} waves"
+        require(2.0 * along * across <= MOST_WAVES, "anisotropy", received, allowed, remedy)
+
+    @cached_property
+    def mean_square(self) -> float:
+        """Sum of the spectrum over all waves, where it is one on the longest."""
+        return sum(float(each.power.sum()) for each in self.ranges) or 1.0
+
+
+def drawn_out(anisotropy: float, lay: float) -> Array:
+    """Matrix that draws a circle out and turns it by a lay, rad."""
+    stretch, cosine, sine = np.sqrt(anisotropy), np.cos(lay), np.sin(lay)
+    return np.array([[stretch * cosine, -sine / stretch], [stretch * sine, cosine / stretch]])
+
+
+@dataclass(frozen=True)
+class AffineRange:
+    """Waves of a self-affine surface whose q' lies in one range."""
+
+    surface: SelfAffine
+    number: int
+
+    @cached_property
+    def tile(self) -> "AffineTile":
+        """Tile of the range; no smaller than the correlation of waves that are cut off at the shortest."""
+        surface, least = self.surface, start_of(self.number)
+        shortest = start_of(range_of(1.0 / surface.shortest) + 1)
+        reach = np.maximum(np.hypot(*drawn_out(surface.anisotropy, surface.lay).T), least / shortest)
+        along, across = (TILE * reach).tolist()
+        if surface.around is not None:
+            along = surface.around * least
+        highest = (1.0 + 1e-9) / (surface.shortest * least)
+        return AffineTile((along, across), surface.anisotropy, surface.lay, highest)
 
     @property
     def along(self) -> Tiling:
         """Tiles along x."""
-        if self.around is not None:
-            return Tiling(self.around, 0.0, 0.0)
-        return Tiling.from_zero(TILE_REACHES[0] * self.reach[0], BLEND_REACHES * self.reach[0])
+        length = self.tile.size[0] / start_of(self.number)
+        return Tiling.from_zero(length) if self.surface.around is None else Tiling(length, 0.0, 0.0)
 
     @property
     def across(self) -> Tiling:
         """Tiles along y."""
-        return Tiling.around_zero(TILE_REACHES[1] * self.reach[1], BLEND_REACHES * self.reach[1])
+        return Tiling.around_zero(self.tile.size[1] / start_of(self.number))
 
-    def check(self, spacing: tuple[float, float]) -> None:
-        """Refuse a spacing, m, too coarse for the shortest waves, and longest ones out of all proportion."""
-        coarsest = 2.0 * max(spacing)
-        fine = self.shortest >= coarsest * (1 - 1e-9)
-        require(fine, "shortest", self.shortest, f"at least two samples, {coarsest:.4g} m")
-        sizes = [max(2.0 * each.length / self.shortest, FEWEST) for each in (self.along, self.across)]
-        received = f"{self.longest:.4g} m with waves down to {self.shortest:.4g} m"
-        received += f", which take tiles of {rounded(sizes[0])} x {rounded(sizes[1])} points"
-        remedy = "Shorten it, lengthen the shortest, or bring the anisotropy nearer to 1."
-        allowed = f"at most {LARGEST_TILE} points"
-        require(sizes[0] * sizes[1] <= LARGEST_TILE, "longest", received, allowed, remedy)
+    @cached_property
+    def power(self) -> Array:
+        """Mean squares of its waves, where the spectrum is one on the longest of the surface."""
+        waves, (along, across) = waves_of(self.tile), self.tile.size
+        scale = self.surface.longest * start_of(self.number)
+        power = np.maximum(waves.stretched * scale**2, 1.0) ** (-1.0 - self.surface.hurst)
+        # of wave 0 along, the opposite ones across are there
+        return np.asarray(power * np.where(waves.along > 0, 2.0, 1.0) * (scale**2 / (along * across)))
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny), m, of a tile at places across (ny,), m."""
-        scale = self.rms / np.sqrt(self._mean_square)
-        return _waves(self.seed, tile, across, self.across, (scale * each for each in self._amplitudes()))
+        members, tiling, (count, beside) = waves_of(self.tile), self.across, self.tile.most
+        size = self.surface.rms * np.sqrt(self.power / self.surface.mean_square)
+        turns = 2.0 * np.pi / tiling.length * np.arange(-beside, beside + 1)
+        found = np.zeros((count + 1, len(across)), np.complex128)
+        for side in tiling.touching(across.min(), across.max()):
+            lines = tiling.held(side, across)
+            noise = deviates(self.surface.seed, (len(size),), self.number, side, tile)[members.rank] * size
+            basis = np.exp(1j * turns[:, None] * tiling.within(side, across[lines]))
+            basis *= tiling.weight(side, across[lines])
+            step = max(1, TOGETHER // len(turns))
+            for first in range(0, count + 1, step):
+                rows = found[first : first + step]
+                there = slice(*np.searchsorted(members.along, (first, first + step)).tolist())
+                columns = members.across[there] + beside
+                low, high = columns.min(initial=len(turns)), columns.max(initial=0) + 1
+                box = np.zeros((len(rows), max(high - low, 0)), np.complex128)
+                box[members.along[there] - first, columns - low] = noise[there]
+                rows[:, lines] += box @ basis[low:high]
+        return found
 
-    def _amplitudes(self) -> Iterator[Array]:
-        """Roots of the spectrum (GROUP, 2j + 1) of groups of waves along; across 0, 1, −1, 2, −2, …"""
-        turn, most = 2.0 * np.pi, (1.0 + 1e-9) / self.shortest
-        count, beside = (math.floor(most * tiling.length) for tiling in (self.along, self.across))
-        qy = turn / self.across.length * to_and_fro(beside)
-        for first in range(0, count + 1, GROUP):
-            wave = np.arange(first, first + GROUP)[:, None]
-            qx = turn / self.along.length * wave
-            square = sum((qx * along + qy * across) ** 2 for along, across in self.drawn_out.T)
-            power = np.maximum(square, (turn / self.longest) ** 2) ** (-1.0 - self.hurst)
-            power[qx**2 + qy**2 > (turn * most) ** 2] = 0.0
-            power *= np.where(wave > 0, 2.0, 1.0)  # of wave 0 across, the opposite ones are there
-            power[(wave == 0) & (qy == 0.0)] = 0.0
-            yield np.sqrt(power)
 
-    @cached_property
-    def _mean_square(self) -> float:
-        return float(sum(np.sum(each**2) for each in self._amplitudes())) or 1.0
+class AffineTile(NamedTuple):
+    """What tells which waves a range has on a tile, in its longest waves and least wavenumbers."""
+
+    size: tuple[float, float]  # along and across
+    anisotropy: float
+    lay: float  # rad
+    highest: float  # wavenumber of the shortest waves that are drawn
+
+    @property
+    def most(self) -> tuple[int, int]:
+        """Largest numbers of waves along and across."""
+        ellipse = RANGE * np.hypot(*np.linalg.inv(drawn_out(self.anisotropy, self.lay)))
+        along, across = np.floor(self.size * np.minimum(ellipse, self.highest)).astype(int).tolist()
+        return along, across
+
+
+class MembersOfRange(NamedTuple):
+    """Waves of a range on a tile, by their number along."""
+
+    along: NDArray[np.intp]
+    across: NDArray[np.intp]
+    stretched: Array  # q'², in the least one of the range
+    rank: NDArray[np.intp]  # from the least wavenumber on: those of a shorter shortest wave come after these
+
+
+@lru_cache(maxsize=32)
+def waves_of(tile: AffineTile) -> MembersOfRange:
+    """Waves of a range on a tile."""
+    count, beside = tile.most
+    y = np.arange(-beside, beside + 1)
+    step, parts = max(1, TOGETHER // len(y)), []
+    for first in range(0, count + 1, step):
+        x = np.arange(first, min(first + step, count + 1))[:, None]
+        qx, qy = x / tile.size[0], y / tile.size[1]
+        stretched = sum((qx * a + qy * b) ** 2 for a, b in drawn_out(tile.anisotropy, tile.lay).T)
+        square = qx**2 + qy**2
+        inside = (stretched >= 1.0) & (stretched < RANGE**2) & (square <= tile.highest**2)
+        along, across = np.nonzero(inside)
+        parts.append((along + first, across - beside, stretched[inside], square[inside]))
+    along, across, stretched, square = (np.concatenate(each) for each in zip(*parts, strict=True))
+    rank = np.empty(len(along), np.intp)
+    rank[np.argsort(square, kind="stable")] = np.arange(len(along))
+    return MembersOfRange(along, across, stretched, rank)
 
 
 def to_and_fro(count: int) -> Array:
@@ -231,30 +313,13 @@ def to_and_fro(count: int) -> Array:
     return np.where(index % 2 == 1, (index + 1) // 2, -(index // 2)).astype(np.float64)
 
 
-def _waves(seed: int, tile: int, across: Array, tiling: Tiling, amplitudes: Iterable[Array]) -> Waves:
-    """Waves along (k, ny), m, of a tile, from the amplitudes of groups of them, rms; see `SelfAffine`."""
-    found, sides = [], tiling.touching(across.min(), across.max())
-    basis = dict[int, Waves]()
-    for group, each in enumerate(amplitudes):
-        part = np.zeros((len(each), len(across)), np.complex128)
-        for side in sides:
-            if side not in basis:
-                turns = 2.0 * np.pi / tiling.length * to_and_fro(each.shape[1] // 2)
-                waves = np.exp(1j * turns[:, None] * tiling.within(side, across))
-                basis[side] = waves * tiling.weight(side, across)
-            noise = deviates(seed, (each.shape[1], GROUP), group, side, tile).T[: len(each)]
-            part += (noise * each) @ basis[side]
-        found.append(part)
-    return np.concatenate(found)
-
-
 def _heights(strip: LongStrip) -> Array:
     """Heights of all of a strip that is no longer than a map, m, of which nothing is kept."""
-    shape, (dx, dy), drawn = strip.shape, strip.spacing, strip.drawn
+    shape, (dx, dy), ranges = strip.shape, strip.spacing, strip.drawn.ranges
     require(len(shape) == 2 and min(shape) >= 2, "shape", shape, "(nx, ny), at least 2 points each")
     across = places_across(shape[1], dy)
     along = np.asarray(dx * np.arange(shape[0]))
-    heights = heights_at(drawn.along, along, shape[1], lambda tile: fine(drawn.waves(tile, across)))
+    heights = heights_at(ranges, along, shape[1], lambda i, tile: fine(ranges[i].waves(tile, across)))
     return heights if strip.transform is None else strip.transform(heights)
 
 
@@ -353,23 +418,39 @@ class LikeMaps:
         return (along if self.around is None else self.around), across
 
     @property
+    def ranges(self) -> "tuple[LikeMaps]":
+        """All of its waves are one."""
+        return (self,)
+
+    @property
     def along(self) -> Tiling:
         """Tiles along x."""
         length = self.points[0] * self.like.spacing[0]
         if self.around is not None:
             return Tiling(length, 0.0, 0.0)
-        return Tiling.from_zero(length, BLEND_REACHES * self.like.size[0] * self.like.spacing[0])
+        return Tiling.from_zero(length)
 
     @property
     def across(self) -> Tiling:
-        """Tiles along y; a map is as wide as half of what is alone in one."""
-        dy = self.like.spacing[1]
-        return Tiling.around_zero(self.points[1] * dy, self.like.size[1] * dy)
+        """Tiles along y; a map is narrower than half of what is alone in one."""
+        return Tiling.around_zero(self.points[1] * self.like.spacing[1])
 
     def waves(self, tile: int, across: Array) -> Waves:
         """Complex amplitudes (k, ny) of a tile at places across (ny,), m."""
-        groups = (self._amplitudes[i : i + GROUP] for i in range(0, len(self._amplitudes), GROUP))
-        return _waves(self.seed, tile, across, self.across, groups)
+        found, tiling = [], self.across
+        basis = dict[int, Waves]()
+        turns = 2.0 * np.pi / tiling.length * to_and_fro(self._amplitudes.shape[1] // 2)[:, None]
+        for side in tiling.touching(across.min(), across.max()):
+            waves = np.exp(1j * turns * tiling.within(side, across))
+            basis[side] = waves * tiling.weight(side, across)
+        for group in range(-(-len(self._amplitudes) // GROUP)):
+            size = self._amplitudes[GROUP * group : GROUP * (group + 1)]
+            part = np.zeros((len(size), len(across)), np.complex128)
+            for side, waves in basis.items():
+                noise = deviates(self.seed, (size.shape[1], GROUP), group, side, tile).T[: len(size)]
+                part += (noise * size) @ waves
+            found.append(part)
+        return np.concatenate(found)
 
     @cached_property
     def _amplitudes(self) -> Array:
