@@ -5,6 +5,7 @@
     python benchmarks/bearing_verdicts.py DATA --page before.json after.json
     python benchmarks/bearing_verdicts.py DATA --calibrate    # confidence, on pieces of the records
     python benchmarks/bearing_verdicts.py DATA --lengths 8    # pieces of 2 to 50 turns
+    python benchmarks/bearing_verdicts.py DATA --attack       # records that are disturbed
     python benchmarks/bearing_verdicts.py DATA --made 40      # signals that are made, of each part
 
 DATA is a folder with cwru_6205_12k.npz, mfpt_nice_48k.npz and hit_6205_51k.npz: records of one bearing each,
@@ -26,7 +27,7 @@ from pathlib import Path
 
 import numpy as np
 
-from asperity.diagnostics import diagnose
+from asperity.diagnostics import diagnose, diagnose_together
 from asperity.diagnostics.confidence import Basis
 from asperity.structures.ball_bearing import BallBearing
 
@@ -43,7 +44,7 @@ SETS = {
     "mfpt": ("mfpt_nice_48k.npz", 48_828.0),
     "hit": ("hit_6205_51k.npz", 51_200.0),
 }
-SPEEDS = (1.0, 0.97, 1.03, 0.9, 1.1, 0.7, 1.3, 0.5, 2.0)
+SPEEDS = (1.0, 0.97, 1.03, 0.9, 1.1, 0.7, 1.3, 0.5, 2.0, 60.0)
 RATES = (0.25, 0.5, 0.8, 1.25, 2.0, 4.0)
 PIECES = (
     *((turns, 3, 0.0, 1) for turns in (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 12.0, 20.0, 35.0)),
@@ -216,13 +217,14 @@ def made_signal(part, speed, rate, duration, draw, seed):
 def asked(signal, rate, tones, speed, factor, part, about):
     """Yield what is decided of a signal at a factor of its speed, and whether that is right; nothing of one
     that is too short for a tone."""
+    several = signal if isinstance(signal, list) else [signal]
     try:
-        found = diagnose(signal, rate, tones, speed * factor)
+        found = diagnose_together(several, rate, tones, speed * factor)
     except ValueError:
         return
     basis = {name: getattr(found.basis, name) for name in ("kind", "turns", "margin", "support", "depth")}
     right = _right(found, part, speed, factor)
-    length = signal.size / rate * speed
+    length = several[0].size / rate * speed
     named = [each.part for each in (*found.parts, *found.alike)]
     yield about | basis | {
         "part": part, "sound": part is None, "length": length, "factor": factor, "right": right,
@@ -365,6 +367,62 @@ def lengths(folder: Path, offsets: int) -> None:
         print(f"| {' | '.join(str(each or '–') for each in cells)} |")
 
 
+# --- records that are disturbed
+
+
+def disturbances(signal, rate, speed, draw):
+    """Yield what is done to a record, its signal then, and its sampling rate."""
+    from scipy.signal import resample_poly
+
+    time, rms = np.arange(signal.size) / rate, signal.std()
+    yield "as it is", signal, rate
+    for noise in (0.5, 1.0, 2.0):
+        yield f"noise of {noise:g} rms", signal + noise * rms * draw.normal(size=signal.size), rate
+    foreign = sum(np.sin(2 * np.pi * 2.03 * speed * n * time) / n for n in (1, 2))
+    yield "a foreign line at 2.03 times the speed, its second", signal + rms * foreign, rate
+    hum = sum(np.sin(2 * np.pi * 50.0 * n * time + n) / n for n in (1, 2, 3, 5))
+    yield "hum of 50 Hz", signal + rms * hum, rate
+    yield "8 bits", np.round(signal / np.abs(signal).max() * 127.0), rate
+    yield "8 bits, of which 4 are used", np.round(signal / np.abs(signal).max() * 8.0), rate
+    for height in (4.0, 2.0, 1.0):
+        yield f"clipped at {height:g} rms", np.clip(signal, -height * rms, height * rms), rate
+    yield "resampled by 4/5", resample_poly(signal, 4, 5), 0.8 * rate
+    yield "resampled by 1/2", resample_poly(signal, 1, 2), 0.5 * rate
+    broken = signal.copy()
+    broken[signal.size // 3 : signal.size // 3 + 500] = np.nan
+    broken[:: signal.size // 40] = np.nan
+    yield "a gap, and 40 samples missing", broken, rate
+    yield "an offset of 20 rms", signal + 20.0 * rms, rate
+    cuts = np.array_split(signal, 6)
+    yield "six files together", cuts, rate
+
+
+def attacked(folder: Path) -> None:
+    """Print what is said of disturbed records at their speeds: part, and how sure."""
+    bearings, draw = {"mfpt": BallBearing(8, 5.97e-3, 31.62e-3)}, np.random.default_rng(4)
+    rows: dict[str, list[dict[str, object]]] = {}
+    for of, name, _, signal, rate, speed, part in records(folder):
+        tones = bearings.get(of, BallBearing.named("6205")).tones()
+        for kind, disturbed, sampled in disturbances(signal, rate, speed, draw):
+            about = {"set": of, "record": name, "made": False, "noise": 0.0}
+            rows.setdefault(kind, []).extend(asked(disturbed, sampled, tones, speed, 1.0, part, about))
+    columns = "fault: right part", "wrong part", "no sign", "sound: none named", "a part named"
+    print(f"| what is done to the record | {' | '.join((*columns, 'said, of verdicts', 'right'))} |")
+    print(f"|---|{'---:|' * 7}")
+    for kind, own in rows.items():
+        faulty, sound = ([row for row in own if row["sound"] is wanted] for wanted in (False, True))
+        right = sum(row["right"] for row in faulty)
+        wrong = sum(bool(row["named"]) and not row["right"] for row in faulty)
+        named = sum(not row["right"] for row in sound)
+        sure, true = (100.0 * np.mean([row[what] for row in own]) for what in ("confidence", "right"))
+        cells = right, wrong, len(faulty) - right - wrong, len(sound) - named, named
+        counts = " | ".join(str(each or "–") for each in cells)
+        print(f"| {kind} | {counts} | {sure:.0f} % | {true:.0f} % |")
+        for row in own:
+            if not row["right"]:
+                print(f"{row['set']} {row['record']}: {row}", file=sys.stderr)
+
+
 # --- signals that are made
 
 
@@ -405,6 +463,7 @@ def main() -> None:
     parser.add_argument("--page", nargs=2, type=Path, metavar=("BEFORE", "AFTER"))
     parser.add_argument("--calibrate", action="store_true")
     parser.add_argument("--made", type=int, metavar="COUNT")
+    parser.add_argument("--attack", action="store_true", help="records with noise, hum, clipped, …")
     parser.add_argument("--lengths", type=int, metavar="OFFSETS", help="pieces of each length and record")
     parser.add_argument("--rows", type=Path, help="of --calibrate: written there, or read from it")
     chosen = parser.parse_args()
@@ -414,6 +473,8 @@ def main() -> None:
         page(*chosen.page)
     if chosen.lengths:
         lengths(chosen.data, chosen.lengths)
+    if chosen.attack:
+        attacked(chosen.data)
     if chosen.made:
         made(chosen.made)
     if chosen.calibrate:

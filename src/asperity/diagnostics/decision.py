@@ -114,6 +114,13 @@ class Diagnosis:
         return self.turns < RESOLVED and not self.parts and not self.blows
 
     @property
+    def mains(self) -> float:
+        """Line of the mains that is not told apart from the blows of the clearest part, Hz; 0 for none."""
+        tone = self.parts[0].blows if self.parts else 0.0
+        nearest = min(MAINS, key=lambda line: abs(line - tone))
+        return nearest if abs(nearest - tone) <= 0.5 * self.resolution else 0.0
+
+    @property
     def by_made_signals(self) -> bool:
         """Whether its confidence rests on made signals: none with a fault of a ball was measured."""
         return any(each.part == "ball" for each in self.parts)

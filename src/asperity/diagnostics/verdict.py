@@ -31,6 +31,8 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
         words.append(
             f"Of the fault of the {NAMES[known]} that is known to be there, the record holds no sign."
         )
+    if found.mains:
+        words.append(f"What the mains feed has lines at {found.mains:.0f} Hz, too.")
     return " ".join([*words, *found.doubts])
 
 
