@@ -255,13 +255,14 @@ def described(rows):
 def fitted(rows, weight, kinds):
     """Coefficients by kind: a logistic line with a penalty; of kinds that name no part over the turns alone.
 
-    Those of a ball by made signals too, as none was measured; of all other kinds by measured ones.
+    Those of a ball by made signals too, as none was measured, and those of no part, as made faults hide in
+    noise more often; of all other kinds by measured ones.
     """
     from scipy.optimize import minimize
 
     found = {}
     for kind in kinds:
-        own = np.array([row["kind"] == kind and (kind == "ball" or not row["made"]) for row in rows])
+        own = np.array([row["kind"] == kind and (kind in BY_MADE or not row["made"]) for row in rows])
         kept = [row for row, of in zip(rows, own, strict=True) if of]
         right = np.array([row["right"] for row in kept], dtype=float)
         seen, counts = described(kept), weight[own]
@@ -277,6 +278,7 @@ def fitted(rows, weight, kinds):
     return found
 
 
+BY_MADE = ("ball", "nothing", "sound")
 WITH_FEATURES = ("ball", "fault", "fault, shaft not found", "elsewhere")
 
 
@@ -286,7 +288,7 @@ def calibrate(rows) -> None:
     rows = [row for row in rows if not row["undecided"]]
     kinds, weight = sorted({row["kind"] for row in rows}), weights(rows)
     for kind, values in fitted(rows, weight, kinds).items():
-        own = [row for row in rows if row["kind"] == kind and (kind == "ball" or not row["made"])]
+        own = [row for row in rows if row["kind"] == kind and (kind in BY_MADE or not row["made"])]
         count = f"{sum(row['right'] for row in own):.0f} of {len(own)}"
         print(f'    "{kind}": ({", ".join(f"{each:.2f}" for each in values)}),  # {count}')
     seen, right = described(rows), np.array([row["right"] for row in rows], dtype=float)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.fft import next_fast_len
 
 from asperity.diagnostics import diagnose, diagnose_together, diagnosis_sentence
 from asperity.diagnostics.prominence import Prominence
@@ -144,6 +145,16 @@ def test_pieces_are_as_long_as_the_shortest_that_is_half_of_the_longest():
     assert [each.size for each in equal_pieces(stretches, 1e9)] == [640, 640, 640]
     assert [each.size for each in equal_pieces(stretches, 320.0)] == [320] * 9
     assert [each.size for each in equal_pieces(stretches[:1], 1_000.0)] == [1_000]
+
+
+@pytest.mark.parametrize("size", [262_147, 999_983, 1_048_576])
+def test_long_pieces_have_lengths_that_are_quick_to_transform(size):
+    """262 147 and 999 983 are primes, which take three times as long; short pieces stay whole."""
+    (piece,) = equal_pieces([np.zeros(size)], 1e9)
+    assert 0.997 * size <= piece.size <= size
+    assert piece.size == next_fast_len(piece.size)
+    (whole,) = equal_pieces([np.zeros(99_991)], 1e9)
+    assert whole.size == 99_991
 
 
 @pytest.mark.parametrize(("part", "noise"), [("outer", 0.45), ("inner", 0.2), ("ball", 0.3)])

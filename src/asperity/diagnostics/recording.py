@@ -23,6 +23,8 @@ BELOW = 1e-2
 """… and those in the next share, which are fewer by …"""
 FEWER = 4.0
 """… this factor at least: what nothing clips thins out towards its ends."""
+SLOW = 2**18
+"""Samples of a piece from which on it is cut to a length that is quick to transform."""
 OFFSET = 1.0
 """Mean over the rms about it from which on it is told."""
 
@@ -77,12 +79,24 @@ def equal_pieces(stretches: Sequence[Array], longest: float) -> list[Array]:
     """Cut stretches (n,) into pieces of one length, of so many samples at most.
 
     It is that of the shortest that has half the length of the longest one, or a part of it; what is shorter
-    is left out.
+    is left out, and of a long one what makes it slow to transform: a prime length takes three times as long.
     """
     most = max(each.size for each in stretches)
     size = min(each.size for each in stretches if each.size >= 0.5 * most)
     size //= int(np.ceil(size / longest))
+    if size > SLOW:
+        size = _quick_length(size)
     return [each[n * size : (n + 1) * size] for each in stretches for n in range(each.size // size)]
+
+
+def _quick_length(size: int) -> int:
+    """Largest length up to a size whose prime factors are at most 11, but for a few thousandths of it."""
+    from scipy.fft import next_fast_len
+
+    shorter = size
+    while next_fast_len(shorter) > size:
+        shorter -= 1 + size // 10_000
+    return int(next_fast_len(shorter))
 
 
 def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
