@@ -126,7 +126,7 @@ def test_bands_beyond_the_sampling_are_missing_and_a_band_that_is_given_is_taken
     keys = {"duration": "1 s", "sampling_rate": "12.8 kHz", "envelope_band": ["4 kHz", "5 kHz"]}
     case = as_case(SMOOTH | keys)
     noise = np.random.default_rng(1).normal(size=(1, 12_800))
-    found = heard_group(case, {"hertz": SimpleNamespace(acceleration=noise)})
+    found = heard_group(case, {"hertz": SimpleNamespace(vibrates=True, acceleration=noise)})
     assert np.isnan(found[schema.BAND_VELOCITY][0][0]).tolist() == [False, False, True]
     assert (found[schema.ENVELOPE_LOW], found[schema.ENVELOPE_HIGH]) == (4000.0, 5000.0)
 
@@ -135,7 +135,7 @@ def test_the_spectrum_of_velocity_is_that_of_the_acceleration_over_the_angular_f
     """Of a sine of 3 m/s² at 1 kHz, 3/(2π 1000) m/s; its rms is the velocity in the band."""
     case = as_case(SMOOTH | {"duration": "1 s", "sampling_rate": "25.6 kHz"})
     sine = 3.0 * np.sin(2.0 * np.pi * 1e3 * np.arange(25_600) / 25_600.0)
-    found = heard_group(case, {"hertz": SimpleNamespace(acceleration=sine[None])})
+    found = heard_group(case, {"hertz": SimpleNamespace(vibrates=True, acceleration=sine[None])})
     at = int(np.argmax(found[schema.VELOCITY_AMPLITUDE][0]))
     assert found[spectra.FREQUENCY][at] == pytest.approx(1e3, rel=1e-12)
     assert found[schema.VELOCITY_AMPLITUDE][0][at] == pytest.approx(3.0 / (2.0 * np.pi * 1e3), rel=1e-3)
@@ -149,7 +149,7 @@ def test_lines_are_looked_for_where_the_slip_of_the_cage_puts_them():
     time, slowed = np.arange(51_200) / 25_600.0, 0.97 * OUTER
     since = np.mod(time, 1.0 / slowed)
     blows = np.exp(-since / 1e-3) * np.sin(2.0 * np.pi * 5e3 * since)
-    found = heard_group(case, {"hertz": SimpleNamespace(acceleration=blows[None])})
+    found = heard_group(case, {"hertz": SimpleNamespace(vibrates=True, acceleration=blows[None])})
     assert found[schema.LINES_FOUND] == [[1.0, 0.0, 0.0]]
     assert found[schema.LINE_FREQUENCY][0][0] == pytest.approx(slowed * np.arange(1, 6), abs=0.5)
     assert found[schema.ENVELOPE_FREQUENCY][-1] > 5.0 * INNER

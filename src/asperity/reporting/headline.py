@@ -147,6 +147,7 @@ def force_answers(tree: DataTree) -> Answers:
     forces = data.of_contacts(tree, rolling.CONTACT_FORCE, main)
     count, largest = len(forces), np.nanmax(forces, axis=1)
     mean, rms = float(np.nanmean(forces)), float(np.sqrt(np.nanmean(np.nanvar(forces, axis=1))))
+    rms *= bool(np.ptp(forces, axis=1).any())  # of what does not vary, the mean is rounded
     top = data.engineering(float(largest.max()), "N") + _at_contact(int(largest.argmax()), count)
     share = (
         f"{data.in_percent(rms / mean)} of its mean of {data.engineering(mean, 'N')}; " if mean > 0 else ""

@@ -121,12 +121,21 @@ def numbers_table(columns: Mapping[str, chart.Numbers], foremost: Sequence[str] 
     others = [head for head in heads if head not in kept]
     kept += [others[n] for n in chart.spread(len(others), COLUMNS - len(kept))] if len(kept) < COLUMNS else []
     rows, named = chart.spread(count, ROWS), sorted(kept, key=heads.index)
-    shown = {head: columns[head][rows] for head in named}
+    shown = {head: _unrounded(columns[head])[rows] for head in named}
     counts = {"rows": (len(rows), count), "columns": (len(named), len(columns))}
     parts = [f"{some} of {every} {what}" for what, (some, every) in counts.items() if some < every]
     note = f"{' and '.join(parts)}; the CSV file has all." if parts else ""
     cells = {_read_well(name): number_cells(numbers, in_digits(4)) for name, numbers in shown.items()}
     return table("", "Numbers", cells, note)
+
+
+def _unrounded(numbers: chart.Numbers) -> chart.Numbers:
+    """A column with zeros where rounding beside its largest number left something else."""
+    if numbers.dtype.kind != "f" or not numbers.size:
+        return numbers
+    size = np.abs(numbers)
+    largest = float(np.max(size, where=np.isfinite(size), initial=0.0))
+    return np.where(size < np.finfo(float).eps * largest, 0.0, numbers)
 
 
 def _read_well(head: str) -> str:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.spec import Law
 from asperity.progress import Progress
 from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
-from asperity.rolling.roll import Ledger
+from asperity.rolling.roll import STILL, Ledger
 from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
@@ -77,6 +78,26 @@ class RolledBearing:
     softening: Array  # (2, Z), of the contacts with both rings, by the time step, m/N
     energy: Ledger
     unconverged_steps: int
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether any force varies by more than its tolerance."""
+        return any(
+            bool((np.ptp(force, axis=1) > STILL * np.abs(force).max()).any())
+            for force in (self.inner_force, self.outer_force)
+        )
+
+
+def without_rounding(run: RolledBearing) -> RolledBearing:
+    """The same, of a run in which nothing vibrates without what rounding leaves of motion and forces."""
+    if run.vibrates:
+        return run
+    names = "inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion"
+    records = {name: getattr(run, name) for name in names}
+    steady: dict[str, Any] = {
+        name: np.repeat(each[:, -1:], each.shape[1], axis=1) for name, each in records.items()
+    }
+    return replace(run, **steady, acceleration=np.zeros_like(run.acceleration), energy=run.energy.of_nothing)
 
 
 def roll_bearing(

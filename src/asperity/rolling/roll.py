@@ -6,8 +6,9 @@ How a run went is told: contact lost, load carried, steps not converged, laws co
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +44,11 @@ class Ledger:
     throughput: float  # time integral of the moduli of the powers at both sides of all contacts
 
     @property
+    def of_nothing(self) -> Ledger:
+        """The same where nothing was gained or done."""
+        return Ledger(dict.fromkeys(self.shares, 0.0), 0.0, 0.0)
+
+    @property
     def residual(self) -> float:
         """What the balance leaves open, relative to the throughput."""
         loads, *others = self.shares.values()
@@ -70,6 +76,11 @@ class RolledBodies:
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
     outcome: errors.Outcome  # whether all steps converged
+
+    @property
+    def vibrates(self) -> bool:
+        """Whether the force of any contact varies."""
+        return bool(np.ptp(self.contact_force, axis=1).any())
 
     @property
     def flights(self) -> list[tuple[Array, Array]]:
@@ -254,6 +265,34 @@ def flying(prepared: pointforce.Prepared | SteppedLaw, force: Array, approach: A
     return np.asarray(force <= 0.0)
 
 
+STILL = 1e-9
+"""Share of forces and displacements by which they vary where nothing vibrates: each is found to 1e-10."""
+
+
+def without_rounding(run: RolledBodies) -> RolledBodies:
+    """The same, of a run in which nothing vibrates without what rounding leaves of motion and forces."""
+
+    def varies(record: Array) -> bool:
+        return bool((np.ptp(record, axis=-1) > STILL * np.abs(record).max(axis=-1)).any())
+
+    if any(map(varies, (run.contact_force, run.over_displacement, run.relative_displacement))):
+        return run
+
+    def steady(record: Array) -> Array:
+        return np.repeat(record[..., -1:], record.shape[-1], axis=-1)
+
+    energy = run.energy if run.over_displacement.any() else run.energy.of_nothing
+    names = "contact_force", "history", "relative_displacement", "over_displacement", "rolling_displacement"
+    records: dict[str, Any] = {name: steady(getattr(run, name)) for name in names}
+    return replace(
+        run,
+        **records,
+        degrees_of_freedom=tuple(map(steady, run.degrees_of_freedom)),
+        acceleration=np.zeros_like(run.acceleration),
+        energy=energy,
+    )
+
+
 LEAST = 100
 """Time steps of which anything is said."""
 ERRORS = 5.0
@@ -302,6 +341,8 @@ def refuse_missed_load(
     if driven.size < LEAST:
         return
     missed, time = float(driven.mean()), driven.size * time_step
+    if abs(missed) <= STILL * load:
+        return
     error = np.sqrt(2.0) * float(np.std(np.cumsum(driven - missed))) / driven.size
     away = 0.5 * abs(missed) / mass * time**2
     if away > FAR * reach and (abs(missed) > ERRORS * error or missed > load):

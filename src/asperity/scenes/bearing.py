@@ -18,7 +18,7 @@ from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocitie
 from asperity.errors import Finding, Grade, InputError, PhysicsWarning, percent, warn_of_findings
 from asperity.laws import Need, spec_of
 from asperity.progress import Progress
-from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing
+from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing, without_rounding
 from asperity.scenarios import compiling, preparing, reducing
 from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws, raceway_on
@@ -282,6 +282,7 @@ def bearing_result(
     case, began = prepared.case, time.monotonic()
     runs = rolled(prepared, progress)
     heard, apart = heard_group(case, runs), Values() if brief else alone(prepared, progress)
+    runs = {name: without_rounding(run) for name, run in runs.items()}
     found = list(_findings(case, runs))
     warn_of_findings(found)
     scenario = scenario_group(case, _numerics(case, time.monotonic() - began))
@@ -395,6 +396,15 @@ def heard_group(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Values
     found = [diagnostics.explained_lines(each, families, slip=slip, harmonics=HARMONICS) for each in struck]
     clear = [diagnostics.clear_families(each, SILENT) for each in found]
     judged = [[band_velocities(one, rate, quantity="acceleration") for one in law] for law in signals]
+    for n in (
+        n for n, run in enumerate(runs.values()) if not run.vibrates
+    ):  # what rounding leaves is no result
+        lines[n], struck[n] = ((at, np.full_like(size, np.nan)) for at, size in (lines[n], struck[n]))
+        judged[n] = [np.zeros_like(each) for each in judged[n]]
+        found[n] = {
+            part: replace(each, **{what: np.nan * getattr(each, what) for what in LINES.values()})
+            for part, each in found[n].items()
+        }
     return {
         spectra.LAW: list(runs),
         spectra.FREQUENCY: frequency[kept],
@@ -459,7 +469,10 @@ def _verdict(heard: Values, deciding: Sequence[str], faulty: bool) -> str:
     parts = " and of the ".join(
         f"{NAMES[part]} ({rounded(at[0], 4)} Hz)" for part, found, at in lines if found
     )
-    lead = f"Radial velocity by {heard[bearing.LAW][0]}: {told or 'no band is sampled'}"
+    law = heard[bearing.LAW][0]
+    lead = f"Radial velocity by {law}: {told or 'no band is sampled'}"
+    if not np.nan_to_num(velocities).any() and told:
+        lead = f"Nothing vibrates by {law}: all balls are carried alike, on surfaces without waves"
     struck = f" Its envelope has lines of {f'the {parts}' if parts else 'no part'}." if faulty else ""
     return f"{lead}.{struck} {LEFT_OUT}"
 
@@ -482,6 +495,7 @@ def alone(prepared: PreparedBearing, progress: Progress) -> Values:
             warnings.simplefilter("ignore", PhysicsWarning)  # of the whole bearing it has been warned
             (run,) = rolled(prepare_bearing(others), progress).values()
         found.append(band_velocities(run.acceleration[0], case.sampling_rate, quantity="acceleration"))
+        found[-1] *= run.vibrates
     held = bearing.ALONE_VELOCITY.variable(np.array(found), law=BY_PARTS)
     return {bearing.SOURCE: names, bearing.ALONE_VELOCITY: held}
 

@@ -15,7 +15,7 @@ from asperity.contact.scan import ScannedForces
 from asperity.laws import Law, Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
-from asperity.rolling.roll import RolledBodies, roll_bodies
+from asperity.rolling.roll import RolledBodies, roll_bodies, without_rounding
 from asperity.scenarios import compiling
 from asperity.scenarios.laws import ReducedCase, reduced_case, working_point
 from asperity.scenarios.running_in import run_in_case
@@ -82,8 +82,9 @@ class Computed(ReducedCase):
         return spectrum_segment(len(self.first.time), self.case.time_step)
 
     def psd(self, signals: Array) -> Array:
-        """One-sided PSDs (..., f) of records (..., n), on all lines from zero."""
-        return psd(signals, self.case.time_step, segment=self.segment)[1]
+        """One-sided PSDs (..., f) of records (..., n), on all lines from zero; none of what does not vary."""
+        found = psd(signals, self.case.time_step, segment=self.segment)[1]
+        return np.where(np.ptp(signals, axis=-1, keepdims=True) > 0.0, found, 0.0)
 
     @cached_property
     def frequency(self) -> Array:
@@ -151,7 +152,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
 
     def rolled(name: str) -> RolledBodies:
         laws = [materials.build(name) for materials in every]
-        return roll_bodies(
+        run = roll_bodies(
             over,
             scene.rolling,
             [laws[k] for k in which],
@@ -166,6 +167,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             progress=progress,
             checkpoint=checkpoint_of(laws[0], prepared, store),
         )
+        return without_rounding(run)
 
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:

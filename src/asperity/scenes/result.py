@@ -296,10 +296,11 @@ def level_differences(names: list[str], force_level: Array) -> Values:
     compared = {validity.difference_to(law): law for law in laws.baselines(names)}
     if (solved := laws.reference(names)) is not None:
         compared[spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = solved
-    return {
-        entry: entry.variable(force_level - force_level[names.index(law)], reference=law)
-        for entry, law in compared.items()
-    }
+    with np.errstate(invalid="ignore"):  # where nothing vibrates by either law
+        return {
+            entry: entry.variable(force_level - force_level[names.index(law)], reference=law)
+            for entry, law in compared.items()
+        }
 
 
 def _bodies(computed: Computed) -> Values:

@@ -328,6 +328,9 @@ def verdict(
     """
     main, run = next(iter(computed.runs.items()))
     sentences = list(_doubts(computed, found))
+    if not run.vibrates:
+        still = f"{_contact(run, computed.case.ROLLING)} ({main}); nothing vibrates: its force does not vary"
+        return ". ".join([*sentences, still]) + "."
     forces = "the contact force varies" if len(run.contact_force) == 1 else "the contact forces vary"
     contact = f"{_contact(run, computed.case.ROLLING)} ({main})"
     if spec_of(main).may_pull:

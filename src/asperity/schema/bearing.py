@@ -14,6 +14,7 @@ _fact = partial(Attribute, "bearing", condition=OF_BEARING)
 
 _BALL, _RING = "number of the ball", "ring: inner or outer"
 _DIRECTION = "direction: along the radial load, across it in the sense of rotation, along the axis"
+_STILL = "nothing vibrates"
 _LOOSE = "balls that do not touch have no contact angle"
 BALL, ROLLING_BALL = (each("ball", "1", _BALL) for each in (_bearing, _rolling))
 RING, ROLLING_RING = (each("ring", "1", _RING) for each in (_bearing, _rolling))
@@ -79,13 +80,17 @@ ALONE_VELOCITY = _bearing(
     attributes=("law",),
 )
 VELOCITY_AMPLITUDE = _spectra(
-    "velocity_amplitude(law, frequency)", "m/s", "amplitude of lines of the radial velocity, first sensor"
+    "velocity_amplitude(law, frequency)",
+    "m/s",
+    "amplitude of lines of the radial velocity, first sensor",
+    missing=_STILL,
 )
 ENVELOPE_FREQUENCY = _bearing("envelope_frequency", "Hz", "frequency of the envelope")
 ENVELOPE = _bearing(
     "envelope(law, envelope_frequency)",
     "m/s2",
     "amplitude of lines in the envelope of the acceleration, first sensor",
+    missing=_STILL,
 )
 ENVELOPE_LOW, ENVELOPE_HIGH = (
     _fact(f"envelope_{end}", "Hz", f"{end} end of the band of which the envelope is taken")

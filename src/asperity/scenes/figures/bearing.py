@@ -329,7 +329,8 @@ def ball_contacts_table(tree: DataTree) -> ReportTable:
     moved = 1e6 * data.values(tree, bearing.RING_DISPLACEMENT)
     stiffness = 1e-6 * data.values(tree, bearing.RING_STIFFNESS)
     told = (
-        f"{way} {rounded(np.round(to.mean(), 6) + 0.0, 4)} µm, varying by {rounded(np.ptp(to), 2)} µm, "
+        f"{way} {rounded(np.round(to.mean(), 6) + 0.0, 4)} µm, "
+        f"varying by {rounded(np.round(np.ptp(to), 6), 2)} µm, "
         f"{between(rounded(each.min(), 4), rounded(each.max(), 4))} MN/m"
         for way, to, each in zip(data.words(tree, bearing.DIRECTION), moved, stiffness, strict=True)
     )

@@ -1,0 +1,47 @@
+"""Where nothing vibrates that is said: what rounding leaves is no level, no velocity and no force."""
+
+import re
+
+import numpy as np
+import pytest
+
+import small_cases
+from asperity.case.cases import as_case
+from asperity.running import run
+from asperity.scenes.report import page_of
+
+SMOOTH = {"laws": ["hertz", "linear"], "surface": {"smooth": True}, "settling": "50 ms"}
+PLANE = {name: each for name, each in small_cases.BALL.items() if name != "ball"} | SMOOTH
+PLANE |= {"kind": "bodies", "over": "plane", "body": {"load": "30 N"}}
+PERFECT = {name: each for name, each in small_cases.BEARING.items() if name != "fault"}
+PERFECT |= {"radial": "0 N", "axial": "100 N", "settling": "0 s"}
+NOISE = re.compile(r"10⁻[⁹¹][⁰¹²³⁴⁵⁶⁷⁸⁹]*|[−-][23]\d\d(?:\.\d+)? dB|0\.0{6,}\d|\d pN|\d [pf]m/s")
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+@pytest.mark.parametrize(
+    ("keys", "said"), [(PLANE, "nothing vibrates"), (PERFECT, "Nothing vibrates by hertz")]
+)
+def test_rounding_is_told_as_nothing_in_verdict_page_and_result(keys, said):
+    """A smooth ball on a rigid plane, and a perfect bearing under an axial load."""
+    tree = run(as_case(keys))
+    assert said in tree.attrs["verdict"]
+    assert not NOISE.search(tree.attrs["verdict"])
+    for name in ("contact_force", "inner_force", "acceleration", "ring_acceleration"):
+        for node in tree.subtree:
+            if name in node.data_vars:
+                assert float(np.ptp(node[name].values, axis=-1).max(initial=0.0)) == 0.0
+    heard = tree["spectra"].dataset
+    for name in ("force_level", "velocity_amplitude"):
+        assert name not in heard or np.isnan(heard[name].values).all()
+    page = re.sub(r"<script.*?</script>|<style.*?</style>|<svg.*?</svg>", " ", page_of(tree), flags=re.S)
+    shown = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", page))
+    told = re.sub(r"imbalance of the static solution.{0,40}|Residual.{0,200}", "", shown)
+    assert not NOISE.search(told), NOISE.search(told)
+    assert said in shown
+
+
+def test_a_force_that_varies_is_none_of_these(runs):
+    tree = runs(small_cases.changed("ball-on-beam"))
+    assert "nothing vibrates" not in tree.attrs["verdict"]
+    assert np.isfinite(tree["spectra"]["force_level"].values).any()
