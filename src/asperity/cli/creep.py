@@ -15,7 +15,19 @@ from asperity.contact.friction import Friction
 from asperity.errors import InputError
 from asperity.progress import progress_bar
 from asperity.reduction.traction import TractionStates
-from asperity.reporting.chart import BLUE, GREEN, MUTED, VERMILLION, Area, Axis, Chart, Line, Mark, Panel
+from asperity.reporting.chart import (
+    BLUE,
+    GREEN,
+    MUTED,
+    VERMILLION,
+    Area,
+    Axis,
+    Chart,
+    Dashes,
+    Line,
+    Mark,
+    Panel,
+)
 from asperity.reporting.data import engineering
 from asperity.reporting.figure import write_chart, write_columns
 from asperity.scenarios.scene import PreparedCase
@@ -133,11 +145,20 @@ def _say_columns(title: str, columns: Mapping[str, Any]) -> None:
     say_table(title, [*columns], cells, width=120)
 
 
+LOOKS: tuple[tuple[str, Dashes], ...] = (
+    (BLUE, ()),
+    (VERMILLION, (6.0, 1.5)),
+    (GREEN, (1.5, 1.5)),
+    (MUTED, (6.0, 1.5, 1.5, 1.5)),
+)
+"""Colours and dashes of curves, the smooth contact first."""
+
+
 def _panel(across: Axis, up: Axis, x: Array, drawn: Scattered) -> Panel:
     """A panel of curves over x, with their scatter."""
     marks: list[Mark] = []
-    for (name, (mean, scatter)), colour in zip(drawn.items(), (BLUE, VERMILLION, GREEN, MUTED), strict=False):
+    for (name, (mean, scatter)), (colour, dashes) in zip(drawn.items(), LOOKS, strict=False):
         if scatter is not None:
             marks.append(Area(x, mean - scatter, mean + scatter, "", colour, 0.2))
-        marks.append(Line(x, mean, name, colour))
+        marks.append(Line(x, mean, name, colour, dashes))
     return Panel(across, up, tuple(marks))

@@ -26,7 +26,7 @@ from asperity.studies.signals import Recorded, read_record
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
-from asperity.written_numbers import rounded, unbroken
+from asperity.written_numbers import rounded, signed, unbroken
 
 Band = tuple[float, float] | None
 Signals = Mapping[str, Recorded]
@@ -208,9 +208,8 @@ def _draw(
     turning = keys.bearing.kinematics(diagnosis.speed, contact_angle=0.0)
     envelope = envelope_spectrum.drawn(tree(tones_group(turning) | drawn)).chart
     bands = kurtogram_panel(diagnosis.record.kurtogram, diagnosis.record.limits)
-    write_chart(
-        Chart((*envelope.panels, bands)), textwrap.fill(unbroken(f"{title}: {verdict}"), TITLE), picture
-    )
+    told = textwrap.fill(unbroken(verdict).replace("% sure", "%\u00a0sure"), TITLE)
+    write_chart(Chart((*envelope.panels, bands)), f"{title}\n{told}", picture)
     say(f"Picture: {picture.resolve()}")
 
 
@@ -264,7 +263,7 @@ def _say_lines(
         line, height = lines.frequency[0], lines.amplitude[0]
         sides = "±{:.4g}: {:.2f}, {:.2f}".format(lines.distance, *lines.side_bands[0] / height)
         stand = " ".join(str(n + 1) for n in np.flatnonzero(lines.prominent)) or "–"
-        seen = [f"{line:.2f}", f"{line / diagnosis.speed:.3f}", f"{100 * lines.deviation:+.2f} %"]
+        seen = [f"{line:.2f}", f"{line / diagnosis.speed:.3f}", f"{signed(100 * lines.deviation, 2)} %"]
         seen += [stand, sides if lines.distance else "–"]
         heights = [rounded(height), f"{height / lines.background[0]:.1f}"]
         rows.append([NAMES[part], expected, *heights, *(seen if part in named else ["–"] * 5)])
@@ -279,5 +278,5 @@ def _say_lines(
         "harmonics",
     ]
     low, high = diagnosis.record.limits
-    where = f"{low:g} to {high:g} Hz"
+    where = f"{rounded(low, 4)} to {rounded(high, 4)} Hz"
     say_table(f"Lines in the envelope of {where}", [*columns, "side bands / line"], rows, width=WIDTH)
