@@ -99,6 +99,19 @@ def test_a_wider_window_and_a_finer_grid_hold_the_path_and_the_samples(surface):
     assert np.std(kept - coarse) < 1e-9 * np.std(coarse)
 
 
+@pytest.mark.parametrize("changes", [{"ball.load": "10 N"}, {"ball.load": "2.5 N"}, {"ball.radius": "50 mm"}])
+def test_with_lengths_that_are_chosen_load_and_radius_add_short_waves_at_most(changes):
+    base = case(surface={"rms": "0.1 um"}, ball={"load": "5 N"}, contact={"window": None, "spacing": None})
+    (expected, one), (found, other) = line_from_start(base), line_from_start(base, **changes)
+    assert one.drawn == other.drawn
+    places = [
+        base.with_(**each).contact.spacing * np.arange(len(line))
+        for each, line in (({}, expected), (changes, found))
+    ]
+    there = places[1] < places[0][-1]
+    assert np.corrcoef(np.interp(places[1][there], places[0], expected), found[there])[0, 1] > 0.999
+
+
 def test_around_a_wheel_the_circumference_is_all_that_counts():
     turns, spectrum = [], SPECTRUM * [50.0, 1.0]
     for spacing, window in (("1 mm", "16 mm"), ("0.5 mm", "20 mm")):

@@ -23,8 +23,6 @@ FINEST = 1e-7
 """Least spacing that is chosen, m: heights are not known closer than light shows them."""
 PEAKS, MOST_PEAKS = 3.0, 30.0
 """Peaks in the contact, in rms heights of waves shorter than the window, and at most in approaches."""
-LONGEST = 20.0
-"""Longest wave of a texture that is synthesised, in larger semi-axes: the contact follows it as a whole."""
 _STEPS = (1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.3, 8.0)
 
 _FIT_FOR_ALL = {
@@ -60,7 +58,7 @@ def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
     if rms is not None:
         usual = max(2.0 * spacing, min(CELLS_PER_WAVE * max(spacing, fine), 0.25 * longest))
         shortest = surface.get("shortest", usual)
-        longest = surface.get("longest", max(preferred_length(LONGEST * large), 4.0 * shortest))
+        longest = surface.get("longest") or _longest_wave(case, max(SIDE * large, 4.0 * shortest))
         surface = {"shortest": shortest, "longest": longest}
         roughness = rms * min(SIDE * large / longest, 1.0) ** case.surface.hurst
     peaks = min(PEAKS * roughness / (circle**2 / radius), MOST_PEAKS)
@@ -69,6 +67,12 @@ def chosen_lengths(case: "Case") -> dict[str, dict[str, float]]:
     if window > held >= NARROWEST * large:
         window = preferred_length(held)
     return {"surface": surface, "contact": {"spacing": spacing, "window": window}}
+
+
+def _longest_wave(case: "Case", least: float) -> float:
+    """Longest wave, m: that of what is rolled over, whatever rolls, in tens of it where that is too short."""
+    longest = case.rolled_over.LONGEST_WAVE
+    return float(longest * 10.0 ** max(0, math.ceil(math.log10(least / longest) - 1e-9)))
 
 
 def _contact_across(case: "Case") -> "tuple[Hertz, float]":

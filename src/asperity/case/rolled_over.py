@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from asperity.arguments import Array
 from asperity.case import tables
@@ -65,6 +65,9 @@ class Liveliness(NamedTuple):
 
 class RolledOver(Section):
     """What is rolled over, of whatever kind: a new one is a section with these."""
+
+    LONGEST_WAVE: ClassVar[float] = 1.6e-3
+    """Longest wave of a texture of a stated rms, m: as long as an instrument's field of view."""
 
     material: Material
     sensors: tuple[float, ...] | None = None
@@ -150,6 +153,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         *(("bay_table", each) for each in LISTED),
         *((f"{layer}_damping", f"{layer}_loss_factor") for layer in LAYERS),
     )
+    LONGEST_WAVE: ClassVar[float] = 0.1
 
     name: str = key(Choice(tuple(TRACKS)), "x2000", "named set of parameters")
     rail_head_radius: float = key(
