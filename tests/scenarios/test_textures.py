@@ -1,6 +1,7 @@
 """Textures of a case: what is measured or synthesised becomes samples and path, and defects lie on it."""
 
 import json
+import re
 import tracemalloc
 
 import numpy as np
@@ -261,6 +262,12 @@ def test_corrugation_is_texture_and_a_joint_is_a_defect_into_which_the_wheel_fal
     assert found.defects is None
     assert np.ptp(found.line) == pytest.approx(40e-6, rel=1e-2)
     assert not np.ptp(found.strips[0].heights)
+    assert "corrugation" not in found.origin
+    band = {"corrugation": "20 um", "corrugation_wavelength": "50 mm", "corrugation_bandwidth": 0.3}
+    found, _ = struck(surface=band)
+    rms = 1e6 * np.std(found.line[found.recorded])
+    told = re.search(r"corrugation: (\S+) µm rms over this record, 14\.1 µm in the long run", found.origin)
+    assert float(told[1]) == pytest.approx(rms, rel=5e-3)
     found, _ = struck(surface={"joint_depth": "2 mm", "joint_position": "1 m"})
     assert np.all(found.trajectory >= found.defects - 1e-12)
     assert found.defects.min() < found.trajectory.min() < 0.0

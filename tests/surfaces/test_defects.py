@@ -37,6 +37,16 @@ def test_a_band_of_corrugation_has_its_rms_in_the_mean_of_draws(before):
     assert abs(np.mean(squares) - UM**2) < 3.0 * error
 
 
+@pytest.mark.parametrize("bandwidth", [0.1, 0.3, 1.0])
+def test_the_rms_of_a_record_of_corrugation_scatters_no_more_than_noise_of_its_bandwidth(bandwidth):
+    """The rms of noise has a relative standard deviation of 1/(2 √(B L)): Bendat and Piersol, Random Data."""
+    keys = {"wavelength": 0.04, "amplitude": np.sqrt(2) * UM, "bandwidth": bandwidth}
+    rms = [corrugation(1000, 2 * MM, seed=s, **keys).heights.std() / UM for s in range(100)]
+    band = (2 ** (bandwidth / 2) - 2 ** (-bandwidth / 2)) / 0.04
+    assert 0.3 < np.std(rms) * 2.0 * np.sqrt(2.0 * band) < 1.0
+    assert abs(np.mean(np.square(rms)) - 1.0) < 3.0 * np.std(np.square(rms)) / 10.0
+
+
 @pytest.mark.parametrize("bandwidth", [None, 0.01, 0.33])
 def test_a_longer_or_finer_corrugation_is_the_same_one(bandwidth):
     keys = {"wavelength": 0.04, "amplitude": UM, "bandwidth": bandwidth, "seed": 3}

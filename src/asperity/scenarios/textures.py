@@ -111,6 +111,7 @@ def textures_of(case: Case) -> Textures:
         maps = strips = _cut(case, strip, before)
         sampled = f"{count_of(len(strips), 'sample')} cut from the path"
     line = middle_line(over.strip)  # of a measured one, the run may end before the grid
+    drawn, corrugated = {"surface": over.draw, case.ROLLING: turn.draw}, ""
     on_path, wave, size = np.zeros(len(line)), case.surface.corrugation_wavelength, case.surface.corrugation
     if size is not None and wave is not None:
         how: dict[str, Any] = {
@@ -119,16 +120,21 @@ def textures_of(case: Case) -> Textures:
             "before": before,
         }
         on_path = corrugation(len(line), spacing, wavelength=wave, amplitude=size, **how).heights
-    drawn = {"surface": over.draw, case.ROLLING: turn.draw}
-    if on_path.any() and case.surface.corrugation_bandwidth is not None:
-        drawn["corrugation"] = (
-            f"{wave:.6g} m, {case.surface.corrugation_bandwidth:g} octaves, seed {seeds[2]}"
-        )
+        if (width := case.surface.corrugation_bandwidth) is not None:
+            drawn["corrugation"] = f"{wave:.6g} m, {width:g} octaves, seed {seeds[2]}"
+            here = rounded(1e6 * float(on_path[before : before + recorded].std()))
+            stated = rounded(1e6 * size / math.sqrt(2.0))
+            corrugated = f"corrugation: {here} µm rms over this record, {stated} µm in the long run"
     around = turn.heights[:, turn.heights.shape[1] // 2]
     along = np.arange(len(line)) - before
     parts = {"rail": line + on_path, "wheel": around[along % len(around)]}
     lines = {name: body.lines for name, body in (("rail", over), ("wheel", turn)) if body.lines}
-    origins = (sampled, f"path: {over.origin}", f"{case.ROLLING}: {turn.origin}" * bool(turn.origin))
+    origins = (
+        sampled,
+        f"path: {over.origin}",
+        f"{case.ROLLING}: {turn.origin}" * bool(turn.origin),
+        corrugated,
+    )
     path = raised(strip, on_path) if on_path.any() else strip
     textures = Textures(
         maps,

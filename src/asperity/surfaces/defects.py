@@ -32,8 +32,10 @@ def corrugation(
 
     The amplitude, m, is half the height between peak and trough of a sine, √2 of the rms of a band. That has
     a width in octaves, constant density and random phases, drawn as `asperity.surfaces.tiles` says: a longer
-    line, or one of another spacing, is the same corrugation, and each tile has the exact rms. A sine starts
-    at zero rising; both count from the point `before`. No standard gives a spectrum of corrugation; an
+    line, or one of another spacing, is the same corrugation, and each tile has the exact rms. The rms of a
+    line of length L scatters about it by 1/(2 √(B L)) at most, as that of any noise of a bandwidth B in 1/m:
+    it is left as it was drawn, since one record of a rail has more of its corrugation than the next. A sine
+    starts at zero rising; both count from the point `before`. No standard gives a spectrum of corrugation; an
     amplitude of 25 µm at the wavelength v/f_pp of the pinned-pinned frequency is used in the literature.
     """
     size = amplitude / math.sqrt(2.0)
