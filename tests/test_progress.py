@@ -119,6 +119,20 @@ def test_whoever_waits_at_a_prompt_or_a_notebook_is_told_once_that_functions_are
     assert capsys.readouterr().err == f"{module.COMPILING}\n"
 
 
+def test_a_script_before_a_terminal_says_once_that_functions_are_compiled(clock, monkeypatch):
+    """It stood still for half a minute without a word."""
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    with speaking(Manner(quiet=True)):
+        module.COMPILATION.begin("quietly")
+    assert sys.stderr.getvalue() == ""
+    for name in ("roll", "scan"):
+        module.COMPILATION.begin(name)
+    assert sys.stderr.getvalue() == f"{module.COMPILING}\n"
+    monkeypatch.setattr(module, "COMPILATION", module.Compilation())
+    monkeypatch.setattr(sys, "stderr", None)  # closed
+    module.COMPILATION.begin("unheard")
+
+
 def test_nothing_is_shown_where_it_shall_be_quiet():
     for stream in (io.StringIO(), Terminal()):
         with speaking(Manner(quiet=True)), progress_bar(stream) as progress:

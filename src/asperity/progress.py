@@ -84,8 +84,9 @@ class Compilation:
 
 
 def _somebody_waits() -> bool:
-    """Whether a person sits before a prompt or a notebook, and would wonder what takes so long."""
-    return hasattr(sys, "ps1") or _in_notebook()
+    """Whether a person sits before a prompt, a notebook or a terminal, and wonders what takes so long."""
+    before_terminal = sys.stderr is not None and sys.stderr.isatty()
+    return not manner().quiet and (hasattr(sys, "ps1") or before_terminal or _in_notebook())
 
 
 def _say_aloud(text: str) -> None:

@@ -33,7 +33,7 @@ BALL = {
     "contact": {"spacing": "20 um", "window": "0.9 mm", "samples": 1, "sample_length": "4 mm"},
 }
 MAP = law_map()
-NO_WORK = Work({}, {}, 0, None, 0.0)
+NO_WORK = Work({}, {}, 0, None)
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,8 @@
 """States and scans of a case: how many are expected, chosen by which load, solved how tightly."""
 
 import warnings
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,11 +12,13 @@ from asperity.contact.scan import ScanJob
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.laws.layout import force
 from asperity.running import prepare_case
-from asperity.scenarios import reducing
+from asperity.scenarios import reducing, run_time
 from asperity.scenarios.geometry import geometry_of
-from asperity.scenarios.preparing import expect, scan_sizes, try_contacts
+from asperity.scenarios.preparing import Work, expect, scan_sizes, scans_of, try_contacts
+from asperity.scenarios.run_time import LAW, START, STEP
 from asperity.scenes.compute import compute
 from asperity.store import Store
+from asperity.surfaces.strip import Rows
 from one_contact import first_contact
 
 CASE = {
@@ -69,18 +73,70 @@ def test_contacts_and_steps_are_counted():
     scans = {f"scan for the {name}": scan.positions * scan.states for name, scan in work.scans.items()}
     assert set(work.scans) == {"filters", "path"}
     assert work.solutions == scans | {"direct": work.steps}
-    least = 0.4 * work.tried.solution * (sum(scans.values()) / 64 + work.steps)
-    assert least < work.seconds < np.inf
+    parts = work.time.parts
+    for name, count in scans.items():
+        assert parts[f"the {name}"] == pytest.approx(work.tried.scanned[name[13:]] * count)
+    assert parts["the law direct"] > work.tried.solution * work.steps
+    assert work.seconds == pytest.approx(work.time.clock)
+    assert work.time.clock <= work.time.processor == sum(parts.values())
+
+
+@pytest.mark.parametrize(("slow", "expected"), [(1e-5, 2e-3), (1.0, 0.6)])
+def test_the_time_of_a_contact_is_that_of_a_scan_of_the_case(monkeypatch, slow, expected):
+    """A contact of a loading curve stood for it, at 0.4 of its time.
+
+    The first positions, which start from less, do not count; where timing takes too long, it stands still.
+    """
+    clock = SimpleNamespace(now=0.0)
+
+    def scan(job, workers):
+        assert workers == 1
+        clock.now += len(job.approaches) * (0.1 + 2e-3 * job.positions)
+
+    monkeypatch.setattr(run_time, "scan_forces", scan)
+    monkeypatch.setattr(run_time.time, "process_time", lambda: clock.now)
+    prepared = prepared_of()
+    (job,) = scans_of(prepared, np.linspace(0.0, 1e-6, 16))["path"]
+    assert run_time.time_of_contacts(job, slow, prepared.shape) == pytest.approx(expected)
+    level = replace(job, surface=Rows(np.zeros((400, job.body.shape[1]))))
+    assert run_time.time_of_contacts(level, 1e-5) == pytest.approx(1e-6)
 
 
 def test_every_contact_of_bodies_counts():
-    """Two bogies have four contacts; nothing is solved where a law needs no samples."""
+    """Two masses have two contacts; nothing is solved where a law needs no samples."""
     body = {"load": "50 N", "positions": ["0 m", "18 m"]}
     surface = {"spectrum": "iso3095", "level": "-40 dB"}
     case = {"kind": "bodies", "over": "plane", "laws": ["linear"], "duration": "50 ms", "body": body}
     work = expect(prepare_case(as_case(case | {"surface": surface})), quiet)
     assert (work.solutions, work.tried) == ({}, None)
-    assert work.seconds == pytest.approx(2.0 + 2e-6 * work.steps, abs=1.0)
+    law, start = work.time.parts["the law linear"], work.time.parts["start and report"]
+    assert law == pytest.approx(start / START * (LAW + STEP * work.steps * 2))
+
+
+def test_times_are_those_of_this_machine(monkeypatch):
+    """On one of half the speed all but the contacts, which are timed, takes twice as long."""
+    prepared = prepared_of(laws=["linear"])
+    found = {}
+    for slower in (1.0, 2.0):
+        monkeypatch.setattr(run_time, "pace", lambda slower=slower: slower)
+        found[slower] = expect(prepared, quiet).time
+    assert found[2.0].parts["start and report"] == 2.0 * found[1.0].parts["start and report"] == 2.0 * START
+    monkeypatch.setenv("ASPERITY_THREADS", "4")
+    shared = found[1.0].parts["the scan for the filters"]
+    assert found[1.0].clock == pytest.approx(found[1.0].processor - 0.75 * shared)
+
+
+def test_the_time_is_told_of_the_processor_and_on_the_clock(monkeypatch):
+    monkeypatch.setenv("ASPERITY_THREADS", "2")
+    time_of = run_time.RunTime({"start": 4.0, "the scan": 36.4}, frozenset({"the scan"}))
+    work = Work({}, {}, 0, None, time_of)
+    most = "less what the cache holds; most of it the scan"
+    assert work.told == f"about 40 s of processor time, 22 s on the clock of an idle machine, {most}"
+    assert replace(work, compiling=35.0).told.endswith(
+        "; before that functions are compiled, about 35 s, the first time"
+    )
+    monkeypatch.setenv("ASPERITY_THREADS", "1")
+    assert work.told == f"about 40 s of processor time, {most}"
 
 
 def test_all_errors_come_at_once_and_a_single_one_as_it_is(monkeypatch):

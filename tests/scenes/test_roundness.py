@@ -15,7 +15,7 @@ from small_cases import HEARD
 
 AROUND = 2.0 * math.pi * 0.46
 SPEED = 56.0
-NO_WORK = Work({}, {}, 0, None, 0.0)
+NO_WORK = Work({}, {}, 0, None)
 
 
 def wheel(*waves, points=2890, **keys):

@@ -11,12 +11,12 @@ from asperity.case.cases import load_case
 from asperity.errors import CaseError
 from asperity.reporting import chart, data
 from asperity.running import prepare_case
-from asperity.scenarios.preparing import BAY_TIME, expect
+from asperity.scenarios.preparing import expect
+from asperity.scenarios.run_time import SOUND_OF_BAY, pace
 from asperity.scenes import schema
 from asperity.scenes.figures.track import receptance, sleeper_times, sleepers_between
 from asperity.scenes.report import figures_of
 from asperity.scenes.track import planned_track
-from asperity.threads import thread_count
 from refusals import refusals
 from small_cases import HEARD, WHEEL
 
@@ -108,8 +108,10 @@ def test_the_plan_counts_bays_and_time():
     rows = dict(planned_track(prepared))
     assert "8 in 4.8 m, then they repeat" in rows["bays that differ"]
     assert "bays that differ" not in dict(planned_track(regular))
-    work = [expect(each, lambda *_: None).seconds for each in (prepared, regular)]
-    assert work[0] - work[1] > 0.5 * 8 * BAY_TIME / thread_count()
+    work = [expect(each, lambda *_: None).time for each in (prepared, regular)]
+    kernels = [each.parts["the moving kernel"] for each in work]
+    assert kernels[0] == pytest.approx(8 * kernels[1])
+    assert work[0].parts["the track"] - work[1].parts["the track"] > 8 * SOUND_OF_BAY * pace()
 
 
 PAD = Path(__file__).parents[2] / "examples" / "pad_stiffness.csv"

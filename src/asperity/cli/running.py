@@ -325,7 +325,7 @@ def show_plan(case: AnyCase, source: str, *, every_key: bool = False) -> dict[st
     key = content_key("plan", name, processors(), os.environ.get(THREADS, ""))
     kept = store.get(key) if name else None  # of an earlier check, if all that it depends on is the same
     found = planned(prepared_case(case, source)) if kept is None else json.loads(kept["plan"].tobytes())
-    if kept is None:
+    if kept is None and not found["work"]["compiling_seconds"]:  # true of the first time only
         store.put(key, {"plan": np.frombuffer(json.dumps(found).encode(), dtype=np.uint8)})
     doubts = len(found["warnings"])
     told = f"{doubts} {'doubts' if doubts > 1 else 'doubt'}:" if doubts else "nothing in it is doubtful."
@@ -384,6 +384,8 @@ def planned(prepared: ReadyCase) -> dict[str, Any]:
         "plan": [{"name": name, "value": value} for name, value in rows],
         "work": {
             "seconds": work.seconds,
+            "processor_seconds": work.time.processor,
+            "compiling_seconds": work.compiling,
             "solutions": work.solutions,
             "steps": work.steps,
             "bytes": sum(scan.bytes for scan in work.scans.values()),

@@ -28,7 +28,7 @@ from asperity.rolling.resolution import (
     PER_SLEEPER,
 )
 from asperity.rolling.steps import warn_if_coarse
-from asperity.scenarios import compiling, laws, reducing, running_in
+from asperity.scenarios import compiling, laws, reducing, run_time, running_in
 from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
@@ -40,16 +40,6 @@ from asperity.structures.track import Track
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 
-NEIGHBOUR = 0.4
-"""Time of a contact that starts from its neighbour's pressure to that of one that does not."""
-STEP_TIME = 1e-6
-"""Time of a step of one contact by a law that looks its force up, and of its spectra and record, s."""
-TRACK_TIME = 2.0
-"""Time of the moving kernels of a track, for each of its distances, s."""
-BAY_TIME = 0.6
-"""Processor time of a moving kernel for each bay that differs, s."""
-START_TIME = 2.0
-"""Time of starting the program, of laying out a result and of writing its report, s."""
 LONG = 2.0
 """Processor time, s, after which no further sample is pressed."""
 
@@ -116,23 +106,31 @@ def scan_sizes(prepared: PreparedCase) -> dict[str, ScanSize]:
 
     ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up.
     """
+    states = np.arange(float(len(prepared.case.contact.approaches or range(reducing.STATES))))
+    sizes = {}
+    for name, jobs in scans_of(prepared, states).items():
+        positions, size = (sum(getattr(job, what) for job in jobs) for what in ("positions", "bytes"))
+        sizes[name] = ScanSize(positions, len(states), size)
+    return sizes
+
+
+def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
+    """The scans of a case in some states, m."""
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     half_space = shape.half_space(None)
-    states = np.arange(float(len(case.contact.approaches or range(reducing.STATES))))
 
-    def sized(strips: Sequence[Strip], stride: int, accuracy: float, anchor: int = 0) -> ScanSize:
+    def scans(strips: Sequence[Strip], stride: int, accuracy: float, anchor: int = 0) -> list[ScanJob]:
         rtol = rtol_for(accuracy * case.numerics.force_accuracy)
-        jobs = [
+        return [
             ScanJob(half_space, strip, shape.body, states, stride, rtol, anchor=anchor) for strip in strips
         ]
-        return ScanSize(sum(job.positions for job in jobs), len(states), sum(job.bytes for job in jobs))
 
-    sizes = {}
+    found = {}
     if strips := [strip for strip in textures.strips if strip.heights.any()]:
-        sizes["filters"] = sized(strips, reducing.filter_stride(shape), FILTER_SHARE)
+        found["filters"] = scans(strips, reducing.filter_stride(shape), FILTER_SHARE)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
-        sizes["path"] = sized([textures.path], laws.table_stride(shape), 1.0, textures.before)
-    return sizes
+        found["path"] = scans([textures.path], laws.table_stride(shape), 1.0, textures.before)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +141,7 @@ class ContactTrial:
     pressed: reducing.PressedSamples  # under that load; a few where that takes long
     cut_off: float  # share of the contacts of a loading curve that the window cuts off
     solution: float  # processor time of a contact of that curve, s
+    scanned: Mapping[str, float]  # of a contact of each scan, s
 
 
 def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
@@ -172,8 +171,12 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
         job = ScanJob(half_space, Rows(samples[0]), shape.body, approaches, rtol=rtol, device=None)
         counts = scan_forces(job, workers=1).counts
         solution = (time.process_time() - begin) / len(approaches)
+        scanned = {
+            name: run_time.time_of_contacts(jobs[0], solution, shape if name == "path" else None)
+            for name, jobs in scans_of(prepared, approaches).items()
+        }
         progress(2, 2, "trying contacts")
-    return ContactTrial(approaches, pressed, counts.truncated / max(counts.solved, 1), solution)
+    return ContactTrial(approaches, pressed, counts.truncated / max(counts.solved, 1), solution, scanned)
 
 
 def doubt_time_step(prepared: PreparedCase) -> None:
@@ -233,20 +236,33 @@ class Work:
     solutions: dict[str, int]  # contacts to solve, at most, by what for
     steps: int  # time steps of a law, with its run-in
     tried: ContactTrial | None  # contacts of a sample; None without samples
-    seconds: float  # a coarse time on the clock, on all threads, nothing of it found in the cache, s
-    parts: Mapping[str, float] = field(default_factory=dict)  # of that, by what takes it: laws, scans, s
-    compiling: float = 0.0  # beside it, s: of functions that are not kept from an earlier run
+    time: run_time.RunTime = field(default_factory=run_time.RunTime)  # nothing of it found in the cache
+    compiling: float = 0.0  # processor time beside it, s: of functions that are not kept from an earlier run
+
+    @property
+    def seconds(self) -> float:
+        """Time on the clock of an idle machine, s."""
+        return self.time.clock
 
     @property
     def told(self) -> str:
-        """The time in words: on the clock, what most of it is for, and what is compiled first."""
-        said = f"about {duration(float(f'{self.seconds:.1g}'))} on the clock, less what the cache holds"
-        most = max(self.parts, key=self.parts.__getitem__, default="")
-        if most and self.parts[most] > 0.5 * self.seconds:
+        """The time in words: of the processor, on the clock, what most of it is for, and what is compiled."""
+        processor, clock = self.time.processor, self.time.clock
+        said = f"about {_coarsely(processor)} of processor time"
+        if _coarsely(clock) != _coarsely(processor):
+            said += f", {_coarsely(clock)} on the clock of an idle machine"
+        said += ", less what the cache holds"
+        most = max(self.time.parts, key=self.time.parts.__getitem__, default="")
+        if most and self.time.parts[most] > 0.5 * processor:
             said += f"; most of it {most}"
         if self.compiling:
-            said += f"; before that functions are compiled, about {duration(self.compiling)}, the first time"
+            said += f"; before that functions are compiled, about {_coarsely(self.compiling)}, the first time"
         return said
+
+
+def _coarsely(seconds: float) -> str:
+    """A time in words, to two digits."""
+    return duration(float(f"{seconds:.2g}"))
 
 
 def expect(prepared: PreparedCase, progress: Progress) -> Work:
@@ -262,7 +278,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     Returns
     -------
     Work
-        Its time within a factor of three or so: that of one contact, times their number.
+        Its time within a factor of two (`benchmarks/told_times.py`).
     """
     case, trial = prepared.case, None
     doubt_time_step(prepared)
@@ -278,18 +294,22 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
         solutions["running in"] = running_in.running_in_solutions(prepared)
     contacts = len(prepared.scene.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    parts = {"start and report": START_TIME, "textures": prepared.processor}
-    parts["the track"] = TRACK_TIME * len(case.point_positions)
-    if isinstance(prepared.scene.over, Track) and prepared.scene.over.bays:
-        kernels = np.unique(np.round(np.subtract.outer(*[prepared.scene.offsets] * 2), 6)).size
-        parts["the track"] += BAY_TIME * kernels * prepared.scene.over.cell_bays / thread_count()
-    parts |= {f"the law {law}": STEP_TIME * steps * contacts for law in case.laws}
+    pace = run_time.pace()
+    fixed = {"start and report": run_time.START} | run_time.of_track(prepared)
+    parts = {part: pace * seconds for part, seconds in fixed.items()} | {"textures": prepared.processor}
+    solution = 0.0
     if trial is not None:
-        one = NEIGHBOUR * trial.solution
-        parts["contacts of samples"] = case.contact.samples * len(trial.approaches) * trial.solution
-        parts |= {f"the {name}": one * count / thread_count() for name, count in solutions.items()}
-        for law in solved:
-            parts[f"the law {law}"] += one * steps * contacts
+        solution = trial.solution
+        parts["contacts of samples"] = case.contact.samples * len(trial.approaches) * solution
+        for name, size in scans.items():
+            parts[f"the scan for the {name}"] = trial.scanned[name] * size.solutions
+        if case.contact.running_in is not None:
+            parts["the running in"] = solution * solutions["running in"]
+        if prepared.textures.path is not None:
+            parts["planes of the path"] = pace * run_time.CELL * math.prod(prepared.textures.path.shape)
+    for part, seconds in run_time.of_laws(prepared, steps, solution / pace).items():
+        parts[part] = pace * seconds
+    beside = frozenset(part for part in parts if part.startswith("the scan ")) | {"the moving kernel"}
     counts = solutions | dict.fromkeys(solved, steps * contacts)
-    seconds, compiling_time = sum(parts.values()), compiling.time_to_compile()
-    return Work(scans, counts, steps, trial, seconds, parts, compiling_time)
+    taken = run_time.RunTime(parts, beside)
+    return Work(scans, counts, steps, trial, taken, pace * compiling.time_to_compile())

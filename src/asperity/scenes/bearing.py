@@ -19,7 +19,7 @@ from asperity.errors import Finding, Grade, InputError, PhysicsWarning, percent,
 from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing, without_rounding
-from asperity.scenarios import compiling, preparing, reducing
+from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
@@ -47,8 +47,8 @@ LEFT_OUT = (
     "There is no film of lubricant, no friction, no shoulder of a groove, and no tilt of a ring; the contact "
     "angle is that of the static load."
 )
-STEP_TIME, SOLUTION_TIME = 1e-6, 1e-3
-"""Times of a step of one ball, and of a contact of a scan, s."""
+STEP_TIME, SOLUTION_TIME = 2.0e-6, 1e-3
+"""Processor times of a step of one ball with its record and spectra, and of a contact of a scan, s."""
 CELL_TIME = 3.5e-8
 """Time of a contact under a load over a fault, for each of its cells, s."""
 SEEDS = 1000
@@ -151,15 +151,16 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
     rolled_once = STEP_TIME * steps * found.bearing.balls
     parts = {
-        "start and report": preparing.START_TIME,
+        "start and report": run_time.START,
         "each part alone": rolled_once * (runs - len(case.laws)),
     }
-    parts |= {f"the law {law}": rolled_once for law in case.laws}
+    parts |= {f"the law {law}": run_time.LAW + rolled_once for law in case.laws}
     for name, count in solutions.items():
         part = f"the law {name}" if f"the law {name}" in parts else f"the {name}"
         parts[part] = parts.get(part, 0.0) + SOLUTION_TIME * count
     parts["contacts over the faults"] = CELL_TIME * _cells_over_faults(prepared)
-    seconds, compiled = sum(parts.values()), compiling.time_to_compile()
+    pace = run_time.pace()
+    taken = run_time.RunTime({part: pace * seconds for part, seconds in parts.items()})
     tones = ", ".join(f"{NAMES[part]} {rounded(turning.tone(part), 4)} Hz" for part in PARTS)
     load, angle = max(load for _, load in case.contacts), np.degrees(found.contact_angle)
     touching, at_rest = (each.static.touching for each in (case, case.with_(centrifugal=False)))
@@ -177,7 +178,7 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
         ("not in it", LEFT_OUT),
     ]
-    return rows, preparing.Work({}, solutions, steps, None, seconds, parts, compiled)
+    return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile())
 
 
 def _cells_over_faults(prepared: PreparedBearing) -> float:
