@@ -41,14 +41,21 @@ def unless_missing(make: Callable[[DataTree], Made | None], tree: DataTree) -> M
     return None
 
 
+def _is_stored(tree: DataTree, entry: Entry) -> bool:
+    """Whether a result has the variable of an entry, with a finite number if it is one of numbers."""
+    group = tree.children.get(entry.group)
+    if group is None or (found := group.variables.get(entry.name)) is None:
+        return False
+    numbers = found.values.reshape(-1)
+    is_of_words = numbers.dtype.kind not in "fiu"
+    return is_of_words or bool(np.isfinite(numbers[:SOME]).any() or np.isfinite(numbers).any())
+
+
 def stored_variable(tree: DataTree, entry: Entry) -> DataArray | None:
     """Variable of an entry, or None if it is missing or holds no finite number."""
-    if entry.group not in tree.children or entry.name not in tree[entry.group].variables:
+    if not _is_stored(tree, entry):
         return None
     found: DataArray = tree.children[entry.group].dataset[entry.name]
-    numbers = found.values.reshape(-1)
-    if numbers.dtype.kind in "fiu" and not (np.isfinite(numbers[:SOME]).any() or np.isfinite(numbers).any()):
-        return None
     return found
 
 
@@ -73,7 +80,7 @@ def words(tree: DataTree, entry: Entry) -> list[str]:
 
 def present(tree: DataTree, *entries: Entry) -> bool:
     """Whether every one of `entries` is a variable with at least one finite number."""
-    return all(stored_variable(tree, entry) is not None for entry in entries)
+    return all(_is_stored(tree, entry) for entry in entries)
 
 
 def missing(tree: DataTree, *entries: Entry) -> str:

@@ -18,8 +18,8 @@ from asperity.surfaces.readers import arrays, guards, positions
 from asperity.surfaces.readers.hints import SPELLING, Hints, Spelling, spelled
 from asperity.units import factor
 
-PACKAGES = {"read_netcdf": ["h5netcdf", "xarray"], "read_instrument": ["SurfaceTopography", "h5py"]}
-"""What each reader needs."""
+PACKAGES = {"read_netcdf": ["h5netcdf"], "read_instrument": ["SurfaceTopography", "h5py"]}
+"""What each reader needs; a classic netCDF file xarray instead, which takes longer to load than any file."""
 READ = "text, CSV, npy, npz, mat, netCDF, SDF, X3P; instrument files with SurfaceTopography"
 """What is read."""
 
@@ -29,7 +29,7 @@ def read_apart(reader: str, kind: str) -> Callable[[Path, Hints], list[guards.Su
 
     def read(path: Path, hints: Hints) -> list[guards.Surface]:
         request = [reader, asdict(hints), asdict(SPELLING.get())]
-        packages = PACKAGES[reader]
+        packages = ["xarray"] if _head(path) in CLASSIC else PACKAGES[reader]
         described, found = sandboxed(
             surfaces_in, path, request, source=path.name, kind=kind, packages=packages
         )
@@ -148,11 +148,15 @@ CLASSIC = (b"CDF\x01", b"CDF\x02", b"CDF\x05")
 """What files of the classic format begin with, of which SciPy reads the first two."""
 
 
+def _head(path: Path) -> bytes:
+    with open(path, "rb") as file:
+        return file.read(4)
+
+
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
     """Open a netCDF file of either kind, as h5netcdf shows one."""
-    with open(path, "rb") as file:
-        head = file.read(4)
+    head = _head(path)
     if head not in CLASSIC:
         with opened_netcdf(path, path.name, phony_dims="access") as opened:
             yield opened
