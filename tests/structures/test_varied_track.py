@@ -7,6 +7,7 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
+from asperity.radiation import passing
 from asperity.radiation.track import squared_mobility
 from asperity.structures.cell_waves import CellWaves, cell_waves
 from asperity.structures.moving_kernel import moving_kernel
@@ -243,3 +244,28 @@ def test_waves_are_carried_to_the_bays_ahead_once_for_all_forces_in_a_bay(evalua
     assert (
         evaluated["carried"] <= 3 * 6
     )  # for each of 3 bays to those passed in 1.7 m, and one on either side
+
+
+@pytest.mark.parametrize("track", [VARIED, VARIED.regular])
+def test_waves_at_the_first_frequencies_are_those_at_all(track):
+    omega = 2.0 * np.pi * np.geomspace(30.0, 3000.0, 9) - 3j
+    waves = track.waves(omega)
+    first, places = waves.at_first(4), np.linspace(0.0, 0.6, 5)
+    for some, every in zip(first.symmetric_shapes(places), waves.symmetric_shapes(places), strict=True):
+        np.testing.assert_array_equal(some, every[..., :4])
+    np.testing.assert_array_equal(first.carried(0, 2), waves.carried(0, 2)[:, :4])
+
+
+def test_what_is_far_from_a_point_is_computed_in_the_first_zone_alone(monkeypatch):
+    """Waves of every bay were computed in all four, and three thrown away."""
+    kernel, lines = moving_kernel(VARIED, 56.0, 1e-4, duration=0.02, positions=2), []
+
+    def noted(waves, places):
+        lines.append(waves.wavenumbers.shape[-1])
+        return shapes(waves, places)
+
+    shapes = CellWaves.symmetric_shapes
+    monkeypatch.setattr(CellWaves, "symmetric_shapes", noted)
+    waves = passing._Waves(kernel, 300)
+    assert lines == [301] * 3
+    assert waves.grid.omega.size == 1201

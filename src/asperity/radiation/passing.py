@@ -76,11 +76,11 @@ class _Waves:
         self.grid = HatResponse(kernel.track, kernel.time_step, taps, ZONES)
         nodes, self.track = chebpts1(TERMS), kernel.track
         self._near: dict[int, dict[int, Complex]] = {}
+        first_zone = self.grid.waves.at_first(taps + 1)
         self.far = []  # in single precision, which takes half the time: they move a point by a few per cent
         for bay in range(self.track.cell_bays):
-            far = self.grid.waves.bay(bay).symmetric_shapes(0.5 * self.track.sleeper_spacing * (nodes + 1.0))
-            first_zone = (shapes[..., : taps + 1].astype(np.complex64) for shapes in far)
-            self.far.append(dict(zip((1, -1), first_zone, strict=True)))
+            far = first_zone.bay(bay).symmetric_shapes(0.5 * self.track.sleeper_spacing * (nodes + 1.0))
+            self.far.append(dict(zip((1, -1), (shapes.astype(np.complex64) for shapes in far), strict=True)))
         self.polynomials = chebvander(nodes, TERMS - 1) / TERMS
         self.polynomials[:, 1:] *= 2.0  # by row one that is 1 at its node, and 0 at the others
 

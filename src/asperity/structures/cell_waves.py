@@ -56,6 +56,12 @@ class CellWaves:
         length = self.edges[-1] / self.bays
         return replace(self, start=number % self.bays * length, spacing=length)
 
+    def at_first(self, count: int) -> "CellWaves":
+        """The same waves at so many of its frequencies, the first."""
+        kept = (each[..., :count] for each in (self.wavenumbers, self.decaying, self.growing, self.steps))
+        wavenumbers, decaying, growing, steps = kept
+        return replace(self, wavenumbers=wavenumbers, decaying=decaying, growing=growing, steps=steps)
+
     @property
     def spans(self) -> "list[CellWaves]":
         """Stretches of the cell from each support to the next."""

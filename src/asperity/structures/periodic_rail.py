@@ -124,6 +124,12 @@ class PeriodicWaves:
         """Itself, as every bay: `asperity.structures.cell_waves.CellWaves` has others."""
         return self
 
+    def at_first(self, count: int) -> "PeriodicWaves":
+        """The same waves at so many of its frequencies, the first."""
+        own = (self.multipliers, self.coefficients, self.wavenumbers, self.weights)
+        multipliers, coefficients, wavenumbers, weights = (each[..., :count] for each in own)
+        return PeriodicWaves(multipliers, coefficients, wavenumbers, weights, self.spacing)
+
     @property
     def spans(self) -> "list[PeriodicWaves]":
         """Stretches from each support to the next, as of `CellWaves`."""
