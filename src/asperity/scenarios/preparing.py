@@ -30,6 +30,7 @@ from asperity.rolling.resolution import (
 from asperity.rolling.steps import warn_if_coarse
 from asperity.scenarios import compiling, laws, reducing, run_time, running_in
 from asperity.scenarios.coverage import problems_of_coverage
+from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
 from asperity.scenarios.scene import PreparedCase, scene_of
@@ -61,6 +62,7 @@ def prepare(case: Case, source: str = "case") -> PreparedCase:
             return prepare(smaller, source)
         refuse([*problems(prepared), *_problem_of_disk(prepared)], source)
         warn_of_textures(case, prepared.shape, prepared.textures)
+        doubt_sizes(case, prepared.scene.over)
         refuse(list(problems_of_coverage(case, prepared.textures)), source)
     seconds, processor = {"textures": time.perf_counter() - begin}, time.process_time() - spent
     return replace(prepared, caught=tuple(caught), seconds=seconds, processor=processor)

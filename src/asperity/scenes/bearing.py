@@ -20,6 +20,7 @@ from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing, without_rounding
 from asperity.scenarios import compiling, preparing, reducing, run_time
+from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
@@ -106,6 +107,7 @@ def prepare_bearing(case: BallBearingCase, source: str = "case") -> PreparedBear
     with PhysicsWarning.caught() as caught:
         case.loaded()
         doubt_speed(of, case.speed)
+        doubt_bearing(case)
         for number, (name, keys, radius) in enumerate(parts):
             contact, load = case.contacts[min(number, 1)]  # of balls those with the outer ring
             on_it = (each for each in case.faults.values() if each.lies_on(name, number - 1))

@@ -1,0 +1,92 @@
+"""Sizes that are legal but hardly meant: masses, loads, dampers and waves in a wrong unit."""
+
+import math
+
+from asperity.case.ball_bearing import STEPS_PER_PERIOD, BallBearingCase
+from asperity.case.scene import Case
+from asperity.contact.hertz import Hertz
+from asperity.errors import OutOfRangeWarning
+from asperity.rolling.steps import warn_if_coarse
+from asperity.structures.body import GRAVITY
+from asperity.structures.track import Track
+from asperity.units import written
+from asperity.written_numbers import in_newtons, rounded
+
+HOLLOW = 0.01
+"""Share of the mass of a solid ball of the same radius that nothing that rolls falls short of."""
+LIFTED = 0.5
+"""Share of its weight below which a load means that something carries the body."""
+OVERDAMPED = 10.0
+"""Times critical damping beyond which a contact is all damper."""
+SMOOTHEST = 1e-10
+"""Rms height, m, that no surface falls short of: polished glass and silicon have as much."""
+LOWEST_HEARD = 10.0
+"""Hz, below which waves that are passed are heard by nobody."""
+SOFTEST_TRACK = 0.01
+"""Deflection under a wheel at rest, m, that no track reaches: they have a few millimetres at most."""
+LIGHTLY_LOADED = 0.1
+"""Share of the weight of the shaft that a bearing carries at least."""
+HEAVIEST = 1e5
+"""Times the mass of all balls that no ring weighs with all that moves with it."""
+UNIT = "Is the unit right?"
+
+
+def doubt_sizes(case: Case, over: object) -> None:
+    """Warn of sizes of a case that are hardly meant; `over` is what is rolled over."""
+    rolling, name, surface = case.rolling, case.ROLLING, case.surface
+    mass, load = rolling.contact_mass, rolling.contact_load
+    solid = 4.0 / 3.0 * math.pi * rolling.radius**3 * rolling.material.density
+    if mass < HOLLOW * solid:
+        _warn(f"{name}.mass", mass, "kg", f"a solid ball of its radius and material has {rounded(solid)} kg")
+    if load < LIFTED * GRAVITY * mass:
+        weight = in_newtons(GRAVITY * mass)
+        _warn(f"{name}.load", load, "N", f"{name}.mass alone weighs {weight}, so that something lifts it")
+    _doubt_damping("contact.damping", case.contact.damping, case.smooth_contact, load, mass)
+    if surface.rms is not None and surface.rms < SMOOTHEST:
+        _warn("surface.rms", surface.rms, "m", "the smoothest surfaces that are made have 0.1 nm", "nm")
+    if surface.corrugation is not None and (wave := surface.corrugation_wavelength) is not None:
+        passed, highest = case.speed / wave, case.numerics.highest_frequency
+        if not LOWEST_HEARD <= passed <= 1.13 * highest:
+            told = f"it is passed at {rounded(passed)} Hz, and spectra go from some {LOWEST_HEARD:g} Hz to "
+            _warn("surface.corrugation_wavelength", wave, "m", f"{told}{highest:g} Hz", "mm")
+    if isinstance(over, Track) and (bent := over.static_deflection(load)) > SOFTEST_TRACK:
+        told = f"tracks yield by a few millimetres at most. {UNIT} Look at pads, ballast and subgrade."
+        OutOfRangeWarning.warn(f"The rail yields by {rounded(1e3 * bent)} mm under a wheel at rest: {told}")
+
+
+def doubt_bearing(case: BallBearingCase) -> None:
+    """Warn of sizes of a bearing that are hardly meant, and of a given time step that is long."""
+    of, load = case.bearing.bearing, case.radial + case.axial + case.bearing.bearing.preload
+    weight = GRAVITY * case.shaft.mass
+    heavier = "radial" if case.radial >= case.axial else "axial"
+    if load < LIGHTLY_LOADED * weight:
+        _warn(heavier, load, "N", f"shaft.mass alone weighs {in_newtons(weight)}")
+    for name, ring in (("shaft", case.shaft), ("housing", case.housing)):
+        if not of.ball_mass <= ring.mass <= HEAVIEST * of.balls * of.ball_mass:
+            told = f"one of its {of.balls} balls has {rounded(1e3 * of.ball_mass)} g"
+            _warn(f"{name}.mass", ring.mass, "kg", told)
+    contact, heaviest = case.contacts[1]
+    _doubt_damping("contact_damping", case.contact_damping, contact, heaviest, of.ball_mass)
+    for name, keys in case.faults.items():
+        if (fault := keys.fault) is not None and fault.width > of.ball_diameter:
+            told = f"balls are {rounded(1e3 * of.ball_diameter)} mm wide"
+            _warn(f"{name}.width", fault.width, "m", told, "mm")
+    for name in ("inner_raceway", "outer_raceway", "balls"):
+        roughness = getattr(case, name).roughness
+        if roughness is not None and roughness < SMOOTHEST:
+            told = "the smoothest surfaces that are made have 0.1 nm"
+            _warn(f"{name}.roughness", roughness, "m", told, "nm")
+    resonance = "the resonance of the most loaded ball between the rings", case.ball_resonance
+    warn_if_coarse(case.step, [(*resonance, 0.99 * STEPS_PER_PERIOD)])
+
+
+def _doubt_damping(key: str, damping: float, contact: Hertz, load: float, mass: float) -> None:
+    """Warn of a damper beside a contact under a load, N, of a mass, kg, that leaves nothing to its spring."""
+    critical = 2.0 * math.sqrt(contact.tangent_stiffness(contact.approach(load)) * mass)
+    if damping > OVERDAMPED * critical:
+        _warn(key, damping, "N s/m", f"critical damping of this contact is {rounded(critical)} N s/m")
+
+
+def _warn(key: str, value: float, dimension: str, told: str, unit: str = "") -> None:
+    size = written(value, dimension, unit or dimension, exactly=False)
+    OutOfRangeWarning.warn(f"{key} = {size}: {told}. {UNIT}")
