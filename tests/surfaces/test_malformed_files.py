@@ -237,3 +237,17 @@ def test_flipped_bits_behind_the_checksum_of_x3p(tmp_path_factory, flips):
     except InputError:
         return
     assert not np.isinf(surface.heights).any()
+
+
+def test_heights_as_words_take_few_times_the_memory_of_their_numbers(tmp_path):
+    """Of two bytes each in the file; words of all of them took nine times as much."""
+    file, count = tmp_path / "a.sdf", 600_000
+    head = f"aISO-1.0\nNumPoints = {count}\nNumProfiles = 1\nXscale = 1e-6\nYscale = 1e-6\nZscale = 1e-9\n"
+    head += "Compression = 0\nDataType = 5\nCheckType = 0\n*\n"
+    file.write_text(head + " ".join(str(n % 10) for n in range(count)) + "\n*\n")
+    tracemalloc.start()
+    line = read_surface(file)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    np.testing.assert_allclose(line.heights, 1e-9 * (np.arange(count) % 10), atol=1e-24)
+    assert peak < 6 * 8 * count
