@@ -79,3 +79,21 @@ def test_a_slope_is_typical_whatever_spikes_gaps_and_steps_there_are():
     assert typical_slope(Profile(line, 1.0)) == pytest.approx(1.4826)
     assert typical_slope(HeightMap(np.ones((40, 30)), (1.0, 1.0))) is None
     assert SLOPES[0] < USUAL_SLOPES[0] < USUAL_SLOPES[1] < SLOPES[1]
+
+
+def test_a_map_whose_lengths_are_all_a_thousand_times_too_large_is_told_both_readings(read):
+    """Slopes are the same in µm and in mm, where no surface that rolls is as rough."""
+    assert read("um", "2 um").size == pytest.approx((80e-6, 60e-6))
+    now, less = (rf"[\d.]+ {unit} about a smooth form over 80 {unit} × 60 {unit}" for unit in ("mm", "µm"))
+    message = f"heights of {now}, rougher .* it is {less}, points 2 µm apart: then correct both units"
+    with pytest.warns(OutOfRangeWarning, match=message):
+        read("mm", "2 mm")
+
+
+def test_form_is_no_roughness():
+    """A cap of a ball of 5 mm, and a plate that is tilted by a degree."""
+    x, y = np.meshgrid(*(4e-6 * np.arange(n) for n in (400, 300)), indexing="ij")
+    for form in (x * np.tan(np.radians(1.0)), -((x - 8e-4) ** 2 + (y - 6e-4) ** 2) / 1e-2):
+        judge_sizes(
+            HeightMap(form + 1e-7 * np.random.default_rng(1).normal(size=x.shape), (4e-6, 4e-6)), Hints()
+        )

@@ -7,6 +7,7 @@ import numpy as np
 from asperity.arguments import Array
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import level
 from asperity.surfaces.readers.hints import Hints, advice, spell
 from asperity.written_numbers import rounded
 
@@ -24,6 +25,11 @@ SPACINGS = (1e-11, 1.0)
 """Distance of points, m: atoms are 1e-10 m apart, and roughness is shorter than a metre."""
 USUAL = 0.03
 """Slope in the middle of usual ones, to which the units that were exchanged by thousands would come."""
+ROUGHEST = 50e-6
+"""Rms height of a map about a smooth form, m, beyond which nothing rolls: machined and worn surfaces have up
+to some 10 µm, castings 50 µm. Slopes tell no unit that is wrong for heights and places alike; this does."""
+SIDE = 200
+"""Points along either side of a map whose rms height is taken."""
 MOST_POINTS = 2**20
 """Points of which slopes are taken."""
 APART = 300.0
@@ -86,6 +92,44 @@ def judge_sizes(surface: HeightMap | Profile, hints: Hints) -> None:
     if not USUAL_SLOPES[0] <= slope <= USUAL_SLOPES[1]:
         usual = f"up to {rounded(USUAL_SLOPES[1])}" if steep else f"from {rounded(USUAL_SLOPES[0])} on"
         OutOfRangeWarning.warn(f"{what}: {found}, usual are {usual}. {remedy}")
+    elif isinstance(surface, HeightMap) and 0.0 < field <= USUAL_FIELDS and not surface.holds_lines:
+        _doubt_roughness(surface, what)
+
+
+def _doubt_roughness(surface: HeightMap, what: str) -> None:
+    """Warn of a map that is rougher than what rolls, with what it is in units of a thousandth."""
+    rough = _about_form(surface)
+    if rough > ROUGHEST:
+        OutOfRangeWarning.warn(f"{what}: {_two_readings(surface, rough)}")
+
+
+def _about_form(surface: HeightMap) -> float:
+    """Typical height, m, of some points of a map about the paraboloid of least squares, as rms of normal ones.
+
+    Pits do not count, whatever their depth, where they take less than half of it.
+    """
+    strides = [math.ceil(n / SIDE) for n in surface.shape]
+    some = surface.heights[:: strides[0], :: strides[1]]
+    if np.isfinite(some).sum() < FEWEST_POINTS or min(some.shape) < 2:
+        return 0.0
+    about = level(HeightMap(some, surface.spacing), "quadratic").heights
+    return _NORMAL * float(np.nanmedian(np.abs(about - np.nanmedian(about))))
+
+
+def _two_readings(surface: HeightMap, rough: float) -> str:
+    """Say what a map is in the units that it is taken in, and in others of a thousandth."""
+    size = np.array(surface.size)
+    now, less = (
+        f"{told_length(rough * unit)} about a smooth form over {' × '.join(told_length(side) for side in unit * size)}"
+        for unit in (1.0, 1e-3)
+    )
+    pixel = told_length(1e-3 * float(min(surface.spacing)))
+    given = f"{spell('height_unit')} and {spell('pixel')}"
+    return (
+        f"heights of {now}, rougher than what rolls (castings have {told_length(ROUGHEST)}). If all of "
+        f"its lengths are a thousand times too large, it is {less}, points {pixel} apart: then correct both "
+        f"units, {given}."
+    )
 
 
 def _sample(heights: Array) -> Array:
