@@ -104,7 +104,7 @@ def _doubt_roughness(surface: HeightMap, what: str) -> None:
 
 
 def _about_form(surface: HeightMap) -> float:
-    """Typical height, m, of some points of a map about the paraboloid of least squares, as rms of normal ones.
+    """Typical height, m, of points of a map about the paraboloid of least squares: the rms of normal ones.
 
     Pits do not count, whatever their depth, where they take less than half of it.
     """
@@ -118,11 +118,9 @@ def _about_form(surface: HeightMap) -> float:
 
 def _two_readings(surface: HeightMap, rough: float) -> str:
     """Say what a map is in the units that it is taken in, and in others of a thousandth."""
-    size = np.array(surface.size)
-    now, less = (
-        f"{told_length(rough * unit)} about a smooth form over {' × '.join(told_length(side) for side in unit * size)}"
-        for unit in (1.0, 1e-3)
-    )
+    sides = [" × ".join(told_length(unit * side) for side in surface.size) for unit in (1.0, 1e-3)]
+    heights = [told_length(unit * rough) for unit in (1.0, 1e-3)]
+    now, less = (f"{z} about a smooth form over {xy}" for z, xy in zip(heights, sides, strict=True))
     pixel = told_length(1e-3 * float(min(surface.spacing)))
     given = f"{spell('height_unit')} and {spell('pixel')}"
     return (
