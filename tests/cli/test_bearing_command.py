@@ -103,7 +103,8 @@ def test_a_fault_is_heard_and_drawn_with_the_kurtogram_that_its_band_is_from(dra
     assert speed == pytest.approx(1797.0, abs=3.0)
     assert re.search(r"outer ring +107.\d\d .*? 108.\d+ +3.6\d+ +\+0.\d+ % +1 2 3 4 5 ", said)
     ((chart, title),) = drawn
-    assert title.replace("\n", " ").startswith("run.npy: There are lines of the outer ring")
+    assert title.startswith("run.npy\nThere are lines of the outer ring")
+    assert title.endswith("\u00a0%\u00a0sure.")  # on one line
     envelope, kurtogram = chart.panels
     np.testing.assert_allclose(envelope.marks[-1].x, 108.0 * np.arange(1, 6), atol=1.0)
     field, edges = kurtogram.marks
