@@ -124,13 +124,13 @@ def test_one_group_alone_makes_a_page(real_run, group):
     assert "</html>" in page_of(tree)
 
 
-NUMBER = r"(−?[\d.]+) ?(k?N|%)"
+NUMBER = r"(−?[\d.]+) ?([mk]?N|%)"
 
 
 def in_si(words):
     """A force, N, or a share, as it is written."""
     number, unit = re.fullmatch(NUMBER, words.replace("\u00a0", " ")).groups()
-    return float(number.replace("−", "-")) * {"N": 1.0, "kN": 1e3, "%": 0.01}[unit]
+    return float(number.replace("−", "-")) * {"mN": 1e-3, "N": 1.0, "kN": 1e3, "%": 0.01}[unit]
 
 
 def test_tiles_verdict_and_table_of_a_page_are_of_all_contacts_of_the_main_law(real_run):
