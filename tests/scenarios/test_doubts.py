@@ -38,6 +38,7 @@ def doubts(case):
             BALL | {"surface": {"corrugation": "1 um", "corrugation_wavelength": "40 m"}},
             "surface.corrugation_wavelength = 40000 mm: it is passed at 0.025 Hz",
         ),
+        (BALL | {"surface": BALL["surface"] | {"longest": "0.4 m"}}, "surface.longest = 400 mm: 0.07 m are"),
         (WHEEL | {"track": {"ballast_stiffness": "150 kN/m"}}, "The rail yields by 4\\d.* mm under a wheel"),
         (BEARING | {"radial": "0.1 N"}, "radial = 0.1 N: shaft.mass alone weighs 9.81 N"),
         (BEARING | {"shaft": {"mass": "1 g"}}, "shaft.mass = 0.001 kg: one of its 9 balls has 2.06 g"),

@@ -17,7 +17,6 @@ WHEEL |= {"duration": "20 ms", "settling": "10 ms"}
 MANY_BAYS = {"track": {"bays": 100, "pad_scatter": 0.2}, "contact": {"spacing": "0.5 mm"}}
 REFUSED = {
     "surface.joint_depth": BALL | {"surface": {"joint_depth": "1 mm", "joint_length": "1 mm"}},
-    "surface.longest": BALL | {"surface": {"rms": "0.1 um", "longest": "0.4 m", "shortest": "60 um"}},
     "surface.rms": BALL | {"surface": {"rms": "100 um", "longest": "0.4 mm", "shortest": "60 um"}},
     "surface.corrugation": BALL | {"surface": {"corrugation": "25 um", "corrugation_wavelength": "60 um"}},
     "surface.corrugation_wavelength": BALL

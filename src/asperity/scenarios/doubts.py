@@ -44,6 +44,10 @@ def doubt_sizes(case: Case, over: object) -> None:
     _doubt_damping("contact.damping", case.contact.damping, case.smooth_contact, load, mass)
     if surface.rms is not None and surface.rms < SMOOTHEST:
         _warn("surface.rms", surface.rms, "m", "the smoothest surfaces that are made have 0.1 nm", "nm")
+    first, last = case.rolled_range
+    if surface.rms is not None and surface.longest is not None and surface.longest > last - first:
+        told = f"{rounded(last - first)} m are rolled, which hold less than the rms of the texture"
+        _warn("surface.longest", surface.longest, "m", told, "mm")
     if surface.corrugation is not None and (wave := surface.corrugation_wavelength) is not None:
         passed, highest = case.speed / wave, case.numerics.highest_frequency
         if not LOWEST_HEARD <= passed <= 1.13 * highest:
