@@ -35,6 +35,8 @@ MAINS = (50.0, 60.0, 100.0, 120.0)
 RESOLVED = 2.0 * LOWEST_PLACE
 """Turns of a record from which on it holds the line of the shaft, and side bands at its speed apart from
 what they stand beside."""
+EVEN = 0.5
+"""Confidence of a part, at least, that is named in a shorter record."""
 LONGEST = 500.0
 """Turns of a piece of a record: blows that slip have wide lines in longer ones."""
 LEAST_DEPTH = {"stands": 0.25, "turns": 0.15}
@@ -261,12 +263,12 @@ def decided(
     ranked = sorted(found, key=lambda each: -_worth(each, told))
     resolution = 1.0 / record.duration
     struck = _likely([each for each in ranked if _deep(each, tones, record.duration * record.pieces)])
-    struck = [each for each in struck if not _of_shaft_or_mains(each, told, resolution)]
     shaft, support, alone = shaft_near(record, told)
     seen = support >= SUPPORTED and all(
         _agrees(each, told, resolution) for each in (shaft, record.speed(shaft))
     )
     there = seen and alone
+    struck = [each for each in struck if not _of_shaft_or_mains(each, told, resolution, seen)]
     seen_at = record.speed(shaft)
     turns = record.duration * told
     bare = Diagnosis(
@@ -299,6 +301,8 @@ def decided(
         return replace(elsewhere, parts=(best,), blows=best.blows)
     if here and _worth(here[0], told) >= _worth(best, told) - AHEAD:
         return _of_parts(bare, here[0], [each for each in struck if not _same(each, here[0])], tones, 0.0)
+    if abs(best.tone - round(best.tone / told) * told) <= resolution:  # blows of the shaft, as of a coupling
+        return bare
     faint = [each for each in ranked if _near(each, told) and abs(each.tone - best.tone) <= resolution]
     if faint:
         return replace(bare, faint=faint[0])
@@ -317,6 +321,8 @@ def _of_parts(
     seconds = () if alike else tuple(_seconds(near, best, tones, resolution))
     kind = "ball" if best.part == "ball" else "fault" if there else "fault, shaft not found"
     basis = Basis(kind, bare.turns, margin, best.support, best.depth)
+    if bare.turns < RESOLVED and basis.confidence < EVEN:
+        return bare
     found = replace(bare, parts=(best, *seconds), alike=tuple(alike.values()), basis=basis)
     if not there:
         return found
@@ -328,14 +334,17 @@ def _of_parts(
     return replace(found, speed=speed, speed_is=CONTRADICTED)
 
 
-def _of_shaft_or_mains(each: Hypothesis, told: float, resolution: float) -> bool:
-    """Whether blows are those of a shaft with the speed given, as of a coupling or a fan, or of the mains."""
-    turns = round(each.tone / told)
+def _of_shaft_or_mains(each: Hypothesis, told: float, resolution: float, seen: bool) -> bool:
+    """Whether blows are those of a shaft with the speed given, as of a coupling or a fan, or of the mains.
+
+    Multiples of its speed are the shaft's where its lines are seen.
+    """
     if _near(each, told):
         return False
-    if turns <= 1:
-        return abs(each.tone - told) <= resolution
-    return min(abs(each.tone - line) for line in (turns * told, *MAINS)) <= 0.5 * resolution
+    if abs(each.tone - told) <= resolution:
+        return True
+    lines = (round(each.tone / told) * told, *MAINS) if seen else MAINS
+    return min(abs(each.tone - line) for line in lines) <= 0.5 * resolution
 
 
 def _worth(each: Hypothesis, told: float) -> float:

@@ -20,8 +20,8 @@ CANDIDATES = 5
 """Combs that are looked at, the clearest first."""
 BESIDE = 2
 """Side bands on either side of a line that a shaft makes clear."""
-SPREAD = 2 * WITHIN + 2
-"""Places by which a line reaches beside its own: half the main lobe of the window, and where it is sought."""
+SPREAD = 4
+"""Places by which a line reaches beside its own: half the main lobe of the window."""
 COMPARABLE = 0.3
 """Share of the lines of a comb that those between them must have to be told as its true fundamental."""
 
