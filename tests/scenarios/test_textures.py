@@ -317,7 +317,7 @@ REFUSED = [
     ({"file": METRES}, f'surface.file: {SLOPE}*{UNIT} height_unit = "um"'),
     (
         {"file": HeightMap(MAP.heights, 8e-3)},
-        "surface.file: received maps of 1600 mm × 720 mm, 2.9e+09 points at*Is the pixel in µm, not mm?",
+        "surface.file: received maps of 1600 mm × 720 mm, 2.9·10⁹ points at*Is the pixel in µm, not mm?",
     ),
     ({"rms": "0.5 mm"}, 'Is rms in µm? Then write it so: rms = "0.5 um".'),
     (
