@@ -105,15 +105,30 @@ def cache_of_module(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def runs(tmp_path_factory):
+def cache_of_runs(tmp_path_factory):
+    """Modes, kernels and scans of `runs`, which all workers find."""
+    own = tmp_path_factory.getbasetemp()
+    return str((own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "cache_of_runs")
+
+
+@pytest.fixture(scope="module")
+def in_cache_of_runs(cache_of_runs):
+    """What the tests of a module roll again takes modes, kernels and scans from `runs`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ASPERITY_CACHE", cache_of_runs)
+        yield
+
+
+@pytest.fixture(scope="session")
+def runs(cache_of_runs):
     """Results of cases, in any form, each computed once in a session."""
-    cache, made = str(tmp_path_factory.mktemp("cache")), {}
+    made = {}
 
     def run(case):
         case = as_case(case)
         if case.text not in made:
             with pytest.MonkeyPatch.context() as patch:
-                patch.setenv("ASPERITY_CACHE", cache)
+                patch.setenv("ASPERITY_CACHE", cache_of_runs)
                 made[case.text] = asperity.run(case)
         return made[case.text]
 

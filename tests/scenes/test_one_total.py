@@ -21,7 +21,7 @@ from asperity.spectra import a_weighted_total, energy_sum, level_of
 from asperity.studies.table import columns_of
 from small_cases import HEARD
 
-pytestmark = pytest.mark.usefixtures("cache_of_module", "members_in_this_process")
+pytestmark = pytest.mark.usefixtures("in_cache_of_runs", "members_in_this_process")
 TRAIN = {"vehicle_length": "26 m", "axle_positions": ["0 m", "2.5 m", "19 m"], "vehicle": "coach"}
 ALONE = {"vehicle_length": "26 m", "vehicle": "coach"}
 OFF = {"contact_place": "10 mm"}

@@ -256,7 +256,7 @@ def test_the_filtered_linear_contact_is_linear():
 # --- presets as they are written, and another scene, with a structure: one file and one line
 
 
-@pytest.mark.usefixtures("cache_of_module")  # the ball's scans are those of the bodies
+@pytest.mark.usefixtures("in_cache_of_runs")  # the ball's scans are those of the bodies
 @pytest.mark.parametrize(
     "kind", [pytest.param(kind, marks=[pytest.mark.long] * (kind != "wheel-on-rail")) for kind in CASES]
 )
