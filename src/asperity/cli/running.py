@@ -190,7 +190,7 @@ def described_scan(scan: ScanSize) -> str:
     root, size = Store().root, f"{scan.bytes / 2**20:.1f} MiB"
     return (
         f"{scan.positions} positions × {scan.states} approaches, "
-        f"at most {scan.solutions} solutions, {size} in {root}; "
+        f"about {scan.solutions} solutions, more where the motion goes farther, {size} in {root}; "
         "if interrupted or killed, it goes on after its last finished block"
     )
 

@@ -350,6 +350,23 @@ def _mapped(job: ScanJob, **how: Any) -> ScannedForces:
     return ScannedForces(held.T, total(counts), job.single)
 
 
+def stacked(scans: Sequence[ScannedForces]) -> ScannedForces:
+    """Forces of scans of the same positions at states that follow one another, mapped as those are."""
+    if len(scans) == 1:
+        return scans[0]
+    forces = [each.forces for each in scans]
+    counts, single = total(each.counts for each in scans), any(each.single for each in scans)
+    with suppress(OSError), tempfile.TemporaryFile(prefix="asperity-") as file:
+        positions, states = forces[0].shape[1], sum(len(each) for each in forces)
+        for first in range(0, positions, TOUCHED):
+            piece = [each[:, first : first + TOUCHED].T for each in forces]
+            file.write(np.concatenate(piece, axis=1).data)
+        file.flush()
+        held = np.memmap(file, np.float64, "r", shape=(positions, states))
+        return ScannedForces(held.T, counts, single)
+    return ScannedForces(np.concatenate(forces), counts, single)
+
+
 def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int = 0) -> Array:
     """Approach, m, at which the body first touches the surface at each position, shape (n_positions,).
 

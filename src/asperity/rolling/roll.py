@@ -71,6 +71,8 @@ class RolledBodies:
     degrees_of_freedom: tuple[Array, ...]  # of each body (d, n), m or rad, positive upwards
     acceleration: Array  # (sensors, n), of what is rolled over, m/s², positive downwards
     in_contact: NDArray[np.bool_]  # (c, n), whether the surfaces touch
+    # (c, 2), least and largest approach that each law was asked for, from its plane, m, in run-in and run
+    visited: Array
     softening: Array  # (c,), compliance that the time step puts in series with the contacts, m/N
     energy: Ledger  # where the work of the loads went, in run-in and run
     evaluations: int  # of the laws, in run-in and run
@@ -202,12 +204,21 @@ def _rolled(stepper: Stepper, path: ground.Path, energies: tuple[float, float, f
         history_start=path.starts,
         degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
         in_contact=~apart,
+        visited=np.array(list(map(_visited, stepper.prepared, seen))),
         softening=system.softening,
         energy=ledger_of(stepper, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),
         outcome=errors.Outcome.STEPS_UNCONVERGED if counts[1] else errors.Outcome.CONVERGED,
     )
+
+
+def _visited(prepared: pointforce.Prepared | SteppedLaw, approach: Array) -> tuple[float, float]:
+    """Least and largest approach from the plane of a law, m; all there are, of one that Python steps."""
+    if not isinstance(prepared, pointforce.Prepared):
+        return -np.inf, np.inf
+    from_plane = approach - prepared.planes
+    return float(from_plane.min()), float(from_plane.max())
 
 
 def _refuse_missed_loads(stepper: Stepper, path: ground.Path, apart: NDArray[np.bool_]) -> None:

@@ -10,7 +10,15 @@ import numpy as np
 
 from asperity.arguments import Array, shown
 from asperity.case import sections
-from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, scan_forces, warn_of_flaws
+from asperity.contact.scan import (
+    ScanJob,
+    ScannedForces,
+    first_touch,
+    rtol_for,
+    scan_forces,
+    stacked,
+    warn_of_flaws,
+)
 from asperity.errors import InputError
 from asperity.laws import Law, LawSpec, Materials, Need, spec_of
 from asperity.progress import Progress
@@ -19,6 +27,7 @@ from asperity.reduction.stiffness import ForceTable
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import textures_under
 from asperity.store import Store
@@ -32,6 +41,8 @@ class ReducedCase(PreparedCase):
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: Array | None
     progress: Progress
+    # states at which the path is scanned, group after group; none: those that a motion is expected to visit
+    groups: tuple[slice, ...] = ()
 
     def of_contact(self, contact: int, load: float) -> "ReducedCase":
         """Those of another contact of the same bodies, by whose texture it bears and its load, N."""
@@ -110,16 +121,33 @@ class ReducedCase(PreparedCase):
         spacing, start = self.shape.spacing, self.textures.start
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
+    @property
+    def scanned(self) -> tuple[slice, ...]:
+        """Groups of states at which the path is scanned, rising."""
+        ensemble = self._reduced.ensemble
+        return self.groups or (states_expected(ensemble.approaches, ensemble.mean_force, self.scene.loads),)
+
+    def wider(self, visited: tuple[float, float]) -> "ReducedCase | None":
+        """One whose path is scanned for a motion between two approaches, m, too; None if this one's is."""
+        groups, needed = self.scanned, states_around(self._reduced.approaches, visited)
+        below = slice(needed.start, groups[0].start)
+        above = slice(groups[-1].stop, needed.stop)
+        added = [each for each in (below, *groups, above) if each.start < each.stop]
+        return None if len(added) == len(groups) else replace(self, groups=tuple(added))
+
     @cached_property
     def path_scan(self) -> ScannedForces:
-        """The scan of the path."""
-        job = ScanJob(
-            self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
-            self._reduced.approaches, table_stride(self.shape), rtol_for(self.case.numerics.force_accuracy),
-            self._scanned_planes, self.textures.before,
-        )  # fmt: skip
-        told = {"progress": self.progress, "message": "scanning the path"}
-        scanned = scan_forces(job, mapped=True, cache=Store(), **told)
+        """The scan of the path, group after group of its states."""
+        scans = []
+        for group in self.scanned:
+            job = ScanJob(
+                self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
+                self._reduced.approaches[group], table_stride(self.shape),
+                rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, self.textures.before,
+            )  # fmt: skip
+            told = {"progress": self.progress, "message": "scanning the path"}
+            scans.append(scan_forces(job, mapped=True, cache=Store(), **told))
+        scanned = stacked(scans)
         warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
         return scanned
 
@@ -147,7 +175,8 @@ class ReducedCase(PreparedCase):
             assert self._reduced.touches is not None
             touches = self._reduced.touches[rows]
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
-        return ForceTable(self.path_scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
+        approaches = self._reduced.approaches[self.scanned[0].start : self.scanned[-1].stop]
+        return ForceTable(self.path_scan.forces, approaches, start, rows.step * dx, touches)
 
 
 def reduced_case(prepared: PreparedCase, progress: Progress) -> ReducedCase:

@@ -33,6 +33,7 @@ from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
+from asperity.scenarios.scanned_states import states_expected
 from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
@@ -99,39 +100,44 @@ class ScanSize:
 
     @property
     def solutions(self) -> int:
-        """Contact solutions, at most: states that do not touch need none."""
+        """Contact solutions: fewer where states do not touch, more where a motion goes beyond them."""
         return self.positions * self.states
 
 
 def scan_sizes(prepared: PreparedCase) -> dict[str, ScanSize]:
     """Find the sizes of the scans of a case, of as many states as it names or the run chooses.
 
-    ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up.
+    ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up: at the states
+    that its motion is expected to visit.
     """
     states = np.arange(float(len(prepared.case.contact.approaches or range(reducing.STATES))))
     sizes = {}
     for name, jobs in scans_of(prepared, states).items():
         positions, size = (sum(getattr(job, what) for job in jobs) for what in ("positions", "bytes"))
-        sizes[name] = ScanSize(positions, len(states), size)
+        sizes[name] = ScanSize(positions, len(jobs[0].approaches), size)
     return sizes
 
 
 def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
-    """The scans of a case in some states, m."""
+    """The scans of a case, whose states, m, are these."""
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     half_space = shape.half_space(None)
 
-    def scans(strips: Sequence[Strip], stride: int, accuracy: float, anchor: int = 0) -> list[ScanJob]:
-        rtol = rtol_for(accuracy * case.numerics.force_accuracy)
-        return [
-            ScanJob(half_space, strip, shape.body, states, stride, rtol, anchor=anchor) for strip in strips
-        ]
+    def scans(
+        strips: Sequence[Strip], of: slice, stride: int, accuracy: float, anchor: int = 0
+    ) -> list[ScanJob]:
+        rtol, at = rtol_for(accuracy * case.numerics.force_accuracy), states[of]
+        return [ScanJob(half_space, strip, shape.body, at, stride, rtol, anchor=anchor) for strip in strips]
 
     found = {}
     if strips := [strip for strip in textures.strips if strip.heights.any()]:
-        found["filters"] = scans(strips, reducing.filter_stride(shape), FILTER_SHARE)
+        found["filters"] = scans(strips, slice(None), reducing.filter_stride(shape), FILTER_SHARE)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
-        found["path"] = scans([textures.path], laws.table_stride(shape), 1.0, textures.before)
+        visited = slice(None)
+        if case.contact.approaches is None:
+            visited = states_expected(states, reducing.nominal_forces(shape), prepared.scene.loads)
+        stride = laws.table_stride(shape)
+        found["path"] = scans([textures.path], visited, stride, 1.0, textures.before)
     return found
 
 

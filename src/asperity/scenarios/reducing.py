@@ -248,6 +248,12 @@ def chosen_states(places: Sequence[Array], shape: Geometry, half_space: HalfSpac
     return np.interp(even, mean**EVENLY, at)
 
 
+def nominal_forces(shape: Geometry) -> Array:
+    """Mean forces that `chosen_states` aims at, (STATES,), N."""
+    light = LIGHTEST_STATE * shape.class_load
+    return np.linspace(light**EVENLY, shape.largest_force**EVENLY, STATES) ** (1.0 / EVENLY)
+
+
 # --- line filters: scanned on the strips, normalised as the laws want, designed for the path
 
 LONG_WAVE = 0.5

@@ -2,6 +2,7 @@
 
 import json
 import time
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,6 +13,7 @@ from asperity.arguments import Array, NDArray
 from asperity.case.form import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
+from asperity.errors import PhysicsWarning
 from asperity.laws import Law, Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
@@ -148,9 +150,25 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         book("running in")
     first = reduced_case(run_in, progress)
     book("reduction")
-    every, unused = [first, *(first.of_contact(*own) for own in others)], replace(first, seconds=seconds)
+    every = [first, *(first.of_contact(*own) for own in others)]
 
     def rolled(name: str) -> RolledBodies:
+        """Roll by a law; where the motion leaves what was scanned for it, scan more and roll anew."""
+        nonlocal every
+        if Need.SCAN not in spec_of(name).needs:
+            return once(name)
+        while True:
+            with PhysicsWarning.caught() as caught:
+                run = once(name)
+            visited = float(run.visited[:, 0].min()), float(run.visited[:, 1].max())
+            wider = [materials.wider(visited) for materials in every]
+            if not any(wider):
+                for each in caught:
+                    warnings.warn(each.message, stacklevel=2)
+                return run
+            every = [more or materials for more, materials in zip(wider, every, strict=True)]
+
+    def once(name: str) -> RolledBodies:
         laws = [materials.build(name) for materials in every]
         run = roll_bodies(
             over,
@@ -177,7 +195,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     if bare is not None and isinstance(scene.over, Track) and np.ptp(first.textures.line):
         bare_force = (runs[bare] if bare in runs else rolled(bare)).contact_force
         book("what CNOSSOS-EU's sound power is of")
-    scan = first.path_scan if Need.SCAN in needs_of(case.laws) else None
+    scan = every[0].path_scan if Need.SCAN in needs_of(case.laws) else None
+    unused = replace(first, seconds=seconds, groups=every[0].groups)
     computed = Computed(
         **vars(unused), over=over, runs=runs, scan=scan, running_in=ran, bare_force=bare_force
     )

@@ -1,0 +1,29 @@
+"""States at which a path is scanned: those that the motion visits."""
+
+import numpy as np
+
+from asperity.arguments import Array
+
+EXPECTED = (0.75, 1.25)
+"""Forces between which a motion is expected to stay, over the static loads, until it is known."""
+
+
+def states_expected(approaches: Array, forces: Array, loads: Array) -> slice:
+    """Which of the states (k,), m, a motion under static loads, N, is expected to visit.
+
+    By the mean force (k,), N, of each state.
+    """
+    least, most = EXPECTED
+    low, high = np.interp((least * loads.min(), most * loads.max()), forces, approaches)
+    return states_around(approaches, (float(low), float(high)))
+
+
+def states_around(approaches: Array, visited: tuple[float, float]) -> slice:
+    """Which of the states (k,), m, forces between two approaches, m, depend on.
+
+    Those around them, and one beyond on either side: slopes at a state follow from its neighbours. Between
+    them the interpolation is the same as from all states.
+    """
+    low, high = np.searchsorted(approaches, visited, side="right")
+    last = len(approaches)
+    return slice(min(max(int(low) - 2, 0), last - 2), max(min(int(high) + 2, last), 2))
