@@ -350,7 +350,7 @@ def _mapped(job: ScanJob, **how: Any) -> ScannedForces:
     return ScannedForces(held.T, total(counts), job.single)
 
 
-def stacked(scans: Sequence[ScannedForces]) -> ScannedForces:
+def joined_states(scans: Sequence[ScannedForces]) -> ScannedForces:
     """Forces of scans of the same positions at states that follow one another, mapped as those are."""
     if len(scans) == 1:
         return scans[0]

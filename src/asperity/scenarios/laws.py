@@ -14,9 +14,9 @@ from asperity.contact.scan import (
     ScanJob,
     ScannedForces,
     first_touch,
+    joined_states,
     rtol_for,
     scan_forces,
-    stacked,
     warn_of_flaws,
 )
 from asperity.errors import InputError
@@ -147,7 +147,7 @@ class ReducedCase(PreparedCase):
             )  # fmt: skip
             told = {"progress": self.progress, "message": "scanning the path"}
             scans.append(scan_forces(job, mapped=True, cache=Store(), **told))
-        scanned = stacked(scans)
+        scanned = joined_states(scans)
         warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
         return scanned
 
