@@ -88,7 +88,7 @@ class RolledBearing:
         )
 
 
-def without_rounding(run: RolledBearing) -> RolledBearing:
+def steady_where_still(run: RolledBearing) -> RolledBearing:
     """The same, of a run in which nothing vibrates without what rounding leaves of motion and forces."""
     if run.vibrates:
         return run

@@ -18,7 +18,7 @@ from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocitie
 from asperity.errors import Finding, Grade, InputError, PhysicsWarning, percent, warn_of_findings
 from asperity.laws import Need, spec_of
 from asperity.progress import Progress
-from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing, without_rounding
+from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing, steady_where_still
 from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
@@ -285,7 +285,7 @@ def bearing_result(
     case, began = prepared.case, time.monotonic()
     runs = rolled(prepared, progress)
     heard, apart = heard_group(case, runs), Values() if brief else alone(prepared, progress)
-    runs = {name: without_rounding(run) for name, run in runs.items()}
+    runs = {name: steady_where_still(run) for name, run in runs.items()}
     found = list(_findings(case, runs))
     warn_of_findings(found)
     scenario = scenario_group(case, _numerics(case, time.monotonic() - began))
