@@ -163,9 +163,8 @@ class Quantity(Bounded):
         if not math.isfinite(number) and not (self.infinite and number > 0):
             self.refuse(value, "Give a finite value.")
         if math.isfinite(number) and is_absurd(number):
-            self.refuse(
-                value, f"In {self.dimension}, numbers lie between {rounded(LEAST)} and {rounded(MOST)}."
-            )
+            lie = f"between {rounded(LEAST)} and {rounded(MOST)}"
+            self.refuse(value, f"In {self.dimension}, numbers lie {lie}.")
         if not self.holds(number):
             self.refuse(value)
         return number

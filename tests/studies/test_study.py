@@ -23,7 +23,7 @@ from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES
 from asperity.store import Store
 from asperity.studies import member, running
 from asperity.studies.member import _weighted, _weighted_name
-from asperity.studies.words import in_words
+from asperity.studies.words import table_in_words
 
 SWEEP = {"speed": ["0.5 m/s", "1 m/s"], "seed": [1, 2, 3]}
 
@@ -255,10 +255,12 @@ def test_the_tables_of_a_study_have_names_units_that_are_read_and_the_levels_of_
 ):
     """The headline said 1.9 dB(A), the table 1.936 below "force level a"."""
     key = "ball.sample_load [km/h]"
-    assert in_words([key, heading], [[85.7232, value]], 1) == ([key, head], [["85.72", written]])
+    assert table_in_words([key, heading], [[85.7232, value]], 1) == ([key, head], [["85.72", written]])
 
 
 def test_numbers_of_a_column_have_one_unit_and_their_scatter_has_it_too():
-    heads, cells = in_words(["law", "rms [m]"], [["a", 2e-6], ["b", 3e-8]], 1, [["a", 1e-7], ["b", np.nan]])
+    heads, cells = table_in_words(
+        ["law", "rms [m]"], [["a", 2e-6], ["b", 3e-8]], 1, [["a", 1e-7], ["b", np.nan]]
+    )
     assert heads == ["law", "rms [µm]"]
     assert cells == [["a", "2 ± 0.1"], ["b", "0.03"]]

@@ -30,7 +30,7 @@ from asperity.studies.effects import effects, weighted_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES
 from asperity.studies.signals import SignalSet
-from asperity.studies.words import MISSING, in_words
+from asperity.studies.words import MISSING, table_in_words
 from asperity.terminal import line_width, remark, say, say_files, say_table
 from asperity.text_files import write_csv
 
@@ -104,7 +104,7 @@ def run_study(
         "completed": int(table["completed"].sum()),
         "columns": heading,
         "rows": rows,
-        "in_words": {place: of.in_words for place, of in told},
+        "table_in_words": {place: of.table_in_words for place, of in told},
         "warnings": json.loads(table.attrs["warnings"]),
         "failures": json.loads(table.attrs["failures"]),
         "files": written,
@@ -219,7 +219,7 @@ def _table(mean: xarray.Dataset, names: Sequence[str]) -> ReportTable:
     """Numbers of a study: a row for each place on its axes, as the page has them on paper, too."""
     shown = [name for name in names if name in mean and not {*PLACES} & {*mean[name].dims}]
     heading, rows = tables.columns_of(mean[shown], bands=False)
-    heads, cells = in_words(heading, rows[:MOST_ROWS], len(tables.axes_of(mean)))
+    heads, cells = table_in_words(heading, rows[:MOST_ROWS], len(tables.axes_of(mean)))
     columns = {
         head: text_cells(column, "" if all(isinstance(row[n], str) for row in rows) else "number")
         for n, (head, column) in enumerate(zip(heads, zip(*cells, strict=True), strict=True))
@@ -292,7 +292,7 @@ def print_table(
     if scatter is not None:
         title = f"Study: mean ± standard deviation over {table.attrs['members']} values of {SEED}"
         spread = tables.columns_of(scatter[shown])[1]
-    heads, cells = in_words(heading, rows[:MOST_ROWS], keys, spread[:MOST_ROWS])
+    heads, cells = table_in_words(heading, rows[:MOST_ROWS], keys, spread[:MOST_ROWS])
     columns = [n for n in range(len(heads)) if asked or any(row[n] != MISSING for row in cells)]
     needs = [_width(heads[n], [row[n] for row in cells]) for n in range(len(heads))]
     for block in _side_by_side(needs, columns, keys):

@@ -264,10 +264,10 @@ def lines_chart(
     Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
     """
     above = _lines_panel(lines, spacing)
-    return _with_statistics(above, together(lines), spectra, octaves, beside=True)
+    return _with_statistics(above, side_by_side(lines), spectra, octaves, beside=True)
 
 
-def together(lines: Sequence[Numbers]) -> Numbers:
+def side_by_side(lines: Sequence[Numbers]) -> Numbers:
     """Heights of lines, one line behind the other."""
     return np.concatenate(lines) if len(lines) > 1 else lines[0]
 
@@ -322,7 +322,7 @@ def _octaves_panel(octaves: ThirdOctaves, **place: Any) -> Panel:
 
 def _lines_panel(lines: Sequence[Numbers], spacing: float) -> Panel:
     """Lines below each other, and a bar that says how high they are drawn."""
-    heights = together(lines)
+    heights = side_by_side(lines)
     size, symbol = height_scale(heights)[:2]
     ends = np.percentile(heights[np.isfinite(heights)], [0.1, 99.9], overwrite_input=True)
     reach = float(np.ptp(ends)) / size or 1.0

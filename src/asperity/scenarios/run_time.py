@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 
 from asperity.contact.scan import ScanJob, scan_forces
-from asperity.laws import spec_of
+from asperity.laws import Need, spec_of
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.reducing import patch_planes
 from asperity.scenarios.scene import PreparedCase
@@ -159,7 +159,7 @@ def of_laws(prepared: PreparedCase, steps: int, solution: float) -> dict[str, fl
         seconds = LAW + STEP * steps * contacts
         if spec_of(law).solved_every_step:
             seconds += SOLVED_START + (SOLVED_STEP + SOLVED * solution) * steps * contacts
-        if law == "areal":
+        if Need.AREAL in spec_of(law).needs:
             seconds += AREAL * cells
         found[f"the law {law}"] = seconds
     return found

@@ -12,7 +12,7 @@ MISSING = "–"
 """Stands where there is no number."""
 
 
-def in_words(
+def table_in_words(
     heading: Sequence[str], rows: Sequence[Row], axes: int, spread: Sequence[Row] = ()
 ) -> tuple[list[str], list[list[str]]]:
     """Headings and cells of a table for people: names with their units, levels with one decimal.
