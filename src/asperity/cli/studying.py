@@ -104,7 +104,7 @@ def run_study(
         "completed": int(table["completed"].sum()),
         "columns": heading,
         "rows": rows,
-        "table_in_words": {place: of.table_in_words for place, of in told},
+        "in_words": {place: of.in_words for place, of in told},
         "warnings": json.loads(table.attrs["warnings"]),
         "failures": json.loads(table.attrs["failures"]),
         "files": written,

@@ -3,8 +3,9 @@
 import json
 import time
 import warnings
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -150,25 +151,9 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         book("running in")
     first = reduced_case(run_in, progress)
     book("reduction")
-    every = [first, *(first.of_contact(*own) for own in others)]
+    every: Sequence[ReducedCase] = [first, *(first.of_contact(*own) for own in others)]
 
-    def rolled(name: str) -> RolledBodies:
-        """Roll by a law; where the motion leaves what was scanned for it, scan more and roll anew."""
-        nonlocal every
-        if Need.SCAN not in spec_of(name).needs:
-            return once(name)
-        while True:
-            with PhysicsWarning.caught() as caught:
-                run = once(name)
-            visited = float(run.visited[:, 0].min()), float(run.visited[:, 1].max())
-            wider = [materials.wider(visited) for materials in every]
-            if not any(wider):
-                for each in caught:
-                    warnings.warn(each.message, stacklevel=2)
-                return run
-            every = [more or materials for more, materials in zip(wider, every, strict=True)]
-
-    def once(name: str) -> RolledBodies:
+    def once(name: str, every: Sequence[ReducedCase]) -> RolledBodies:
         laws = [materials.build(name) for materials in every]
         run = roll_bodies(
             over,
@@ -189,11 +174,11 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
 
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:
-        runs[name] = rolled(name)
+        runs[name], every = _within_scan(partial(once, name), every, name)
         book(f"law {name}")
     bare, bare_force = in_role(Role.BARE, names()), None
     if bare is not None and isinstance(scene.over, Track) and np.ptp(first.textures.line):
-        bare_force = (runs[bare] if bare in runs else rolled(bare)).contact_force
+        bare_force = (runs[bare] if bare in runs else once(bare, every)).contact_force
         book("what CNOSSOS-EU's sound power is of")
     scan = every[0].path_scan if Need.SCAN in needs_of(case.laws) else None
     unused = replace(first, seconds=seconds, groups=every[0].groups)
@@ -205,6 +190,28 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     computed = replace(computed, points=_passed(computed, progress))
     book("passed points")
     return computed
+
+
+def _within_scan(
+    once: Callable[[Sequence[ReducedCase]], RolledBodies], every: Sequence[ReducedCase], law: str
+) -> tuple[RolledBodies, Sequence[ReducedCase]]:
+    """Roll by a law of these materials; where motion leaves what was scanned, scan more and roll anew.
+
+    With the materials that it took.
+    """
+    if Need.SCAN not in spec_of(law).needs:
+        return once(every), every
+    while True:
+        with PhysicsWarning.caught() as caught:
+            run = once(every)
+        visited = float(run.visited[:, 0].min()), float(run.visited[:, 1].max())
+        wider = [materials.wider(visited) for materials in every]
+        if not any(wider):
+            break
+        every = [more or materials for more, materials in zip(wider, every, strict=True)]
+    for each in caught:
+        warnings.warn(each.message, stacklevel=2)
+    return run, every
 
 
 def _in_time(scene: Scene, case: Case, store: Store, progress: Progress) -> Modal | RailBetween | None:
