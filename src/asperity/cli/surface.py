@@ -16,7 +16,7 @@ from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.parameters import Origin
 from asperity.reporting.figure import write_chart
-from asperity.reporting.texture_figures import lines_chart, surface_chart, together
+from asperity.reporting.texture_figures import lines_chart, side_by_side, surface_chart
 from asperity.spectra import nominal
 from asperity.surfaces import cleaning, likeness, statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -144,7 +144,7 @@ def _show(
         items = [(item, item.value, item.value) for item in statistics.areal_statistics(first, band)]
         chart = surface_chart(heights, first.spacing, spectra)
     else:
-        heights, spectra = together([line.heights for line in lines]), _spectra_of_lines(lines)
+        heights, spectra = side_by_side([line.heights for line in lines]), _spectra_of_lines(lines)
         items = statistics.line_statistics(lines, band, section)
         chart = lines_chart([line.heights for line in lines], first.spacing, spectra, octaves)
     lead, waves = "Each line levelled" if beside else "Levelled", _band(items[0][0])
