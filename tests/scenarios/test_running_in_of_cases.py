@@ -75,8 +75,12 @@ def test_the_line_is_nowhere_raised_and_crests_are_lowered(untouched, run_in):
 
 
 def test_stiffness_and_forces_are_of_what_is_left(untouched, run_in):
-    """Without its crests the surface touches later and closes over a shorter way."""
-    assert float(run_in["contact/approach"][0]) > float(untouched["contact/approach"][0])
+    """Without its crests the surface closes over a shorter way; where the first one touches is chance."""
+    ways = []
+    for state in (untouched["contact"], run_in["contact"]):
+        light, heavy = np.interp([1.0, 20.0], state["force"], state["approach"])
+        ways.append(heavy - light)
+    assert ways[1] < ways[0]
     change = np.abs(run_in["rolling/contact_force"] - untouched["rolling/contact_force"]).max("time")
     assert float(change.min()) > 0.01 * 20.0
 
