@@ -151,7 +151,7 @@ def test_kernels_and_fits_are_kept_by_their_content(tmp_path):
     first, again = (
         moving_kernel(VISCOUS, 56.0, 2e-4, **like, progress=lambda *args: told.append(args)) for _ in range(2)
     )
-    assert told[-1] == (6, 6, "moving kernel of 0.05 s")
+    assert told[-1] == (6, 6, "moving kernel of 50 ms")
     assert (len(told), len(store.files())) == (6, 1)
     np.testing.assert_array_equal(first.weights, again.weights)
     moving_kernel(VISCOUS, 57.0, 2e-4, **like)
