@@ -20,6 +20,7 @@ from asperity.diagnostics import (
 )
 from asperity.diagnostics.confidence import COEFFICIENTS, Basis
 from asperity.diagnostics.decision import Diagnosis
+from asperity.errors import InputError
 from asperity.structures.ball_bearing import BallBearing
 from faulty_signals import faulty_signal, orders
 
@@ -461,3 +462,38 @@ def test_no_measured_record_has_a_fault_at_a_wrong_speed_without_a_word_of_the_s
             assert diagnosis.speed_is == "contradicted", name
             assert [each.part for each in diagnosis.parts] == [part], name
             assert diagnosis.speed == pytest.approx(speed, rel=0.031), name
+
+
+@measured
+def test_revolutions_per_minute_given_as_hertz_are_doubted_first_or_refused():
+    """A record had the ball of a shaft at a quarter of that speed, 97 % sure, two were sound."""
+    for file, name, signal, rate, speed, _ in records():
+        fastest = (BallBearing(8, 5.97e-3, 31.62e-3) if file.startswith("mfpt") else B6205).fastest
+        if file.startswith("cwru"):  # 12 kHz hold no blows at 9 kHz
+            with pytest.raises(InputError, match="Is the speed"):
+                diagnose(signal, rate, tones_of(file), 60.0 * speed, fastest=fastest)
+            continue
+        diagnosis = diagnose(signal, rate, tones_of(file), 60.0 * speed, fastest=fastest)
+        assert diagnosis.confidence <= 0.5, name
+        assert diagnosis_sentence(diagnosis).startswith("Hardly any bearing of this size turns at"), name
+
+
+def test_a_record_sampled_too_slowly_for_the_blows_is_no_sound_bearing():
+    """It was "no sign of a fault, 92 % sure" of lines above half of its sampling rate."""
+    signal = np.random.default_rng(0).standard_normal(4000)
+    words = "received 300 Hz; allowed: more than 324.4 Hz, to hold the blows of the inner ring at 162.2 Hz"
+    with pytest.raises(InputError, match=re.escape(words)):
+        diagnose(signal, 300.0, B6205.tones(), 29.95)
+    assert diagnose(signal, 330.0, B6205.tones(), 29.95).confidence < 0.97
+
+
+def test_a_speed_that_hardly_any_bearing_has_is_doubted_first_and_nothing_is_surer_than_even():
+    signal = made("outer", duration=0.5)
+    for fastest, begin, most in (
+        (20.0, "Hardly any bearing of this size turns at 29.3 Hz", 0.5),
+        (30.0, "There are", 1),
+    ):
+        diagnosis = diagnose(signal, RATE, B6205.tones(), SPEED, fastest=fastest)
+        assert diagnosis_sentence(diagnosis).startswith(begin)
+        assert diagnosis.confidence <= most
+    assert diagnosis.confidence > 0.5

@@ -2,15 +2,16 @@
 
 import textwrap
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from asperity import diagnostics
-from asperity.arguments import require
+from asperity.arguments import Array, require
 from asperity.case.ball_bearing import BearingKeys
 from asperity.diagnostics import Diagnosis, LineFamily, Spectrum, Tone
 from asperity.diagnostics.decision import NAMES
@@ -61,10 +62,14 @@ def heard(
         signals, sampled = _read(files, rate, progress, array=array, column=column)
         edges = _band(band, sampled)
         told_of = progress if sum(each.values.size for each in signals.values()) >= MANY else None
-        singles = _one_by_one(signals, sampled, tones, told, edges, told_of)
+        fastest = keys.bearing.fastest
+        judge = partial(
+            diagnostics.diagnose_together, rate=sampled, tones=tones, speed=told, band=edges, fastest=fastest
+        )
+        singles = _one_by_one(signals, judge, told_of)
         judged = [signals[name] for name in singles] or list(signals.values())
         values = [each.values for each in judged]
-        diagnosis = diagnostics.diagnose_together(values, sampled, tones, told, band=edges, progress=told_of)
+        diagnosis = judge(values, progress=told_of)
     for name, single in singles.items():
         say(f"{name}: {_length([signals[name]])}. {diagnostics.diagnosis_sentence(single)}")
     title = f"All {len(judged)} together" if singles else next(iter(signals))
@@ -116,12 +121,7 @@ def _read(files: Sequence[Path], rate: str | None, progress: Progress, **which: 
 
 
 def _one_by_one(
-    signals: Signals,
-    rate: float,
-    tones: Mapping[str, Tone],
-    told: float,
-    band: Band,
-    progress: Progress | None,
+    signals: Signals, judge: Callable[[list[Array]], Diagnosis], progress: Progress | None
 ) -> dict[str, Diagnosis]:
     """What each of several signals says; one that says nothing is left out, and why is said."""
     found: dict[str, Diagnosis] = {}
@@ -129,7 +129,7 @@ def _one_by_one(
         return found
     for name, signal in counted(signals.items(), len(signals), "signals one by one", progress):
         try:
-            found[name] = diagnostics.diagnose(signal.values, rate, tones, told, band=band)
+            found[name] = judge([signal.values])
         except InputError as wrong:
             say(f"{name} is left out. {wrong}")
     return found

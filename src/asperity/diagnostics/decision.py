@@ -1,5 +1,6 @@
 """What is said of a record: whether its speed is confirmed, which parts are struck, and how sure that is."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -85,6 +86,8 @@ class Diagnosis:
         What was looked at.
     doubts : tuple of str
         What is wrong with the recording, in sentences.
+    fastest : float
+        Speed beyond which hardly any such bearing runs, Hz.
     """
 
     told: float
@@ -99,6 +102,7 @@ class Diagnosis:
     resolution: float
     record: BearingRecord
     doubts: tuple[str, ...] = ()
+    fastest: float = math.inf
 
     @property
     def turns(self) -> float:
@@ -107,8 +111,14 @@ class Diagnosis:
 
     @property
     def confidence(self) -> float:
-        """That this is so, 0 to 1."""
-        return self.basis.confidence
+        """That this is so, 0 to 1: no more than even at a speed beyond belief, as no record of such a one is
+        among those that it is calibrated on."""
+        return min(self.basis.confidence, EVEN) if self.beyond_belief else self.basis.confidence
+
+    @property
+    def beyond_belief(self) -> bool:
+        """Whether hardly any such bearing runs as fast as told: revolutions per minute given as hertz."""
+        return self.told > self.fastest
 
     @property
     def undecided(self) -> bool:
@@ -135,6 +145,7 @@ def diagnose(
     speed: float,
     *,
     band: tuple[float, float] | None = None,
+    fastest: float = math.inf,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which part of a bearing is struck in a record, at which speed, and how sure that is.
@@ -151,6 +162,9 @@ def diagnose(
         Of the shaft, as told, Hz.
     band : (float, float), optional
         Of the second envelope, Hz; by default that of the largest kurtosis (`impulsive_band`).
+    fastest : float, optional
+        Speed beyond which hardly any such bearing runs, Hz, as of `BallBearing.fastest`: beyond it that is
+        said first, and nothing is surer than even.
     progress : callable, optional
         Called as ``progress(done, total, message)``.
 
@@ -162,7 +176,7 @@ def diagnose(
     Raises
     ------
     InputError
-        If the record is too short for any tone.
+        If the record is too short for any tone, or sampled too slowly to hold the blows of all parts.
 
     Notes
     -----
@@ -174,7 +188,7 @@ def diagnose(
     wrong speed or sampling rate, and a second ring beside the right one, whose lines f_i = Z f_r − f_o are
     those of the right one and the shaft's.
     """
-    return diagnose_together([signal], rate, tones, speed, band=band, progress=progress)
+    return diagnose_together([signal], rate, tones, speed, band=band, fastest=fastest, progress=progress)
 
 
 def diagnose_together(
@@ -184,6 +198,7 @@ def diagnose_together(
     speed: float,
     *,
     band: tuple[float, float] | None = None,
+    fastest: float = math.inf,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find which part of a bearing is struck by several records of it, at one speed and sampling rate.
@@ -194,7 +209,7 @@ def diagnose_together(
         As of `diagnose`: files of one measurement, or several sensors. Their spectra are averaged, each by
         its own level, over pieces of one length; a signal with less than half the length of the longest is
         left out.
-    rate, tones, speed, band, progress
+    rate, tones, speed, band, fastest, progress
         As of `diagnose`.
 
     Returns
@@ -208,6 +223,13 @@ def diagnose_together(
     pieces = equal_pieces(stretches, LONGEST * rate / told)
     duration = pieces[0].size / rate
     part, tone = max(tones.items(), key=lambda each: each[1].order)
+    blows = f"the blows of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
+    received, allowed = (
+        f"{rounded(rate, 6)} Hz",
+        f"more than {rounded(2.0 * tone.order * told, 4)} Hz, to hold {blows}",
+    )
+    remedy = f"Is the speed, {rounded(told, 5)} Hz, in 1/min? Otherwise sample faster."
+    require(rate > 2.0 * tone.order * told, "sampling rate of the signal", received, allowed, remedy)
     needed = 2.0 * LOWEST_PLACE / (tone.order * told)
     lines = f"the lines of the {NAMES[part]} at {rounded(tone.order * told, 4)} Hz"
     received, allowed = f"{rounded(duration)} s", f"at least {rounded(needed)} s, to resolve {lines}"
@@ -219,7 +241,7 @@ def diagnose_together(
     record = BearingRecord.of(pieces, rate, seen, band or _ringing_band(seen, rate, reached), progress)
     found = decided(record, record.read(tones, told), tones, told)
     doubts = dict.fromkeys(each for recording in recordings for each in recording.doubts)
-    return replace(found, doubts=tuple(doubts))
+    return replace(found, doubts=tuple(doubts), fastest=fastest)
 
 
 def _without_clicks(values: Array, turns: float) -> Array:

@@ -8,6 +8,7 @@ from asperity.diagnostics.hypotheses import Hypothesis
 from asperity.written_numbers import rounded
 
 ASKED = "is the speed or the sampling rate wrong?"
+BEYOND = "Hardly any bearing of this size turns at {}, as told: is the speed in 1/min?"
 
 
 def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
@@ -25,7 +26,8 @@ def diagnosis_sentence(found: Diagnosis, known: str | None = None) -> str:
     str
         What is not confirmed of the speed comes first; each verdict has its confidence.
     """
-    words = [_too_short(found)] if found.undecided else [*_of_speed(found), _of_parts(found)]
+    words = [BEYOND.format(turns(found.told))] if found.beyond_belief else []
+    words += [_too_short(found)] if found.undecided else [*_of_speed(found), _of_parts(found)]
     named = {each.part for each in (*found.parts, *found.alike)}
     if known and known not in named:
         words.append(

@@ -37,6 +37,9 @@ HARDNESS = 7.0e9
 """Of hardened rings, Pa: about 700 HV, chosen here."""
 SLIP = 0.01
 """Share by which the cage of a bearing that is loaded lags at most."""
+FASTEST = 1e6
+"""Speed times pitch diameter, mm/min, beyond which only spindles, turbines and pumps of their own kind run:
+bearings that are listed for general use run slower."""
 PARTS = ("outer", "inner", "ball")
 """What can be wavy or faulty."""
 STEEL = MATERIALS["steel"]
@@ -244,6 +247,11 @@ class BallBearing:
         """Q/δ^1.5 of both contacts of a ball in series, N/m^1.5."""
         both = (self.inner_contact, self.outer_contact)
         return float(sum(each.stiffness_constant ** (-2.0 / 3.0) for each in both) ** -1.5)
+
+    @property
+    def fastest(self) -> float:
+        """Speed, turns per second, beyond which hardly any bearing of this size runs (`FASTEST`), Hz."""
+        return FASTEST / (60.0 * 1e3 * self.pitch_diameter)
 
     @property
     def ball_mass(self) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning
-from asperity.structures.ball_bearing import STATIC_PRESSURE, BallBearing
+from asperity.structures.ball_bearing import FASTEST, STATIC_PRESSURE, BallBearing
 from asperity.written_numbers import rounded
 
 STEPS = 24
@@ -331,14 +331,10 @@ def _pressed_unloaded(found: LoadedBearing) -> dict[str, list[tuple[float, str]]
     return {"inner": [looser], "outer": [looser, slower]}
 
 
-FASTEST = 2e6
-"""Speed times pitch diameter, mm/min, beyond which only a few spindles and pumps run."""
-
-
 def doubt_speed(bearing: BallBearing, speed: float) -> None:
     """Warn of a speed, turns per second, at which hardly any ball bearing runs."""
-    factor = 60.0 * speed * 1e3 * bearing.pitch_diameter
-    if factor > FASTEST:
+    if speed > bearing.fastest:
+        factor = 60.0 * speed * 1e3 * bearing.pitch_diameter
         OutOfRangeWarning.warn(
             f"speed = {rounded(speed, 5)} Hz is {rounded(60.0 * speed, 6)} 1/min, {rounded(factor, 2)} "
             f"mm/min by the pitch diameter: few ball bearings run beyond {rounded(FASTEST)}. "
