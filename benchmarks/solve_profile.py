@@ -82,7 +82,7 @@ def repeated(start: Any, residual: Any, times: int, c: Any, taps: Any, b: Any, t
     for _ in range(times):
         for q in range(len(start)):
             b.pressure[q], b.residual[q] = start[q], residual[q]
-        result = cg.solve(c, taps, b, task, 0)
+        result = cg.solve(c, taps, b, task, 0, None)
     return result
 
 

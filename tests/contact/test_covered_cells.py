@@ -37,12 +37,12 @@ def stiffness_error(half_space, gap, count=25):
 
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_the_stiffness_of_a_ball_follows_hertz_without_steps(offset):
-    for across, largest in ((6, 0.006), (9, 0.003)):
+    for across, largest in ((6, 0.005), (9, 0.002)):
         error, _ = stiffness_error(*ball_on_cells(across, offset))
         assert np.abs(error).max() < largest
     whole, _ = stiffness_error(*ball_on_cells(6, offset, cells="whole"))
     error, _ = stiffness_error(*ball_on_cells(6, offset))
-    assert whole.std() > 3.5 * error.std()
+    assert whole.std() > 5.0 * error.std()
 
 
 @pytest.mark.parametrize("ratio", [0.5, 2.0, 0.25])
@@ -52,7 +52,7 @@ def test_cells_that_are_not_square_follow_hertz_too(ratio):
     assert np.abs(force).max() < 0.004
 
 
-def test_force_and_area_are_of_second_order():
+def test_the_force_is_of_second_order_and_the_area_close():
     cells, errors = (8, 12, 18), []
     for across in cells:
         contacts = []
@@ -62,10 +62,9 @@ def test_force_and_area_are_of_second_order():
         force = [c.force / (4.0 / 3.0 * c.approach**1.5) - 1.0 for c in contacts]
         area = [c.area / (math.pi * c.approach) - 1.0 for c in contacts]
         errors.append([np.sqrt(np.mean(np.square(each))) for each in (force, area)])
-    orders = -np.polyfit(np.log(cells), np.log(errors), 1)[0]
-    assert orders[0] > 1.8
-    assert orders[1] > 1.8
-    assert max(errors[0]) < 0.002
+    sides = 1.0 / np.square(cells)
+    assert np.all(np.transpose(errors)[0] < 0.01 * sides)
+    assert max(error[1] for error in errors) < 5e-4
 
 
 def test_a_load_and_its_approach_belong_together():
@@ -145,14 +144,45 @@ def test_no_step_in_the_force_as_cells_enter():
     assert kinks["covered"] < 0.25 * kinks["whole"]
 
 
-def test_a_straight_rim_along_an_axis_leaves_the_gap_of_the_closed_form():
-    """A cell hardly covered keeps the gap half a cell beyond the rim, (4/3)(1/2)^(3/2), by a step of 2/3.
+def test_forces_of_six_cells_are_those_of_hertz_to_a_thousandth():
+    for offset in OFFSETS:
+        _, force = stiffness_error(*ball_on_cells(6, offset), 13)
+        assert np.abs(force).max() < 1e-3
+        assert abs(force.mean()) < 2e-4
 
-    Constant pressures on cells displace a little more there than the pressure does: 0.09 in the same units.
-    """
-    gap, _ = rims.remaining_gap(0.0, 0.0)
-    assert gap == pytest.approx((4.0 / 3.0 * 0.5**1.5 + 0.0896) / (2.0 / 3.0), rel=0.01)
-    assert rims.remaining_gap(1.0, 0.0)[0] == rims.remaining_gap(1.0, 1.0)[0] == 0.0
+
+def test_a_mean_pressure_displaces_by_the_mean_of_what_the_pressure_displaces():
+    """Pressure exp(−r²/2) displaces by √(2π)/E* in the middle, with −√(2π)/E* as its Laplacian there."""
+    side, size = 0.5, 41
+    edges = side * (np.arange(size + 1) - 0.5 * size)
+    along = np.diff([math.sqrt(0.5 * math.pi) * math.erf(x / math.sqrt(2.0)) for x in edges]) / side
+    pressure = np.outer(along, along)
+    expected = math.sqrt(2.0 * math.pi) * (1.0 - side**2 / 24.0)
+    error = {
+        cells: HalfSpace((size, size), side, 1.0, cells=cells).displacement(pressure)[size // 2, size // 2]
+        / expected
+        - 1.0
+        for cells in ("covered", "whole")
+    }
+    assert abs(error["covered"]) < 5e-4
+    assert abs(error["whole"]) > 5e-3
+
+
+def test_a_scan_is_what_its_contacts_are_one_by_one():
+    half_space, gap = ball_on_cells(6, (0.3, 0.1))
+    n, m = len(gap) + 4, gap.shape[1]
+    surface = 0.01 * np.cos(np.add.outer(0.7 * np.arange(n), 0.4 * np.arange(m)))
+    surface -= surface.mean()
+    forces = half_space.scan(surface, gap - gap.min(), [0.8, 0.9, 1.0], stride=2, rtol=1e-8)
+    for position in range(3):
+        here = gap - gap.min() - surface[2 * position : 2 * position + len(gap)]
+        alone = half_space.solve(here, approach=0.9, rtol=1e-8).force
+        assert forces.values[1, position] == pytest.approx(alone, rel=1e-6)
+
+
+def test_nothing_is_left_of_the_gap_far_inside_a_rim():
+    for slant in (0.0, 0.3, 1.0):
+        assert rims.remaining_gap(rims.END, slant)[0] == pytest.approx(0.0, abs=1e-12)
 
 
 def on_a_device():

@@ -15,7 +15,7 @@ from asperity.errors import Outcome, UnconvergedWarning
 from asperity.kernels import fourier, projected_cg, rims, scanning
 from asperity.kernels.batched import apply_stencil, convolve_padded, padded_spectrum, unit_indentation
 from asperity.kernels.box import foundation_approach
-from asperity.kernels.influence import Influence, influence, influence_table, prepared
+from asperity.kernels.influence import Influence, influence, influence_table, means_table, prepared
 from asperity.progress import Progress
 from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
@@ -62,9 +62,10 @@ class HalfSpace:
     gradients on the bounding box of the overlap, outside of which no pressure can act.
 
     Where cells are whole, each that enters makes the stiffness jump: that of a smooth ball is up to 4 % off
-    with 6 cells in the half-width of the contact. Covered cells keep the gap at their centre that a rim
-    leaves there, which follows from the pressure beside them (`kernels.rims`): 0.6 %. What is solved then has
-    no energy of its own; given that gap it has, and each iteration takes it anew.
+    with 6 cells in the half-width of the contact. Covered cells keep the gap that a rim leaves in them, which
+    follows from the pressure beside them (`kernels.rims`): 0.4 %, and 0.2 % with 9 cells. What is solved then
+    has no energy of its own; given that gap it has, and each iteration takes it anew. Pressures and
+    displacements are means over cells there.
 
     Without end, bodies under a mean pressure would sink without limit, so a periodic displacement is counted
     from its mean: û(k) = 2 p̂(k)/(E* abs(k)) for each wave that the grid holds, zero for k = 0. An approach
@@ -115,10 +116,11 @@ class HalfSpace:
         if boundary == "periodic":
             table, self.lift = periodic.lifted_table(self.shape, self.spacing, self.modulus)
         else:
-            table, self.lift = influence_table(reach_x, reach_y, dx, dy) / scale, 0.0
+            make = influence_table if cells == "whole" else means_table
+            table, self.lift = make(reach_x, reach_y, dx, dy) / scale, 0.0
         taps = _unit_taps(dy / dx) * (scale / dx)
-        cell = np.array([dx, dy]) / self.modulus if cells == "covered" else np.zeros(2)
-        self._known = {dtype: influence(table, taps, cell, dtype) for dtype in (np.float64, np.float32)}
+        self._sides = (dx / self.modulus, dy / self.modulus) if cells == "covered" else None
+        self._known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
 
     @property
     def influence(self) -> Influence:
@@ -472,7 +474,8 @@ class HalfSpace:
     def _rims_of(self, pressure: Array) -> tuple[Array, Array]:
         """Derivatives of the gap at rims (3, nx, ny), m/Pa, and covered shares of cells (nx, ny)."""
         slopes, covered = np.zeros((3, *self.shape)), np.zeros(self.shape)
-        rims.rim_slopes(_array(pressure), *self.influence.rims, slopes, covered)
+        assert self._sides is not None
+        rims.rim_slopes(_array(pressure), *self._sides, slopes, covered)
         return slopes, covered
 
     def block(
@@ -495,7 +498,8 @@ class HalfSpace:
         known = self._known[np.float32 if single else np.float64]
         return scanning.Block(
             rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
-            scanning.room(known, *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
+            scanning.room(known, *shape, self._sides), np.empty(shape), np.empty(shape),
+            np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
             np.zeros(size), np.zeros(4, dtype=np.int64),
         )  # fmt: skip

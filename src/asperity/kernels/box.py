@@ -20,10 +20,6 @@ FAR = 1e30
 """Separation in the idle columns, m: no approach closes it, and single precision holds it."""
 
 
-RIM_FIELDS = 8
-"""Fields of a box that hold what is known of cells at rims."""
-
-
 class Box(NamedTuple):
     """Fields of a solution on a box, each of nx rows of `pitch` cells."""
 
@@ -41,7 +37,6 @@ class Box(NamedTuple):
     # at a given load, about the pressure that an approach adds on the free set, Pa/m
     unit: NDArray
     masked: NDArray  # residual on the free set, between REACH rows of zeros
-    rims: NDArray  # what is known of cells at rims, field after field, as `rims.Rims` names them
     work: NDArray  # room for convolutions
 
 
@@ -56,20 +51,19 @@ def _extent(nx: int, ny: int, lanes: int) -> tuple[int, int]:
 def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
     """Room, in numbers, that a box of nx × ny cells needs of which mx × my are convolved."""
     pitch, size = _extent(nx, ny, lanes)
-    return (10 + RIM_FIELDS) * size + 2 * REACH * pitch + workspace(mx, my, lanes)
+    return 10 * size + 2 * REACH * pitch + workspace(mx, my, lanes)
 
 
 @compiled(**CALLED)
 def empty_box(nx: int, ny: int, room: NDArray) -> Box:
     """Make a box without overlap and pressure, whose fields lie in `room`, as long as `box_room` says."""
     pitch, size = _extent(nx, ny, lanes(room))
-    masked, rims = 9 * size, 10 * size + 2 * REACH * pitch
-    end = rims + RIM_FIELDS * size
+    masked, end = 9 * size, 10 * size + 2 * REACH * pitch
     box = Box(
         nx, ny, pitch, room[:size], room[size : 2 * size], room[2 * size : 3 * size],
         room[3 * size : 4 * size], room[4 * size : 5 * size], room[5 * size : 6 * size],
-        room[6 * size : 7 * size], room[7 * size : 8 * size], room[8 * size : masked], room[masked:rims],
-        room[rims:end], room[end:],
+        room[6 * size : 7 * size], room[7 * size : 8 * size], room[8 * size : masked], room[masked:end],
+        room[end:],
     )  # fmt: skip
     for q in range(size):
         box.overlap[q], box.residual[q] = -FAR, FAR
@@ -77,21 +71,18 @@ def empty_box(nx: int, ny: int, room: NDArray) -> Box:
         box.pressure[q] = box.direction[q] = box.response[q] = 0.0
     for q in range(2 * REACH * pitch):  # what is behind the residual and before it
         box.masked[q if q < REACH * pitch else size + q] = 0.0
-    for q in range(end - rims):
-        box.rims[q] = 0.0
     return box
 
 
 @compiled(**INNER)
 def cut(outer: Box, row: int, column: int, b: Box) -> None:
-    """Copy what is known of a part of a box, from a row and a column on, to an empty box."""
+    """Copy overlap, pressure and residual of a part of a box, from a row and a column on, to an empty box."""
     for i in range(b.nx):
         here, there = i * b.pitch, (row + i) * outer.pitch + column
         for j in range(b.ny):
             b.overlap[here + j] = outer.overlap[there + j]
             b.pressure[here + j] = outer.pressure[there + j]
             b.residual[here + j] = outer.residual[there + j]
-            b.rims[here + j] = outer.rims[there + j]  # the first field: the gap that is in the residual
 
 
 @compiled(**INNER)

@@ -52,6 +52,28 @@ def influence_table(nx: int, ny: int, dx: float, dy: float) -> NDArray:
     return table
 
 
+ALIAS = 0.75 * 1.2020569031595942 / np.pi**3
+"""Influence of cells on waves of length λ beyond 2/|k|, per (side of a cell)³ k²: 3 ζ(3)/(4 π³)."""
+
+
+def means_table(nx: int, ny: int, dx: float, dy: float) -> NDArray:
+    """Influence as in `influence_table`, of the mean pressure of a cell on the mean displacement of another.
+
+    Of waves that are long against the cells, to the fourth order: a wave of pressure p̂ displaces by
+    2 p̂/(E* |k|). Love's coefficients answer at the centre to a pressure that is constant on cells, which
+    takes k²h²/12 off, and what waves have in common with others on the grid adds ALIAS h³k².
+    """
+    table = influence_table(nx + 1, ny + 1, dx, dy)
+    whole = np.pad(table, ((1, 0), (1, 0)), mode="reflect")  # even in both separations
+    middle = whole[1:-1, 1:-1]
+    along, across = (whole[2:, 1:-1] + whole[:-2, 1:-1], whole[1:-1, 2:] + whole[1:-1, :-2])
+    means = middle - (along + across - 4.0 * middle) / 24.0
+    means[0, 0] -= 2.0 * np.pi * ALIAS * (dx + dy)
+    means[1, 0] += np.pi * ALIAS * dx
+    means[0, 1] += np.pi * ALIAS * dy
+    return means
+
+
 class Convolution(NamedTuple):
     """A kernel on boxes of up to (mx, my) cells, ready to be convolved with."""
 
@@ -219,11 +241,9 @@ class Influence(NamedTuple):
     # (k, k), where the spectrum on UNIT i × UNIT j cells begins; −1 if it is not prepared
     places: NDArray
     spectra: NDArray  # from `spectrum`, one after the other
-    # (2,), sides of a cell over E*, m/Pa, where cells are covered in part; zeros where they are whole
-    rims: NDArray
 
 
-def influence(table: NDArray, taps: NDArray, rims: NDArray, dtype: DTypeLike = np.float64) -> Influence:
+def influence(table: NDArray, taps: NDArray, dtype: DTypeLike = np.float64) -> Influence:
     """Make the influence of a half-space, without any convolution prepared.
 
     Table and taps as in `Influence`, the table's sides from `fourier.smooth_length`. All but the table has
@@ -245,7 +265,7 @@ def influence(table: NDArray, taps: NDArray, rims: NDArray, dtype: DTypeLike = n
     taps, known_roots, turns, spectra = (a.astype(dtype) for a in given)
     places = np.full((count, count), -1)
     return Influence(
-        table, softest, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra, rims
+        table, softest, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra
     )
 
 

@@ -9,7 +9,7 @@ from asperity.kernels.at_load import balance_load, find_level, mark_free, projec
 from asperity.kernels.box import REACH, Box
 from asperity.kernels.influence import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
-from asperity.kernels.rims import bend, set_rims, soften, weigh, weigh_step
+from asperity.kernels.rims import Rims, bend, hold_back, set_rims, weigh, weigh_step
 
 
 def inverse_stencil(table: NDArray) -> NDArray:
@@ -82,8 +82,6 @@ class Task(NamedTuple):
     # no pressure of unit norm displaces by more, m/Pa: bounds the step of the projected gradient
     softest: float
     max_iterations: int  # iterations allowed
-    along: float  # side of a cell over E*, m/Pa, where cells are covered in part; zero where they are whole
-    across: float  # likewise
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -145,13 +143,16 @@ def _project(b: Box, length: float, hardness: float) -> tuple[float, float]:
 
 
 @compiled(**INNER)
-def _aim(b: Box, aim: int, beta: float, length: float, level: float, task: Task) -> tuple[float, float]:
+def _aim(
+    b: Box, aim: int, beta: float, length: float, level: float, task: Task, rims: Rims | None, iteration: int
+) -> tuple[float, float]:
     """Set direction and step; return the work of the step and how many cells the bounds held back."""
     if aim == STEEPEST:
         _turn_to_gradient(b, level)
         length = 1.0 / task.softest
     else:
         _turn(b, beta if aim == CONJUGATE else 0.0)
+    hold_back(b, rims, length, iteration)
     if task.total < 0.0:
         return _project(b, length, task.hardness)
     work, clipped, _found = project_at_load(b, length, level, task.hardness, task.total)
@@ -202,9 +203,7 @@ def true_residual(c: Convolution, b: Box, task: Task) -> None:
     if task.compliance > 0.0:
         _yield(b.pressure, task.compliance, b.response)
     for q in range(len(b.residual)):
-        b.residual[q] = b.response[q] - b.overlap[q] - b.rims[q]
-    if task.along > 0.0:
-        set_rims(b, task.along, task.across)
+        b.residual[q] = b.response[q] - b.overlap[q]
 
 
 @compiled(**CALLED)
@@ -231,40 +230,42 @@ def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
 
 
 @compiled(**CALLED)
-def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple[int, bool]:
+def solve(
+    c: Convolution, taps: NDArray, b: Box, task: Task, done: int, rims: Rims | None
+) -> tuple[int, bool]:
     """Solve the task on a box, from a residual and a pressure that is within the bounds and carries the load.
 
-    Kernel in m/Pa, taps of `inverse_stencil` in Pa/m. Returns the iterations in all, with those done before,
-    and whether there is a step that lowers the energy: if not, rounding allows no more.
+    Kernel in m/Pa, taps of `inverse_stencil` in Pa/m; room for rims where cells are covered in part. Returns
+    the iterations in all, with those done before, and whether there is a step that lowers the energy: if not,
+    rounding allows no more.
     """
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
-    covered = task.along > 0.0
     margin = rounding(cap, task.total)
     rho, length, iteration, moving, yielded = 0.0, 1.0, done, True, 0.0
     for q in range(len(b.pressure)):
         yielded += task.compliance * b.pressure[q]
-    if covered:
-        set_rims(b, task.along, task.across)
     while iteration < task.max_iterations:
+        set_rims(b, rims, level, cap, taps[0], iteration - done)
         if at_load:
             level = find_level(b, cap)
         if not _free(b.pressure, b, cap, level, task.rtol * (task.largest + level - yielded)):
             break
         iteration += 1
         before = rho
-        if covered:
-            soften(b, level, taps[0])
+        if rims is not None:
+            weigh(b, rims)
         rho, change, added = precondition(b, taps, b.z)
-        if covered:
-            moved, added = weigh_step(b, b.z)
-            change = rho - moved
+        if rims is not None:
+            moved, lost = weigh_step(b, rims, b.z)
+            change += moved
+            added -= lost
         if at_load:
             mark_free(b, cap, level)
-            if covered:
-                weigh(b)
+            if rims is not None:
+                weigh(b, rims)
             units = precondition(b, taps, b.unit)[2]
-            if covered:
-                units = weigh_step(b, b.unit)[1]
+            if rims is not None:
+                units -= weigh_step(b, rims, b.unit)[1]
                 mark_free(b, cap, level)
             rho, change = balance_load(b, added / units, level)
         beta = max(0.0, change / before) if before > 0.0 else 0.0
@@ -273,7 +274,7 @@ def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple
             aim = STEEPEST
         moving, work, clipped = False, 0.0, 0.0
         while not moving and aim <= STEEPEST:
-            work, clipped = _aim(b, aim, beta, length, level, task)
+            work, clipped = _aim(b, aim, beta, length, level, task, rims, iteration - done - 1)
             moving = work < 0.0
             aim += not moving
         if not moving:
@@ -281,8 +282,8 @@ def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple
         convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)
         further = _yield(b.step, task.compliance, b.response) if task.compliance > 0.0 else 0.0
         curvature = _dot(b.step, b.response)
-        if covered:
-            curvature += bend(b)
+        if rims is not None:
+            curvature += bend(b, rims)
         moving = curvature > 0.0
         if not moving:
             break
@@ -296,7 +297,5 @@ def solve(c: Convolution, taps: NDArray, b: Box, task: Task, done: int) -> tuple
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
         _advance(b, share, cap, margin)
-        if covered:
-            set_rims(b, task.along, task.across)
         yielded += share * further
     return iteration, moving

@@ -1,217 +1,326 @@
-"""Cells at the rim of a contact, which are covered in part: the gap that is left at their centre.
+"""Cells at the rim of a contact, which are covered in part: the gap that is left in them.
 
 Where a contact ends, its pressure is A √s at a distance s inside the rim, and the deformed surfaces part by
 (4/3)(A/E*) (−s)^(3/2) outside of it. A cell that the rim crosses has the mean of that pressure over all of
-it, and keeps a gap at its centre, where constant pressures on cells displace a little else than that pressure
-does. Both follow from how far the rim has come, as does the step S = √(Δₓp² + Δᵧp²) of the pressure between
-the neighbours on either side of the cell. So the gap that is left is a function of p/S alone, times S and
-the width of the cell normal to the rim, over E*: it falls from 0.84 (rim along an axis; 2.74 along a
-diagonal) to nothing as the rim crosses the cell. Contacts whose cells keep this gap grow evenly with the
+it, and keeps a gap, its own mean over the cell and what constant pressures on cells displace otherwise than
+that pressure does. Both follow from how far the rim has come and how it lies on the grid, as do the pressure
+p of the cell and the differences Δₓp, Δᵧp between its neighbours on either side. So the gap that is left is a
+function of p/S and of the slant, times S = √(Δₓp² + Δᵧp²) and the width of the cell normal to the rim, over
+E*: it falls to nothing as the rim crosses the cell. Contacts whose cells keep this gap grow evenly with the
 approach; where cells are all or nothing, each that enters makes the stiffness jump.
 
-The two curves are those of a straight rim along an axis of the grid and along the diagonal of its cells,
-computed by ``benchmarks/cell_rims.py``; between the directions the gap is interpolated. On cells that are not
-square, directions count on the grid, and the width is that of a cell along the normal.
+The curves are those of Hertz's contacts, whose cells are known: ``benchmarks/cell_rims.py`` computes them. On
+cells that are not square, directions count on the grid, and the width is that of a cell along the normal.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
-from asperity.kernels.box import Box
-from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.box import FAR, Box
+from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
-KNOTS = 33
-"""Values of a curve, even in √(p/S) from 0 to 1."""
-ALONG_AXIS = np.array([
-    0.84482, 0.81154, 0.76436, 0.71188, 0.65694, 0.60107, 0.54546, 0.49076, 0.43762, 0.38652, 0.33786,
-    0.29198, 0.24915, 0.20962, 0.17361, 0.14121, 0.11294, 0.08858, 0.06834, 0.05238, 0.04083, 0.03375,
-    0.03127, 0.03127, 0.03127, 0.03127, 0.02747, 0.01970, 0.01246, 0.00638, 0.00176, 0.00000, 0.00000,
+KNOTS, SLANTS = 33, 7
+"""Values of a curve, even in √(p/S) from 0 to END, and curves, even in the root of the slant.
+
+The slant is the smaller of the differences over the larger: 0 for a rim along an axis of the grid, 1 along
+the diagonal of its cells.
+"""
+END = 1.28
+"""Largest √(p/S) of a cell at a rim: beyond it nothing is left."""
+PER_UNIT = (KNOTS - 1) / END
+"""Knots per unit of √(p/S)."""
+LEFT = np.array([
+    [0.9031, 0.7661, 0.6979, 0.6233, 0.5555, 0.4835, 0.4191, 0.3534, 0.2927, 0.2363, 0.1859, 0.1410,
+  0.1021, 0.0694, 0.0433, 0.0242, 0.0117, 0.0068, 0.0093, 0.0180, 0.0166, 0.0107, 0.0030, -0.0036,
+  -0.0085, -0.0120, -0.0136, -0.0133, -0.0111, -0.0072, -0.0032, 0.0008, 0.0000],
+ [1.2310, 0.9042, 0.7426, 0.6254, 0.5580, 0.4860, 0.4178, 0.3527, 0.2927, 0.2369, 0.1860, 0.1409,
+  0.1020, 0.0693, 0.0433, 0.0243, 0.0118, 0.0067, 0.0091, 0.0180, 0.0167, 0.0108, 0.0031, -0.0035,
+  -0.0083, -0.0120, -0.0136, -0.0132, -0.0110, -0.0071, -0.0032, 0.0007, 0.0000],
+ [1.6639, 1.1829, 0.9101, 0.7097, 0.5863, 0.4933, 0.4184, 0.3518, 0.2912, 0.2353, 0.1848, 0.1397,
+  0.1009, 0.0684, 0.0426, 0.0237, 0.0118, 0.0070, 0.0102, 0.0175, 0.0154, 0.0098, 0.0022, -0.0041,
+  -0.0085, -0.0114, -0.0125, -0.0118, -0.0088, -0.0051, -0.0020, 0.0008, 0.0000],
+ [2.1576, 1.5375, 1.1605, 0.8761, 0.6837, 0.5352, 0.4292, 0.3521, 0.2873, 0.2280, 0.1772, 0.1329,
+  0.0952, 0.0639, 0.0393, 0.0218, 0.0119, 0.0093, 0.0125, 0.0144, 0.0108, 0.0056, 0.0000, -0.0043,
+  -0.0072, -0.0080, -0.0078, -0.0069, -0.0051, -0.0033, -0.0017, -0.0006, 0.0000],
+ [2.5806, 1.8655, 1.4053, 1.0550, 0.8068, 0.6124, 0.4642, 0.3560, 0.2764, 0.2136, 0.1633, 0.1199,
+  0.0841, 0.0552, 0.0335, 0.0189, 0.0120, 0.0103, 0.0099, 0.0079, 0.0042, 0.0003, -0.0022, -0.0036,
+  -0.0044, -0.0046, -0.0044, -0.0041, -0.0039, -0.0036, -0.0031, -0.0023, 0.0000],
+ [2.8858, 2.0793, 1.5689, 1.1714, 0.8857, 0.6606, 0.4892, 0.3604, 0.2625, 0.1891, 0.1388, 0.0991,
+  0.0669, 0.0424, 0.0254, 0.0150, 0.0093, 0.0059, 0.0037, 0.0023, 0.0003, -0.0017, -0.0032,
+  -0.0042, -0.0045, -0.0045, -0.0042, -0.0038, -0.0033, -0.0030, -0.0026, -0.0021, 0.0000],
+ [2.9852, 2.1566, 1.6163, 1.2038, 0.9080, 0.6734, 0.4933, 0.3594, 0.2574, 0.1787, 0.1228, 0.0831,
+  0.0552, 0.0372, 0.0240, 0.0145, 0.0080, 0.0043, 0.0021, 0.0004, -0.0016, -0.0032, -0.0040,
+  -0.0044, -0.0045, -0.0041, -0.0035, -0.0029, -0.0022, -0.0018, -0.0015, -0.0015, 0.0000],
 ])  # fmt: skip
-"""Gap that is left, over S times the width of a cell and E*: rim along an axis of the grid."""
-ALONG_DIAGONAL = np.array([
-    2.74388, 2.05257, 1.62620, 1.30081, 1.04323, 0.83609, 0.66828, 0.53195, 0.42110, 0.33120, 0.25868,
-    0.20053, 0.15449, 0.11864, 0.09150, 0.07097, 0.05476, 0.04188, 0.03181, 0.02416, 0.01856, 0.01462,
-    0.01193, 0.01003, 0.00850, 0.00696, 0.00535, 0.00390, 0.00265, 0.00161, 0.00076, 0.00007, 0.00000,
+"""Gap that is left, over S times the width of a cell and E*: slant after slant."""
+COVERED = np.array([
+    [0.0000, 0.0114, 0.0354, 0.0617, 0.0918, 0.1266, 0.1659, 0.2081, 0.2543, 0.3045, 0.3584, 0.4164,
+  0.4783, 0.5440, 0.6138, 0.6874, 0.7665, 0.8470, 0.9384, 0.9967, 0.9979, 1.0000, 1.0000, 1.0000,
+  0.9997, 0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0078, 0.0282, 0.0573, 0.0918, 0.1270, 0.1656, 0.2081, 0.2543, 0.3044, 0.3585, 0.4165,
+  0.4785, 0.5440, 0.6140, 0.6869, 0.7666, 0.8471, 0.9383, 0.9970, 0.9965, 1.0000, 1.0000, 1.0000,
+  0.9997, 1.0000, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0062, 0.0216, 0.0456, 0.0803, 0.1208, 0.1631, 0.2068, 0.2541, 0.3053, 0.3595, 0.4176,
+  0.4800, 0.5457, 0.6162, 0.6897, 0.7702, 0.8491, 0.9411, 0.9957, 0.9973, 1.0000, 1.0000, 1.0000,
+  0.9996, 0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0051, 0.0182, 0.0388, 0.0670, 0.1039, 0.1494, 0.2008, 0.2529, 0.3066, 0.3633, 0.4234,
+  0.4876, 0.5550, 0.6265, 0.7019, 0.7821, 0.8695, 0.9543, 0.9939, 0.9987, 1.0000, 1.0000, 1.0000,
+  0.9997, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0045, 0.0159, 0.0341, 0.0596, 0.0931, 0.1351, 0.1867, 0.2462, 0.3080, 0.3710, 0.4369,
+  0.5063, 0.5777, 0.6528, 0.7336, 0.8240, 0.9083, 0.9653, 0.9943, 0.9994, 1.0000, 1.0000, 1.0000,
+  0.9998, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0041, 0.0146, 0.0317, 0.0560, 0.0886, 0.1302, 0.1808, 0.2407, 0.3102, 0.3864, 0.4631,
+  0.5421, 0.6250, 0.7119, 0.7985, 0.8755, 0.9345, 0.9755, 0.9962, 0.9997, 1.0000, 1.0000, 1.0000,
+  0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
+ [0.0000, 0.0040, 0.0143, 0.0311, 0.0552, 0.0876, 0.1292, 0.1802, 0.2409, 0.3109, 0.3919, 0.4824,
+  0.5759, 0.6683, 0.7536, 0.8282, 0.8922, 0.9442, 0.9795, 0.9969, 0.9997, 1.0000, 1.0000, 1.0000,
+  0.9999, 0.9999, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000, 1.0000],
 ])  # fmt: skip
-"""Likewise, rim along the diagonal of the cells."""
-COVERED_ALONG_AXIS = np.array([
-    0.00000, 0.00993, 0.02537, 0.04423, 0.06601, 0.09034, 0.11716, 0.14646, 0.17820, 0.21234, 0.24889,
-    0.28786, 0.32928, 0.37315, 0.41950, 0.46836, 0.51975, 0.57368, 0.63020, 0.68931, 0.75104, 0.81541,
-    0.88244, 0.95214, 0.99990, 1.00000, 1.00000, 1.00000, 1.00000, 1.00000, 1.00000, 1.00000, 1.00000,
-])  # fmt: skip
-"""Share of a cell inside the rim: rim along an axis of the grid."""
-COVERED_ALONG_DIAGONAL = np.array([
-    0.00000, 0.00297, 0.01009, 0.02132, 0.03702, 0.05756, 0.08328, 0.11451, 0.15152, 0.19441, 0.24321,
-    0.29789, 0.35823, 0.42397, 0.49491, 0.56664, 0.63591, 0.70268, 0.76613, 0.82494, 0.87752, 0.92220,
-    0.95744, 0.98221, 0.99624, 0.99999, 1.00000, 1.00000, 1.00000, 1.00000, 1.00000, 1.00000, 1.00000,
-])  # fmt: skip
-"""Likewise, rim along the diagonal of the cells."""
+"""Share of a cell inside the rim, likewise."""
 LEAST_SLOPE = 0.02
 """Slope of a curve, at least, by which the pressure that a residual asks for is estimated."""
+LEVEL = 0.8
+"""Ratio √(p/S) from which on curves are nearly level."""
 TOGETHER = 1e-4
 """Difference in √(p/S) below which a slope stands for a difference quotient."""
+STRIDE, CALM = 0.4, 30
+"""Largest change of √(p/S) in one step, from as many iterations on; it becomes smaller, as one over them.
+
+What goes back and forth comes to rest.
+"""
 SHARED = 0.5
 """Share of what a cell yields more that a preconditioner takes: its neighbours give way, too."""
 
 
-def _cubics(values: NDArray) -> NDArray:
-    """Coefficients (KNOTS − 1, 4) of cubics between knots that keep a falling curve falling.
+def cubics(values: NDArray) -> NDArray:
+    """Coefficients (curves, KNOTS − 1, 4) of splines through values, level at the last."""
+    knots = values.shape[1]
+    matrix = 4.0 * np.eye(knots) + np.eye(knots, k=1) + np.eye(knots, k=-1)
+    matrix[0, 0], matrix[-1, -2] = 2.0, 0.0
+    target = np.zeros_like(values)
+    target[:, 0] = 3.0 * (values[:, 1] - values[:, 0])
+    target[:, 1:-1] = 3.0 * (values[:, 2:] - values[:, :-2])
+    slopes = np.linalg.solve(matrix, target.T).T
+    low, high, step = slopes[:, :-1], slopes[:, 1:], np.diff(values)
+    return np.stack([values[:, :-1], low, 3.0 * step - 2.0 * low - high, low + high - 2.0 * step], axis=2)
 
-    Slopes are harmonic means of those on both sides: F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput.
-    5 (1984) 300.
-    """
-    step = np.diff(values)
-    before, after = step[:-1], step[1:]
-    both = np.where(before + after == 0.0, 1.0, before + after)
-    slopes = np.concatenate([step[:1], 2.0 * before * after / both, step[-1:]])
-    low, high = slopes[:-1], slopes[1:]
-    return np.stack([values[:-1], low, 3.0 * step - 2.0 * low - high, low + high - 2.0 * step], axis=1)
 
-
-_CURVES = np.concatenate([_cubics(ALONG_AXIS), _cubics(ALONG_DIAGONAL) - _cubics(ALONG_AXIS)], axis=1)
+_LEFT, _COVERED = cubics(LEFT), cubics(COVERED)
 
 
 @compiled(**INNER)
-def remaining_gap(ratio: float, slant: float) -> tuple[float, float]:
-    """Find the gap that is left at a ratio √(p/S) from 0 to 1, and its derivative.
-
-    The slant of the rim is from 0, along an axis of the grid, to 1, along the diagonal of its cells.
-    """
-    place = ratio * (KNOTS - 1)
+def between_curves(curves: NDArray, ratio: float, slant: float) -> tuple[float, float, float]:
+    """Find a value of curves, and its derivatives by the ratio √(p/S), from 0 to END, and by the slant."""
+    place = ratio * PER_UNIT
     k = min(int(place), KNOTS - 2)
     t = place - k
-    a = _CURVES[k, 0] + slant * _CURVES[k, 4]
-    b = _CURVES[k, 1] + slant * _CURVES[k, 5]
-    c = _CURVES[k, 2] + slant * _CURVES[k, 6]
-    d = _CURVES[k, 3] + slant * _CURVES[k, 7]
-    return a + t * (b + t * (c + t * d)), (b + t * (2.0 * c + t * 3.0 * d)) * (KNOTS - 1)
+    j = min(int(np.sqrt(slant) * (SLANTS - 1)), SLANTS - 2)
+    per_slant = (SLANTS - 1) ** 2 / (2.0 * j + 1.0)
+    share = (slant - (j / (SLANTS - 1)) ** 2) * per_slant
+    a, b, c, d = curves[j, k, 0], curves[j, k, 1], curves[j, k, 2], curves[j, k, 3]
+    i = j + 1
+    one = a + t * (b + t * (c + t * d))
+    other = curves[i, k, 0] + t * (curves[i, k, 1] + t * (curves[i, k, 2] + t * curves[i, k, 3]))
+    slope = b + t * (2.0 * c + t * 3.0 * d)
+    beside = curves[i, k, 1] + t * (2.0 * curves[i, k, 2] + t * 3.0 * curves[i, k, 3])
+    turned = other - one
+    return one + share * turned, (slope + share * (beside - slope)) * PER_UNIT, turned * per_slant
+
+
+@compiled(**INNER)
+def remaining_gap(ratio: float, slant: float) -> tuple[float, float, float]:
+    """Find the gap that is left at a ratio √(p/S), over S times the width and E*, and its derivatives."""
+    return between_curves(_LEFT, ratio, slant)
 
 
 class Rims(NamedTuple):
-    """Fields of the cells of a box that are at rims."""
+    """Cells of a box that are at rims, one after the other, and how their gap changes with a step.
 
-    gap: NDArray  # that is left at their centres, m, zero elsewhere
-    scale: NDArray  # S times the width of a cell over E*, m; zero elsewhere
-    step: NDArray  # S, Pa
-    ratio: NDArray  # √(p/S)
-    slant: NDArray  # of the rim: 0 along an axis of the grid, 1 along the diagonal of its cells
-    slope: NDArray  # of the gap over the ratio, in units of the scale
-    softness: NDArray  # how much more a cell yields than others, m/Pa; zero elsewhere
-    weight: NDArray  # of a cell where steps are preconditioned; one elsewhere
+    For contacts of whole cells None stands in place of this, and nothing of this is compiled.
+    """
+
+    along: float  # side of a cell over E*, m/Pa
+    across: float  # likewise
+    number: NDArray  # (1,), number of cells at rims
+    cell: NDArray  # their places in the box
+    above: NDArray  # places of the cells before them, along; idle ones where there are none
+    below: NDArray  # places of those after them
+    gap: NDArray  # that is left in them, and off the residual, m
+    own: NDArray  # its difference quotient by the pressure of the cell, m/Pa, not positive
+    low: NDArray  # pressure to which one step may take them, Pa
+    high: NDArray  # likewise
+    weight: NDArray  # of the cell where steps are preconditioned; one for cells that are none at rims
+
+
+def rims(along: float, across: float, count: int, dtype: DTypeLike) -> Rims:
+    """Make room for what is known of the rims among so many cells, with sides over E*, m/Pa."""
+    places = np.zeros((3, count), dtype=np.int64)
+    fields: NDArray = np.zeros((5, count), dtype=dtype)
+    return Rims(along, across, np.zeros(1, dtype=np.int64), *places, *fields)
 
 
 @compiled(**INNER)
-def rims_of(b: Box) -> Rims:
-    """Fields of a box's cells at rims."""
-    n = len(b.pressure)
-    return Rims(
-        b.rims[:n], b.rims[n : 2 * n], b.rims[2 * n : 3 * n], b.rims[3 * n : 4 * n], b.rims[4 * n : 5 * n],
-        b.rims[5 * n : 6 * n], b.rims[6 * n : 7 * n], b.rims[7 * n : 8 * n],
-    )  # fmt: skip
+def cells_beside(rims: Rims | None) -> int:
+    """Cells beside the overlap that may be in contact: one that overlaps in part may not in the mean."""
+    return 0 if rims is None else 1
 
 
-@compiled(**CALLED)
-def set_rims(b: Box, along: float, across: float) -> None:
-    """Set the gap that cells at rims keep, m, and what it depends on, from the pressure.
-
-    The residual is less by it; what was taken off before is given back. `along` and `across` are the sides of
-    a cell over E*, m/Pa.
-    """
-    rims = rims_of(b)
-    x_share, y_share = 1.0 / along**2, 1.0 / across**2
+@compiled(**INNER)
+def _find_rims(b: Box, rims: Rims) -> int:
+    """List the cells whose pressure is less than the step between their neighbours."""
+    found, p = 0, b.pressure
     for i in range(b.nx):
-        above, below = (i - 1) * b.pitch, (i + 1) * b.pitch
-        for j in range(b.pitch):
-            q = i * b.pitch + j
-            p = b.pressure[q]
-            x = (b.pressure[below + j] if i + 1 < b.nx else 0.0) - (b.pressure[above + j] if i > 0 else 0.0)
-            y = (b.pressure[q + 1] if j + 1 < b.ny else 0.0) - (b.pressure[q - 1] if j > 0 else 0.0)
-            x, y = x * x, y * y
-            squares = x + y
-            gap = 0.0
-            if j < b.ny and p * p < squares:
-                step = np.sqrt(squares)
-                ratio = np.sqrt(p / step)
-                slant = 4.0 * x * y / (squares * squares)
-                scale = squares / np.sqrt(x * x_share + y * y_share)
-                share, slope = remaining_gap(ratio, slant)
-                gap = scale * share
-                rims.scale[q], rims.step[q], rims.ratio[q] = scale, step, ratio
-                rims.slant[q], rims.slope[q] = slant, slope
-            else:
-                rims.scale[q] = rims.softness[q] = 0.0
-                rims.weight[q] = 1.0
-            b.residual[q] += rims.gap[q] - gap
-            rims.gap[q] = gap
-
-
-@compiled(**CALLED)
-def soften(b: Box, level: float, stiffness: float) -> None:
-    """Set how much more the cells at rims yield, m/Pa, and weigh what is masked by that.
-
-    The gap at a rim falls with the pressure, the steeper the less there is: what counts is the difference
-    quotient up to the pressure that would meet the residual above a level, m, if no other cell changed its
-    own. The stiffness, Pa/m, is that of a cell among others.
-    """
-    rims = rims_of(b)
-    margin = (len(b.masked) - len(b.residual)) // 2
-    for q in range(len(b.residual)):
-        scale = rims.scale[q]
-        if scale > 0.0:
-            masked, more, weight = b.masked[margin + q], 0.0, 1.0
-            if masked != 0.0:
-                more = _softness(rims, q, (b.residual[q] - level) / scale, stiffness)
-                weight = 1.0 / np.sqrt(1.0 + SHARED * more * stiffness)
-            rims.softness[q], rims.weight[q] = more, weight
-            b.masked[margin + q] = masked * weight
+        first = i * b.pitch
+        idle = first + b.ny  # no pressure acts there
+        above = first - b.pitch if i > 0 else -1
+        below = first + b.pitch if i + 1 < b.nx else -1
+        for j in range(b.ny):
+            q = first + j
+            up, down = above + j if above >= 0 else idle, below + j if below >= 0 else idle
+            x, y = p[down] - p[up], p[q + 1] - p[q - 1]
+            if p[q] * p[q] < END**4 * (x * x + y * y):
+                rims.cell[found], rims.above[found], rims.below[found] = q, up, down
+                found += 1
+    return found
 
 
 @compiled(**INNER)
-def _softness(rims: Rims, q: int, unmet: float, stiffness: float) -> float:
-    """Difference quotient of the gap of a cell, m/Pa, up to where its residual, over the scale, is met."""
-    scale, step = float(rims.scale[q]), float(rims.step[q])
-    ratio, slant = float(rims.ratio[q]), float(rims.slant[q])
-    before, slope = rims.gap[q] / scale, min(float(rims.slope[q]), -LEAST_SLOPE)
-    own = step / (stiffness * scale)
-    other = min(max(ratio - unmet / (2.0 * own * ratio - slope), 0.0), 1.0)
-    share, there = remaining_gap(other, slant)
-    unmet += before - share + own * (other * other - ratio * ratio)
-    other = min(max(other - unmet / (2.0 * own * other - min(there, -LEAST_SLOPE)), 0.0), 1.0)
+def _at_rim(
+    p: float, x: float, y: float, x_share: float, y_share: float
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """Find what a cell at a rim keeps, from its pressure and the differences of its neighbours', Pa.
+
+    The shares are the inverse squares of the sides of a cell over E*. Returns the scale of the gap, m, and
+    the step S; ratio and slant; the gap over the scale, and its derivative by the ratio; derivatives of
+    the gap by the differences along and across, m/Pa.
+    """
+    squares = x * x + y * y
+    step, width = np.sqrt(squares), 1.0 / np.sqrt(x * x * x_share + y * y * y_share)
+    scale = squares * width
+    ratio = np.sqrt(p / step)
+    far, near = max(abs(x), abs(y)), min(abs(x), abs(y))
+    slant = near / far
+    left, slope, turn = remaining_gap(ratio, slant)
+    by_step = (2.0 * left - 0.5 * slope * ratio) * width
+    by_width = left * scale * width * width
+    by_near = turn * scale / far
+    by_far = -slant * by_near
+    wide = abs(x) >= abs(y)
+    along = x * (by_step - by_width * x_share) + np.copysign(1.0, x) * (by_far if wide else by_near)
+    across = y * (by_step - by_width * y_share) + np.copysign(1.0, y) * (by_near if wide else by_far)
+    return scale, step, ratio, slant, left, slope, along, across
+
+
+@compiled(**CALLED)
+def set_rims(
+    b: Box, rims: Rims | None, level: float, hardness: float, stiffness: float, iteration: int
+) -> None:
+    """Find the cells at rims, and take the gap that is left in them off the residual, from the pressure.
+
+    What was taken off before is given back. The gap falls with the pressure, the steeper the less there is:
+    what counts is the difference quotient up to the pressure that would meet the residual above a level, m,
+    if no other cell changed its own. The stiffness, Pa/m, is that of a cell among others.
+    """
+    if rims is not None:
+        give_back(b, rims)
+        rims.number[0] = _find_rims(b, rims)
+        stride = STRIDE * CALM / max(iteration, CALM)
+        x_share, y_share = 1.0 / rims.along**2, 1.0 / rims.across**2
+        for k in range(rims.number[0]):
+            q = rims.cell[k]
+            p = float(b.pressure[q])
+            x = float(b.pressure[rims.below[k]]) - float(b.pressure[rims.above[k]])
+            y = float(b.pressure[q + 1]) - float(b.pressure[q - 1])
+            scale, step, ratio, slant, left, slope, _along, _across = _at_rim(p, x, y, x_share, y_share)
+            gap = scale * left
+            b.residual[q] -= gap
+            unmet = float(b.residual[q]) - level
+            own, weight = 0.0, 1.0
+            free = (p > 0.0 or unmet < 0.0) and (p < hardness or unmet > 0.0)
+            if free and (ratio < LEVEL or unmet > LEAST_SLOPE * scale):
+                own = _quotient(ratio, slant, left, slope, unmet / scale, step / (stiffness * scale))
+                own *= scale / step
+                weight = 1.0 / np.sqrt(1.0 - SHARED * own * stiffness)
+            rims.gap[k], rims.own[k], rims.weight[k] = gap, own, weight
+            if iteration >= CALM:
+                rims.low[k] = step * max(ratio - stride, 0.0) ** 2
+                rims.high[k] = step * (ratio + stride) ** 2 if ratio + stride < END else FAR
+
+
+@compiled(**INNER)
+def _quotient(ratio: float, slant: float, share: float, slope: float, unmet: float, softness: float) -> float:
+    """Difference quotient of the gap by the pressure up to where a residual is met; neither is positive.
+
+    Gap and residual over the scale, pressure over the step, and the softness of a cell among others likewise.
+    """
+    other, there, its_slope = ratio, share, slope
+    for _ in range(2):
+        missing = unmet + softness * (other * other - ratio * ratio) - (there - share)
+        other -= missing / (2.0 * softness * other - min(its_slope, -LEAST_SLOPE))
+        other = min(max(other, 0.0), END)
+        there, its_slope, _turn = remaining_gap(other, slant)
     if abs(other - ratio) > TOGETHER:
-        slope = (remaining_gap(other, slant)[0] - before) / (other - ratio)
-    return max(-slope / max(ratio + other, TOGETHER**2) * scale / step, 0.0)
+        slope = (there - share) / (other - ratio)
+    return min(slope / max(ratio + other, TOGETHER**2), 0.0)
 
 
-@compiled(**INNER, **REASSOCIATE)
-def weigh(b: Box) -> None:
+@compiled(**INNER)
+def forget_rims(rims: Rims | None) -> None:
+    """Forget the cells at rims; what they keep is on the residual."""
+    if rims is not None:
+        rims.number[0] = 0
+
+
+@compiled(**INNER)
+def give_back(b: Box, rims: Rims | None) -> None:
+    """Give the gap that was taken off the residual back, and forget the cells at rims."""
+    if rims is not None:
+        for k in range(rims.number[0]):
+            b.residual[rims.cell[k]] += rims.gap[k]
+        forget_rims(rims)
+
+
+@compiled(**INNER)
+def weigh(b: Box, rims: Rims) -> None:
     """Weigh what is masked by how much softer cells at rims are than others."""
-    weight, margin = rims_of(b).weight, (len(b.masked) - len(b.residual)) // 2
-    target = b.masked[margin:]
-    for q in range(len(weight)):
-        target[q] *= weight[q]
+    margin = (len(b.masked) - len(b.residual)) // 2
+    for k in range(rims.number[0]):
+        b.masked[margin + rims.cell[k]] *= rims.weight[k]
 
 
-@compiled(**INNER, **REASSOCIATE)
-def weigh_step(b: Box, target: NDArray) -> tuple[float, float]:
-    """Weigh a preconditioned residual likewise; return previous·target and the sum of the target."""
-    weight, zero = rims_of(b).weight, b.z.dtype.type(0.0)
-    moved, total = zero, zero
-    for q in range(len(target)):
-        z = target[q] * weight[q]
-        target[q] = z
-        moved += b.previous[q] * z
-        total += z
+@compiled(**INNER)
+def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float]:
+    """Weigh a preconditioned residual likewise; return what previous·target and its sum lose."""
+    moved, total = 0.0, 0.0
+    for k in range(rims.number[0]):
+        q = rims.cell[k]
+        lost = target[q] * (1.0 - rims.weight[k])
+        target[q] -= lost
+        moved += b.previous[q] * lost
+        total += lost
     return moved, total
 
 
-@compiled(**INNER, **REASSOCIATE)
-def bend(b: Box) -> float:
-    """Add up step · softness · step: the curvature that cells at rims add to a step."""
-    softness, stored = rims_of(b).softness, b.z.dtype.type(0.0)
-    for q in range(len(b.step)):
-        stored += softness[q] * b.step[q] * b.step[q]
+@compiled(**INNER)
+def hold_back(b: Box, rims: Rims | None, length: float, iteration: int) -> None:
+    """Keep cells at rims from going farther than is known of their gap, at a length along the direction."""
+    if rims is not None:
+        for k in range(rims.number[0] if iteration >= CALM else 0):
+            q = rims.cell[k]
+            p = b.pressure[q]
+            least, most = (rims.low[k] - p) / length, (rims.high[k] - p) / length
+            b.direction[q] = min(max(b.direction[q], least), most)
+
+
+@compiled(**INNER)
+def bend(b: Box, rims: Rims) -> float:
+    """Add up −step · (quotient of the gap) · step: the curvature that cells at rims add to a step."""
+    stored = 0.0
+    for k in range(rims.number[0]):
+        step = b.step[rims.cell[k]]
+        stored -= rims.own[k] * step * step
     return stored
 
 
@@ -230,35 +339,8 @@ def rim_slopes(pressure: NDArray, along: float, across: float, slopes: NDArray, 
             covered[i, j] = 1.0 if p > 0.0 else 0.0
             x = (pressure[i + 1, j] if i + 1 < nx else 0.0) - (pressure[i - 1, j] if i > 0 else 0.0)
             y = (pressure[i, j + 1] if j + 1 < ny else 0.0) - (pressure[i, j - 1] if j > 0 else 0.0)
-            squares = x * x + y * y
-            if not (p > 0.0 and p * p < squares):
-                continue
-            step = np.sqrt(squares)
-            ratio = np.sqrt(p / step)
-            slant = 4.0 * (x * y / squares) ** 2
-            width = step / np.sqrt((x / along) ** 2 + (y / across) ** 2)
-            share, slope = remaining_gap(ratio, slant)
-            turned = remaining_gap(ratio, 1.0)[0] - remaining_gap(ratio, 0.0)[0]
-            slopes[0, i, j] = 0.5 * width * slope / ratio
-            for axis in range(2):
-                own, other, side = (x, y, along) if axis == 0 else (y, x, across)
-                grown = own / step  # of the step with the difference
-                wider = width * own / squares - width**3 * own / (squares * side * side)
-                turn = 8.0 * own * other * other * (other * other - own * own) / squares**3
-                slopes[1 + axis, i, j] = (
-                    (width * grown + wider * step) * share
-                    - 0.5 * width * slope * ratio * grown
-                    + width * step * turned * turn
-                )
-            covered[i, j] = _covered_share(ratio, slant)
-
-
-@compiled(**INNER)
-def _covered_share(ratio: float, slant: float) -> float:
-    """Share of a cell that is inside the rim, at a ratio from 0 to 1."""
-    place = ratio * (KNOTS - 1)
-    k = min(int(place), KNOTS - 2)
-    t = place - k
-    axis = COVERED_ALONG_AXIS[k] + t * (COVERED_ALONG_AXIS[k + 1] - COVERED_ALONG_AXIS[k])
-    diagonal = COVERED_ALONG_DIAGONAL[k] + t * (COVERED_ALONG_DIAGONAL[k + 1] - COVERED_ALONG_DIAGONAL[k])
-    return (1.0 - slant) * axis + slant * diagonal
+            if p > 0.0 and p * p < END**4 * (x * x + y * y):
+                found = _at_rim(p, x, y, 1.0 / along**2, 1.0 / across**2)
+                scale, step, ratio, slant, _left, slope, slopes[1, i, j], slopes[2, i, j] = found
+                slopes[0, i, j] = 0.5 * slope * scale / (step * ratio)
+                covered[i, j] = min(max(between_curves(_COVERED, ratio, slant)[0], 0.0), 1.0)

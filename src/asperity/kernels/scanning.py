@@ -11,6 +11,7 @@ from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
 from asperity.kernels.lanes import VECTOR_BYTES, lanes, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
 from asperity.kernels.projected_cg import Task, solve, survey, true_residual
+from asperity.kernels.rims import Rims, cells_beside, forget_rims, give_back, rims, set_rims
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
@@ -30,6 +31,7 @@ class Room(NamedTuple):
     lowest: NDArray  # (ny,), for the lowest gap of each column
     outer: NDArray  # for the box of the overlap
     inner: NDArray  # for the box of the contact
+    rims: Rims | None  # for cells that are covered in part; None where they are whole
 
 
 class Block(NamedTuple):
@@ -61,12 +63,13 @@ class Block(NamedTuple):
     counts: NDArray  # (4,), solutions, iterations, unconverged and truncated solutions so far
 
 
-def room(known: Influence, nx: int, ny: int) -> Room:
-    """Make room for solutions on a grid of nx × ny cells."""
+def room(known: Influence, nx: int, ny: int, sides: tuple[float, float] | None = None) -> Room:
+    """Make room for solutions on a grid of nx × ny cells, with sides over E*, m/Pa, if covered in part."""
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
     dtype = known.spectra.dtype
     size = box_room(nx, ny, mx, my, width(dtype))
-    return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype))
+    covered = None if sides is None else rims(*sides, nx * ny, dtype)
+    return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype), covered)
 
 
 class Solution(NamedTuple):
@@ -188,15 +191,15 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     """
     hardness, load, compliance = b.hardness, b.load, b.compliance
     largest, first, end, left, right = overlap_box(b.gap, approach, b.room.lowest)
-    if known.rims[0] > 0.0:  # a cell that overlaps in part need not do so at its centre
-        first, end = max(first - 1, 0), min(end + 1, b.gap.shape[0])
-        left, right = max(left - 1, 0), min(right + 1, b.gap.shape[1])
+    forget_rims(b.room.rims)  # those of the contact before
+    beside = cells_beside(b.room.rims)
+    first, end = max(first - beside, 0), min(end + beside, b.gap.shape[0])
+    left, right = max(left - beside, 0), min(right + beside, b.gap.shape[1])
     nx, ny = end - first, right - left
     if not is_prepared(known, nx, ny):
         return Solution(False, False, 0, 0.0, 0.0, 0.0, nx, ny)
     softest = known.softest + compliance * nx * ny
-    along, across = known.rims[0], known.rims[1]
-    task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations, along, across)
+    task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations)
     outer, everywhere = empty_box(nx, ny, b.room.outer), convolution(known, nx, ny)
     guessed = not _enter(outer, b.gap, approach, b.start, first, left, NOTHING * known.taps[0] * largest)
     if guessed:
@@ -206,6 +209,7 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     true_residual(everywhere, outer, task)
     if guessed and load < 0.0 and not _scale(outer, hardness):
         true_residual(everywhere, outer, task)
+    set_rims(outer, b.room.rims, 0.0, hardness, known.taps[0], 0)
     worst, level, top, bottom, near, far = survey(outer, task)
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     moving, last = True, (0, 0, 0, 0)
@@ -217,14 +221,19 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
         before, again = worst, last == (row, column, rows, columns)
         last = (row, column, rows, columns)
         part, inner = rows < nx or columns < ny, outer
+        give_back(outer, b.room.rims)
         if part:
             inner = empty_box(rows, columns, b.room.inner)
             cut(outer, row, column, inner)
-        iterations, moving = solve(convolution(known, rows, columns), known.taps, inner, task, iterations)
+        iterations, moving = solve(
+            convolution(known, rows, columns), known.taps, inner, task, iterations, b.room.rims
+        )
         if part:
             paste(inner, outer, row, column)
+        give_back(inner, b.room.rims)
         if part or not _recurs(outer, b.rtol):
             true_residual(everywhere, outer, task)
+        set_rims(outer, b.room.rims, 0.0, hardness, known.taps[0], 0)
         worst, level, top, bottom, near, far = survey(outer, task)
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, pressure, first, left)
@@ -269,7 +278,6 @@ def _scale(b: Box, hardness: float) -> bool:
         capped += p > hardness
         b.pressure[q] = min(p, hardness)
         b.residual[q] = factor * (b.residual[q] + b.overlap[q]) - b.overlap[q]
-        b.rims[q] *= factor
     return capped == 0
 
 
