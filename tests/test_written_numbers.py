@@ -59,6 +59,8 @@ def test_a_number_and_its_unit_are_on_one_line_of_a_title():
 def test_ends_counts_and_forces_are_in_words():
     assert (between("0.6", "0.6"), between("0.6", "0.7")) == ("0.6", "0.6 to 0.7")
     assert [count_of(n, "sample") for n in (0, 1, 8)] == ["0 samples", "1 sample", "8 samples"]
+    things = ("frequency", "bay", "pass")
+    assert [count_of(2, thing) for thing in things] == ["2 frequencies", "2 bays", "2 passes"]
     assert [in_newtons(each) for each in (5.04, 65e3, 999.6)] == ["5.04 N", "65 kN", "1000 N"]
 
 
@@ -110,3 +112,24 @@ def test_no_number_in_a_text_is_written_as_a_computer_does():
     ]
     assert not found
     assert len(list(written_by_the_language('f"{share:.2g} % of {force:.4g} N", float(f"{x:.3g}")'))) == 2
+
+
+COUNTED = re.compile(r"^(len\(.*\)|.*\.size|np\.count_nonzero\(.*\)|missing|removed|filled)$")
+"""What is counted in a message, and may be one."""
+MORE_THAN_ONE = ("scenes/figures/sideways.py", "scenes/population.py", "surfaces/readers/belief.py")
+"""Modules that ask for more than one before."""
+
+
+def test_one_of_a_thing_is_not_many():
+    """These were read: "received 1 waves", "1 points have no height", "1 samples"."""
+    source, plural = Path(asperity.__file__).parent, []
+    for file in sorted(source.rglob("*.py")):
+        name = file.relative_to(source).as_posix()
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            values = node.values if isinstance(node, ast.JoinedStr) and name not in MORE_THAN_ONE else ()
+            for told, after in pairwise(values[:2]):  # further on, "at most" and "all" may stand before
+                if isinstance(told, ast.FormattedValue) and isinstance(after, ast.Constant):
+                    many = re.match(r" (?!(is|has|was|times|keys)\b)\w+s( (?!of )|$)", after.value)
+                    if many and COUNTED.match(ast.unparse(told.value)):
+                        plural.append(f"{name}:{told.lineno}: {ast.unparse(told.value)}{after.value}")
+    assert not plural

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray as NDArray
 
 from asperity.errors import InputError
+from asperity.written_numbers import count_of
 
 LONGEST = 60  # characters of a received value that a message repeats
 LONGEST_WORD = 100  # characters of a word for which one like it is sought
@@ -180,7 +181,7 @@ def finite_array(
         array = np.atleast_1d(array)
         shape = (count,)
     if shape is not None and not _fits(array.shape, shape):
-        received = f"{array.size} numbers" if array.ndim == 1 else f"shape {array.shape}"
+        received = count_of(array.size, "number") if array.ndim == 1 else f"shape {array.shape}"
         raise InputError(what, received, str(count) if count is not None else allowed)
     wrong = ~(np.isfinite(array) & (array > above) & (array >= at_least) & (array < below))
     if wrong.any():

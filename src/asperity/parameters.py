@@ -15,7 +15,7 @@ from asperity.arguments import Array, NDArray, nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import factor, quantity, written
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 _WORDS = {
     "m": ("a length", "25 mm"),
@@ -382,7 +382,7 @@ class ListOf(ValueKind):
         if not isinstance(value, list | tuple):
             self.refuse(value)
         if len(value) < self.least:
-            received = f"{len(value)} values" if len(value) else "an empty list"
+            received = count_of(len(value), "value") if len(value) else "an empty list"
             raise InputError("value", received, f"at least {self.least}, each {self.each.allowed}", EMPTY)
         read, errors = [], []
         for number, item in enumerate(value, 1):

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from asperity.arguments import Array, ArrayLike, Complex, require
+from asperity.written_numbers import count_of
 
 HALF_BAND = 10.0 ** (1.0 / 20.0)
 """Ratio of a one-third octave's upper edge to its centre, base 10 (IEC 61260-1)."""
@@ -288,7 +289,7 @@ def band_levels(
     smallest, largest = _covered_centres(lines, step)
     first, last = smallest if low is None else low, largest if high is None else high
     covered = first <= last * HALF_BAND
-    require(covered, "frequency", f"{lines.size} lines", "enough lines to cover a band")
+    require(covered, "frequency", count_of(lines.size, "line"), "enough lines to cover a band")
     centres, edges_low, edges_high = third_octave_bands(first, max(first, last))
     energies = np.maximum(band_energies(lines, psd, edges_low, edges_high), 0.0)
     return centres, level_of(energies / reference**2)

@@ -80,8 +80,9 @@ def capital(sentence: str) -> str:
 
 
 def count_of(count: int, thing: str) -> str:
-    """A number of things: ``"1 sample"``, ``"8 samples"``."""
-    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+    """A number of things: ``"1 sample"``, ``"8 samples"``, ``"2 frequencies"``, ``"2 passes"``."""
+    stem = re.sub(r"(?<![aeiou])y$", "ie", thing)
+    return f"{count} {thing}" if count == 1 else f"{count} {stem}{'es' if stem.endswith('s') else 's'}"
 
 
 def unbroken(text: str) -> str:

@@ -156,7 +156,7 @@ def test_lines_beside_each_other_have_their_energy_mean(tmp_path):
         ),
         ("pad", PAD + "10, 90, 9\n300, 0, 18\n900, 160, 40", "a real part of zero or less at 300 Hz"),
         ("pad", PAD + "10, 90, 9\n10, 1, 1", "numbers that do not rise"),
-        ("pad", PAD + "10, 90, 9", "1 frequencies"),
+        ("pad", PAD + "10, 90, 9", "1 frequency"),
         ("pad", PAD.replace("(MN/m)", "(m/N)") + "10, 90, 9", "real part in N/m"),
         (
             "pad",

@@ -186,7 +186,7 @@ REFUSED = [
     (f"{HEARD} two.npz --array a", "received 3 columns; allowed: one of 1 to 3. Choose it with --column."),
     (f"{HEARD} two.npz --array b", "an array of shape (2, 2, 2)"),
     (f"{HEARD} words.txt", "words in line 3; allowed: numbers below the heading."),
-    (f"{HEARD} uneven.txt", "uneven.txt: received 1 cells in line 2; allowed: 2."),
+    (f"{HEARD} uneven.txt", "uneven.txt: received 1 cell in line 2; allowed: 2."),
     (f"{HEARD} none.txt", "none.txt: received no numbers"),
     (f"{HEARD} bad.wav", "an intact wav file"),
     (f"{HEARD} signal.npy --band '1 kHz'", "--band: received 1 kHz"),

@@ -44,7 +44,7 @@ def column(path, title):
     ("words", "picture", "title", "message"),
     [
         ("a", "maps-a-surface.png", "maps.npz, a, the first of 3 maps", "maps.npz, a: 3 maps, each 40 × 32 "
-         "points, 0.08 × 0.064 mm, 2 × 2 µm apart, 0.00% without a height"),
+         "points, 0.08 × 0.064 mm, 2 × 2 µm apart, all with a height"),
         ("a --transpose -o a.svg", "a.svg", "maps.npz, a, the first of 3 maps", "3 maps, each 32 × 40"),
         ("a --index 2", "maps-a-2-surface.png", "maps.npz, a, map 2", "a map of 40 × 32 points"),
         ("a --index 0 --lines", "maps-a-0-surface.png", "maps.npz, a, map 0",
@@ -64,10 +64,10 @@ def test_missing_points_are_said_and_filled_by_an_option():
     heights = noise(300)
     heights[5] = np.nan
     told = surface(heights)
-    assert "a line of 300 points, 0.6 mm, 2 µm apart, 0.33% without a height" in told.stdout
+    assert "a line of 300 points, 0.6 mm, 2 µm apart, 0.33 % without a height" in told.stdout
     assert "Rq" in told.stdout
     assert "--fill interpolates them" in told.stderr
-    assert "0.00% without a height" in surface(heights, "--fill").stdout
+    assert "all with a height" in surface(heights, "--fill").stdout
 
 
 def test_coordinates_may_be_given_their_unit():
@@ -80,7 +80,7 @@ def test_lines_measured_side_by_side_are_no_map():
     lines = noise(3, 900) * [[2.0], [4.0], [6.0]]
     lines[1, 850:] = np.nan
     shown = surface(lines).stdout
-    assert "map.npy: 3 parallel lines, each of 900 points, 1.8 mm, 2 µm apart, 1.85% without" in shown
+    assert "map.npy: 3 parallel lines, each of 900 points, 1.8 mm, 2 µm apart, 1.9 % without" in shown
     assert "--map takes it for a map" in shown
     assert "wavelengths 4 µm to 1.8 mm" in shown
     measured = re.search(r"Rq +([\d.]+) µm  rms height \(([\d.]+) µm to ([\d.]+) µm\)", shown)

@@ -73,7 +73,7 @@ class TestRail:
         gap = np.where(np.arange(6000) == 3000, np.nan, turn(6000))
         with pytest.raises(InputError, match="missing points inside"):
             laid(tmp_path, gap, LINES)
-        assert "1 points filled" in laid(tmp_path, gap, LINES + 'processing = ["fill"]').origin
+        assert "1 point filled" in laid(tmp_path, gap, LINES + 'processing = ["fill"]').origin
 
 
 class TestWheel:

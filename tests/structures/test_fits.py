@@ -325,7 +325,7 @@ test_records_and_modes_that_are_none_are_refused = pytest.mark.filterwarnings(
             "at 20 to 58 Hz; allowed: 1·10⁻²⁰ to 1·10²⁰ m/N.* Check the units, and the mass",
         ),
         (slow(ONE, 1e-300 * SLOW), "at 2·10⁻²⁹⁹ to 5.8·10⁻²⁹⁹ Hz; allowed: .* from 1·10⁻⁶ to 1·10²⁰ Hz"),
-        (slow(np.full(SLOW.size, -1j)), "values that 1 modes meet to .* dB only"),
+        (slow(np.full(SLOW.size, -1j)), "values that 1 mode meets to .* dB only"),
         # without a mode left, scipy's non-negative least squares ended the process
         (wheel(np.exp(1e-3j), SLOW, -1e-3 + 0 * SLOW, 1e9), r"modes on a mass of 1e\+09 kg meet to .* dB"),
         (wheel(1e3), r"dB only.*Check the mass, the unit m/N"),
@@ -333,7 +333,7 @@ test_records_and_modes_that_are_none_are_refused = pytest.mark.filterwarnings(
         (wheel(receptance=OF_WHEEL.conj()[:600]), r"receptance: .* mostly positive.*Conjugate"),
         (wheel(frequency=F[:5], receptance=OF_WHEEL[:5]), "5 frequencies; allowed: at least 10"),
         (modes(mass=0.0), "wheel mass"),
-        (modes([100.0, 200.0], [0.01], [10.0, 10.0]), "damping ratios of the .*1 numbers; allowed: 2"),
+        (modes([100.0, 200.0], [0.01], [10.0, 10.0]), "damping ratios of the .*1 number; allowed: 2"),
         (modes([-100.0], [0.01], [10.0]), "natural frequencies of the modes"),
         (modes([100.0], [0.0], [10.0]), "damping ratios of the modes"),
         (lambda _: WHEEL.receptance([0.0, 1.0]), "no static receptance"),

@@ -202,7 +202,7 @@ test_bays_that_cannot_be_are_refused = refusals(
     (lambda: Bays.drawn(50, ballast=0.6, seed=1), "ballast of the bays: .*Lower its scatter"),
     (lambda: Bays.drawn(5, pad=-0.1), "scatter of the pad"),
     (lambda: Bays.drawn(101), "bays of a cell"),
-    (lambda: Bays((1.0, 1.0), (1.0,), (1.0, 1.0)), "pad of the bays: received 1 values"),
+    (lambda: Bays((1.0, 1.0), (1.0,), (1.0, 1.0)), "pad of the bays: received 1 value"),
     (lambda: Bays((1.0, 1.2), (1.0, 1.0), (1.0, 1.0)), "mean spacing"),
     (lambda: Bays((1.0,), (np.nan,), (1.0,)), "pad of the bays"),
 )

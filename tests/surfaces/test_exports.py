@@ -143,7 +143,7 @@ MARKS = ["-", "---", "n.a.", "#N/A", "NaN(ind)", "-nan(ind)", "1.#QNAN", "-1.#IN
 def test_marks_of_a_missing_height(read, mark):
     lines = rows("{x:.2f};{z:.6f}").splitlines()
     lines[5] = f"1.25;{mark}"
-    with pytest.warns(MissingPointsWarning, match=r"1 points \(2.5 %"):
+    with pytest.warns(MissingPointsWarning, match=r"1 point \(2.5 %"):
         line = read("x (um);z (um)\n------;------\n" + "\n".join(lines))
     np.testing.assert_allclose(np.delete(line.heights, 5), np.delete(1e-6 * Z, 5), atol=1e-15)
 
@@ -164,7 +164,7 @@ def test_marks_of_a_missing_height_in_an_archive(tmp_path, mark):
     stored = 1e-6 * MAP.T
     stored[1, 2] = mark
     (tmp_path / "a.x3p").write_bytes(x3p([stored]))
-    with pytest.warns(MissingPointsWarning, match="1 points"):
+    with pytest.warns(MissingPointsWarning, match="1 point"):
         assert np.isnan(read_surface(tmp_path / "a.x3p").heights[2, 1])
 
 
@@ -183,7 +183,7 @@ def test_heights_listed_in_the_xml_of_an_archive(tmp_path, coordinates):
             with pytest.raises(InputError, match=told):
                 read_surface(tmp_path / "a.x3p")
             continue
-        with pytest.warns(MissingPointsWarning, match="1 points"):
+        with pytest.warns(MissingPointsWarning, match="1 point"):
             heights = read_surface(tmp_path / "a.x3p").heights
         assert np.isnan(heights[1, 1])
         np.testing.assert_array_equal(np.delete(heights, 7), np.delete(1e-6 * MAP, 7))

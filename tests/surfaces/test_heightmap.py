@@ -89,5 +89,5 @@ def test_surfaces_show_themselves_in_a_notebook(shape):
     assert "&lt;b&gt;" in shown
     assert "\x1b" not in shown
     assert f"rms height {1e6 * np.nanstd(heights):.4g} µm" in shown
-    assert f"{1 / heights.size:.2%} without a height" in shown
+    assert f"{100 / heights.size:.2g} % without a height" in shown
     assert base64.b64decode(shown.partition("base64,")[2].partition('"')[0]).startswith(b"\x89PNG")

@@ -274,10 +274,10 @@ def test_spikes_are_taken_away_before_points_are_filled(tmp_path):
     heights[60, 70:73] = np.nan
     np.save(tmp_path / "plate.npy", heights * 1e6)
     hints = {"height_unit": "um", "pixel": "2 um", "fill": True}
-    with pytest.warns(MissingPointsWarning, match=r"4 points .* \(1 of them were spikes\); interpolated"):
+    with pytest.warns(MissingPointsWarning, match=r"4 points .* \(1 of them was a spike\); interpolated"):
         filled = read_surface(tmp_path / "plate.npy", spikes=True, **hints)
     assert abs(filled.heights[20, 30] - texture()[20, 30]) < 0.1e-6
-    assert filled.source.startswith("plate.npy; 1 points of spikes removed; ")
+    assert filled.source.startswith("plate.npy; 1 point of spikes removed; ")
     with pytest.warns(MissingPointsWarning, match="3 points"):
         kept = read_surface(tmp_path / "plate.npy", **hints)
     assert kept.heights[20, 30] > 7e-6

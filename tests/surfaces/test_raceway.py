@@ -129,7 +129,7 @@ test_what_is_wrong_is_said = refusals(
     (lambda: Fault("map"), "map of a fault, a map: received nothing"),
     (lambda: Fault("hole", length=MM, depth=UM), 'shape of the fault: received .hole.; allowed: "pit"'),
     (pit(-MM), "length of the fault"),
-    (lambda: AroundTexture(waves=(3, 4), amplitudes=(UM,)), "2 waves and 1 amplitudes"),
+    (lambda: AroundTexture(waves=(3, 4), amplitudes=(UM,)), "2 waves and 1 amplitude"),
     (lambda: AroundTexture(waves=(0,), amplitudes=(UM,)), r"waves of the around texture"),
     (lambda: AroundTexture(first_order=9, last_order=3), "9 to 3"),
     (lambda: AroundTexture(roughness=UM, map=HeightMap(np.eye(9), CELLS)), "a number and a map"),

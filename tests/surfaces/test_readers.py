@@ -211,7 +211,7 @@ def test_a_map_is_the_same_in_every_format(write, name, contents, hints):
 
 @pytest.mark.parametrize(("name", "contents"), HOLED.values(), ids=HOLED)
 def test_a_missing_point_is_missing_in_every_format(write, name, contents):
-    with pytest.warns(MissingPointsWarning, match=r"1 points \(8\.33 % of all\) have no height.*left as NaN"):
+    with pytest.warns(MissingPointsWarning, match=r"1 point \(8\.3 % of all\) has no height.*left as NaN"):
         surface = read_surface(write(name, contents), **(NM if name == "a.npy" else {}))
     expected = 1e-9 * holed(np.nan, HEIGHTS, (1, 2))
     np.testing.assert_allclose(surface.heights, expected, rtol=1e-14, atol=1e-24)
@@ -237,7 +237,7 @@ def test_an_independent_writer_is_understood(tmp_path, revision, file_format):
         scales = {"x_scale": 2e-6, "y_scale": 3e-6, "z_scale": 1e-9}
         written = sdfio.SdfFile.from_array(stored, **scales, format=sdfio.FileFormat[file_format])
         written.with_revision(sdfio.Revision[revision], data_type=kind).save(file)
-        with pytest.warns(MissingPointsWarning, match="1 points"):
+        with pytest.warns(MissingPointsWarning, match="1 point"):
             found = read_surface(file).heights
         turned = slice(None, None, -1 if rules.reverses_profile_order else 1)
         np.testing.assert_allclose(found, stored[turned].T, rtol=1e-6, atol=1e-15)
@@ -350,7 +350,7 @@ def measured(write, monkeypatch):
 
 def test_instrument_file(measured):
     file = measured(heights=np.ma.masked_equal(HEIGHTS, 12.0))
-    with pytest.warns(MissingPointsWarning, match=r"a\.plu:Height: 1 points"):
+    with pytest.warns(MissingPointsWarning, match=r"a\.plu:Height: 1 point"):
         surface = read_surface(file)
     np.testing.assert_allclose(surface.heights, 1e-9 * holed(np.nan, HEIGHTS, (1, 2)), rtol=1e-14)
     assert surface.spacing == pytest.approx((2e-6, 3e-6))

@@ -19,7 +19,7 @@ from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.readers import hints, read_surface
 from asperity.surfaces.readers.belief import told_length
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 if TYPE_CHECKING:
     from asperity.case.scene import Case
@@ -82,7 +82,7 @@ def read_section(measured: Path | Profile, key: str) -> Profile:
     if not isinstance(section, Profile):
         raise InputError(key, "a map of heights", "one line across the path")
     count = len(section.heights)
-    require(count >= FEWEST, key, f"{count} points", f"at least {FEWEST}", "Measure more of them.")
+    require(count >= FEWEST, key, count_of(count, "point"), f"at least {FEWEST}", "Measure more of them.")
     _refuse_beyond_belief(section, key)
     return complete(section, key)
 

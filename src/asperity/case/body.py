@@ -17,7 +17,7 @@ from asperity.reference.materials import Material
 from asperity.structures.body import GRAVITY, Body, Wheel, carriage, chain
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 MOST_CONTACTS = 200
 DEEPEST_FLAT = 0.01  # of the radius
@@ -351,7 +351,7 @@ class Rolling(Ringing, FlatOnTread):
         """What each type of body needs, and contacts that are apart."""
         yield from super().problems()
         if len(self.offsets) > MOST_CONTACTS:
-            yield InputError("positions", f"{len(self.offsets)} contacts", f"at most {MOST_CONTACTS}")
+            yield InputError("positions", count_of(len(self.offsets), "contact"), f"at most {MOST_CONTACTS}")
         yield from self._problems_of_type()
         if max(self.flat_contacts, default=0) > len(self.offsets):
             received, allowed = f"{max(self.flat_contacts)}", f"numbers up to {len(self.offsets)}"

@@ -10,7 +10,7 @@ from asperity.case.table_headings import Column
 from asperity.case.tables import TableSource, read_table, refuse_disorder
 from asperity.errors import InputError
 from asperity.spectra import a_weighting
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 FEWEST = 3
 """Rows of a table over frequency."""
@@ -102,7 +102,7 @@ def _refuse_beyond(
 ) -> None:
     """Refuse values at few frequencies, and those beyond what is plausible: ask for their unit."""
     if len(values) < FEWEST:
-        raise InputError(name_of(table), f"{len(values)} frequencies", f"at least {FEWEST}")
+        raise InputError(name_of(table), count_of(len(values), "frequency"), f"at least {FEWEST}")
     if (wrong := (values < within[0]) | (values > within[1])).any():
         received = f"{what} of {rounded(values[wrong][0])} {unit}"
         allowed = "{:g} to {:g} ".format(*within) + unit

@@ -32,6 +32,7 @@ from asperity.surfaces.levelling import rotated
 from asperity.surfaces.readers import read_all
 from asperity.surfaces.readers.hints import spell
 from asperity.units import factor, written
+from asperity.written_numbers import count_of
 
 S = TypeVar("S", HeightMap, Profile, HeightMap | Profile)
 LENGTH = Quantity("m", above=0)
@@ -383,7 +384,7 @@ class Recipe(Section):
         if self.crop is not None:
             of_map = "four of a map: x, y and both sides"
             of_line = "two of a line: where the piece begins, and its length"
-            right, count = len(self.crop) == (4 if is_map else 2), f"{len(self.crop)} lengths"
+            right, count = len(self.crop) == (4 if is_map else 2), count_of(len(self.crop), "length")
             require(right, spell("crop"), count, of_map if is_map else of_line)
             done = done.crop(self.crop[:2], self.crop[2:]) if is_map else done.crop(*self.crop)
         if self.form is not None:

@@ -33,7 +33,7 @@ from asperity.structures import support, track_parameters
 from asperity.structures.outline import checked_outline
 from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import unit_in_brackets
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 LARGEST_TABLE = 32 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
@@ -226,7 +226,7 @@ def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
     by_phase = isinstance(table, Path) and _tells(table, "phase")
     frequency, first, second = read_table(table, MAGNITUDE_AND_PHASE if by_phase else RECEPTANCE).T
     if frequency.size < FEWEST_LINES:
-        raise InputError(name_of(table), f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
+        raise InputError(name_of(table), count_of(frequency.size, "frequency"), f"at least {FEWEST_LINES}")
     refuse_disorder(table, frequency)
     return frequency, first * np.exp(1j * second) if by_phase else first + 1j * second
 
@@ -266,7 +266,7 @@ def read_bays(table: TableSource) -> Array:
     if len(rows) > track_parameters.MOST_BAYS:
         raise InputError(
             name_of(table),
-            f"{len(rows)} bays",
+            count_of(len(rows), "bay"),
             f"at most {track_parameters.MOST_BAYS}",
             "They repeat by themselves.",
         )

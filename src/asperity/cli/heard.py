@@ -27,7 +27,7 @@ from asperity.studies.signals import Recorded, read_record
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.terminal import say, say_table
 from asperity.units import quantity
-from asperity.written_numbers import rounded, signed, unbroken
+from asperity.written_numbers import count_of, rounded, signed, unbroken
 
 Band = tuple[float, float] | None
 Signals = Mapping[str, Recorded]
@@ -138,7 +138,7 @@ def _one_by_one(
 def _length(signals: Sequence[Recorded]) -> str:
     """How long signals are."""
     size, rate = sum(each.values.size for each in signals), signals[0].rate
-    length = f"{size} samples, {rounded(size / rate, 4)} s at {rounded(rate, 6)} Hz"
+    length = f"{count_of(size, 'sample')}, {rounded(size / rate, 4)} s at {rounded(rate, 6)} Hz"
     tellers = {each.rate_by for each in signals} - {""}
     return f"{length}, as {tellers.pop()}" if len(tellers) == 1 else length
 

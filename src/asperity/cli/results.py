@@ -16,6 +16,7 @@ from asperity.results import read_result
 from asperity.scenes.report import comparison_of, figures_of, write_comparison, write_page, write_summary
 from asperity.store import Store, is_private, kernel_folders
 from asperity.terminal import say, say_files, say_table
+from asperity.written_numbers import count_of
 
 _KERNEL = re.compile(r"asperity[\w.<>]+-[0-9a-f]{24}")
 """Name of a compiled function that is kept."""
@@ -53,7 +54,10 @@ def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: b
     target = _folder_beside(run, folder, "sounds")
     files = sound.listen(read_result(run), target, what=what, matched=matched)
     scale = "all as loud as each other" if matched else "all on one scale"
-    say(f"Sounds: {target.absolute()}, {len(files)} files, {scale}; {sound.TABLE} says which is which")
+    say(
+        f"Sounds: {target.absolute()}, {count_of(len(files), 'file')}, {scale}; "
+        f"{sound.TABLE} says which is which"
+    )
     return {"run": run.resolve(), "matched": matched, "files": {path.name: path for path in files}}
 
 

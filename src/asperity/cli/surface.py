@@ -12,7 +12,7 @@ import numpy as np
 
 from asperity.arguments import Array
 from asperity.case import surface as recipes
-from asperity.errors import InputError
+from asperity.errors import InputError, percent
 from asperity.files import write_bytes
 from asperity.parameters import Origin
 from asperity.reporting.figure import write_chart
@@ -214,7 +214,8 @@ def described(surfaces: Surfaces) -> str:
     missing = max(shares) if is_map else sum(shares) / count
     points = " × ".join(map(str, first.shape))
     extent = f"{_lengths(sizes)}, {_lengths(spacings)} apart"
-    return f"{many} {points} points, {extent}, {missing:.2%} without a height"
+    without = f"{percent(missing)} without a height" if missing else "all with a height"
+    return f"{many} {points} points, {extent}, {without}"
 
 
 def scale_in_words(surface: HeightMap | Profile) -> str:

@@ -17,7 +17,7 @@ from asperity.structures.body import GRAVITY
 from asperity.structures.outline import checked_outline, doubts_of, volume_of
 from asperity.structures.wheel_modes import with_running_circle
 from asperity.terminal import say
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 COLUMNS = ("Hz", "n", "damping", "radial/kg", "axial/kg", "axial", "radial")
 
@@ -42,7 +42,7 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
         received, allowed = f"{case.numerics.highest_frequency:g} Hz", "one with a mode below it"
         raise InputError("highest frequency", received, allowed, "Raise it with --highest.")
     say(f"{section}: {rounded(wheel.drawn_mass, 4)} kg without its axle, held at a radius of "
-        f"{1e3 * wheel.outline[:, 0].min():.4g} mm; {len(rows)} modes answer to a radial force up to "
+        f"{1e3 * wheel.outline[:, 0].min():.4g} mm; {count_of(len(rows), 'mode')} under a radial force up to "
         f"{rows[:, 0].max():.0f} Hz.")  # fmt: skip
     say("Radial and axial modal mass at the contact; axial motion of the disc and radial motion of the "
         "tread, rms per radial motion at the contact:")  # fmt: skip

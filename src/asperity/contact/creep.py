@@ -17,6 +17,7 @@ from asperity.errors import OutOfRangeWarning
 from asperity.progress import Progress, counted
 from asperity.reference.materials import Material
 from asperity.threads import in_order
+from asperity.written_numbers import count_of
 
 DIRECTIONS = {"longitudinal": (1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0), "spin": (0.0, 0.0, 1.0)}
 """Creepages that a curve may grow along; spin is counted in the inverse of the mean semi-axis √(ab)."""
@@ -165,7 +166,7 @@ def rolled_over(
     rows, spare, stride = len(body), len(heights) - len(body), math.ceil(length / STEPS)
     allowed = f"at least {rows + LEAST_LENGTHS * length} rows, the window and {LEAST_LENGTHS} contacts"
     remedy = "Lengthen it, in a case by contact.sample_length."
-    require(has_room(smooth, heights), "sample to roll over", f"{len(heights)} rows", allowed, remedy)
+    require(has_room(smooth, heights), "sample to roll over", count_of(len(heights), "row"), allowed, remedy)
     steps, contacts, pressure = min(LENGTHS * length, spare) // stride, list[Contact](), None
     first = (spare - steps * stride) // 2
     for row in range(first, first + steps * stride + 1, stride):

@@ -21,7 +21,7 @@ from asperity.store import Store
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
 from asperity.threads import refuse_to_go_on
-from asperity.written_numbers import in_newtons, rounded
+from asperity.written_numbers import count_of, in_newtons, rounded
 
 if TYPE_CHECKING:
     import xarray
@@ -421,7 +421,7 @@ class HalfSpace:
         job = running_in.RunningIn(self, shape, load, arguments.passes_of(passes), step)
         found = running_in.run_in(heights, job, cache=cache, workers=workers, progress=progress)
         running_in.warn_of_running_in(found, job, "rtol", "Enlarge the window.")
-        number = f"{len(found.largest)} pass" + ("es" if len(found.largest) > 1 else "")
+        number = count_of(len(found.largest), "pass")
         words = f"run in by {number} under {in_newtons(load)}, {rounded(100 * found.yielded_share)} % yielded"
         origin = f"{surface.source}; " if isinstance(surface, HeightMap) and surface.source else ""
         return HeightMap(found.heights, self.spacing, origin + words)

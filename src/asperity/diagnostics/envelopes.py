@@ -6,6 +6,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, one_of, positive, require
 from asperity.spectra import band_energies, psd
+from asperity.written_numbers import count_of
 
 ISO_BANDS = ((50.0, 300.0), (300.0, 1800.0), (1800.0, 10_000.0))
 """Hz, of a bearing at 1800 1/min (ISO 15242-2)."""
@@ -18,7 +19,7 @@ Spectrum = tuple[Array, Array]
 def checked_signal(signal: ArrayLike, rate: float) -> tuple[Array, float]:
     """A signal (n,) without its mean, and its sampling rate, Hz, or what is wrong with either."""
     values = finite_array("signal", signal, "a series of finite numbers", shape=(None,))
-    require(values.size >= 64, "signal", f"{values.size} samples", "at least 64")
+    require(values.size >= 64, "signal", count_of(values.size, "sample"), "at least 64")
     require(np.ptp(values) > 0.0, "signal", "the same number throughout", "a signal that varies")
     return values - values.mean(), positive("sampling rate (Hz)", rate)
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array, ArrayLike, positive, real_array, require
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 Mask = NDArray[np.bool_]
 
@@ -104,7 +104,7 @@ def _given(signal: ArrayLike, rate: float) -> tuple[Array, float]:
     allowed = "a series of numbers, NaN where one is missing"
     values = np.array(real_array("signal", signal, allowed), dtype=float)
     require(values.ndim == 1, "signal", f"shape {values.shape}", allowed)
-    require(values.size >= FEWEST, "signal", f"{values.size} samples", f"at least {FEWEST}")
+    require(values.size >= FEWEST, "signal", count_of(values.size, "sample"), f"at least {FEWEST}")
     known = values[~np.isnan(values)]
     require(known.size, "signal", "no number, NaN throughout", allowed)
     endless = known[~np.isfinite(known)]

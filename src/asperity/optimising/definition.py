@@ -21,7 +21,7 @@ from asperity.schema import Entry, spectra
 from asperity.spectra import HALF_BAND, a_weighting, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 C = TypeVar("C", bound=scene.Case)
 A_WEIGHTED, ACCELERATION = "A-weighted level", "rms acceleration"
@@ -162,9 +162,8 @@ def bands_of(case: scene.Case, longest: float | None, shortest: float | None) ->
     high = shortest or case.speed / case.numerics.highest_frequency
     changed = (wavelength < low * HALF_BAND) & (wavelength > high / HALF_BAND)
     if np.count_nonzero(changed) < FEWEST_BANDS:
-        received = (
-            f"{np.count_nonzero(changed)} bands of the texture between {rounded(high)} m and {rounded(low)} m"
-        )
+        bands = count_of(int(np.count_nonzero(changed)), "band")
+        received = f"{bands} of the texture between {rounded(high)} m and {rounded(low)} m"
         allowed = f"at least {FEWEST_BANDS}"
         remedy = (
             f"Its bands are {rounded(wavelength.min())} m to {rounded(wavelength.max())} m. "
@@ -310,7 +309,7 @@ def _for_each(name: str, values: tuple[float, ...] | None, otherwise: Array) -> 
     if values is None:
         return otherwise
     if len(values) not in (1, len(otherwise)):
-        raise InputError(name, f"{len(values)} values", f"one, or {len(otherwise)}: one for each band")
+        raise InputError(name, count_of(len(values), "value"), f"one, or {len(otherwise)}: one for each band")
     return np.broadcast_to(np.array(values), otherwise.shape)
 
 

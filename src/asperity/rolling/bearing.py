@@ -16,6 +16,7 @@ from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
 from asperity.structures.ring import Around, Direction, Ring
+from asperity.written_numbers import count_of
 
 RINGS = ("inner", "outer")
 INNER, OUTER = 0, 1
@@ -319,7 +320,7 @@ def _heights(line: ArrayLike | None, spots: Along, raised: float) -> Along:
     from scipy.interpolate import CubicSpline
 
     heights = finite_array("heights of a ball (m)", line, "finite numbers, four or more", shape=(None,))
-    require(heights.size >= 4, "heights of a ball", f"{heights.size} numbers", "four or more")
+    require(heights.size >= 4, "heights of a ball", count_of(heights.size, "number"), "four or more")
     angles = TURN * np.arange(heights.size + 1) / heights.size
     spline = CubicSpline(angles, np.append(heights, heights[0]), bc_type="periodic")
     return lambda first, stop: np.asarray(spline(spots(first, stop))) + raised

@@ -23,7 +23,7 @@ from asperity.surfaces.levelling import QUARTER, band_limit, level, resample, ro
 from asperity.surfaces.readers import read_all, read_surface
 from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.strip import Rows, Strip
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 MOST_POINTS = 2.0**27
 """Points of a measured map on the contact grid (1 GiB)."""
@@ -326,6 +326,6 @@ def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
     if len(lines) > 1 and section.line_distance is None:
         key = f"{'wheel' if isinstance(section, body.Rolling) else 'surface'}.line_distance"
         allowed, remedy = "the distance across between neighbouring lines", 'Add line_distance = "5 mm", say.'
-        raise InputError(key, f"no distance for {len(lines)} lines", allowed, remedy)
+        raise InputError(key, f"no distance for {count_of(len(lines), 'line')}", allowed, remedy)
     distance = section.line_distance or grid.spacing
     return measured_lines.strip_from_lines(lines, distance, grid.lines, grid.spacing)

@@ -19,7 +19,7 @@ from asperity.spectra import psd
 from asperity.structures.rail_poles import POLES
 from asperity.surfaces.heightmap import HeightMap
 from asperity.units import written
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 MOST_POINTS = 2**27
 """Points of a path that is held at once: 1 GiB."""
@@ -160,7 +160,7 @@ def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
         Way(f"{_length(window)} → {_length(narrower)}", {"contact.window": narrower}, coarser=True),
     )
     more = Way(f"{count} → {2 * count}", {"contact.samples": 2 * count})
-    denser = Way(f"{len(approaches)} → {len(every)} states", {"contact.approaches": tuple(every)})
+    denser = Way(f"{len(approaches)} → {count_of(len(every), 'state')}", {"contact.approaches": tuple(every)})
     steps = f"{rounded(1e6 * step, 4)} µs → {rounded(5e5 * step, 4)} µs"
     shorter = Way(steps, {"numerics.time_step": 0.5 * step})
     reduced = [

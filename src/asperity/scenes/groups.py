@@ -20,6 +20,7 @@ from asperity.spectra import psd
 from asperity.surfaces import statistics
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.spectra import psd_1d
+from asperity.written_numbers import count_of
 
 PATH_ROWS = 2000
 """Rows of a path, at most, that are kept to be looked at from above."""
@@ -62,7 +63,7 @@ def surface_group(computed: Computed, *, brief: bool = False) -> Values:
         for body, lines in textures.lines.items():
             if len(lines) > 1:
                 means = [mean for mean, _, _ in statistics.line_statistics(lines)]
-                rows += _rows(means, f"{len(lines)} lines of the {body}, mean")
+                rows += _rows(means, f"{count_of(len(lines), 'line')} of the {body}, mean")
     return laid_out | {
         contact.STATISTICS: rows,
         contact.SOURCE: textures.origin,

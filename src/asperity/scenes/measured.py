@@ -19,7 +19,7 @@ from asperity.schema import Values, spectra
 from asperity.spectra import HALF_BAND, nominal_frequency
 from asperity.structures.track import Track, decay_rate_en15461
 from asperity.surfaces.bands import likely_band
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 LINES = 64
 """Frequencies in a band: they resolve the resonance of a rail whose loss factor is 1 %."""
@@ -311,7 +311,7 @@ def _of_decay(over_frequency: xarray.Dataset) -> Condition:
     limit = railways.iso_3095_decay_rate(band)
     known = np.isfinite(limit) & np.isfinite(rate)
     names = [nominal_frequency(float(f)) for f in band[known]]
-    asked = f"at least the limit in {known.sum()} bands"
+    asked = f"at least the limit in {count_of(known.sum(), 'band')}"
     return _banded("decay rate", (limit - rate)[known], names, ("below", "dB/m"), asked)
 
 

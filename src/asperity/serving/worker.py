@@ -113,7 +113,8 @@ def examined(path: str) -> Told:
     kind = "map" if isinstance(first, HeightMap) else "line"
     points = " × ".join(map(str, first.shape))
     apart = " × ".join(dict.fromkeys(written(float(d), "m", "um") for d in np.atleast_1d(first.spacing)))
-    lost = f", {first.missing_share:.2%} without a height: set fill" if first.missing_share else ""
+    share = first.missing_share
+    lost = f", {errors.percent(share)} without a height: set fill" if share else ""
     return {"words": f"{kind} of {points} points, {apart} apart{lost}", "needs": ""}
 
 

@@ -16,6 +16,7 @@ from asperity.errors import InputError
 from asperity.files import discard
 from asperity.interrupts import no_interrupt_for_children
 from asperity.serving.stored_runs import OUTCOME, RESULT, write_outcome
+from asperity.written_numbers import count_of
 
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
@@ -175,7 +176,7 @@ class Jobs:
         if folder.name in self._jobs:
             return
         if len(self._jobs) > MOST_WAITING:
-            received, allowed = f"{len(self._jobs)} runs that wait", f"at most {MOST_WAITING}"
+            received, allowed = f"{count_of(len(self._jobs), 'run')} that wait", f"at most {MOST_WAITING}"
             raise InputError("the runs", received, allowed, "Wait for some, or cancel them.")
         job = self._jobs[folder.name] = Job(folder)
         job.task = asyncio.create_task(self._roll(job))

@@ -12,7 +12,7 @@ import scipy
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive, real, real_array, require
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.curves import evaluate_pieces
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 
 class Modal(Protocol):
@@ -237,7 +237,7 @@ class ModalStructure(Modal):
         """Positions, mass-normalised shapes, frequencies and damping ratios, of fitting sizes."""
         what, allowed = "positions of the modes (m)", "two or more rising finite numbers"
         at = finite_array(what, self.positions, allowed, shape=(None,), rising=True)
-        require(at.size > 1, what, f"{at.size} numbers", allowed)
+        require(at.size > 1, what, count_of(at.size, "number"), allowed)
         what, allowed = "natural frequencies (Hz)", "0 and more, below 10 MHz"
         natural = finite_array(what, self.frequencies, allowed, shape=(None,), at_least=0.0, below=HIGHEST)
         count = natural.size

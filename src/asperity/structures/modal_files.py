@@ -16,7 +16,7 @@ from asperity.structures.modal import ModalStructure
 from asperity.surfaces.readers.guards import hostile
 from asperity.text_files import lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 Dataset = dict[str, Any]
 
@@ -122,7 +122,7 @@ def _path(
         for number, at in zip(each["node_nums"], each[AXES[along]], strict=True)
     }
     turned = {int(system) for each in nodes for system in np.atleast_1d(each["disp_cs"])}
-    received = f"nodes that move in {len(turned)} systems of coordinates"
+    received = f"nodes that move in {count_of(len(turned), 'system')} of coordinates"
     require(len(turned) == 1, source, received, "modes in one global system", _EXPORT)
     shared = set.intersection(*({int(n) for n in mode["node_nums"]} for mode in modes)) & place.keys()
     numbers = sorted(shared) if chosen is None else chosen
@@ -131,7 +131,8 @@ def _path(
         raise InputError(f"nodes of {source}", received, "nodes of the file")
     places = np.array([place[number] for number in numbers])
     if len(numbers) < 2 or np.unique(places).size < places.size:
-        received = f"{len(numbers)} nodes at {np.unique(places).size} places along {AXES[along]}"
+        apart = count_of(np.unique(places).size, "place")
+        received = f"{count_of(len(numbers), 'node')} at {apart} along {AXES[along]}"
         remedy = "Choose those under the contact by nodes."
         raise InputError(source, received, "two nodes or more, one at each place", remedy)
     return numbers, places

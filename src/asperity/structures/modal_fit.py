@@ -13,7 +13,7 @@ from asperity.arguments import Array, ArrayLike, Complex, NDArray, require
 from asperity.errors import ComputationError, InputError
 from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 
 def vector_fit(
@@ -199,7 +199,7 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
 def check_record(frequency: Array, receptance: Complex) -> None:
     """Refuse receptances (n, p, e), m/N, at rising frequencies (n,), Hz, that no modes can be fitted to."""
     what, enough = "receptance", frequency.size >= FEWEST_FREQUENCIES
-    require(enough, what, f"{frequency.size} frequencies", f"at least {FEWEST_FREQUENCIES}")
+    require(enough, what, count_of(frequency.size, "frequency"), f"at least {FEWEST_FREQUENCIES}")
     moves = np.abs(receptance).any(axis=(1, 2)).all()
     require(moves, what, "nothing but zeros at a frequency", "a response", "Leave it out.")
     check_range(frequency, receptance)
@@ -214,7 +214,8 @@ def level_error(fitted: Complex, given: Complex) -> float:
 def judge_fit(what: str, error: float, modes: str) -> None:
     """Refuse a fit that misses its receptances by decibels, and warn of one that is doubtful."""
     if not error <= REFUSED_FIT:
-        received = f"values that {modes} meet to {error:.1f} dB only"
+        meet = "meets" if modes.startswith("1 ") else "meet"
+        received = f"values that {modes} {meet} to {error:.1f} dB only"
         allowed = f"a receptance that modes meet within {REFUSED_FIT:.0f} dB"
         remedy = "Check the mass, the unit m/N, and that it is displacement along the force, not velocity."
         raise InputError(what, received, allowed, remedy)

@@ -11,7 +11,7 @@ from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, pe
 from asperity.structures import modal, modal_fit
 from asperity.structures.body import Body, Wheel
 from asperity.structures.modal_fit import RESIDUAL_DAMPING, Modes
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 INSIDE = 1.02
 """Of the highest frequency, up to which a mode is one of the band."""
@@ -244,8 +244,9 @@ def receptances_in(rows: Array, source: str) -> tuple[Array, Array, Array, Compl
     (f, i), (at, j), (forces, k) = (np.unique(rows[:, c], return_inverse=True) for c in range(3))
     shape = f.size, at.size, forces.size
     if len(rows) != math.prod(shape) or len(np.unique(np.ravel_multi_index((i, j, k), shape))) < len(rows):
-        received = f"{len(rows)} lines"
-        each = f"{f.size} frequencies, {at.size} positions and {forces.size} forces"
+        received = count_of(len(rows), "line")
+        positions, driven = count_of(at.size, "position"), count_of(forces.size, "force")
+        each = f"{count_of(f.size, 'frequency')}, {positions} and {driven}"
         allowed = f"{math.prod(shape)}: one for each of {each}"
         raise InputError(source, received, allowed, "Complete the table; nothing is filled in silently.")
     given = np.empty(shape, dtype=complex)
@@ -286,5 +287,5 @@ def _judged(f: Array, given: Complex, rigid: Complex, modes: Modes) -> float:
     natural, ratios, shapes = modes
     fitted = np.einsum("njj->nj", rigid) + modal.modal_answers(f, natural, ratios) @ (shapes**2).T
     error = modal_fit.level_error(fitted, np.einsum("njj->nj", given))
-    modal_fit.judge_fit("receptance", error, f"{len(natural)} modes")
+    modal_fit.judge_fit("receptance", error, count_of(len(natural), "mode"))
     return error

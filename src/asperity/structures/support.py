@@ -7,7 +7,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, Complex, NDArray, finite_array
 from asperity.errors import InputError
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 
 def keep_as_tuples(frozen: object, *names: str) -> None:
@@ -96,7 +96,7 @@ class StiffnessTable:
             "frequencies of a stiffness (Hz)", self.frequencies, allowed, above=0.0, rising=True
         )
         if at.ndim != 1 or at.size < FEWEST:
-            raise InputError("frequencies of a stiffness (Hz)", f"{at.size} frequencies", allowed)
+            raise InputError("frequencies of a stiffness (Hz)", count_of(at.size, "frequency"), allowed)
         finite_array("dynamic stiffness (N/m)", [self.real, self.imaginary], shape=(2, at.size))
         if wrong := band_of(at, np.asarray(self.real) <= 0.0):
             remedy = "Is the unit right, and the phase that of force over displacement?"
@@ -483,6 +483,6 @@ def measured_sleeper(frequency: Array, receptance: Complex, mass: float) -> Meas
     fitted = found._modes(omega, np.zeros(omega.shape, complex)).sum(axis=-1)
     off = 20.0 * np.log10(np.abs(fitted / receptance))
     worst = int(np.argmax(np.abs(off)))
-    words = f"{len(own)} modes on {mass:.4g} kg"
+    words = f"{count_of(len(own), 'mode')} on {mass:.4g} kg"
     words += f" ({rounded(abs(off[worst]), 2)} dB off at most, at {rounded(frequency[worst], 4)} Hz)"
     return replace(found, fit_error=modal_fit.level_error(fitted, receptance), fitted=words)

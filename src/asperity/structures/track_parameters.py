@@ -9,7 +9,7 @@ from asperity.arguments import Array, not_negative, require, shown, whole
 from asperity.errors import InputError
 from asperity.parameters import Flag, Number, Quantity, checked_parameters, keys_of, parameter
 from asperity.structures.support import MeasuredSleeper, Relaxation, StiffnessTable, keep_as_tuples
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 MOST_BAYS = 100
 """Of a cell: waves are kept of each of them, some ten megabytes."""
@@ -37,7 +37,7 @@ class Bays:
         for each in fields(self):
             values = np.array(getattr(self, each.name))
             what, count = f"{each.name} of the bays", f"as many as bays, {len(self.spacing)}"
-            require(len(values) == len(self.spacing), what, f"{len(values)} values", count)
+            require(len(values) == len(self.spacing), what, count_of(len(values), "value"), count)
             if wrong := np.flatnonzero(~((values > 0.0) & np.isfinite(values))).tolist():
                 received = f"{rounded(values[wrong[0]])} times the nominal one in bay {wrong[0] + 1}"
                 raise InputError(what, received, "above zero", "Lower its scatter, or take another seed.")

@@ -19,6 +19,7 @@ from asperity.case.form import case_key, content, file_digest
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Origin
 from asperity.studies.axes import VARIANT, SweptAxis, VariantAxis, as_in_toml, flat, variant_axis, written_out
+from asperity.written_numbers import count_of
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
 _RANGE = re.compile(
@@ -241,7 +242,7 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | 
             errors.append(error if error.what == "kind" else error.about(f"sweep.{error.what}"))
     lengths = [len(axis.values) for axis in axes.values()]
     if (count := math.prod(lengths)) > MOST_MEMBERS:
-        received = f"{' × '.join(map(str, lengths))} = {count} members"
+        received = f"{' × '.join(map(str, lengths))} = {count_of(count, 'member')}"
         remedy = "Split the study: what is finished is kept."
         errors.append(InputError("sweep", received, f"at most {MOST_MEMBERS} members", remedy))
     if errors:
@@ -260,7 +261,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
         allowed = "a list of values, or a range as '80..300 km/h, 6 steps'"
         raise InputError(dotted, shown(values), allowed, "Put the values into [ ].")
     require(values, dotted, "an empty list", "one value or more", "Remove the key for that of the case.")
-    received, allowed = f"{len(values)} values", f"at most {MOST_MEMBERS}"
+    received, allowed = count_of(len(values), "value"), f"at most {MOST_MEMBERS}"
     require(len(values) <= MOST_MEMBERS, dotted, received, allowed, "Split the study.")
     read: dict[str, Any] = {}  # in their order
     for number, value in enumerate(values, 1):

@@ -52,7 +52,7 @@ from asperity.text_files import (
     write_csv,
 )
 from asperity.units import quantity, unit_in
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 FORMATS = ("nc", "npy", "wav")
 LABELS = "labels.csv"
@@ -365,7 +365,7 @@ def _column(chosen: int | None, count: int, clock: Clock | None, source: str) ->
     signals = [number for number in range(count) if clock is None or number != clock.column]
     if chosen is None and len(signals) == 1:
         return signals[0]
-    received, allowed = f"{count} columns", f"one of 1 to {count}"
+    received, allowed = count_of(count, "column"), f"one of 1 to {count}"
     if clock is not None:
         allowed += f", of which {clock.column + 1} holds the times"
     within = chosen is not None and chosen - 1 in signals
@@ -441,7 +441,9 @@ def _of_text(file: Path) -> tuple[Array, list[str]]:
                 words.append(cells)
                 continue
             columns = columns or len(row)
-            require(len(row) == columns, file.name, f"{len(row)} cells in line {number}", str(columns))
+            require(
+                len(row) == columns, file.name, f"{count_of(len(row), 'cell')} in line {number}", str(columns)
+            )
             numbers.extend(row)
         line += len(lines)
     require(columns, file.name, "no numbers", "a table of numbers")

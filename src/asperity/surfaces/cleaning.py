@@ -10,6 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from asperity.arguments import Array, NDArray
 from asperity.errors import MissingPointsWarning
+from asperity.written_numbers import count_of
 
 if TYPE_CHECKING:
     from asperity.surfaces.heightmap import HeightMap, Heights
@@ -133,7 +134,7 @@ def without_spikes(surface: "HeightMap") -> "HeightMap":
     count = int(np.count_nonzero(spiky))
     if count == 0:
         return surface
-    source = f"{surface.source}; {count} points of spikes removed".lstrip("; ")
+    source = f"{surface.source}; {count_of(count, 'point')} of spikes removed".lstrip("; ")
     return replace(surface, heights=np.where(spiky, np.nan, surface.heights), source=source)
 
 

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, real, real_array, require, two, two_lengths, whole
-from asperity.errors import printable
+from asperity.errors import percent, printable
 from asperity.surfaces import cleaning, levelling
 from asperity.units import written
 
@@ -106,7 +106,7 @@ class Heights:
 
         points = " × ".join(map(str, self.heights.shape))
         sizes = np.atleast_1d(self.spacing) * self.heights.shape
-        missing = f", {self.missing_share:.2%} without a height" if self.missing_share else ""
+        missing = f", {percent(self.missing_share)} without a height" if self.missing_share else ""
         what = "Height map" if self.heights.ndim == 2 else "Profile"
         text = f"{points} points, {lengths(sizes, 'mm')}, {lengths(self.spacing, 'um')} apart"
         text += f", rms height {lengths(np.nanstd(self.heights), 'um')}{missing}."

@@ -18,7 +18,7 @@ from asperity.reference.cnossos import rail_roughness
 from asperity.surfaces.bands import LIKELY_WAVELENGTHS, band_levels_of, likely_band
 from asperity.surfaces.cleaning import nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 ROLLED_RADIUS = 0.375
 """Radius of the circle that is rolled over a line, m."""
@@ -76,8 +76,10 @@ def process(
     rolled = f"rolled over with a circle of {ROLLED_RADIUS:g} m: {np.mean(lifted):.1%} of the points lifted"
     words = (
         f"{trimmed} missing points trimmed at the ends",
-        f"{filled} points filled" if "fill" in steps else "gaps not filled",
-        f"{removed} spikes ({changed} points) removed" if "spikes" in steps else "spikes kept",
+        f"{count_of(filled, 'point')} filled" if "fill" in steps else "gaps not filled",
+        f"{count_of(removed, 'spike')} ({count_of(changed, 'point')}) removed"
+        if "spikes" in steps
+        else "spikes kept",
         f"{rolled}, by up to {rounded(max(highest) * 1e6)} µm" if "curvature" in steps else "not rolled over",
     )
     return done, "EN 15610:2009: " + "; ".join(words)

@@ -16,7 +16,7 @@ from asperity.surfaces.likeness import likeness
 from asperity.surfaces.strip import places_across
 from asperity.surfaces.synthesis import LikeMaps, SelfAffine
 from asperity.surfaces.tiles import closed
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 MOST_POINTS = 2**26
 """Points of a raceway: 512 MiB."""
@@ -84,7 +84,7 @@ class AroundTexture:
 
     def __post_init__(self) -> None:
         checked_parameters(self)
-        received = f"{len(self.waves)} waves and {len(self.amplitudes)} amplitudes"
+        received = f"{count_of(len(self.waves), 'wave')} and {count_of(len(self.amplitudes), 'amplitude')}"
         require(len(self.waves) == len(self.amplitudes), "waves", received, "one amplitude for each")
         received = f"{self.first_order} to {self.last_order}"
         require(1 <= self.first_order <= self.last_order, "orders of the waviness", received, "rising orders")

@@ -18,6 +18,7 @@ from asperity.scenes.figures.sources import BODIES, RAIL, WHOLE, Sources, decide
 from asperity.schema import Entry
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
+from asperity.written_numbers import count_of
 
 OWN, OWN_A = schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A
 """Sound power from the vibration that was computed, by radiator."""
@@ -236,7 +237,7 @@ def pass_by_level(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     yield Panel(time, axis, (*_train(tree, axles), *totals, *of_parts), height=4.2)
     passing = "One axle passes (tick), two wheels on it"
     if len(axles) > 1:
-        passing = f"{len(axles)} axles pass (ticks), two wheels on each"
+        passing = f"{count_of(len(axles), 'axle')} pass (ticks), two wheels on each"
     away, above = (data.number(tree, fact) for fact in (schema.RECEIVER_DISTANCE, schema.RECEIVER_HEIGHT))
     where = ""
     if away is not None and above is not None:
@@ -377,7 +378,7 @@ def wheel_table(tree: DataTree) -> ReportTable:
     )
     order = np.argsort(-level, kind="stable")
     shown, rest = order[:LOUDEST], order[LOUDEST:]
-    more = [f"{len(rest)} others"] * (len(rest) > 0)
+    more = [count_of(len(rest), "other")] * (len(rest) > 0)
     names = [f"{frequency[k]:.0f} Hz" if frequency[k] else "rigid motion" for k in shown]
     levels = np.append(level[shown], [energy_sum(level[rest])] * (len(rest) > 0))
     share = 100.0 * 10.0 ** ((levels - energy_sum(level)) / 10.0)

@@ -16,7 +16,7 @@ from asperity.scenes.figures import force
 from asperity.scenes.figures.measured import over_bands
 from asperity.schema import rolling, spectra
 from asperity.structures.squeal import FREE_OF_AXLE
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of, rounded
 
 FORCE, _DOTS = schema.LATERAL_FORCE_LEVEL, (1.5, 1.5)
 
@@ -217,7 +217,7 @@ def creep_answers(tree: DataTree) -> headline.Answers | None:
         data.values(tree, entry) for entry in (GROWTH, schema.SQUEAL_FREQUENCY, schema.SQUEAL_DIAMETERS)
     )
     looked = np.flatnonzero(np.isfinite(growth) & (diameters >= FREE_OF_AXLE)).tolist()
-    modes = f"{len(_once(tree, looked))} modes of the wheel with two and more nodal diameters"
+    modes = f"{count_of(len(_once(tree, looked)), 'mode')} of the wheel with two and more nodal diameters"
     aside = ""
     if of_axle:
         named = ", ".join(_named(tree, n) for n in _once(tree, of_axle)[:3])

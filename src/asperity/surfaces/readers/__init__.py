@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import require, shown, whole
-from asperity.errors import InputError, MissingPointsWarning
+from asperity.errors import InputError, MissingPointsWarning, percent
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, text
 from asperity.surfaces.readers.belief import judge_sizes
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.libraries import CLASSIC, read_apart
-from asperity.written_numbers import rounded
+from asperity.written_numbers import count_of
 
 __all__ = ["read_all", "read_surface"]
 
@@ -96,7 +96,7 @@ def read_surface(
 
     Warns
     -----
-    MissingPointsWarning
+    MissingPointsWarning, percent
         If points have no height.
 
     Examples
@@ -220,10 +220,12 @@ def _finished(
             left, remedy = "interpolated from their neighbours", "check the measurement"
         if fill and ends:
             left = f"interpolated along the lines but for {ends} at their ends"
+        verb = "has" if missing == 1 else "have"
         what = (
-            f"{surfaces[0].source}: {missing} points ({rounded(100 * share)} % of all) have no "
+            f"{surfaces[0].source}: {count_of(missing, 'point')} ({percent(share)} of all) {verb} no "
             "height, none should"
         )
-        what += f" ({missing - before} of them were spikes)" * (missing > before)
+        spiky = missing - before
+        what += f" ({spiky} of them {'was a spike' if spiky == 1 else 'were spikes'})" * (spiky > 0)
         MissingPointsWarning.warn(f"{what}; {left}; {remedy}")
     return filled

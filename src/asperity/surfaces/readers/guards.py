@@ -15,6 +15,7 @@ from asperity.errors import InputError, reason
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers.hints import advice
 from asperity.text_files import number_in
+from asperity.written_numbers import count_of
 
 MAX_FILE_BYTES = 4 << 30  # largest file, and largest content of an archive
 MAX_XML_BYTES = 16 << 20
@@ -39,7 +40,7 @@ def readable_file(path: str | Path) -> Path:
         received = f"a file that cannot be read ({error.strerror})"
         raise InputError(str(file), received, allowed, "Check its permissions.") from None
     allowed, remedy = f"at most {MAX_FILE_BYTES} bytes", "Crop or split the measurement."
-    require(size <= MAX_FILE_BYTES, f"size of {file.name}", f"{size} bytes", allowed, remedy)
+    require(size <= MAX_FILE_BYTES, f"size of {file.name}", count_of(size, "byte"), allowed, remedy)
     return file
 
 

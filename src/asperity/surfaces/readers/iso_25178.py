@@ -16,6 +16,7 @@ from asperity.arguments import Array, NDArray, require
 from asperity.surfaces.readers import guards
 from asperity.surfaces.readers.hints import Hints
 from asperity.text_files import number_in
+from asperity.written_numbers import count_of
 
 SDF_TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")  # by the code in the header
 NAMES = ("UCHAR", "UINTEGER", "ULONGINT", "FLOAT", "CHAR", "INTEGER", "LONGINT", "DOUBLE")
@@ -105,7 +106,7 @@ def _binary_header(data: bytes, source: str) -> tuple[dict[str, str], bytes]:
     if data[1:8].upper() == b"ISO-2.0":
         layouts = sorted([_WIDE, _BINARY], key=lambda layout: not _fits(data, layout))
     size = layouts[0].size
-    received, allowed = f"{len(data)} bytes", f"a header of {size} bytes"
+    received, allowed = count_of(len(data), "byte"), f"a header of {size} bytes"
     require(len(data) >= size, source, received, allowed, guards.EXPORT)
     values = map(str, layouts[0].unpack_from(data)[4:])
     return dict(zip(map(str.lower, _IN_BINARY), values, strict=True)), data[size:]
@@ -141,7 +142,7 @@ def _ascii_heights(body: bytes, points: int, source: str) -> NDArray[Any]:
         end = blank.end() if blank else len(text)
         heights.extend(map(number_in, text[start:end].split()))
         start = end
-    received, allowed = f"{len(heights)} heights", f"the {points} that its header claims"
+    received, allowed = count_of(len(heights), "height"), f"the {points} that its header claims"
     require(len(heights) == points, source, received, allowed, guards.EXPORT)
     return np.frombuffer(heights)
 
@@ -234,7 +235,7 @@ class _Record:
 
     def _listed(self, written: list[Element], shape: tuple[int, ...]) -> Array:
         """Heights that stand in the XML itself, as last of the numbers of a point; NaN of an empty one."""
-        points, received = math.prod(shape), f"{len(written)} heights in its list"
+        points, received = math.prod(shape), f"{count_of(len(written), 'height')} in its list"
         require(len(written) == points, self.source, received, f"the {points} of its matrix", guards.EXPORT)
         words = ((each.text or "").rpartition(";")[2].strip() or "nan" for each in written)
         return np.array([number_in(word) for word in words])

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from asperity.arguments import Array, NDArray, require
+from asperity.written_numbers import count_of
 
 TOLERANCE = 0.05
 """Largest distance of a point from the grid, in spacings, unless its coordinate was printed more coarsely."""
@@ -57,7 +58,7 @@ def rasterised(x: Array, y: Array, z: Array, source: str) -> tuple[Array, tuple[
 
 def _gridded(index: Index, z: Array, shape: tuple[int, ...], source: str) -> Array:
     """Heights on a grid; that points fill half of it is known before it is allocated."""
-    received = f"{len(z)} points that would need a grid of {' x '.join(str(n) for n in shape)}"
+    received = f"{count_of(len(z), 'point')} that would need a grid of {' x '.join(str(n) for n in shape)}"
     dense = math.prod(shape) * SPARSEST <= len(z)
     require(dense, source, received, "points on a regular grid", RESAMPLE)
     single, received = len(np.unique(index)) == len(index), "several points at one place"

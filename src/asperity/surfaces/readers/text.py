@@ -27,6 +27,7 @@ from asperity.surfaces.readers.headings import (
 )
 from asperity.surfaces.readers.hints import Hints, advice, spell
 from asperity.text_files import blocks_of_lines, decoded, even_rows, lines_in, number_in, read_text
+from asperity.written_numbers import count_of
 
 MISSING = {"", "nan", "bad", "na", "n/a", "#n/a", "n.a.", "#nv", "null", "none", "void", "lost", "missing",
            "invalid", "no data", "nodata", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind"}  # fmt: skip
@@ -262,7 +263,10 @@ class _Table:
             return
         self.columns = columns = columns or len(row)
         if len(row) != columns:
-            received, allowed = f"{len(row)} values in row {self.rows + 1}", f"{columns}, as in the first row"
+            received, allowed = (
+                f"{count_of(len(row), 'value')} in row {self.rows + 1}",
+                f"{columns}, as in the first row",
+            )
             raise InputError(self.source, received, allowed, "Mark missing heights with NaN.")
         self.empty = min(self.empty, self.dialect.empty_at_the_end(text))
         self.values.extend(row)
