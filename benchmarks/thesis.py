@@ -1,11 +1,12 @@
 """Statements of the thesis, measured: one sub-command for each table of docs/against_the_thesis.md.
 
-    python benchmarks/thesis.py wheel | ball | states | noise
+    python benchmarks/thesis.py wheel | ball | states | noise | signs
 
 `wheel` presses and moves a railway wheel at the states r = 5, 15, 30, 70 and 110 µm: the stiffness k_c = F/r
 next to Hertz's, and what the filters leave at 4 kHz. `ball` does so with a steel ball at r = 1 to 4 µm on one
 surface and at 5 to 25 µm on a rougher one. `states` rolls the wheel with 8, 16 and 32 states of the filters.
 `noise` compares laws with two linear contacts on rails at and above ISO 3095: the force in bands, and dB(A).
+`signs` changes what might turn the sign of those dB(A).
 Each prints its table in Markdown. The surfaces are our own choice: the thesis prints none.
 """
 
@@ -148,10 +149,32 @@ def noise() -> None:
                 )
 
 
+def signs() -> None:
+    """Print dB(A) over the two linear contacts with other datums, normalisation, damping and stiffness."""
+    laws = ["shifted", "shifted-unfiltered", "printed", "printed-unfiltered"]
+    variants = {
+        "as it stands": {},
+        "filters referred to k_t": {"normalise": "tangent"},
+        "datum of samples and path": {"datum": "path"},
+        "damping of 100 kN s/m": {"damping": "100000 N s/m"},
+        "Hertz's stiffness for k_t": {"linearise": "hertz"},
+    }
+    print("| what is changed | linear with |" + "".join(f" `{law}` |" for law in laws))
+    print("|---" * (2 + len(laws)) + "|")
+    for name, keys in variants.items():
+        for stiffness, linearise in (("k_t", "rough"), ("k_c", "secant")):
+            if stiffness == "k_c" and "linearise" in keys:
+                continue
+            run = asperity.run(rail(0, [*laws, "linear"], contact={"linearise": linearise} | keys))
+            power = run["spectra/sound_power_level_a"].sel(source="total")
+            louder = power.sel(law=laws) - power.sel(law="linear")
+            print(f"| {name} | {stiffness} |" + "".join(f" {each:+.1f} |" for each in louder.values))
+
+
 def main() -> None:
     """Print the table that was asked for."""
     warnings.simplefilter("ignore")
-    {"wheel": wheel, "ball": ball, "states": states, "noise": noise}[sys.argv[1]]()
+    {"wheel": wheel, "ball": ball, "states": states, "noise": noise, "signs": signs}[sys.argv[1]]()
 
 
 if __name__ == "__main__":

@@ -159,6 +159,24 @@ def test_the_thesis_is_cited_without_a_title_and_its_papers_by_theirs():
     assert chapter not in text("CITATION.cff").lower()
 
 
+def test_what_the_page_on_the_thesis_names_is_there():
+    """Every function and test by its file, and every command with its sub-command."""
+    page, roots = text("docs/against_the_thesis.md"), (ROOT / "src" / "asperity", ROOT / "tests")
+    named = re.findall(r"`([\w/]+\.py)::([\w.]+)`", page)
+    assert len(named) > 30
+    for path, name in named:
+        (file,) = (root / path for root in roots if (root / path).exists())
+        inside = ast.parse(file.read_text(encoding="utf-8")).body
+        for part in name.split("."):
+            (found,) = (node for node in inside if getattr(node, "name", None) == part)
+            inside = found.body
+    for number in ("1.1", "1.2", *(f"2.{n}" for n in range(1, 8))):
+        assert f"\n| ({number}) |" in page
+    for path, command in set(re.findall(r"`python (\w+/\w+\.py)(?: (\w+))?`", page)):
+        assert (ROOT / path).exists()
+        assert f"def {command}(" in text(path) or not command
+
+
 def test_the_readme_is_short_and_its_commands_exist():
     assert README.count("\n") <= 120
     for command in set(re.findall(r"^asperity (\w+)|&& asperity (\w+)", README, re.MULTILINE)):
