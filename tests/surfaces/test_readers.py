@@ -176,6 +176,10 @@ HOLED = {
         for name, told in RANGES.items()
     },
     **{
+        f"npy {kind}": ("a.npy", npy(holed(np.iinfo(kind).min, HEIGHTS, (1, 2)).astype(kind)))
+        for kind in ("i2", ">i4", "i8")
+    },
+    **{
         f"npy {kind} {sign}": ("a.npy", npy(holed(sign * np.finfo(kind).max, HEIGHTS, (1, 2)).astype(kind)))
         for kind in ("f4", "f8")
         for sign in (-1.0, 1.0)

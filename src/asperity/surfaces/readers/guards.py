@@ -162,11 +162,18 @@ The largest numbers of both floating point types do so, 1.70141e38 of Surfer, 1e
 
 
 def without_marks(array: NDArray[Any]) -> NDArray[Any]:
-    """Array with NaN where numbers with a floating point stand that are beyond any height, of either sign.
+    """Array with NaN where numbers stand that mark a missing point.
 
-    One without such numbers is returned as it is.
+    Of a floating point they are those beyond any height, of either sign. Of signed whole numbers of two bytes
+    and more it is the smallest: what NaN becomes when it is cast, and what instruments write. One without
+    such numbers is returned as it is.
     """
-    if array.dtype.kind != "f" or array.dtype.itemsize < 4 or not array.size:
+    if array.dtype.itemsize < 2 or not array.size:
+        return array
+    if array.dtype.kind == "i":
+        missing = array == np.iinfo(array.dtype).min
+        return np.where(missing, np.nan, array) if missing.any() else array
+    if array.dtype.kind != "f" or array.dtype.itemsize < 4:
         return array
     if np.fmin.reduce(array, axis=None) > -MARKED and np.fmax.reduce(array, axis=None) < MARKED:
         return array
