@@ -79,10 +79,10 @@ def test_what_is_kept_is_shown_and_cleared(own_folder, monkeypatch):
     (cache / f"scan-{64 * '0'}.npz").symlink_to(cache / "map.npz")
     mine = {path.name for path in cache.iterdir()} - {"scan-1.npz", ".scan-2.npz.01234567.part"}
     told = [
-        f"{cache}: 1 results{{}}, 1 MiB",
-        f"{own_folder / 'kernels'}: 1 compiled functions{{}}, 1 MiB",
-        f"{cache}: 1 files left by interrupted runs{{}}, 1 KiB",
-        f"{own_folder / 'kernels'}: 1 files left by interrupted runs{{}}, 1 KiB",
+        f"{cache}: 1 result{{}}, 1 MiB",
+        f"{own_folder / 'kernels'}: 1 compiled function{{}}, 1 MiB",
+        f"{cache}: 1 file left by interrupted runs{{}}, 1 KiB",
+        f"{own_folder / 'kernels'}: 1 file left by interrupted runs{{}}, 1 KiB",
     ]
     assert call("cache").stdout.splitlines() == [line.format("") for line in told]
     assert call("cache", "--clear").stdout.splitlines() == [line.format(" deleted") for line in told]

@@ -108,6 +108,6 @@ BALL = Body.rigid(MASS, LOAD)
 
 
 test_what_is_no_mechanism_is_refused = refusals(
-    (lambda: Mechanism([], [BALL], []), "edges.*0 for 1 contacts.*one for each contact of a body"),
+    (lambda: Mechanism([], [BALL], []), "edges.*0 for 1 contact .*one for each contact of a body"),
     (lambda: Mechanism([], [BALL], [Edge(BELOW, along, (Side(0, along),))]), "structure of a contact"),
 )

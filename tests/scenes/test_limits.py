@@ -153,7 +153,7 @@ TABLE[np.argmin(np.abs(TABLE[:, 0] - 0.1)), 1] += 2.0
         ),
         (
             {"spectrum": TABLE},
-            "above it in 1 bands, by up to 2.0 dB at 100 mm",
+            "above it in 1 band, by up to 2.0 dB at 100 mm",
             [17.1, 17.1, 6.9, -8.0, -11.0],
         ),
     ],
@@ -203,7 +203,7 @@ def test_conditions_that_are_not_met_are_named():
     assert decay["here"].startswith("below it in 2 bands, by up to 1.5 dB/m at 400")
     one = np.where(BAND < 4000.0, np.nan, 3.0)  # measured in the last bands alone: these are no longer low
     assert (
-        "below it in 1 bands, by up to 1.5 dB/m at 400"
+        "below it in 1 band, by up to 1.5 dB/m at 400"
         in conditions(decay=slow, measured=one)["decay rate"]["here"]
     )
     sentence, table = told(over=over, decay=slow, receiver_distance=10.0)

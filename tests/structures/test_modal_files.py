@@ -110,7 +110,7 @@ test_files_that_hold_no_modes = refusals(
     (
         "narrow.csv",
         MODE + b"position (m) residual flexibility (m/N)\n0\n1\n",
-        "lines of 1 numbers; allowed: 3: a position, .* and the residual flexibility",
+        "lines of 1 number; allowed: 3: a position, .* and the residual flexibility",
     ),
     ("unit.csv", b"frequency (kg), 1\n", "unit: received 'kg'"),
     ("si.csv", b"frequency, 1\n", r"no unit of the frequency; .* Write 'frequency \(Hz\)' with the unit"),

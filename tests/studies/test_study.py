@@ -96,7 +96,7 @@ def test_failed_members_leave_gaps_are_grouped_and_tried_again(failing):
     assert failing == [2, 3, 2, 3]
     assert calls[0] == (2, 6, "study of 6 members")
     assert calls[-1] == (6, 6, "study of 6 members")
-    with pytest.raises(ComputationError, match=r"all 1 members failed, the first one so: at 1\.0 m/s it"):
+    with pytest.raises(ComputationError, match=r"the only member failed, the first one so: at 1\.0 m/s it"):
         computed({"seed": [2]})
 
 

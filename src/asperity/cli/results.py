@@ -18,6 +18,12 @@ from asperity.store import Store, is_private, kernel_folders
 from asperity.terminal import say, say_files, say_table
 from asperity.written_numbers import count_of
 
+ONE_OF = {
+    "results": "result",
+    "compiled functions": "compiled function",
+    "files left by interrupted runs": "file left by interrupted runs",
+}
+"""Of what is kept between runs."""
 _KERNEL = re.compile(r"asperity[\w.<>]+-[0-9a-f]{24}")
 """Name of a compiled function that is kept."""
 
@@ -106,6 +112,7 @@ def show_cache(*, clear: bool = False) -> dict[str, Any]:
                 size += file.stat().st_size
             if clear:
                 discard(file)
-        say(f"{folder}: {len(files)} {what}{' deleted' if clear else ''}, {amount(size)}")
+        things = ONE_OF.get(what, what) if len(files) == 1 else what
+        say(f"{folder}: {len(files)} {things}{' deleted' if clear else ''}, {amount(size)}")
         told.append({"what": what, "folder": folder, "count": len(files), "bytes": size})
     return {"kept": told, "deleted": clear}

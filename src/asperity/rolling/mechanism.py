@@ -22,6 +22,7 @@ from asperity.rolling.stepper import Stepper, sizes_of, stacked
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import HIGHEST, Modal
+from asperity.written_numbers import count_of
 
 Along = Callable[[int, int], Array]
 """Values of steps: from one on to before another; from −1 to one beyond the last where slopes are taken."""
@@ -75,7 +76,7 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         touching = sum(len(body.places) for body in self.bodies)
-        short = f"{len(self.edges)} for {touching} contacts of the bodies"
+        short = f"{len(self.edges)} for {count_of(touching, 'contact')} of the bodies"
         allowed = "one for each contact of a body, or more"
         require(len(self.edges) >= max(touching, 1), "edges", short, allowed)
         last = len(self.structures) - 1

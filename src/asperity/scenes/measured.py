@@ -321,5 +321,5 @@ def _banded(name: str, beyond: Array, bands: list[str], words: tuple[str, str], 
     if not outside:
         return _condition(name, f"so in all {len(bands)} bands", asked, bool(bands))
     (side, unit), worst = words, int(np.argmax(beyond))
-    here = f"{side} it in {outside} bands, by up to {beyond[worst]:.1f} {unit} at {bands[worst]}"
+    here = f"{side} it in {count_of(outside, 'band')}, by up to {beyond[worst]:.1f} {unit} at {bands[worst]}"
     return _condition(name, here, asked, False)

@@ -330,7 +330,7 @@ def _table_of_modes(file: Path, place: str, dimension: str) -> dict[str, Array]:
     if table.shape[1] != columns:
         last = "" if math.isnan(residual) else ", and the residual flexibility"
         allowed = f"{columns}: a position, a shape of each of {modes} modes{last}"
-        raise InputError(file.name, f"lines of {table.shape[1]} numbers", allowed)
+        raise InputError(file.name, f"lines of {count_of(table.shape[1], 'number')}", allowed)
     if math.isnan(unit):
         _stated("", place, dimension, file)
     if not math.isnan(residual):

@@ -230,7 +230,8 @@ def study(
         results, failures = _outcomes(members, compute, told, signals)
     if not results:
         first = next(iter(failures.values()))
-        what = f"all {len(members)} members failed, the first one so: {first.message.rstrip('.')}"
+        all_of_them = "the only member" if len(members) == 1 else f"all {len(members)} members"
+        what = f"{all_of_them} failed, the first one so: {first.message.rstrip('.')}"
         raise ComputationError(what, "one of them with 'asperity run'")
     return tabulated(plan, members, results, failures)
 
