@@ -25,8 +25,9 @@ def ball(cells=41):
 
 
 def rough(rows, rms=0.2e-6):
+    """A draw of which no contact reaches the edge of the window: crests far out carry in others."""
     waves = {"longest": 0.2e-3, "shortest": 4 * DX}
-    return self_affine((rows, 41), (DX, DX), rms=rms, hurst=0.8, seed=1, **waves).heights
+    return self_affine((rows, 41), (DX, DX), rms=rms, hurst=0.8, seed=3, **waves).heights
 
 
 def test_the_second_loading_is_elastic_with_the_same_pressure():
