@@ -87,7 +87,8 @@ def test_numbers_of_a_run_are_those_of_its_file():
 
 def test_a_check_says_how_long_a_run_takes():
     found, _ = document("check", "small.toml", "-o", "a")
-    assert set(found["work"]) == {"seconds", "solutions", "steps", "bytes"}
+    times = {"seconds", "processor_seconds", "compiling_seconds"}
+    assert set(found["work"]) == times | {"solutions", "steps", "bytes"}
     assert found["work"]["steps"] > 0
     speed = next(item for item in found["parameters"] if item["key"] == "speed")
     assert (speed["value"], speed["is_default"]) == ("1 m/s", True)

@@ -50,7 +50,7 @@ CORPUS = {
     ),
     "a list for a word": case("kind = []\n", r"kind: received \[\]"),
     "a beam 1 um wide": case(f'{BALL}{ROUGH}[beam]\nwidth = "1 um"\n', "width: .*allowed: at least 187 um"),
-    "a ball of 1e-9 kg": case(f'{BALL}{ROUGH}[ball]\nmass = "1e-9 kg"\n', "heights with an rms slope of 1"),
+    "a ball of 1e-9 kg": case(f'{BALL}{ROUGH}[ball]\nmass = "1e-9 kg"\n', r"surface\.rms: .* 100 approaches"),
     "1 mm/s": case(f'{BALL}speed = "1 mm/s"\n{ROUGH}', r"contact\.spacing: received 0\.1 um at 0.001 m/s"),
     "a free beam on 0.1 Hz": (
         ("run", "case.toml", "--no-report"), 3,

@@ -228,7 +228,8 @@ def test_tables_hold_where_the_rms_is_three_approaches(text):
         np.array([half_space.solve(shape.body - place, approach=states[at]).force for place in places])
         for at in (0, -1)
     )
-    assert lowest.max() < 0.1 * shape.load
+    pressed = len(places) + chain.case.contact.samples  # whose mean is a light load: one may carry all of it
+    assert lowest.max() < 1.05 * pressed * reducing.LIGHTEST_STATE * shape.class_load
     assert highest.min() == pytest.approx(shape.largest_force, rel=0.01)
     assert np.count_nonzero(chain.reduction.ensemble.mean_force) >= 12
 

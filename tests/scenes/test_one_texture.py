@@ -21,7 +21,7 @@ def case(kind="ball-on-beam", **keys):
 @pytest.mark.parametrize(
     ("kind", "sizes", "keys"),
     [
-        ("ball-on-beam", ("0.1 um", "0.2 um"), {"ball": {"load": "1 N"}, "contact": {"spacing": "8 um"}}),
+        ("ball-on-beam", ("0.2 um", "0.4 um"), {"ball": {"load": "1 N"}, "contact": {"spacing": "8 um"}}),
         (
             "wheel-on-rail",
             ("40 um", "80 um"),

@@ -43,15 +43,19 @@ def stored(name):
     ("case", "sweep", "kernels", "more"),
     [
         ("wheel.toml", {"speed": ["21 m/s", "33 m/s"], "wheel.load": ["45 kN", "65 kN"]}, 2, 0),
-        ("rough.toml", {"ball.load": ["40 N", "30 N"]}, 0, 0),
-        ("rough.toml", {"speed": ["0.6 m/s", "1.3 m/s"]}, 0, 4),
+        ("rough.toml", {"ball.load": ["40 N", "30 N"]}, 0, 6),
+        ("rough.toml", {"speed": ["0.6 m/s", "1.3 m/s"]}, 0, 6),
     ],
     ids=["speeds and loads of a wheel", "loads over a path", "speeds over a path"],
 )
 def test_members_share_scans_and_have_the_digits_that_they_have_alone(
     case, sweep, kernels, more, monkeypatch
 ):
-    """`kernels` of the track are one for each speed; a shorter path has `more` blocks, at its two ends."""
+    """`kernels` of the track are one for each speed.
+
+    A shorter path has `more` blocks, at its two ends, for each pair of states; another load has those of two
+    pairs.
+    """
     *_, last = study_of(case, sweep).members()
     monkeypatch.setenv("ASPERITY_CACHE", "alone")
     alone, of_one = packed(kept(run(last.case))), stored("scan-")

@@ -240,7 +240,7 @@ class Surface(MeasuredLine, MeasuredMap):
     corrugation_bandwidth: float | None = optional(
         Number(above=0, at_most=3),
         0.3,
-        "its bandwidth in octaves; amplitude / √2 is the rms of a long rail, about which records scatter",
+        "its bandwidth in octaves; amplitude / 2^0.5 is the rms of a long rail, about which records scatter",
         "a sine",
         "0.001 to 3: a narrower one is a sine: leave it out",
         goes_with="corrugation",

@@ -27,7 +27,7 @@ from asperity.reduction.stiffness import ForceTable
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.scanned_states import states_around, states_expected
+from asperity.scenarios.scanned_states import pairs_of, states_around, states_expected
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import textures_under
 from asperity.store import Store
@@ -41,8 +41,8 @@ class ReducedCase(PreparedCase):
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: Array | None
     progress: Progress
-    # states at which the path is scanned, group after group; none: those that a motion is expected to visit
-    groups: tuple[slice, ...] = ()
+    # states at which the path is scanned; None: those that a motion is expected to visit
+    states: slice | None = None
 
     def of_contact(self, contact: int, load: float) -> "ReducedCase":
         """Those of another contact of the same bodies, by whose texture it bears and its load, N."""
@@ -122,27 +122,25 @@ class ReducedCase(PreparedCase):
         return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
     @property
-    def scanned(self) -> tuple[slice, ...]:
-        """Groups of states at which the path is scanned, rising."""
+    def scanned(self) -> slice:
+        """States at which the path is scanned."""
         ensemble = self._reduced.ensemble
-        return self.groups or (states_expected(ensemble.approaches, ensemble.mean_force, self.scene.loads),)
+        return self.states or states_expected(ensemble.approaches, ensemble.mean_force, self.scene.loads)
 
     def wider(self, visited: tuple[float, float]) -> "ReducedCase | None":
         """One whose path is scanned for a motion between two approaches, m, too; None if this one's is."""
-        groups, needed = self.scanned, states_around(self._reduced.approaches, visited)
-        below = slice(needed.start, groups[0].start)
-        above = slice(groups[-1].stop, needed.stop)
-        added = [each for each in (below, *groups, above) if each.start < each.stop]
-        return None if len(added) == len(groups) else replace(self, groups=tuple(added))
+        scanned, needed = self.scanned, states_around(self._reduced.approaches, visited)
+        both = slice(min(scanned.start, needed.start), max(scanned.stop, needed.stop))
+        return None if both == scanned else replace(self, states=both)
 
     @cached_property
     def path_scan(self) -> ScannedForces:
-        """The scan of the path, group after group of its states."""
+        """The scan of the path, pair after pair of its states."""
         scans = []
-        for group in self.scanned:
+        for pair in pairs_of(self.scanned):
             job = ScanJob(
                 self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
-                self._reduced.approaches[group], table_stride(self.shape),
+                self._reduced.approaches[pair], table_stride(self.shape),
                 rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, self.textures.before,
             )  # fmt: skip
             told = {"progress": self.progress, "message": "scanning the path"}
@@ -175,7 +173,7 @@ class ReducedCase(PreparedCase):
             assert self._reduced.touches is not None
             touches = self._reduced.touches[rows]
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
-        approaches = self._reduced.approaches[self.scanned[0].start : self.scanned[-1].stop]
+        approaches = self._reduced.approaches[self.scanned]
         return ForceTable(self.path_scan.forces, approaches, start, rows.step * dx, touches)
 
 

@@ -13,7 +13,7 @@ from asperity.arguments import Array
 from asperity.case.chosen_lengths import with_chosen
 from asperity.case.scene import Case
 from asperity.contact.batched import find_device
-from asperity.contact.scan import FILTER_SHARE, ScanJob, rtol_for, scan_forces
+from asperity.contact.scan import BLOCK_BYTES, FILTER_SHARE, ScanJob, rtol_for, scan_forces
 from asperity.errors import InputError, PhysicsWarning
 from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of, spec_of
@@ -33,7 +33,7 @@ from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
-from asperity.scenarios.scanned_states import states_expected
+from asperity.scenarios.scanned_states import pairs_of, states_expected
 from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
@@ -114,7 +114,10 @@ def scan_sizes(prepared: PreparedCase) -> dict[str, ScanSize]:
     sizes = {}
     for name, jobs in scans_of(prepared, states).items():
         positions, size = (sum(getattr(job, what) for job in jobs) for what in ("positions", "bytes"))
-        sizes[name] = ScanSize(positions, len(jobs[0].approaches), size)
+        count = len(jobs[0].approaches)
+        if name == "path":  # each pair of states has blocks of its own
+            size += BLOCK_BYTES * len(jobs[0].starts) * (len(pairs_of(slice(0, count))) - 1)
+        sizes[name] = ScanSize(positions, count, size)
     return sizes
 
 

@@ -181,7 +181,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         bare_force = (runs[bare] if bare in runs else once(bare, every)).contact_force
         book("what CNOSSOS-EU's sound power is of")
     scan = every[0].path_scan if Need.SCAN in needs_of(case.laws) else None
-    unused = replace(first, seconds=seconds, groups=every[0].groups)
+    unused = replace(first, seconds=seconds, states=every[0].states)
     computed = Computed(
         **vars(unused), over=over, runs=runs, scan=scan, running_in=ran, bare_force=bare_force
     )
