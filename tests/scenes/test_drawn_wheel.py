@@ -13,6 +13,7 @@ from asperity.scenes.noise import mode_by_mode, radiating_wheel
 from asperity.spectra import a_weighted_total
 from asperity.structures.modal import modal_answers
 from asperity.structures.outline import FINENESS, mean_thickness
+from asperity.written_numbers import count_of
 from small_cases import HEARD
 
 CASE = HEARD | {"settling": "20 ms", "numerics": {"highest_frequency": "1.6 kHz", "kernel": "scatter"}}
@@ -58,7 +59,7 @@ def test_the_wheel_is_told_mode_by_mode(drawn):
     loudest = int(np.argmax(level))
     assert rows[0][0] == f"{held['wheel_mode_frequency'].values[loudest]:.0f} Hz"
     assert rows[0][3] == f"{level[loudest]:.1f}"
-    assert rows[-1][0] == f"{len(level) - LOUDEST} others"
+    assert rows[-1][0] == count_of(len(level) - LOUDEST, "other")
     assert sum(float(row[-1]) for row in rows) == pytest.approx(100.0, abs=0.6)
 
 

@@ -147,16 +147,21 @@ def test_what_gives_off_energy_is_not_taken_for_a_rail(damped, monkeypatch):
 
 def test_kernels_and_fits_are_kept_by_their_content(tmp_path):
     store, told = Store(tmp_path), []
+
+    def files():
+        """But for what stands for the loss factors of the track, which another test may have asked for."""
+        return [path for path in store.files() if not path.name.startswith("causal-track")]
+
     like = {"duration": 0.05, "positions": 6, "cache": store}
     first, again = (
         moving_kernel(VISCOUS, 56.0, 2e-4, **like, progress=lambda *args: told.append(args)) for _ in range(2)
     )
     assert told[-1] == (6, 6, "moving kernel of 50 ms")
-    assert (len(told), len(store.files())) == (6, 2)  # and what stands for the loss factors
+    assert (len(told), len(files())) == (6, 1)
     np.testing.assert_array_equal(first.weights, again.weights)
     moving_kernel(VISCOUS, 57.0, 2e-4, **like)
     fits = [rail_poles(first, 20, cache=store) for _ in range(2)]
-    assert len(store.files()) == 4
+    assert len(files()) == 3
     np.testing.assert_array_equal(fits[0].residues, fits[1].residues)
 
 
