@@ -22,7 +22,13 @@ ROLLED = {
 
 @pytest.mark.parametrize(
     "visited",
-    [(STATES[3], STATES[3]), (STATES[4], STATES[4]), (0.9e-6, 1.1e-6), (0.0, 3e-6), (-1e-6, 0.3e-6)],
+    [
+        (STATES[3], STATES[3]),
+        (STATES[4] + 2e-8, STATES[4] + 4e-8),
+        (0.9e-6, 1.1e-6),
+        (0.0, 3e-6),
+        (-1e-6, 0.3e-6),
+    ],
 )
 def test_between_the_approaches_visited_the_force_is_that_of_all_states(visited):
     rng = np.random.default_rng(3)
