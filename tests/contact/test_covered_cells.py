@@ -52,7 +52,7 @@ def test_cells_that_are_not_square_follow_hertz_too(ratio):
     assert np.abs(force).max() < 0.004
 
 
-def test_the_force_is_of_second_order_and_the_area_close():
+def test_the_force_keeps_a_bound_of_second_order_and_the_area_is_close():
     cells, errors = (8, 12, 18), []
     for across in cells:
         contacts = []

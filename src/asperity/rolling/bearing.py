@@ -11,7 +11,7 @@ from asperity.arguments import Array, ArrayLike, finite_array, positive, require
 from asperity.laws.spec import Law
 from asperity.progress import Progress
 from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
-from asperity.rolling.roll import STILL, Ledger
+from asperity.rolling.roll import STILL, Ledger, steady
 from asperity.store import Checkpoint
 from asperity.structures.ball_bearing import BallBearing
 from asperity.structures.body import Body
@@ -94,11 +94,8 @@ def steady_where_still(run: RolledBearing) -> RolledBearing:
     if run.vibrates:
         return run
     names = "inner_force", "outer_force", "ball_motion", "inner_motion", "outer_motion"
-    records = {name: getattr(run, name) for name in names}
-    steady: dict[str, Any] = {
-        name: np.repeat(each[:, -1:], each.shape[1], axis=1) for name, each in records.items()
-    }
-    return replace(run, **steady, acceleration=np.zeros_like(run.acceleration), energy=run.energy.of_nothing)
+    records: dict[str, Any] = {name: steady(getattr(run, name)) for name in names}
+    return replace(run, **records, acceleration=np.zeros_like(run.acceleration), energy=run.energy.of_nothing)
 
 
 def roll_bearing(

@@ -280,18 +280,20 @@ STILL = 1e-9
 """Share of forces and displacements by which they vary where nothing vibrates: each is found to 1e-10."""
 
 
+def _varies(record: Array) -> bool:
+    """Whether any row of a record (..., n) varies by more than rounding."""
+    return bool((np.ptp(record, axis=-1) > STILL * np.abs(record).max(axis=-1)).any())
+
+
+def steady(record: Array) -> Array:
+    """A record (..., n) that keeps its last values throughout."""
+    return np.repeat(record[..., -1:], record.shape[-1], axis=-1)
+
+
 def without_rounding(run: RolledBodies) -> RolledBodies:
     """The same, of a run in which nothing vibrates without what rounding leaves of motion and forces."""
-
-    def varies(record: Array) -> bool:
-        return bool((np.ptp(record, axis=-1) > STILL * np.abs(record).max(axis=-1)).any())
-
-    if any(map(varies, (run.contact_force, run.over_displacement, run.relative_displacement))):
+    if any(map(_varies, (run.contact_force, run.over_displacement, run.relative_displacement))):
         return run
-
-    def steady(record: Array) -> Array:
-        return np.repeat(record[..., -1:], record.shape[-1], axis=-1)
-
     energy = run.energy if run.over_displacement.any() else run.energy.of_nothing
     names = "contact_force", "history", "relative_displacement", "over_displacement", "rolling_displacement"
     records: dict[str, Any] = {name: steady(getattr(run, name)) for name in names}

@@ -32,7 +32,7 @@ def states_around(approaches: Array, visited: tuple[float, float]) -> slice:
     last = len(approaches)
     first = min(max(int(low) - 2, 0), last - 2)
     end = max(min(int(high) + 2, last), 2)
-    return slice(first - first % PAIR, min(end + end % PAIR, last))
+    return slice(first - first % PAIR, min(end + -end % PAIR, last))
 
 
 def pairs_of(states: slice) -> list[slice]:
