@@ -302,6 +302,26 @@ def test_decay_rates_are_read_with_and_without_those_sideways(source):
     assert (list(vertical), lateral) == ([2.0, 2.1, 2.2], None)
 
 
+def test_decay_rates_of_both_rails_are_as_long_as_their_mean(tmp_path):
+    """Two rails radiate as one with the mean of 1/Δ."""
+    heads = (
+        "f (Hz), vertical left (dB/m), vertical right (dB/m)",
+        ", lateral left (dB/m), lateral right (dB/m)",
+    )
+    rows = "100, 2, 6", "125, 4, 4", "160, 1, 3"
+    (tmp_path / "a.csv").write_text("\n".join([heads[0], *rows]))
+    (tmp_path / "b.csv").write_text("\n".join(["".join(heads), *(f"{each}, 3, 3" for each in rows)]))
+    for name, sideways in (("a.csv", None), ("b.csv", [3.0, 3.0, 3.0])):
+        _, vertical, lateral = measured.read_decay_rates(tmp_path / name)
+        np.testing.assert_allclose(vertical, [3.0, 4.0, 1.5])
+        assert (None if lateral is None else lateral.tolist()) == sideways
+    row = np.array([[100.0, 2, 6, 1, 3], [125.0, 4, 4, 1, 1], [160.0, 1, 3, 2, 6]])
+    np.testing.assert_allclose(measured.read_decay_rates(row)[1:], [[3.0, 4.0, 1.5], [1.5, 1.0, 3.0]])
+    (tmp_path / "c.csv").write_text(f"{heads[0]}, lateral left (dB/m)\n100, 1, 1, 1\n125, 1, 1, 1\n")
+    with pytest.raises(InputError, match="vertical decay rate"):
+        measured.read_decay_rates(tmp_path / "c.csv")
+
+
 OMEGA = 2.0 * np.pi * np.array([100.0, 200.0, 400.0])
 TRUE = np.array([2e-5 + 1e-5j, 1e-5 - 2e-5j, 3e-5 + 0j])
 

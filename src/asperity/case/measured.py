@@ -1,13 +1,14 @@
 """Tables of what was measured on a track and beside it: read in SI, refused where they cannot be right."""
 
 from collections.abc import Iterable
+from pathlib import Path
 
 import numpy as np
 
 from asperity.arguments import Array, NDArray
 from asperity.case.form import name_of
 from asperity.case.table_headings import Column
-from asperity.case.tables import TableSource, read_table, refuse_disorder
+from asperity.case.tables import TableSource, read_table, refuse_disorder, tells
 from asperity.errors import InputError
 from asperity.spectra import a_weighting
 from asperity.written_numbers import count_of, rounded
@@ -53,14 +54,32 @@ def band_numbers(table: TableSource, frequency: Array) -> Array:
 def read_decay_rates(table: TableSource) -> tuple[Array, Array, Array | None]:
     """Read decay rates (n,), dB/m, vertical and, if the table has them, lateral, in one-third octaves.
 
-    A table of two or three columns, as EN 15461 reports them, which may lack bands. First come the exact
-    centres (n,), Hz.
+    A table of two or three columns, as EN 15461 reports them, which may lack bands; or of both rails, two
+    vertical ones and, if it has them, two lateral ones. Of these 1/Δ is the mean of both, as the sound of two
+    rails is. First come the exact centres (n,), Hz.
     """
-    rows = read_table(table, (_FREQUENCY, _VERTICAL), (_LATERAL,))
+    rows, rails = _of_rails(table)
     rates = rows[:, 1:]
     _refuse_beyond(table, rates, DECAY_RATES, "a decay rate", "dB/m")
     numbers = band_numbers(table, rows[:, 0])
-    return 10.0 ** (0.1 * numbers), rates[:, 0], rates[:, 1] if rates.shape[1] > 1 else None
+    of_both = 1.0 / np.mean(1.0 / rates.reshape(len(rates), -1, rails), axis=2)
+    return 10.0 ** (0.1 * numbers), of_both[:, 0], of_both[:, 1] if of_both.shape[1] > 1 else None
+
+
+def _of_rails(table: TableSource) -> tuple[Array, int]:
+    """Rows of a table of decay rates, and of how many rails it holds them, one after the other."""
+    both = _FREQUENCY, _VERTICAL, _VERTICAL
+    try:
+        rows = read_table(table, both[:2], (_LATERAL,))
+    except InputError as error:
+        try:
+            rows = read_table(table, both, (_LATERAL, _LATERAL))
+        except InputError:
+            raise error from None
+        if rows.shape[1] == len(both) and isinstance(table, Path) and tells(table, "lateral"):
+            raise
+        return rows, 2
+    return rows, 2 if rows.shape[1] == len(both) + 2 else 1
 
 
 def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:

@@ -203,10 +203,11 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "0 m to 100 km: tracks are rolled over for less",
     )
     decay_rates: Path | Array | None = optional(
-        tables.TableFile(columns=(2, 3), read=read_decay_rates),
+        tables.TableFile(columns=(2, 3, 5), read=read_decay_rates),
         "decay_rates.csv",
         "measured decay rates (EN 15461), which the sound power of rail and sleepers then follows, not the "
-        "motion: one-third octave (Hz), vertical and, if it is there, lateral rate (dB/m)",
+        "motion: one-third octave (Hz), vertical and, if it is there, lateral rate (dB/m), which the rail's "
+        "sound sideways follows; of both rails two of each, vertical ones first",
         "those of this track",
     )
     mobility: Path | Array | None = optional(

@@ -223,7 +223,7 @@ def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
     A table of three columns: frequency, real and imaginary part; or, as the heading of a file says, magnitude
     and phase.
     """
-    by_phase = isinstance(table, Path) and _tells(table, "phase")
+    by_phase = isinstance(table, Path) and tells(table, "phase")
     frequency, first, second = read_table(table, MAGNITUDE_AND_PHASE if by_phase else RECEPTANCE).T
     if frequency.size < FEWEST_LINES:
         raise InputError(name_of(table), count_of(frequency.size, "frequency"), f"at least {FEWEST_LINES}")
@@ -245,7 +245,7 @@ def read_dynamic_stiffness(table: TableSource) -> Array:
     Frequency, Hz, real and imaginary part, N/m, e^{+iωt}, and preload, N. Files may have magnitude and loss
     factor, the imaginary over the real part, instead, which their heading says; arrays hold the parts.
     """
-    by_loss = isinstance(table, Path) and _tells(table, "loss")
+    by_loss = isinstance(table, Path) and tells(table, "loss")
     rows = read_table(table, STIFFNESS_AND_LOSS if by_loss else STIFFNESS, PRELOAD)
     if by_loss:
         real = rows[:, 1] / np.hypot(1.0, rows[:, 2])
@@ -281,7 +281,7 @@ def read_bays(table: TableSource) -> Array:
     return rows
 
 
-def _tells(path: Path, word: str) -> bool:
+def tells(path: Path, word: str) -> bool:
     """Whether the heading of a text file has a word, in small letters."""
     content = read_text(path, path.name, "a table over frequency", largest=LARGEST_TABLE, latin=True)
     lines = (line.lower() for line in islice(lines_in(content), MOST_HEADING))

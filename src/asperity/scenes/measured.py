@@ -17,6 +17,7 @@ from asperity.reference import cnossos, railways
 from asperity.scenes import compute, schema
 from asperity.schema import Values, spectra
 from asperity.spectra import HALF_BAND, nominal_frequency
+from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.track import Track, decay_rate_en15461
 from asperity.surfaces.bands import likely_band
 from asperity.written_numbers import count_of, rounded
@@ -56,13 +57,10 @@ class HammerTest:
         Responses are summed over the band before they are compared: 1/Δ is a mean that is weighted with the
         squared mobility.
         """
-        centre = np.atleast_1d(np.asarray(band, dtype=float))
-        steps = (np.arange(LINES) + 0.5) / LINES
-        frequency = centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0)
+        frequency = _lines_in(band)
         half, lines = float(track.mid_spans[0]), frequency.ravel()
         mobility = 2j * np.pi * frequency * track.receptance(lines, half, half).reshape(frequency.shape)
-        lengths = 1.0 / decay_rate_en15461(track, lines).reshape(frequency.shape)
-        rate = 1.0 / np.average(lengths, axis=1, weights=np.abs(mobility) ** 2)
+        rate = _rate_in_bands(decay_rate_en15461(track, lines), mobility)
         return cls(frequency, rate, mobility)
 
     def measured(
@@ -114,6 +112,40 @@ class HammerTest:
         With the linear contact's force: the other receptance as in `driven`.
         """
         return np.nan_to_num(self.driven(other) / computed.driven(other), nan=1.0)
+
+
+def _lines_in(band: ArrayLike) -> Array:
+    """Frequencies of each band (b, n), even over lg f, Hz."""
+    centre = np.atleast_1d(np.asarray(band, dtype=float))
+    steps = (np.arange(LINES) + 0.5) / LINES
+    return np.asarray(centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0))
+
+
+def _rate_in_bands(rate: Array, mobility: Complex) -> Array:
+    """Decay rates (b,), dB/m, of responses that are summed over each band, at its lines (b n,) and (b, n)."""
+    lengths = 1.0 / rate.reshape(mobility.shape)
+    return np.asarray(1.0 / np.average(lengths, axis=1, weights=np.abs(mobility) ** 2))
+
+
+def lateral_rates(keys: TrackKeys, track: LateralTrack, band: Array) -> tuple[Values, Array | float]:
+    """Lay out decay rates sideways, measured and computed, in bands by their centres (b,), Hz.
+
+    With the length of rail that radiates sideways over that computed (b,); one in bands where none was
+    measured, and everywhere where none was.
+    """
+    rates = None if keys.decay_rates is None else read_decay_rates(keys.decay_rates)
+    if rates is None or rates[2] is None:
+        return {}, 1.0
+    frequency, half = _lines_in(band), 0.5 * track.track.sleeper_spacing
+    lines = frequency.ravel()
+    mobility = (lines * track.receptance(lines, half, half)).reshape(frequency.shape)
+    computed = _rate_in_bands(track.decay_rate_en15461(lines), mobility)
+    longer = computed / in_bands(band, rates[0], rates[2])
+    laid_out = {
+        schema.EXPECTED_LATERAL_DECAY_RATE: np.where(np.isfinite(longer), computed, np.nan),
+        schema.MEASURED_LATERAL_POWER_CHANGE: 10.0 * np.log10(longer),
+    }
+    return laid_out, np.nan_to_num(longer, nan=1.0)
 
 
 def in_bands(band: Array, centres: Array, values: Array) -> Array:

@@ -30,6 +30,7 @@ from asperity.spectra import (
     level_deviation,
     level_of,
 )
+from asperity.structures.lateral_rail import LateralTrack
 from asperity.structures.track import Track, decay_rate
 from asperity.surfaces import bands, heightmap
 
@@ -251,10 +252,13 @@ class SidewaysPower:
         place of that under the vertical one, and under the lateral one alone.
     of_modes : ndarray (laws, modes, f)
         W/Hz, of each mode of the wheels under both forces, the rigid motion first.
+    track : LateralTrack
+        What moves so.
     """
 
     parts: Array
     of_modes: Array
+    track: LateralTrack
 
 
 def radiation(computed: compute.Computed, values: Array, side: SidewaysPower | None) -> Values:
@@ -262,7 +266,8 @@ def radiation(computed: compute.Computed, values: Array, side: SidewaysPower | N
 
     What was rolled on one rail stands for axles, each with two wheels, on two rails. The total
     holds all that is known: without a wheel that says how its modes move it, rail and sleepers. What was
-    measured on the track changes the power of both up and down, and the length that radiates, band by band.
+    measured on the track changes the power of both up and down, and the length that radiates, band by band;
+    lateral decay rates change the rail sideways.
 
     Parameters
     ----------
@@ -306,6 +311,10 @@ def radiation(computed: compute.Computed, values: Array, side: SidewaysPower | N
         own, louder, longer = found
         more |= own
         power[:, :2] *= louder
+        if side is not None and beside is not None:
+            own, longer_sideways = measured.lateral_rates(case.track, side.track, band)
+            more |= own
+            beside[:, 0] *= longer_sideways
     if beside is not None:
         alone = level(np.stack([power[:, 2], beside[:, 2], power.sum(axis=1)], axis=1))
         more[schema.SINGLE_FORCE] = schema.SINGLE_FORCES
@@ -498,7 +507,7 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
 def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[pass_by.AxleSource]:
     """What one axle makes radiate: a wheel from its axle, the others along the rail as its waves decay.
 
-    Waves sideways reach no farther than the longest of those up and down.
+    Waves sideways reach no farther than the longest of those up and down, but where that was measured.
     """
     power = over_frequency[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
     band, decay = power["band"].values, over_frequency[schema.BAND_DECAY_RATE.name].values
@@ -512,8 +521,11 @@ def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[
             rate = np.interp(
                 band[:, None] * WITHIN, beside[schema.SIDEWAYS_FREQUENCY], beside[schema.LATERAL_DECAY_RATE]
             )
-            lateral = np.mean(ONE_WAVE / rate, axis=1)
-            found.append(pass_by.AxleSource(sent, np.minimum(lateral, float(np.max(up)))))
+            lateral = np.minimum(np.mean(ONE_WAVE / rate, axis=1), float(np.max(up)))
+            if (change := schema.MEASURED_LATERAL_POWER_CHANGE.name) in over_frequency:
+                own = lateral * 10.0 ** (0.1 * over_frequency[change].values)
+                lateral = np.where(np.isfinite(own), np.minimum(own, LONGEST), lateral)
+            found.append(pass_by.AxleSource(sent, lateral))
         elif name != "total":
             found.append(pass_by.AxleSource(sent, up))
     return found

@@ -236,11 +236,19 @@ WHEEL_MODE_POWER_LEVEL_A = _mode(
 _MEASURED = "where something was measured on the track"
 _beside = partial(_spectra, condition=_MEASURED, missing="it was not measured in these bands")
 MEASURED_DECAY_RATE = _beside("measured_decay_rate(band)", "dB/m", "decay rate, measured")
-_LATERAL = "lateral decay rate, measured: it is shown, and nothing follows from it"
+_LATERAL = "lateral decay rate, measured"
 MEASURED_LATERAL_DECAY_RATE = _beside(
     "measured_lateral_decay_rate(band)", "dB/m", _LATERAL, condition=f"{_MEASURED}, laterally"
 )
+_SIDEWAYS = f"{_MEASURED}, laterally, and something moves sideways"
 _EXPECTED = "decay rate that EN 15461 finds on the computed track"
+EXPECTED_LATERAL_DECAY_RATE = _beside(
+    "expected_lateral_decay_rate(band)", "dB/m", f"lateral {_EXPECTED}", condition=_SIDEWAYS
+)
+_CHANGE = "sound power level of the rail sideways with what was measured over that of the computed track"
+MEASURED_LATERAL_POWER_CHANGE = _beside(
+    "measured_lateral_power_change(band)", "dB", _CHANGE, condition=_SIDEWAYS
+)
 EXPECTED_DECAY_RATE = _beside("expected_decay_rate(band)", "dB/m", _EXPECTED)
 _MOBILITY = "point mobility of the rail at mid-span, rms in the band"
 MEASURED_MOBILITY = _beside("measured_mobility(band)", "(m/s)/N", f"{_MOBILITY}, measured")

@@ -184,7 +184,7 @@ class Sideways:
         """Sound power of what was rolled on one rail, on all lines of the spectra."""
         both, lateral = self.mode_power
         parts = np.stack([self.rail_power(), both.sum(axis=1), lateral.sum(axis=1)], axis=1)
-        return noise.SidewaysPower(self.on_all_lines(parts), self.on_all_lines(both))
+        return noise.SidewaysPower(self.on_all_lines(parts), self.on_all_lines(both), self.track)
 
 
 def sideways_of(computed: compute.Computed) -> Sideways | None:

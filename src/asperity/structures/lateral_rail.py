@@ -8,7 +8,12 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, positive
 from asperity.parameters import Quantity, checked_parameters, parameter
 from asperity.structures import modal, periodic_rail
-from asperity.structures.track import VANISHING_DAMPING, Track
+from asperity.structures.track import (
+    EN_15461_BAYS,
+    VANISHING_DAMPING,
+    Track,
+    decay_rate_of_responses,
+)
 from asperity.structures.wheel_modes import WheelModes
 
 # UIC 60 as in the program rolland: E = 210 GPa, G = 80.769 GPa, A = 76.7 cm², I_z = 512.7 cm⁴, J = 221.2 cm⁴,
@@ -298,6 +303,18 @@ class LateralTrack:
         """Decay rate (f,), dB/m, of the wave that reaches farthest, −20 lg|λ|/L; frequencies (f,), Hz."""
         largest = np.abs(self.waves(_angular(frequency)).multipliers).max(axis=0)
         return np.asarray(-20.0 * np.log10(largest) / self.track.sleeper_spacing)
+
+    def decay_rate_en15461(self, frequency: ArrayLike) -> Array:
+        """Decay rate (f,), dB/m, as a hammer on the side of the head at mid-span finds it; (f,), Hz.
+
+        All three waves at once, at the distances of EN 15461.
+        """
+        waves, (_, sideways) = self.waves(_angular(frequency)), self.contact_shapes(0.0)
+        spacing = self.track.sleeper_spacing
+        distances, force = spacing * np.array(EN_15461_BAYS), 0.5 * spacing
+        motion = np.stack([waves.receptance(force + each, force) for each in distances])
+        responses = np.einsum("a,xabf,b->xf", sideways, motion, sideways)
+        return decay_rate_of_responses(distances, np.abs(responses))
 
 
 def _share(stiffness: float | None, vertical: float, usual: float) -> float:

@@ -50,10 +50,12 @@ _COLUMNS = {
     "decay rate, measured / (dB/m)": schema.MEASURED_DECAY_RATE,
     "computed": schema.EXPECTED_DECAY_RATE,
     "lateral, measured": schema.MEASURED_LATERAL_DECAY_RATE,
+    "lateral, computed": schema.EXPECTED_LATERAL_DECAY_RATE,
     "mobility, measured / (dB re 1 m/(N s))": schema.MEASURED_MOBILITY,
     "computed, mid-span": schema.EXPECTED_MOBILITY,
     "linear force / dB": schema.MEASURED_FORCE_CHANGE,
     "rail and sleepers / dB": schema.MEASURED_POWER_CHANGE,
+    "rail sideways / dB": schema.MEASURED_LATERAL_POWER_CHANGE,
 }
 
 
@@ -73,8 +75,9 @@ def measured_table(tree: DataTree) -> tables.ReportTable:
                 columns[head] = tables.number_cells(20.0 * np.log10(found), data.signed)
     note = (
         "Computed: what a hammer at mid-span finds on the computed track, by EN 15461. The sound power of "
-        "rail and sleepers goes as |F Y|²/Δ and changes as the last column says, with the force as that of a "
-        "linear contact changes: on a softer rail it is smaller. Bands that were not measured stay as "
+        "rail and sleepers goes as |F Y|²/Δ and changes as its column says, with the force as that of a "
+        "linear contact changes: on a softer rail it is smaller. That of the rail sideways goes as 1/Δ of its "
+        "lateral rate. Bands that were not measured stay as "
         "computed, and so does the contact force of this run in all its figures."
     )
     return tables.table("measured_track", "Track: measured against computed", columns, note)
