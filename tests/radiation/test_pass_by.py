@@ -144,6 +144,41 @@ def test_rails_apart_add_as_two_lines():
     assert_allclose(apart.integral(0.0), 0.5 * np.pi * (1 / 6.75 + 1 / 8.25), rtol=1e-6)
 
 
+def test_dipoles_stand_in_the_direction_of_motion():
+    """3 cos²θ: of one place opposite, of a long rail by closed forms, and as an even source in the mean."""
+    path = SoundPath(BAND[:1], Receiver(2.0, 1.0), directivity="dipole")
+    square = {"vertical": 1.0, "lateral": 4.0}
+    for motion, part in square.items():
+        assert_allclose(path.inverse_square(0.0, np.zeros(1), motion), 3.0 * part / 5.0 / 5.0)
+        # ∫ dx/(x² + r²)² = π/(2 r³)
+        assert_allclose(path.integral(0.0, motion), 3.0 * part * 0.5 * np.pi / 5.0**1.5, rtol=1e-5)
+    assert_allclose(path.integral(0.0), np.pi / np.sqrt(5.0), rtol=1e-5)
+    elevation, weight = np.polynomial.legendre.leggauss(20)
+    rise = 0.5 * (elevation + 1.0)  # sine, even over the half sphere
+    mean = [
+        SoundPath(BAND[:1], Receiver(np.sqrt(1.0 - z * z), z), directivity="dipole").inverse_square(
+            0.0, np.zeros(1), "vertical"
+        )[0, 0]
+        for z in rise
+    ]
+    assert 0.5 * weight @ mean == pytest.approx(1.0, rel=1e-9)
+    assert_allclose(path.inverse_square(0.0, np.zeros(1)), 0.2)
+
+
+def test_a_screened_rail_and_an_offset_receiver_are_heard_so():
+    along, apart = np.zeros(1), SoundPath(BAND[:1], FLAT, rail_distance=1.5, far_rail_screening=10.0)
+    assert_allclose(apart.inverse_square(0.0, along), 0.5 * (1.0 / 6.75**2 + 0.1 / 8.25**2), rtol=1e-12)
+    louder = SoundPath(np.array([1000.0]), FLAT, receiver_offset=6.0)
+    for heard in (
+        decibels(louder.exposure(MILLIWATT, ONE) / plain().exposure(MILLIWATT, ONE)),
+        decibels(
+            louder.squared_pressure(MILLIWATT, ONE, [0.0, 3.0])
+            / plain().squared_pressure(MILLIWATT, ONE, [0.0, 3.0])
+        ),
+    ):
+        assert_allclose(heard, 6.0, rtol=1e-12)
+
+
 def test_soft_ground_spreads_as_its_quadrature():
     """A wave that decays along the rail over grass: against a plain sum over the rail."""
     path, along = SoundPath(BAND[::7], Receiver(), GRASS, 0.5, "cnossos", 1.5), np.linspace(0.0, 40.0, 301)

@@ -270,7 +270,8 @@ class NoiseKeys(form.Section):
     directivity: str = key(
         Choice(cnossos.DIRECTIVITIES),
         cnossos.EVEN,
-        "how rail, sleepers and wheel radiate: evenly, or by CNOSSOS-EU with the same power",
+        "how rail, sleepers and wheel radiate: evenly, or by CNOSSOS-EU with the same power; or a rail as "
+        "dipoles, upright where it moves up and down, across the track where it moves sideways",
     )
     rail_distance: float | None = optional(
         LENGTH,
@@ -278,6 +279,19 @@ class NoiseKeys(form.Section):
         "distance of both rails, each with half of the power",
         "both in the middle of the track",
         "0.1 m to 1.9 m: receivers stand beside the track",
+    )
+    far_rail_screening: float = key(
+        LEVEL,
+        "0 dB",
+        "what wheels and the nearer rail take of the sound of the farther one",
+        "0 dB to 40 dB: screens take no more",
+        goes_with="rail_distance",
+    )
+    receiver_offset: float = key(
+        LEVEL,
+        "0 dB",
+        "what the receiver adds to all that it hears: about +6 dB of a microphone flush in a large board",
+        "-40 dB to 40 dB: boards and windows lie between",
     )
     measured_bands: Path | Array | None = optional(
         tables.TableFile(columns=(2,), read=measured.read_band_levels),
@@ -327,7 +341,16 @@ class NoiseKeys(form.Section):
         resistivity = self.flow_resistivity or railways.GROUNDS.get(self.ground or railways.HARD)
         ground = None if resistivity is None else PorousGround(resistivity)
         apart = self.rail_distance or 0.0
-        return SoundPath(band, receiver or self.receiver, ground, self.ground_depth, self.directivity, apart)
+        return SoundPath(
+            band,
+            receiver or self.receiver,
+            ground,
+            self.ground_depth,
+            self.directivity,
+            apart,
+            self.far_rail_screening,
+            self.receiver_offset,
+        )
 
     def problems(self) -> Iterator[InputError]:
         """The first axle is where the others count from."""

@@ -36,11 +36,14 @@ class AxleSource:
         rate Δ, dB/m, ℓ is 8.686/Δ. Zero for a source in one place.
     height : float
         Above the rail head, m.
+    motion : str
+        ``"vertical"`` or ``"lateral"`` of a rail, which may radiate as dipoles; else ``"all"``.
     """
 
     power: Array
     length: ArrayLike = 0.0
     height: float = 0.0
+    motion: str = "all"
 
 
 @dataclass(frozen=True, eq=False)

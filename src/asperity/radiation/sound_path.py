@@ -137,9 +137,15 @@ class SoundPath:
         Of the ground below the rail head, m.
     directivity : str
         ``"even"``, or ``"cnossos"``: that of rolling noise by CNOSSOS-EU, scaled so that the power stays what
-        it is. By the standard, which scales nothing, a source is as loud opposite as an even one.
+        it is. By the standard, which scales nothing, a source is as loud opposite as an even one. Or
+        ``"dipole"``: a rail radiates 3 cos²θ, θ from the direction of its motion, in the mean over all
+        directions as an even source.
     rail_distance : float
         Between both rails, m, each with half of the power; zero has both in the middle of the track.
+    far_rail_screening : float
+        What is lost of the sound of the farther rail, dB.
+    receiver_offset : float
+        What the receiver adds to the level, dB: 6 of a microphone flush in a large board.
 
     Raises
     ------
@@ -153,6 +159,8 @@ class SoundPath:
     ground_depth: float = 0.5
     directivity: str = cnossos.EVEN
     rail_distance: float = 0.0
+    far_rail_screening: float = 0.0
+    receiver_offset: float = 0.0
 
     def __post_init__(self) -> None:
         nearest = 0.5 * self.rail_distance
@@ -174,39 +182,52 @@ class SoundPath:
         places = [np.abs(run - at) for at in passage.axles]
         spread = [
             np.sum([np.interp(each, grid, one) for each in places], axis=0)
-            for one in self.spread(source.height, lengths, grid)
+            for one in self.spread(source.height, lengths, grid, source.motion)
         ]
-        return np.asarray(_FACTOR * np.asarray(source.power, dtype=float)[..., None] * np.stack(spread))
+        return np.asarray(self._factor * np.asarray(source.power, dtype=float)[..., None] * np.stack(spread))
 
     def exposure(self, source: AxleSource, passage: Passage) -> Array:
         """Integral of the squared sound pressure over the whole passage (..., b), Pa² s.
 
         However far the power is spread along the rail; over hard ground W ρc Q/(4 d v) per axle.
         """
-        share = len(passage.axles) / passage.speed * self.integral(source.height)
-        return np.asarray(_FACTOR * share * np.asarray(source.power, dtype=float))
+        share = len(passage.axles) / passage.speed * self.integral(source.height, source.motion)
+        return np.asarray(self._factor * share * np.asarray(source.power, dtype=float))
 
-    def inverse_square(self, height: float, along: Array) -> Array:
+    @property
+    def _factor(self) -> float:
+        """Of p² over W and what stands for 1/d², Pa s/m."""
+        return _FACTOR * float(10.0 ** (0.1 * self.receiver_offset))
+
+    def inverse_square(self, height: float, along: Array, motion: str = "all") -> Array:
         """What stands for 1/d² of a source above reflecting ground (b, n), 1/m².
 
-        Of a source at a height above the rail head, m, that is (n,) m along the rail from the place opposite.
+        Of a source at a height above the rail head, m, that is (n,) m along the rail from the place opposite,
+        with a motion as of `AxleSource`.
         """
-        rails = {self.receiver.distance + side * self.rail_distance for side in (-0.5, 0.5)}
-        return np.mean([self._from_rail(height, lateral, along) for lateral in sorted(rails)], axis=0)
+        near, far = (self.receiver.distance + side * self.rail_distance for side in (-0.5, 0.5))
+        found = self._from_rail(height, near, along, motion)
+        if near == far:
+            return found
+        heard = 10.0 ** (-0.1 * self.far_rail_screening)
+        return 0.5 * (found + heard * self._from_rail(height, far, along, motion))
 
-    def _from_rail(self, height: float, lateral: float, along: Array) -> Array:
+    def _from_rail(self, height: float, lateral: float, along: Array, motion: str) -> Array:
         away, rise = np.hypot(lateral, along), self.receiver.height - height
         if self.ground is None:
             found = np.broadcast_to(1.0 / (away**2 + rise**2), (len(self.band), len(along)))
         else:
             heights = height + self.ground_depth, self.receiver.height + self.ground_depth
             found = self.ground.inverse_square(self.band, heights, away)
+        if self.directivity == cnossos.DIPOLE:
+            moved = {"vertical": rise, "lateral": lateral}.get(motion)  # along the direction of motion
+            return found if moved is None else found * 3.0 * moved**2 / (away**2 + rise**2)
         if self.directivity == cnossos.EVEN:
             return found
         azimuth, elevation = np.arctan2(lateral, along), np.arctan2(rise, away)
         return found * _strength(azimuth, elevation, self.band) / _mean_strength(self.band)
 
-    def spread(self, height: float, length: Array, along: Array) -> Array:
+    def spread(self, height: float, length: Array, along: Array, motion: str = "all") -> Array:
         """The same (b, n) of power that is spread as exp(−2|ξ|/ℓ)/ℓ along the rail around its middle.
 
         ℓ is (b,), m; places (n,), m, rise evenly from zero, opposite the receiver.
@@ -216,7 +237,7 @@ class SoundPath:
         places = step * np.arange(reach.max())
         lateral = self.receiver.distance
         coarse = lateral * np.sinh(np.linspace(0.0, np.arcsinh(places[-1] / lateral), _PLACES))
-        smooth = self.inverse_square(height, coarse) * (lateral**2 + coarse**2)
+        smooth = self.inverse_square(height, coarse, motion) * (lateral**2 + coarse**2)
         spread = []
         for one, ell, end in zip(smooth, length.tolist(), reach, strict=True):
             found = (np.interp(places, coarse, one) / (lateral**2 + places**2))[:end]
@@ -227,10 +248,10 @@ class SoundPath:
             spread.append(found[: len(along)])
         return np.stack(spread)
 
-    def integral(self, height: float) -> Array:
+    def integral(self, height: float, motion: str = "all") -> Array:
         """Integral of `inverse_square` along the whole rail (b,), 1/m; over hard ground π/d."""
         angle, lateral = 0.5 * np.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES, self.receiver.distance
-        found = self.inverse_square(height, lateral * np.tan(angle)) * lateral / np.cos(angle) ** 2
+        found = self.inverse_square(height, lateral * np.tan(angle), motion) * lateral / np.cos(angle) ** 2
         return np.asarray(np.pi * found.mean(axis=-1))
 
 

@@ -26,7 +26,7 @@ WHEEL_ROUGHNESS: Tables = _TABLES["wheel_roughness"]
 WHEEL_TRANSFER: Tables = _TABLES["wheel_transfer"]
 """Table G-3b, vehicle by wheel diameter, dB at nominal frequencies from 50 Hz to 10 kHz."""
 
-EVEN, CNOSSOS = DIRECTIVITIES = ("even", "cnossos")
+EVEN, CNOSSOS, DIPOLE = DIRECTIVITIES = ("even", "cnossos", "dipole")
 """Ways in which rolling noise is spread over directions; the second is `directivity`."""
 
 PAD_CLASSES: dict[str, tuple[float, float]] = {

@@ -495,6 +495,8 @@ def pass_by_group(case: Any, over_frequency: xarray.Dataset, beside: Values | No
         schema.GROUND: keys.ground_words,
         schema.DIRECTIVITY: keys.directivity,
         schema.RAIL_DISTANCE: keys.rail_distance or 0.0,
+        schema.FAR_RAIL_SCREENING: keys.far_rail_screening,
+        schema.RECEIVER_OFFSET: keys.receiver_offset,
     }
     if passage.passed is not None:
         laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = equivalent
@@ -525,7 +527,8 @@ def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[
             if (change := schema.MEASURED_LATERAL_POWER_CHANGE.name) in over_frequency:
                 own = lateral * 10.0 ** (0.1 * over_frequency[change].values)
                 lateral = np.where(np.isfinite(own), np.minimum(own, LONGEST), lateral)
-            found.append(pass_by.AxleSource(sent, lateral))
+            found.append(pass_by.AxleSource(sent, lateral, motion="lateral"))
         elif name != "total":
-            found.append(pass_by.AxleSource(sent, up))
+            motion = "vertical" if name == "rail" else "all"
+            found.append(pass_by.AxleSource(sent, up, motion=motion))
     return found

@@ -310,8 +310,10 @@ SOUND_EXPOSURE_LEVEL = _pass_by(
 RECEIVER_DISTANCE = _place("receiver_distance", "m", "from the middle of the track", _TRACK)
 RECEIVER_HEIGHT = _place("receiver_height", "m", "above the rail head", _TRACK)
 GROUND = _place("ground", "text", "between track and receiver", _TRACK)
-DIRECTIVITY = _place("directivity", "text", "of the sources: even, or cnossos", _TRACK)
+DIRECTIVITY = _place("directivity", "text", "of the sources: even, cnossos, or dipole", _TRACK)
 RAIL_DISTANCE = _place("rail_distance", "m", "of both rails as sources; zero: both in the middle", _TRACK)
+FAR_RAIL_SCREENING = _place("far_rail_screening", "dB", "of the farther rail", _TRACK)
+RECEIVER_OFFSET = _place("receiver_offset", "dB", "that the receiver adds to all levels", _TRACK)
 FRONT_TIME = _place("front_time", "s", "at which the front of the train is opposite: Tp begins", _LENGTH)
 REAR_TIME = _place("rear_time", "s", "at which its rear is opposite: Tp ends", _LENGTH)
 

@@ -242,11 +242,15 @@ def pass_by_level(tree: DataTree, lines: Lines) -> Iterator[Panel | str]:
     where = ""
     if away is not None and above is not None:
         where = f", {away:g} m from the middle of the track and {above:g} m above the rail head"
+    if offset := data.number(tree, schema.RECEIVER_OFFSET):
+        where += f", which adds {offset:+g} dB"
+    lost = data.number(tree, schema.FAR_RAIL_SCREENING)
+    screened = f"the farther rail is screened by {lost:g} dB" if lost else "nothing screens them"
     ground, directions = (data.stated(tree, fact) for fact in (schema.GROUND, schema.DIRECTIVITY))
     yield (
         f"{passing}{where}; ground: {ground or HARD}, directivity: "
         f"{directions or 'none'}. Rail and sleepers radiate along the track as its vibration decays, a wheel "
-        "from its axle; nothing screens them."
+        f"from its axle; {screened}."
     )
 
 
