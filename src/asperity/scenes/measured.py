@@ -141,7 +141,7 @@ def lateral_rates(keys: TrackKeys, track: LateralTrack, band: Array) -> tuple[Va
     mobility = (lines * track.receptance(lines, half, half)).reshape(frequency.shape)
     computed = _rate_in_bands(track.decay_rate_en15461(lines), mobility)
     longer = computed / in_bands(band, rates[0], rates[2])
-    laid_out = {
+    laid_out: Values = {
         schema.EXPECTED_LATERAL_DECAY_RATE: np.where(np.isfinite(longer), computed, np.nan),
         schema.MEASURED_LATERAL_POWER_CHANGE: 10.0 * np.log10(longer),
     }

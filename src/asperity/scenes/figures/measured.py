@@ -77,7 +77,8 @@ def measured_table(tree: DataTree) -> tables.ReportTable:
         "Computed: what a hammer at mid-span finds on the computed track, by EN 15461. The sound power of "
         "rail and sleepers goes as |F Y|²/Δ and changes as its column says, with the force as that of a "
         "linear contact changes: on a softer rail it is smaller. That of the rail sideways goes as 1/Δ of "
-        "its lateral rate. Bands that were not measured stay as computed, and so does the contact force of this run in all its figures."
+        "its lateral rate. Bands that were not measured stay as computed, and so does the "
+        "contact force of this run in all its figures."
     )
     return tables.table("measured_track", "Track: measured against computed", columns, note)
 
