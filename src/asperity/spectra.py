@@ -65,7 +65,8 @@ def psd(signal: ArrayLike, spacing: float, *, segment: int | None = None) -> tup
         np.square(spectra.imag, out=spectra.imag)
         spectra.real += spectra.imag
         power += spectra.real.sum(axis=-2)
-    power *= 2.0 * spacing / (count * (window**2).sum())
+        del spectra
+    power *= 2.0 * spacing / (count * np.square(window, out=window).sum())
     power[..., 0] *= 0.5
     if length % 2 == 0:
         power[..., -1] *= 0.5  # zero and half the sampling frequency have no other side

@@ -203,7 +203,7 @@ def test_a_column_of_short_numbers_takes_few_times_the_memory_of_its_heights(poi
     tracemalloc.start()
     try:
         module.show_surface(Path("column.txt"), Path("a.png"), height_unit="nm", pixel="1 um")
-        assert tracemalloc.get_traced_memory()[1] < 4.5 * 8 * points + 2e6
+        assert tracemalloc.get_traced_memory()[1] < 4.05 * 8 * points
     finally:
         tracemalloc.stop()
 

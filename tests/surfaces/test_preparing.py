@@ -1,8 +1,11 @@
 """Form, band, grid and direction of measured surfaces; missing points are filled, and spikes found."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.sparse import linalg
 
 from asperity import BallOnBeam, HeightMap, Profile, read_surface
 from asperity.errors import CaseError, MissingPointsWarning, ShortRecordWarning
@@ -197,6 +200,35 @@ def test_fill_restores_a_harmonic_surface():
     assert_allclose(filled.heights, harmonic, atol=1e-20)
     assert filled.source == "patch; 2.04% of the points filled"
     assert fill(filled) is filled
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.MissingPointsWarning")
+@pytest.mark.parametrize(("shape", "across"), [("square", 1.0), ("ring", 0.1), ("scattered", 2.5)])
+def test_large_holes_of_any_shape_take_the_memory_of_a_few_maps(shape, across, monkeypatch):
+    """Factors of a direct solution fill in with size, where Python does not count: none is of many points."""
+    x, y = np.arange(200)[:, None] * SPACING, np.arange(200) * across * SPACING
+    exact = x * x - y * y + 3.0 * x * y + 1e-3 * x + 2e-3
+    missing = np.zeros(exact.shape, dtype=bool)
+    missing[20:190, 10:190] = True
+    if shape == "ring":
+        missing[100:160, 100:160] = False
+    elif shape == "scattered":
+        missing &= np.random.default_rng(0).random(exact.shape) < 0.6
+    factored = []
+    for name in ("splu", "spsolve"):
+        direct = getattr(linalg, name)
+        monkeypatch.setattr(
+            linalg, name, lambda a, *b, direct=direct: factored.append(a.shape[0]) or direct(a, *b)
+        )
+    holed = HeightMap(np.where(missing, np.nan, exact), (SPACING, across * SPACING))
+    tracemalloc.start()
+    try:
+        filled = fill(holed)
+        assert tracemalloc.get_traced_memory()[1] < 60 * holed.heights.nbytes
+    finally:
+        tracemalloc.stop()
+    assert max(factored) < 0.75 * missing.sum()
+    assert_allclose(filled.heights, exact, rtol=0.0, atol=1e-10 * np.ptp(exact))
 
 
 def test_fill_a_profile_with_straight_lines_and_level_ends():

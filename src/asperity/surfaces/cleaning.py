@@ -63,7 +63,10 @@ def fill(surface: S, lines: bool | None = None) -> S:
             if holes.any():
                 line[holes] = np.interp(np.flatnonzero(holes), there, line[there])
     else:
-        heights[missing] = _harmonic(surface.heights, missing, np.atleast_1d(np.asarray(surface.spacing)))
+        from asperity.surfaces.holes import harmonic  # not where none is missing
+
+        spacings = np.atleast_1d(np.asarray(surface.spacing))
+        heights[missing] = harmonic(surface.heights, missing, spacings)
     source = f"{surface.source}; {share:.2%} of the points filled".lstrip("; ")
     return replace(surface, heights=heights, source=source)
 
@@ -71,33 +74,6 @@ def fill(surface: S, lines: bool | None = None) -> S:
 def nearly_complete(surface: S) -> S | None:
     """Surface with its missing points filled, for what needs all; None where more than 5 % are missing."""
     return fill(surface, lines=False) if surface.missing_share <= FILLED_SHARE_WARNED else None
-
-
-def _harmonic(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> Array:
-    """Heights of the missing points, from the discrete Laplace equation."""
-    from scipy import sparse
-    from scipy.sparse.linalg import spsolve
-
-    index = np.full(heights.shape, -1)
-    index[missing] = np.arange(missing.sum())
-    diagonal, right = np.zeros(missing.sum()), np.zeros(missing.sum())
-    rows, columns, values = [], [], []
-    for axis, spacing in enumerate(spacings):
-        weight = (spacings.max() / spacing) ** 2
-        points, z = np.moveaxis(index, axis, 0), np.moveaxis(heights, axis, 0)
-        low, high, z_low, z_high = points[:-1], points[1:], z[:-1], z[1:]
-        for here, there, z_there in ((low, high, z_high), (high, low, z_low)):
-            mine = here >= 0
-            np.add.at(diagonal, here[mine], weight)
-            known, unknown = mine & (there < 0), mine & (there >= 0)
-            np.add.at(right, here[known], weight * z_there[known])
-            rows.append(here[unknown])
-            columns.append(there[unknown])
-            values.append(np.full(unknown.sum(), -weight))
-    coupling = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    shape = (diagonal.size, diagonal.size)
-    matrix = sparse.csc_array(sparse.coo_array(coupling, shape=shape) + sparse.diags_array(diagonal))
-    return np.atleast_1d(spsolve(matrix, right))
 
 
 def spikes(surface: "HeightMap") -> NDArray[np.bool_]:

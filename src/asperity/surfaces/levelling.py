@@ -141,8 +141,11 @@ def _without_polynomial(heights: Array, degree: int) -> Array:
     received, allowed = f"{np.isfinite(heights).sum()} valid points", f"at least {len(powers)} for this form"
     require(np.isfinite(heights).sum() >= len(powers), "surface", received, allowed)
     others = [_legendre(0, n, n, degree) for n in heights.shape[1:]]
-    rows = max(1, PIECE // math.prod(heights.shape[1:]))
-    pieces = [slice(first, min(first + rows, len(heights))) for first in range(0, len(heights), rows)]
+    across = math.prod(heights.shape[1:])
+
+    def pieces(points: int) -> list[slice]:
+        rows = max(1, points // across)
+        return [slice(first, min(first + rows, len(heights))) for first in range(0, len(heights), rows)]
 
     def terms(piece: slice) -> list[Array]:
         bases = [_legendre(piece.start, piece.stop, len(heights), degree), *others]
@@ -150,13 +153,13 @@ def _without_polynomial(heights: Array, degree: int) -> Array:
         return [reduce(np.multiply.outer, each) for each in factors]
 
     matrix, right = np.zeros((len(powers), len(powers))), np.zeros(len(powers))
-    for piece in pieces:
+    for piece in pieces(PIECE):
         known, of_piece = np.isfinite(heights[piece]), terms(piece)
         matrix += [[np.sum(a * b, where=known) for a in of_piece] for b in of_piece]
         right += [np.sum(term * heights[piece], where=known) for term in of_piece]
     weights = np.linalg.lstsq(matrix, right, rcond=None)[0]
     left = np.empty(heights.shape)
-    for piece in pieces:
+    for piece in pieces(PIECE // 16):  # beside both arrays of heights, and in the processor's cache
         weighted = (w * term for w, term in zip(weights, terms(piece), strict=True))
         left[piece] = heights[piece] - sum(weighted, np.zeros(heights[piece].shape))
     left.flags.writeable = False  # it need not be copied

@@ -70,9 +70,9 @@ def process(
             line, spikes, points = remove_spikes(line)
             removed, changed = removed + spikes, changed + points
         done.append(roll_over(line) if "curvature" in steps else line)
-        lift = done[-1].heights - line.heights
-        lifted.append(np.mean(lift > 1e-12))
-        highest.append(lift.max())
+        share, most = _lift(done[-1].heights, line.heights)
+        lifted.append(share)
+        highest.append(most)
     rolled = f"rolled over with a circle of {ROLLED_RADIUS:g} m: {np.mean(lifted):.1%} of the points lifted"
     words = (
         f"{trimmed} missing points trimmed at the ends",
@@ -83,6 +83,14 @@ def process(
         f"{rolled}, by up to {rounded(max(highest) * 1e6)} µm" if "curvature" in steps else "not rolled over",
     )
     return done, "EN 15610:2009: " + "; ".join(words)
+
+
+def _lift(rolled: Array, heights: Array) -> tuple[float, float]:
+    """Share of the points that a circle lifted, and by how much at most, m."""
+    pieces = [slice(first, first + TOGETHER) for first in range(0, len(heights), TOGETHER)]
+    lifts = (rolled[piece] - heights[piece] for piece in pieces)
+    lifted, most = zip(*((np.count_nonzero(lift > 1e-12), lift.max()) for lift in lifts), strict=True)
+    return sum(lifted) / len(heights), float(max(most))
 
 
 def trim(profile: Profile) -> Profile:
