@@ -1,6 +1,5 @@
 """What the laws of a case are made of: its textures and state functions."""
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -27,7 +26,8 @@ from asperity.reduction.stiffness import ForceTable
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.scanned_states import pairs_of, states_around, states_expected
+from asperity.scenarios.scanned_positions import table_stride
+from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import textures_under
 from asperity.store import Store
@@ -135,12 +135,12 @@ class ReducedCase(PreparedCase):
 
     @cached_property
     def path_scan(self) -> ScannedForces:
-        """The scan of the path, pair after pair of its states."""
+        """The scan of the path, state after state: motions that visit others share them."""
         scans = []
-        for pair in pairs_of(self.scanned):
+        for state in range(self.scanned.start, self.scanned.stop):
             job = ScanJob(
                 self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
-                self._reduced.approaches[pair], table_stride(self.shape),
+                self._reduced.approaches[state], table_stride(self),
                 rtol_for(self.case.numerics.force_accuracy), self._scanned_planes, self.textures.before,
             )  # fmt: skip
             told = {"progress": self.progress, "message": "scanning the path"}
@@ -161,7 +161,7 @@ class ReducedCase(PreparedCase):
     @property
     def _scanned_rows(self) -> slice:
         """Rows on which the window begins, of all on which it may, counted from the record's start."""
-        stride = table_stride(self.shape)
+        stride = table_stride(self)
         return slice(self.textures.before % stride, None, stride)
 
     def _table(self) -> ForceTable:
@@ -184,11 +184,6 @@ def reduced_case(prepared: PreparedCase, progress: Progress) -> ReducedCase:
     if prepared.textures.maps:
         reduction = reducing.reduce(prepared, planes, progress)
     return ReducedCase(**vars(prepared), reduction=reduction, planes=planes, progress=progress)
-
-
-def table_stride(shape: Geometry) -> int:
-    """Rows of the contact grid between the positions of a table: an eighth of the patch."""
-    return max(1, math.floor(shape.class_axes[0] / 8 / shape.spacing[0]))
 
 
 def working_point(

@@ -28,12 +28,13 @@ from asperity.rolling.resolution import (
     PER_SLEEPER,
 )
 from asperity.rolling.steps import warn_if_coarse
-from asperity.scenarios import compiling, laws, reducing, run_time, running_in
+from asperity.scenarios import compiling, reducing, run_time, running_in
 from asperity.scenarios.coverage import problems_of_coverage
 from asperity.scenarios.doubts import doubt_sizes
 from asperity.scenarios.geometry import geometry_of, window_cells
 from asperity.scenarios.problems import by_key, problems, refuse
-from asperity.scenarios.scanned_states import pairs_of, states_expected
+from asperity.scenarios.scanned_positions import table_stride
+from asperity.scenarios.scanned_states import states_expected
 from asperity.scenarios.scene import PreparedCase, scene_of
 from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import MOST_HELD, Store
@@ -115,8 +116,8 @@ def scan_sizes(prepared: PreparedCase) -> dict[str, ScanSize]:
     for name, jobs in scans_of(prepared, states).items():
         positions, size = (sum(getattr(job, what) for job in jobs) for what in ("positions", "bytes"))
         count = len(jobs[0].approaches)
-        if name == "path":  # each pair of states has blocks of its own
-            size += BLOCK_BYTES * len(jobs[0].starts) * (len(pairs_of(slice(0, count))) - 1)
+        if name == "path":  # each state has blocks of its own
+            size += BLOCK_BYTES * len(jobs[0].starts) * (count - 1)
         sizes[name] = ScanSize(positions, count, size)
     return sizes
 
@@ -139,8 +140,7 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
         visited = slice(None)
         if case.contact.approaches is None:
             visited = states_expected(states, reducing.nominal_forces(shape), prepared.scene.loads)
-        stride = laws.table_stride(shape)
-        found["path"] = scans([textures.path], visited, stride, 1.0, textures.before)
+        found["path"] = scans([textures.path], visited, table_stride(prepared), 1.0, textures.before)
     return found
 
 

@@ -11,8 +11,8 @@ from asperity.contact.running_in import RunInHeights, RunningIn, run_in, warn_of
 from asperity.contact.scan import total
 from asperity.progress import Progress
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.laws import table_stride
 from asperity.scenarios.reducing import samples_of
+from asperity.scenarios.scanned_positions import edge_stride
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import Textures
 from asperity.schema import Values, contact
@@ -35,7 +35,7 @@ def run_in_case(prepared: PreparedCase, progress: Progress) -> tuple[Textures, V
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     half_space = shape.half_space(case.contact.hardness)
     job = RunningIn(
-        half_space, shape.body, shape.load, passes_of(case.contact.running_in), table_stride(shape),
+        half_space, shape.body, shape.load, passes_of(case.contact.running_in), edge_stride(shape),
         case.numerics.rtol,
     )  # fmt: skip
     roll = partial(run_in, job=job, cache=Store(), progress=progress)
@@ -90,7 +90,7 @@ def running_in_solutions(prepared: PreparedCase) -> int:
     rolled = [*textures.strips, *([] if textures.path is None else [textures.path])]
     spare = [max(strip.shape[0] - shape.body.shape[0], 0) for strip in rolled]
     passes = passes_of(prepared.case.contact.running_in) or EXPECTED_PASSES
-    return passes * sum(rows // table_stride(shape) + 1 for rows in spare)
+    return passes * sum(rows // edge_stride(shape) + 1 for rows in spare)
 
 
 def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures) -> str:

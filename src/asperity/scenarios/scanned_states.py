@@ -1,4 +1,4 @@
-"""States at which a path is scanned: those that the motion visits, pair by pair."""
+"""States at which a path is scanned: those that the motion visits, each for itself."""
 
 import numpy as np
 
@@ -6,10 +6,8 @@ from asperity.arguments import Array
 
 EXPECTED = (0.75, 1.25)
 """Forces between which a motion is expected to stay, over the static loads, until it is known."""
-
-
-PAIR = 2
-"""States that are scanned together, each pair for itself: motions that visit others share them."""
+FEWEST = 3
+"""States, at least, through which forces are interpolated: F^(2/3) is nearly straight, and a little bent."""
 
 
 def states_expected(approaches: Array, forces: Array, loads: Array) -> slice:
@@ -23,18 +21,12 @@ def states_expected(approaches: Array, forces: Array, loads: Array) -> slice:
 
 
 def states_around(approaches: Array, visited: tuple[float, float]) -> slice:
-    """Which of the states (k,), m, forces between two approaches, m, depend on, in whole pairs.
+    """Which of the states (k,), m, lie around forces between two approaches, m: `FEWEST` or more.
 
-    Those around them, and one beyond on either side: slopes at a state follow from its neighbours. Between
-    them the interpolation is the same as from all states.
+    A slope at the outermost follows from one side: levels are within 0.05 dB of those through all states.
     """
     low, high = np.searchsorted(approaches, visited, side="right")
     last = len(approaches)
-    first = min(max(int(low) - 2, 0), last - 2)
-    end = max(min(int(high) + 2, last), 2)
-    return slice(first - first % PAIR, min(end + -end % PAIR, last))
-
-
-def pairs_of(states: slice) -> list[slice]:
-    """Split states into the pairs that are scanned: the same ones whatever else is visited."""
-    return [slice(at, min(at + PAIR, states.stop)) for at in range(states.start, states.stop, PAIR)]
+    first = min(max(int(low) - 1, 0), last - 1)
+    end = max(min(int(high) + 1, last), min(first + FEWEST, last))
+    return slice(max(min(first, end - FEWEST), 0), end)
