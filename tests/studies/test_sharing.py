@@ -61,7 +61,7 @@ def test_members_share_scans_and_have_the_digits_that_they_have_alone(
     alone, of_one = packed(kept(run(last.case))), stored("scan-")
     assert of_one
     monkeypatch.setenv("ASPERITY_CACHE", "together")
-    monkeypatch.setattr("asperity.surfaces.strip.fields", Fields())
+    monkeypatch.setattr("asperity.surfaces.strip.pieces", Fields())
     assert asperity.study(case, sweep, executor=Here())["completed"].all()
     assert len(of_one - stored("scan-")) == 0
     assert len(stored("scan-") - of_one) <= more < len(of_one)

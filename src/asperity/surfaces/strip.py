@@ -15,16 +15,22 @@ from asperity.surfaces.tiles import Drawn, fine, heights_at
 BYTES_KEPT = 2**29
 """Bytes of fields in the file; where there would be more, all are forgotten, and made again when read."""
 BYTES_IN_MEMORY = 2**26
-"""The same in memory, where no file can be written."""
+"""The same in memory: of fields that need no file, and where none can be written."""
 FEWEST = 3
 """Fields that are kept whatever their size: neighbours are read together."""
+PIECE = 2**13
+"""Rows of a strip that are made together."""
 
 
 class Fields:
-    """Fields (rows, ny) by their names, each made once; in memory where no temporary file can be written."""
+    """Fields (rows, ny) by their names, each made once; in memory where no temporary file can be written.
 
-    def __init__(self) -> None:
+    With `fewest` they are in memory alone, and so many are kept whatever their size.
+    """
+
+    def __init__(self, fewest: int | None = None) -> None:
         self._lock = threading.Lock()
+        self._in_memory, self._fewest = fewest is not None, FEWEST if fewest is None else fewest
         self._held: dict[Hashable, Array | tuple[int, tuple[int, ...]]] = {}  # or offset in bytes, and shape
         self._file: IO[bytes] | None = None
         self._close: Callable[[], object] = lambda: None
@@ -49,9 +55,12 @@ class Fields:
     def _put(self, name: Hashable, heights: Array) -> None:
         size = heights.nbytes
         full = self._length + size > BYTES_KEPT or self.nbytes + size > BYTES_IN_MEMORY
-        if full and len(self._held) >= FEWEST:
+        if full and len(self._held) >= self._fewest:
             self._close()
             self._held, self._file, self._length, self.nbytes = {}, None, 0, 0
+        if self._in_memory:
+            self._hold(name, heights)
+            return
         try:
             if self._file is None:
                 self._file = tempfile.TemporaryFile(prefix="asperity-")  # noqa: SIM115  closed below
@@ -62,12 +71,17 @@ class Fields:
             self._held[name] = self._length, heights.shape
             self._length += size
         except OSError:
-            self._held[name] = heights
-            self.nbytes += size
+            self._hold(name, heights)
+
+    def _hold(self, name: Hashable, heights: Array) -> None:
+        self._held[name] = heights
+        self.nbytes += heights.nbytes
 
 
-fields = Fields()
-"""Those of all strips: strips of one texture share them."""
+pieces = Fields()
+"""Pieces of all strips, as they are read: strips of one texture share them."""
+tiles = Fields(fewest=24)
+"""Tiles that pieces beside each other are made of, two or three of each range of waves."""
 
 
 class Strip(Protocol):
@@ -125,8 +139,8 @@ class LongStrip:
     strip's length or width nor on its spacing. Place zero is at row `before`, and in the middle across, at
     line ny // 2. `transform` translates the heights, m, point by point.
 
-    Any part of the strip can be had alone and again, to the bit. Each tile is made once, on a grid of its
-    own; strips of one surface and width share those that are held.
+    Any part of the strip can be had alone and again, to the bit. It is made in pieces, which are kept, as a
+    path is read several times; strips of one surface, width and spacing share those within both.
     """
 
     shape: tuple[int, int]
@@ -143,18 +157,36 @@ class LongStrip:
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
-        heights = np.zeros((0, self.shape[1]))
-        if stop > first:
-            place = np.asarray(self.spacing[0] * (np.arange(first, stop) - self.before))
-            heights = heights_at(self.drawn.ranges, place, self.shape[1], self._tile)
+        heights = np.empty((max(stop - first, 0), self.shape[1]))
+        start = first
+        while start < stop:
+            begin, end = self._piece(start)
+            upto = min(stop, end)
+            heights[start - first : upto - first] = self._made(begin, end)[start - begin : upto - begin]
+            start = upto
         return heights if self.transform is None else self.transform(heights)
+
+    def _piece(self, row: int) -> tuple[int, int]:
+        """First row of the piece that holds a row, and the one behind it: counted from place zero on."""
+        begin = (row - self.before) // PIECE * PIECE + self.before
+        end = begin + PIECE
+        return (max(begin, 0), min(end, self.shape[0])) if 0 <= row < self.shape[0] else (begin, end)
+
+    def _made(self, first: int, stop: int) -> Array:
+        """Heights of rows of one piece, m, before they are translated."""
+        lines, (dx, dy) = self.shape[1], self.spacing
+        rows = np.arange(first, stop) - self.before
+        name = self.drawn.name, dx, dy, lines, int(rows[0]), len(rows)
+        return pieces.rows(
+            name, lambda: heights_at(self.drawn.ranges, np.asarray(dx * rows), lines, self._tile)
+        )
 
     def _tile(self, which: int, tile: int) -> Array:
         """Heights of a range of waves in a tile on its own fine grid, m."""
         lines, dy = self.shape[1], self.spacing[1]
         name = self.drawn.name, which, tile, dy, lines
         waves = self.drawn.ranges[which]
-        return fields.rows(name, lambda: fine(waves.waves(tile, places_across(lines, dy))))
+        return tiles.rows(name, lambda: fine(waves.waves(tile, places_across(lines, dy))))
 
 
 def places_across(lines: int, spacing: float) -> Array:
