@@ -11,6 +11,7 @@ from asperity.case.time_steps import longest_step
 from asperity.errors import PhysicsWarning
 from asperity.running import prepare_case
 from asperity.scenarios.preparing import doubt_time_step
+from asperity.scenes.bearing import prepare_bearing, rolled
 
 BRIEF = {"settling": "50 ms", "surface": {"smooth": True}, "laws": ["hertz"]}
 ON_RAIL = BRIEF | {"duration": "0.1 s", "contact": {"spacing": "1 mm"}}
@@ -66,3 +67,22 @@ def test_a_step_that_resolves_all_is_as_long_as_it_was(keys, step):
     case = as_case(keys)
     assert case.time_step == case.usual_step == pytest.approx(step, rel=0.3)
     assert case.time_step < longest_step(case, case.time_step)
+
+
+@pytest.mark.parametrize(
+    "rings",
+    [
+        {"housing.mass": "60 mg"},
+        {"housing.lobes": 20, "housing.thickness": "0.5 mm"},
+    ],
+)
+def test_the_default_step_of_a_bearing_follows_light_rings_and_their_modes(rings):
+    """A ball has 2.1 g: the contact with such a ring is stiffer against both than balls are between rings."""
+    keys = {"kind": "ball-bearing", "speed": "18000 1/min", "radial": "300 N", "axial": "300 N"}
+    keys |= {"bearing": {"name": "6205"}, "laws": ["hertz"], "duration": "5 ms", "settling": "0.1 ms"}
+    heavy = as_case(keys)
+    case = heavy.with_(**rings)
+    assert case.step < heavy.step
+    with PhysicsWarning.caught() as caught:
+        rolled(prepare_bearing(case), lambda *done: None)
+    assert not [each for each in caught if any(words in str(each.message) for words in DOUBT)]

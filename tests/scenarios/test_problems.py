@@ -1,5 +1,6 @@
 """What a run would refuse of a legal case, the check refuses before: by the key that it is about."""
 
+import numpy as np
 import pytest
 
 import small_cases
@@ -8,6 +9,7 @@ from asperity.case.any_case import entries
 from asperity.case.cases import as_case, case_class
 from asperity.errors import CaseError, InputError
 from asperity.running import prepare_case
+from asperity.scenarios import preparing, reducing
 from asperity.structures.moving_kernel import refuse_kernel
 from command_line import call
 
@@ -69,3 +71,13 @@ def test_waves_that_die_away_within_a_bay_are_known_before_the_kernel_is_compute
     refuse_kernel(track, 2.0 / (0.5 * highest))
     with pytest.raises(InputError, match="decay of a rail wave over one bay"):
         refuse_kernel(track, 2.0 / (1.1 * highest))
+
+
+def test_states_that_do_not_rise_are_refused_by_the_check_as_by_the_run(monkeypatch):
+    prepared = prepare_case(as_case(BALL))
+    monkeypatch.setattr(reducing, "chosen_states", lambda *_: np.array([2e-6, 1e-6, 3e-6]))
+    told = r"surface: .*um rms, with first touch at 2 um.*small against"
+    with pytest.raises(InputError, match=told):
+        preparing.expect(prepared, lambda *_: None)
+    with pytest.raises(InputError, match=told):
+        reducing.reduce(prepared, None, lambda *_: None)

@@ -23,7 +23,9 @@ from asperity.case.table_headings import Column
 from asperity.case.tables import TableFile, TableSource, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import Choice, File, Flag, ListOf, Number, Origin, Quantity, key, keys_of, optional
+from asperity.rolling.resolution import PER_MODE
 from asperity.structures.ball_bearing import BEARINGS, PARTS, BallBearing, Kinematics
+from asperity.structures.modal import HIGHEST
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, closed_trace
 from asperity.units import written
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
     from asperity.contact.hertz import Hertz
     from asperity.structures.bearing_statics import LoadedBearing
     from asperity.structures.modal import ModalStructure
-    from asperity.structures.ring import Around
+    from asperity.structures.ring import Around, Ring
 
 LAWS = ("table", "areal", "hertz", "direct")
 """Laws of a bearing; `direct` for a few turns at most."""
@@ -282,7 +284,7 @@ class BallBearingCase(AnyCase):
         DURATION,
         "4 us",
         "time step",
-        "a tenth of a ball's period between the rings, or of the highest frequency",
+        "a tenth of a ball's period, or of the highest frequency; a quarter of a ring's highest mode",
         "1 ns to 1 ms: bearings ring between",
     )
     sampling_rate: float = key(
@@ -375,6 +377,42 @@ class BallBearingCase(AnyCase):
         stiffness = sum(each.tangent_stiffness(each.approach(load)) for each, load in self.contacts)
         return math.sqrt(stiffness / self.bearing.bearing.ball_mass) / (2.0 * math.pi)
 
+    def bending_rings(self) -> tuple[Around | None, Ring | Around | None]:
+        """How the inner and the outer ring bend, where they do: by modes, or the outer one by its lobes."""
+        from asperity.structures.ring import Ring
+
+        angle, outer, of = self.static.contact_angle, self.housing, self.bearing.bearing
+        if outer.lobes is None:
+            return self.shaft.bending(angle), outer.bending(angle)
+        radius = of.raceway_radii[1] + 0.5 * outer.thickness
+        mass = of.material.density * 2.0 * np.pi * radius * outer.width * outer.thickness
+        stiffness = of.material.youngs_modulus * outer.width * outer.thickness**3 / 12.0
+        lobes: dict[str, Any] = {"most_lobes": outer.lobes, "damping_ratio": outer.damping_ratio}
+        return self.shaft.bending(angle), Ring.bending(mass, radius, stiffness, angle, **lobes)
+
+    @cached_property
+    def resolved_rate(self) -> float:
+        """Time steps in a second, 1/s, by which the contacts of balls and the modes of rings are resolved.
+
+        Contacts ring against balls and against a ring that moves on those of all balls together.
+        """
+        from asperity.structures.ring import Ring
+
+        of, angle = self.bearing.bearing, self.static.contact_angle
+        at_balls = 2.0 * np.pi / of.balls * np.arange(of.balls)
+        found = STEPS_PER_PERIOD * self.ball_resonance
+        rings = zip((self.shaft, self.housing), self.bending_rings(), self.contacts, strict=True)
+        for ring, bending, (contact, load) in rings:
+            shapes = Ring.rigid(ring.mass, angle).shapes(at_balls)[0]
+            if bending is not None:
+                shapes = np.hstack([shapes, bending.shapes(at_balls)[0]])
+                modes = bending.natural_frequencies
+                found = max(found, PER_MODE * float(modes[modes <= HIGHEST].max(initial=0.0)))
+            moved = 1.0 / of.ball_mass + np.linalg.norm(shapes, 2) ** 2
+            resonance = math.sqrt(contact.tangent_stiffness(contact.approach(load)) * moved) / (2.0 * math.pi)
+            found = max(found, STEPS_PER_PERIOD * resonance)
+        return found
+
     @property
     def highest_frequency(self) -> float:
         """Highest frequency that the record holds, Hz."""
@@ -383,7 +421,7 @@ class BallBearingCase(AnyCase):
     @property
     def steps_per_sample(self) -> int:
         """Time steps between two samples that are written."""
-        wanted = 1.0 / (STEPS_PER_PERIOD * max(self.ball_resonance, self.highest_frequency))
+        wanted = 1.0 / max(self.resolved_rate, STEPS_PER_PERIOD * self.highest_frequency)
         return max(1, math.ceil(1.0 / (self.sampling_rate * (self.time_step or wanted)) * (1.0 - 1e-9)))
 
     @property

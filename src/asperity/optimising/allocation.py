@@ -10,7 +10,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from asperity.arguments import Array
 from asperity.errors import ComputationError, InputError
-from asperity.written_numbers import rounded
+from asperity.written_numbers import engineering, rounded
 
 SLACK = 1e-6
 """By which a solution may miss a limit, dB or price."""
@@ -33,12 +33,28 @@ class Limits:
     rms_at_most: float = np.inf
 
     def __post_init__(self) -> None:
-        """Refuse bounds that leave nothing between them."""
+        """Refuse bounds, of levels, rms height and price, that leave nothing between them."""
         crossed = np.flatnonzero(self.lowest > self.highest)
         if crossed.size:
             low, high = self.lowest[crossed[0]], self.highest[crossed[0]]
             received = f"{low:g} dB as lowest, {high:g} dB as highest, in band {crossed[0] + 1}"
             raise InputError("bounds of the levels", received, "lowest below highest in every band")
+        least, most = rms_of(self.lowest), rms_of(self.highest)
+        wider = "Widen lowest, highest, reach, or the bands (longest, shortest)."
+        if self.rms_at_least > most * (1.0 + 0.5 * SLACK):
+            received = f"{engineering(self.rms_at_least, 'm')}"
+            allowed = f"at most {engineering(most, 'm')}, which the highest levels of the bands have together"
+            raise InputError("rms_at_least", received, allowed, wider)
+        if self.rms_at_most < least * (1.0 - 0.5 * SLACK):
+            received = f"{engineering(self.rms_at_most, 'm')}"
+            allowed = (
+                f"at least {engineering(least, 'm')}, which the lowest levels of the bands have together"
+            )
+            raise InputError("rms_at_most", received, allowed, wider)
+        cheapest = self.cost(_shared(Response(np.ones_like(self.price), 0.0), self, 0.0))
+        if cheapest > self.budget + SLACK:
+            allowed = f"at least {rounded(cheapest)}, the price of the cheapest texture within the bounds"
+            raise InputError("budget", rounded(self.budget), allowed, wider)
 
     def cost(self, levels: Array) -> float:
         """Price of a texture: Σ price (start − L)."""
@@ -133,8 +149,6 @@ def _energies(limits: Limits) -> tuple[Array, Array, float, float]:
     """Bounds of the energies of each band (b,), and of all together, µm²."""
     low, high = energy_of(limits.lowest), energy_of(limits.highest)
     least, most = ((1e6 * rms) ** 2 for rms in (limits.rms_at_least, limits.rms_at_most))
-    if least > high.sum() * (1.0 + SLACK) or most < low.sum() * (1.0 - SLACK):
-        raise ComputationError(f"{_NOTHING} (bounds of levels and rms height exclude each other)", _WIDER)
     return low, high, least, most
 
 

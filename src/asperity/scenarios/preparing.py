@@ -174,6 +174,7 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
         if (given := case.contact.approaches) is None:
             places = reducing.touched_places(textures, shape)
             approaches = reducing.chosen_states([samples[0], *places], shape, half_space)
+            reducing.refuse_uneven_states(approaches, textures)
         else:
             approaches = np.array(given)
             highest = [[half_space.solve(shape.body - s, r).force for r in given[-2:]] for s in samples]

@@ -128,8 +128,7 @@ def reduce(prepared: PreparedCase, planes: Array | None, progress: Progress) -> 
     strips = [float(scan.first_touch(each.heights, shape.body).min()) for each in textures.strips]
     lowest["path"] = min(lowest["samples"], *strips, *([] if along is None else [float(along.min())]))
     approaches = _approaches(prepared, along, samples)
-    if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
-        raise _too_rough(textures, f"first touch at {rounded(1e6 * approaches[0])} um")
+    refuse_uneven_states(approaches, textures)
     remedy = shape.remedy_for_cut_off(float(approaches[-1]), -lowest["path"])
     ensemble = stiffness.stiffness_ensemble(
         samples, half_space, shape.body, approaches, 0.0, rtol=scan.rtol_for(numerics.force_accuracy),
@@ -175,6 +174,12 @@ def refuse_low_states(approaches: Array, highest: Array, shape: Geometry, workin
         received = f"{reached}, and none at {rounded(approaches[-2] * 1e6, 4)} um"
         remedy = f"Add some around {rounded(1e6 * working_approach)} um, or leave the key out."
         raise InputError("contact.approaches", received, "at least two approaches in contact", remedy)
+
+
+def refuse_uneven_states(approaches: Array, textures: Textures) -> None:
+    """Refuse states (k,), m, that do not rise, as those of samples that no contact can be followed on."""
+    if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
+        raise _too_rough(textures, f"first touch at {rounded(1e6 * approaches[0])} um")
 
 
 def _too_rough(textures: Textures, sign: str) -> InputError:

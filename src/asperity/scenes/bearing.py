@@ -199,22 +199,15 @@ def _cells_over_faults(prepared: PreparedBearing) -> float:
 
 def bearing_rings(case: BallBearingCase) -> BearingRings:
     """Both rings with what they carry, on what holds them; they bend if the case says so."""
-    angle, outer, of = case.static.contact_angle, case.housing, case.bearing.bearing
+    angle = case.static.contact_angle
     inner, held = (
         Ring.rigid(
             keys.mass, angle, radial_stiffness=keys.radial_stiffness, axial_stiffness=keys.axial_stiffness,
             damping_ratio=keys.damping_ratio
         )
-        for keys in (case.shaft, outer)
+        for keys in (case.shaft, case.housing)
     )  # fmt: skip
-    if outer.lobes is None:
-        return BearingRings(inner, held, case.shaft.bending(angle), outer.bending(angle))
-    radius = of.raceway_radii[1] + 0.5 * outer.thickness
-    mass = of.material.density * 2.0 * np.pi * radius * outer.width * outer.thickness
-    stiffness = of.material.youngs_modulus * outer.width * outer.thickness**3 / 12.0
-    lobes: dict[str, Any] = {"most_lobes": outer.lobes, "damping_ratio": outer.damping_ratio}
-    bending = Ring.bending(mass, radius, stiffness, angle, **lobes)
-    return BearingRings(inner, held, case.shaft.bending(angle), bending)
+    return BearingRings(inner, held, *case.bending_rings())
 
 
 def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:
