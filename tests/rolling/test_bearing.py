@@ -205,3 +205,34 @@ test_what_cannot_turn_is_refused = refusals(
     ({"speed": 0.0}, "speed"),
     of=lambda keys: turned_by(**keys),
 )
+
+
+@pytest.mark.parametrize(("turning", "angle"), [("outer", 0.0), ("inner", 0.3)])
+def test_a_load_that_rotates_moves_the_rings_in_circles(turning, angle):
+    """Closed form: both rings and, in their own frame, the balls, on linear contacts, at the speed of the
+    shaft; it pushes nothing along the axis."""
+    of = B6205.with_(balls=4, turning=turning, clearance=None, contact_angle=angle)
+    speed, stiffness, damping, force, turn = 500.0, 1e7, 200.0, 20.0, 2e-3
+    held = {"radial_stiffness": 5e7, "axial_stiffness": 5e7, "damping_ratio": 0.2}
+    rings = BearingRings(*(Ring.rigid(mass, angle, **held) for mass in (0.5, 0.3)))
+    preloaded = [Linear(500.0, stiffness, 0.0, damping=damping)] * 2
+    found = roll_bearing(
+        of, rings, *preloaded, radial=10.0, axial=100.0 * (angle > 0.0), rotating=force, speed=speed,
+        duration=turn, time_step=turn / 800, settling=4 * turn, centrifugal=False,
+    )  # fmt: skip
+    omega = 2 * np.pi * speed
+    seen = omega - 2 * np.pi * of.kinematics(speed, contact_angle=angle).cage  # by a ball that goes round
+    spring = stiffness + 1j * seen * damping
+    between = spring**2 / (2 * spring - of.ball_mass * seen**2)
+    pairs = 0.5 * of.balls * np.cos(angle) ** 2 * np.array(
+        [[spring - between, -between], [-between, spring - between]]
+    )  # fmt: skip
+    own = [5e7 - m * omega**2 + 0.4j * omega * np.sqrt(5e7 * m) for m in (0.5, 0.3)]
+    orbit = np.linalg.solve(pairs + np.diag(own), force * np.eye(2)[("inner", "outer").index(turning)])
+    for ring, expected in zip(("inner_motion", "outer_motion"), orbit, strict=True):
+        moved = getattr(found, ring) - getattr(found, ring).mean(axis=1, keepdims=True)
+        turned = (moved[0] + 1j * moved[1]) * np.exp(-1j * omega * found.time)
+        assert_allclose(turned, expected, atol=2e-3 * abs(expected))
+        assert np.abs(moved[2:]).max(initial=0.0) < 1e-6 * abs(expected)
+    assert found.energy.residual < 1e-6
+    assert found.inner_force.shape == (of.balls, len(found.time))

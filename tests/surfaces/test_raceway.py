@@ -87,6 +87,28 @@ def test_volumes_the_share_of_a_rim_and_the_slope_of_an_edge():
         assert_allclose(fault.heights([0.0, 0.15 * MM, 0.2 * MM], 0.0), [-UM, -0.5 * UM, 0.0], atol=1e-12)
 
 
+def test_the_burr_of_a_hollow_has_its_height_and_volume_and_ends_with_its_size():
+    """Closed forms of h sin²(πs/w) around a circle, π h w (R + w/2), and a rectangle, h w (L + B + 2w)."""
+    length, width, high, wide = 0.6 * MM, 0.4 * MM, 0.5 * UM, 0.1 * MM
+    around = {
+        "pit": np.pi * high * wide * (0.5 * length + 0.5 * wide),
+        "spall": high * wide * (length + width + 2 * wide),
+    }
+    for shape, volume in around.items():
+        of = Fault(
+            shape,
+            length=length,
+            width=None if shape == "pit" else width,
+            depth=UM,
+            burr=high,
+            burr_width=wide,
+        )
+        found = of.heights(*GRID)
+        assert_allclose(np.maximum(found, 0.0).sum() * (2.5 * UM) ** 2, volume, rtol=1e-3)
+        assert found.max() == pytest.approx(high, rel=1e-9)
+        assert_allclose([np.ptp(each[found != 0.0]) for each in GRID], of.size, atol=5.1 * UM)
+
+
 def test_faults_lie_where_they_are_told_across_the_seam_and_all_around():
     one = Fault("mark", length=0.2 * MM, width=0.4 * MM, depth=UM, offset=0.1 * MM)
     found = lay((one,), (2000, 41), CELLS)
@@ -129,6 +151,10 @@ test_what_is_wrong_is_said = refusals(
     (lambda: Fault("map"), "map of a fault, a map: received nothing"),
     (lambda: Fault("hole", length=MM, depth=UM), 'shape of the fault: received .hole.; allowed: "pit"'),
     (pit(-MM), "length of the fault"),
+    (
+        lambda: Fault("dent", length=MM, depth=UM, burr=UM),
+        "burr of a fault, a dent: .* only a pit or a spall",
+    ),
     (lambda: AroundTexture(waves=(3, 4), amplitudes=(UM,)), "2 waves and 1 amplitude"),
     (lambda: AroundTexture(waves=(0,), amplitudes=(UM,)), r"waves of the around texture"),
     (lambda: AroundTexture(first_order=9, last_order=3), "9 to 3"),

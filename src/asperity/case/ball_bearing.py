@@ -267,6 +267,12 @@ class BallBearingCase(AnyCase):
     )
     radial: float = key(LOAD, "0 N", "radial load of the inner on the outer ring", LOADS)
     axial: float = key(LOAD, "0 N", "axial load of the inner on the outer ring", LOADS)
+    rotating: float = key(
+        LOAD,
+        "0 N",
+        "radial load that turns with the ring that turns: 100 g mm of unbalance are 3.6 N at 1800 1/min",
+        LOADS,
+    )
     laws: tuple[str, ...] = key(
         ListOf(Choice(LAWS), least=1, once=True),
         list(LAWS[:3]),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, ArrayLike, finite_array, positive, require
+from asperity.laws.linear import Linear
 from asperity.laws.spec import Law
 from asperity.progress import Progress
 from asperity.rolling.mechanism import Along, Edge, Mechanism, Side, rest_of, roll_mechanism
@@ -26,6 +27,8 @@ INSTANTS = 12
 HELD = 1e5
 """Hz, of an outer ring that is held while the inner one is looked at."""
 TURN = 2.0 * math.pi
+SOFT = 1.0
+"""N/m, of the springs whose force is a load that rotates: where rings move by micrometres, it is constant."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +110,7 @@ def roll_bearing(
     speed: float,
     radial: float = 0.0,
     axial: float = 0.0,
+    rotating: float = 0.0,
     duration: float,
     time_step: float,
     settling: float = 0.0,
@@ -139,6 +143,9 @@ def roll_bearing(
         Of the ring that turns, turns per second.
     radial, axial : float
         Load, N; the preload of the bearing is added to the axial one.
+    rotating : float
+        Radial force on the ring that turns, N, which turns with it, as that of an unbalance; along the radial
+        load at time zero.
     duration, time_step, settling : float
         s.
     ball_heights : sequence of array_like, optional
@@ -164,6 +171,8 @@ def roll_bearing(
     mechanism = turning.mechanism((inner_law, outer_law), ball_heights, centrifugal=centrifugal)
     loads = radial, axial + bearing.preload
     mechanism = turning.loaded(mechanism, loads)
+    mechanism = replace(mechanism, edges=[*mechanism.edges, *turning.driven_round(rotating)])
+    contacts = len(RINGS) * bearing.balls
     rows = [
         mechanism.row(place, ring.towards(angle, way))
         for place, ring in ((INNER, rings.inner), (OUTER, rings.outer))
@@ -185,13 +194,13 @@ def roll_bearing(
     return RolledBearing(
         np.asarray(time_step * np.arange(steps)),
         turning.cage(turning.total + 1 - steps, turning.total + 1),
-        run.contact_force[0::2],
-        run.contact_force[1::2],
+        run.contact_force[0:contacts:2],
+        run.contact_force[1:contacts:2],
         np.concatenate(run.bodies),
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],
-        run.softening.reshape(-1, len(RINGS)).T,
+        run.softening[:contacts].reshape(-1, len(RINGS)).T,
         run.energy,
         run.unconverged_steps,
     )
@@ -286,6 +295,23 @@ class _Turning:
                     law, along = law[j], self.on_both(j, ring)
                 edges.append(Edge(law, along, tuple(sides), heights))
         return Mechanism(self.rings.structures, [ball] * of.balls, edges)
+
+    def driven_round(self, force: float) -> list[Edge]:
+        """A radial force, N, on the ring that turns and with it, by two springs that are pressed and pulled.
+
+        They stand opposite each other, so that what they would do along the axis cancels.
+        """
+        ring = RINGS.index(self.bearing.turning)
+        rate, half = TURN * self.turns[ring], 0.5 * force / math.cos(self.contact_angle)
+
+        def at(angle: float) -> Along:
+            return lambda first, stop: rate * self._time(first, stop) + angle
+
+        return [
+            Edge(Linear(size, SOFT), at(0.0), (Side(ring, at(angle)),))
+            for size, angle in ((half, 0.0), (-half, math.pi))
+            if force
+        ]
 
     def loaded(self, mechanism: Mechanism, loads: tuple[float, float]) -> Mechanism:
         """Press the rings together, with springs that are free of force where they then are."""

@@ -39,7 +39,7 @@ LAWS = ("table", "areal", "hertz", "direct")
 CELLS = (8, 16)
 """Cells along and across to a half axis of the contact under the load."""
 CELLS_OF_FAULT = 8
-"""Cells to the length and the width of a fault, at least."""
+"""Cells to the length and the width of a fault, or to twice the width of its burr, at least."""
 CELLS_OF_WAVE = 3
 """Cells to the shortest wavelength of a roughness, at least."""
 HALF_WINDOW = 3.2
@@ -100,7 +100,7 @@ def raceway_on(
     axes = contact.semi_axes(contact.approach(positive("load of a ball (N)", load)))
     wave = [texture.shortest / CELLS_OF_WAVE] if texture.is_rough else []
     spacing = [
-        min([axis / cells, *wave, *(fault.size[i] / CELLS_OF_FAULT for fault in faults)])
+        min([axis / cells, *wave, *(fault.details[i] / CELLS_OF_FAULT for fault in faults)])
         for i, (axis, cells) in enumerate(zip(axes, CELLS, strict=True))
     ]
     # a ball sinks into a hollow until it lands on edges, which may be as far out

@@ -180,6 +180,8 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solutions.items()),
         ("not in it", LEFT_OUT),
     ]
+    if case.rotating:
+        rows.insert(1, ("load that turns", f"{in_newtons(case.rotating)}, once in {1e3 / case.speed:.4g} ms"))
     return rows, preparing.Work({}, solutions, steps, None, taken, pace * compiling.time_to_compile())
 
 
@@ -237,10 +239,10 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
         heights = [] if isinstance(inner, list) else averaged
         run = roll_bearing(
             of, bearing_rings(case), inner, outer,
-            speed=case.speed, radial=case.radial, axial=case.axial, duration=case.duration,
-            time_step=case.step, settling=case.settling, slip=cage_slip(case), ball_heights=heights,
-            centrifugal=case.centrifugal, sensors=sensors, highest_frequency=case.highest_frequency,
-            progress=progress
+            speed=case.speed, radial=case.radial, axial=case.axial, rotating=case.rotating,
+            duration=case.duration, time_step=case.step, settling=case.settling, slip=cage_slip(case),
+            ball_heights=heights, centrifugal=case.centrifugal, sensors=sensors,
+            highest_frequency=case.highest_frequency, progress=progress
         )  # fmt: skip
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}

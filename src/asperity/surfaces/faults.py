@@ -12,7 +12,9 @@ from asperity.errors import OutOfRangeWarning
 from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
 from asperity.surfaces.heightmap import HeightMap
 
-SHAPES = ("pit", "spall", "dent", "particle", "mark", "map")
+HOLLOWS = ("pit", "spall")
+"""With a flat floor, and edges of their own."""
+SHAPES = (*HOLLOWS, "dent", "particle", "mark", "map")
 LENGTH = Quantity("m", above=0)
 MAP = File(held=(HeightMap,), content="a height map")
 _SIZE = "1 um to 1 m: faults lie between"
@@ -48,6 +50,9 @@ class Fault:
         Of a hollow, or height of a particle, m; that of a map is its own.
     edge : float
         Over which a pit or spall falls to its floor, m, inside its outline.
+    burr, burr_width : float
+        Height of what a pit or spall has thrown up around it, and how wide that is, m: h sin²(πs/w) of the
+        distance s from its outline.
     rim : float
         Volume of a dent's rim over that of the dent.
     rim_width : float
@@ -81,6 +86,10 @@ class Fault:
     edge: float = parameter(
         Quantity("m", at_least=0), "0 um", "length over which a pit or spall falls", _SIZE, default=0.0
     )
+    burr: float = parameter(
+        Quantity("m", at_least=0), "0 um", "height of the burr around a pit or spall", _DEPTH, default=0.0
+    )
+    burr_width: float = parameter(LENGTH, "50 um", "width of that burr", _SIZE, default=50e-6)
     rim: float = parameter(_RIM, 1.0, "volume of a dent's rim over the dent's", default=1.0)
     rim_width: float = parameter(
         Number(above=0, at_most=10), 1.0, "width of the rim over half a dent's", default=1.0
@@ -103,6 +112,9 @@ class Fault:
                 else "none: only a fault of shape map has one"
             )
             require(wanted or not given, what, "one", without, f"Remove its {name}.")
+        hollow = self.shape in HOLLOWS or not self.burr
+        allowed = f"none: only a {' or a '.join(HOLLOWS)} has one"
+        require(hollow, f"burr of a fault, a {self.shape}", "one", allowed, "Remove its burr.")
         own: dict[str, Any] = {"width": self.width or self.length}
         if self.map is not None:
             laid = map_of(self.map)
@@ -115,7 +127,18 @@ class Fault:
     def size(self) -> tuple[float, float]:
         """Length and width of all that is not at height zero, m."""
         wider = 1.0 + self.rim_width if self.shape == "dent" and self.rim else 1.0
+        if self.burr and self.shape == "spall":
+            return self.length + 2.0 * self.burr_width, self.width + 2.0 * self.burr_width
+        if self.burr:
+            wider += 2.0 * self.burr_width / min(self.length, self.width)
         return self.length * wider, self.width * wider
+
+    @property
+    def details(self) -> tuple[float, float]:
+        """What asks for the finest grid along and across, m: its size, or twice the width of its burr."""
+        length, width = self.size
+        wave = 2.0 * self.burr_width if self.burr else math.inf
+        return min(length, wave), min(width, wave)
 
     def heights(self, along: ArrayLike, across: ArrayLike) -> Array:
         """Heights, m, at places along and across the path from its middle, m; arrays are broadcast."""
@@ -129,9 +152,12 @@ class Fault:
         a, b, depth, wide = 0.5 * self.length, 0.5 * self.width, self.depth, self.rim_width
         rho = np.hypot(x / a, y / b)
         bowl = np.clip(1.0 - rho**2, 0.0, None)
-        if self.shape in ("pit", "spall"):
+        if self.shape in HOLLOWS:
             inside = (1.0 - rho) * min(a, b) if self.shape == "pit" else np.minimum(a - abs(x), b - abs(y))
-            return -depth * np.clip(inside / self.edge if self.edge else np.sign(inside), 0.0, 1.0)
+            floor = -depth * np.clip(inside / self.edge if self.edge else np.sign(inside), 0.0, 1.0)
+            beyond = -inside / self.burr_width
+            wave = np.sin(np.pi * beyond) ** 2
+            return floor + self.burr * np.where((beyond > 0.0) & (beyond < 1.0), wave, 0.0)
         if self.shape in ("mark", "particle"):
             return -depth * bowl if self.shape == "mark" else depth * bowl**2
         # volumes over π times the half axes: d/3 of d (1 − ρ²)², and h w (1 + w/2) of h sin²(π (ρ − 1)/w)
