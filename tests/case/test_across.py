@@ -199,6 +199,27 @@ def printed(shape, places, *, by=1.0, moved=0.0, mirrored=False, kept=(-np.inf, 
     return Profile(unit * z, unit * 0.25, "", unit * float(y[0]))
 
 
+BENCHMARK = np.array([
+    (-38.170158, 5.3592530), (-33.878643, 3.1260143), (-25.818939, 1.3995600), (-18.025426, 0.54238254),
+    (-8.1900282, 0.11197778), (-0.60326698, 6.1851353e-4), (4.5917391, 0.046529407), (14.478761, 0.95760114),
+    (18.788262, 1.7500008), (24.607656, 4.7790722),
+])  # fmt: skip
+"""Places and depths, mm, of the rail of the Manchester contact benchmark, which stands inclined by 1:40."""
+FLANGE = np.array([(-60.01, 26.90440), (-54.88, 27.99939), (-47.05, 25.19229), (-43.0, 21.402)])
+"""Places and heights, mm, of wheel A of UIC 519."""
+
+
+def test_printed_sections_are_those_of_public_files():
+    turned = np.arctan(1 / 40)
+    cos, sin = np.cos(turned), np.sin(turned)
+    middle = np.array([-7.4917, -0.0937])  # of the head, as it stands
+    y, z = (BENCHMARK * [1.0, -1.0] - middle).T
+    np.testing.assert_allclose(
+        cos * z - sin * y, printed_sections.head_60e1(cos * y + sin * z), rtol=0.0, atol=1e-3
+    )
+    np.testing.assert_allclose(printed_sections.s1002(FLANGE[:, 0]), FLANGE[:, 1], rtol=0.0, atol=1e-3)
+
+
 def wheel_of(**how):
     return printed(printed_sections.s1002, Y, **how)
 
@@ -259,6 +280,8 @@ def test_sections_that_are_hardly_meant_are_doubted():
     )
     assert "the middle of the head lies at 36 mm" in told_of(chosen(wheel_of(), rail_of(moved=36.0)))
     assert "Is it the diameter?" in told_of(chosen(wheel_of(), rail_of(), radius="0.66 m"))
+    with pytest.raises(InputError, match=r"falls by 1:7\.6, where treads fall by 1:40 to 1:15.*diameters"):
+        told_of(chosen(wheel_of(by=2.0, **flat), rail_of()))
     for wheel in (wheel_of(), wheel_of(**flat)):
         assert not told_of(chosen(wheel, rail_of()))
 

@@ -43,6 +43,10 @@ FLANGE_PLACES = (-90e-3, -30e-3)
 """Where the top of a flange lies from the running circle, m: its back is 70 mm off, its top some 55 mm."""
 RISING = 0.01
 """Slope to the field side from which on a tread without a flange is doubted: treads fall, by 1:40 say."""
+FIELD_SIDE = (30e-3, 50e-3)
+"""Places on the field side of a tread, m: beyond its curved part, short of its chamfer."""
+STEEPEST = 0.11
+"""Slope there from which on heights may be diameters: treads fall by 1:40 to 1:15."""
 FALLEN = 5e-3
 """Depth below its top at which the middle of a rail's head is sought, m."""
 OFF = 10e-3
@@ -162,10 +166,20 @@ def _refuse_strange_flange(key: str, section: Profile, y: Array, side: int) -> N
     require(section.start is None or low <= top <= high, key, received, allowed, remedy)
 
 
+def _slope(y: Array, z: Array, here: NDArray[np.bool_]) -> float:
+    """Slope of a section at some of its points (n,), m; 0 where it has fewer than two."""
+    return float(np.polynomial.polynomial.polyfit(y[here], z[here], 1)[1]) if here.sum() > 1 else 0.0
+
+
 def _doubts_of_tread(key: str, y: Array, z: Array) -> Iterator[str]:
-    """Say where a tread without a flange falls to the wrong side, by places (n,) and heights (n,), m."""
-    near = np.abs(y) <= TREAD
-    slope = float(np.polynomial.polynomial.polyfit(y[near], z[near], 1)[1]) if near.sum() > 1 else 0.0
+    """Say where a tread without a flange falls to the wrong side, or too steeply, by its points (n,), m."""
+    slope = _slope(y, z, np.abs(y) <= TREAD)
+    outside = _slope(y, z, (y >= FIELD_SIDE[0]) & (y <= FIELD_SIDE[1]))
+    if outside < -STEEPEST:
+        yield (
+            f"{key}: the field side of the tread falls by 1:{rounded(-1.0 / outside, 2)}, where treads fall "
+            "by 1:40 to 1:15. Are its heights diameters? Halve them."
+        )
     if slope > RISING:
         yield (
             f"{key}: the tread rises to the field side by 1:{rounded(1.0 / slope, 2)}, where treads fall. Is "
