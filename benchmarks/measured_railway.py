@@ -146,7 +146,7 @@ FREE = {  # least, most, first guess; between limits that are printed for such t
 
 
 def fitted_track(rates, **more):
-    """Track whose vertical decay rates are nearest to those of both rails, and how far they are, rms of dB."""
+    """Track whose vertical decay rates are nearest to those of both rails, and how far they are, dB."""
     aim = np.mean(level(rates), axis=0)
     low, high, first = (np.log10([each[k] for each in FREE.values()]) for k in range(3))
 
@@ -189,7 +189,7 @@ def passing(track, speed, rail, wheel, rates=None, duration=1.0, **noise):
 
 
 def heard(case):
-    """A-weighted equivalent levels at the microphone in `BAND` by part, then of all: ndarray (5, bands), dB."""
+    """A-weighted equivalent levels at the microphone in `BAND` by part, then of all (5, bands), dB."""
     tree = asperity.run(case)
     group = tree["pass_by"]
     over_time = float(group.attrs["rear_time"] - group.attrs["front_time"])
@@ -212,7 +212,7 @@ def at_bands(wavelengths, levels, speed):
 SHARES = (2.0, 5.0, 4.0, 4.0)
 """Standard deviations by which the level of each part may be off, dB, together and by band."""
 TYPES = {"coach": ("disc", 4.0), "locomotive": ("disc", 6.0), "motor coach": ("mean", 5.0)}
-"""Wheels: which roughness is expected, and its standard deviation, dB; "mean": of disc and composite blocks."""
+"""Wheels: which roughness is expected, its standard deviation, dB; "mean": of disc and composite blocks."""
 LOCOMOTIVES = 0.14
 """Share of a train's time that is its locomotive: one interval and a half of some eleven."""
 OTHERS = -10.0, 6.0
@@ -353,7 +353,7 @@ def at_site(difference):
 
 
 def total_difference(spectrum, difference):
-    """Difference of the A-weighted level (n,), of levels at the reference (bands,) and differences in bands."""
+    """Difference of the A-weighted level (n,), of levels at the reference (bands,) and differences."""
     return level(energy(spectrum + difference).sum(axis=-1)) - level(energy(spectrum).sum(axis=-1))
 
 
