@@ -45,8 +45,8 @@ RISING = 0.01
 """Slope to the field side from which on a tread without a flange is doubted: treads fall, by 1:40 say."""
 FIELD_SIDE = (30e-3, 50e-3)
 """Places on the field side of a tread, m: beyond its curved part, short of its chamfer."""
-STEEPEST = 0.11
-"""Slope there from which on heights may be diameters: treads fall by 1:40 to 1:15."""
+STEEP = (0.11, 0.3)
+"""Slopes there that may be those of diameters: treads fall by 1:40 to 1:15, worn ones by little more."""
 FALLEN = 5e-3
 """Depth below its top at which the middle of a rail's head is sought, m."""
 OFF = 10e-3
@@ -175,7 +175,7 @@ def _doubts_of_tread(key: str, y: Array, z: Array) -> Iterator[str]:
     """Say where a tread without a flange falls to the wrong side, or too steeply, by its points (n,), m."""
     slope = _slope(y, z, np.abs(y) <= TREAD)
     outside = _slope(y, z, (y >= FIELD_SIDE[0]) & (y <= FIELD_SIDE[1]))
-    if outside < -STEEPEST:
+    if STEEP[0] < -outside < STEEP[1]:
         yield (
             f"{key}: the field side of the tread falls by 1:{rounded(-1.0 / outside, 2)}, where treads fall "
             "by 1:40 to 1:15. Are its heights diameters? Halve them."
