@@ -69,6 +69,30 @@ def test_a_sleeper_is_right_at_any_complex_frequency():
     )
 
 
+def test_a_sleeper_with_losses_is_one_whose_stiffness_is_complex():
+    """Against the free beam by its boundary conditions, at its resonances, where the losses decide."""
+    sleeper = BendingSleeper(**SLEEPER, losses=ConstantLoss(0.05))
+    exact = beam(BENDING * (1.0 + 0.05j))
+    found = 1.0 / sleeper.on(2.0 * np.pi * FREQUENCY, NOTHING)
+    np.testing.assert_allclose(found, exact, rtol=1e-7)
+    plain = 1.0 / BendingSleeper(**SLEEPER).on(2.0 * np.pi * FREQUENCY, NOTHING)
+    assert np.abs(plain / exact).max() > 2.0
+    chain = Chain((PAD, BendingSleeper(**SLEEPER, losses=Relaxation(0.9, (0.2,), (300.0,))), BALLAST))
+    ring = 4000.0 - 300.0j + 200.0 * np.exp(2j * np.pi * np.arange(64) / 64)
+    middle = chain.stiffness(np.array(4000.0 - 300.0j))
+    assert chain.stiffness(ring).mean() == pytest.approx(middle, rel=1e-11)
+    soft = BendingSleeper(**(SLEEPER | {"bending_stiffness": 0.9 * SLEEPER["bending_stiffness"]}))
+    assert chain.static == Chain((PAD, soft, BALLAST)).static
+
+
+def test_a_sleeper_keeps_its_loss_factor_in_time():
+    lossy = {"sleeper_bending_stiffness": 6e6, "sleeper_loss_factor": 0.03}
+    track = causal_track(Track.named("nordborg", **lossy, rail_loss_factor=0.0))
+    ratio = track.elements["sleeper"].losses.at(2.0 * np.pi * np.array([20.0, 125.0, 724.0, 4000.0]))
+    np.testing.assert_allclose(ratio.imag / ratio.real, 0.03, rtol=0.1)
+    assert track.is_causal
+
+
 MASS, LENGTH, BENDING, SEATS = 150.0, 2.6, 6e6, 1.5
 FREQUENCY = np.geomspace(20.0, 6000.0, 250)
 LOOKED = np.array([30.0, 121.0, 280.0, 650.0, 1063.0, 1600.0, 2900.0, 4500.0])

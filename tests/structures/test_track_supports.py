@@ -223,6 +223,7 @@ TRACKS = {
     "uic60": Track.named("uic60"),
     "uic60-euler": Track.named("uic60-euler"),
     "all layers": Track.named("nordborg-loss-factor", **BENT, **BED),
+    "lossy sleepers": Track.named("uic60", **BENT, sleeper_loss_factor=0.1),
     "in time": causal_track(Track.named("nordborg-loss-factor")),
     "dampers": Track.named("uic60", **DAMPERS),
     "dampers, bending": Track.named("nordborg", **DAMPERS, **BENT),
@@ -242,7 +243,8 @@ def test_what_goes_in_is_dissipated(name):
         fed = -2.0 * np.pi * FREQUENCY * track.receptance(FREQUENCY, x, x).imag
         np.testing.assert_allclose(sum(parts.values()), fed, rtol=1e-9)
         assert all((power >= 0.0).all() for power in parts.values())
-    assert set(parts) == {"rail", *track.springs} | ({"rail_damper"} if track.damper else set())
+    further = {"rail_damper": track.damper, "sleeper": track.sleeper_loss_factor}
+    assert set(parts) == {"rail", *track.springs, *(name for name, there in further.items() if there)}
 
 
 def test_what_dissipates_nothing_gets_nothing():

@@ -57,7 +57,7 @@ def causal_track(track: Track, cache: Store | None = None) -> Track:
     Least squares of the level of the mean square of 1/(α_W + α_C + α_R) over half a bay and each band, for
     three rigid wheels on a linear contact, in the strengths of the Maxwell elements of the springs below the
     rail. None of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps
-    it in all bands, and its stiffness at 300 Hz. At rest, and under a load that hardly moves, the track is
+    it in all bands, and its stiffness at 300 Hz, and so does a sleeper that bends. At rest, and under a load that hardly moves, the track is
     softer than the nominal one. Of bays that differ, the nominal one is fitted. A cache keeps the fit.
     """
     if track.is_causal:
@@ -117,7 +117,9 @@ class _Fit:
     def __init__(self, track: Track) -> None:
         self.track = track
         self.rail = _rail(track.rail_loss_factor) if track.rail_loss_factor else None
-        self.lossy = {part: losses for part, losses in track.lossy.items() if part != "rail"}
+        self.sleeper = _rail(track.sleeper_loss_factor) if "sleeper" in track.lossy else None
+        beams = "rail", "sleeper"
+        self.lossy = {part: losses for part, losses in track.lossy.items() if part not in beams}
         centres, low, high = third_octave_bands(LOWEST, HIGHEST)
         steps = (np.arange(LINES) + 0.5) / LINES
         self.omega = 2.0 * np.pi * (low[:, None] * (high / low)[:, None] ** steps).ravel()
@@ -153,7 +155,7 @@ class _Fit:
         for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
             static, *strengths = (float(c) for c in part * (1.0 + (share if name == stiffer else 0.0)))
             found[name] = Relaxation(static, tuple(strengths), FREQUENCIES)
-        return replace(self.track, relaxations=Relaxations(self.rail, **found))
+        return replace(self.track, relaxations=Relaxations(self.rail, sleeper=self.sleeper, **found))
 
     def start(self) -> Array:
         """Unknowns that depart least from the constant loss factors and the tables."""

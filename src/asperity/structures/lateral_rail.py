@@ -210,7 +210,8 @@ class LateralTrack:
         track, even = self.track, self.foot_width**2 / 12.0
         pad = _share(self.pad_stiffness, track.pad_stiffness, THIRD)
         ballast = _share(self.ballast_stiffness, track.ballast_stiffness, 1.0)
-        rigid: dict[str, Any] = dict.fromkeys(("measured_sleeper", "sleeper_bending_stiffness"))
+        bends = "measured_sleeper", "sleeper_bending_stiffness", "sleeper_loss_factor"
+        rigid: dict[str, Any] = dict.fromkeys(bends)
         rigid |= {name: getattr(Track, name) for name in ("sleeper_length", "seat_distance")}
         moved = replace(track.scaled(pad, ballast), **rigid)
         foot = np.array([1.0, -self.foot_depth])

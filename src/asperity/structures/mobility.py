@@ -10,7 +10,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, Complex, finite_array, real
 from asperity.structures.cell_waves import CellWaves, cell_waves
 from asperity.structures.periodic_rail import PeriodicWaves
-from asperity.structures.support import MeasuredSleeper, Spring
+from asperity.structures.support import BendingSleeper, MeasuredSleeper, Spring
 from asperity.structures.track import Track
 
 Span = CellWaves | PeriodicWaves
@@ -175,7 +175,7 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
     -------
     dict of ndarray (f,)
         W/N², by the names of the track's parts: ``"rail"``, those of its springs, ``"sleeper"`` if it was
-        measured, ``"rail_damper"``.
+        measured or bends with losses, ``"rail_damper"``.
 
     Raises
     ------
@@ -197,7 +197,8 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
         for name, element, (square, squeezed), below in parts:
             if isinstance(element, Spring):
                 found[name] = omega * element.stiffness(omega).imag * squeezed * moved
-            if isinstance(element, MeasuredSleeper):
+            bends = isinstance(element, BendingSleeper) and track.sleeper_loss_factor
+            if isinstance(element, MeasuredSleeper) or bends:
                 found[name] = omega * element.lost(omega, below) * square * moved
     return found
 

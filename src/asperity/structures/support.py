@@ -1,6 +1,7 @@
 """What a rail lies on: elements below one another, each with a dynamic stiffness, down to rigid ground."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -245,12 +246,26 @@ class BendingSleeper(Element):
     B w'''' + (s − μω²) w = F δ(x − a) and its mirror image, with mass μ and stiffness s below per length, and
     seats a from the middle. Solved in closed form: the waves of the seats on an endless beam, and those that
     the free ends throw back. Without shear and rotary inertia, which lower the higher natural frequencies.
+    Its bending stiffness may have losses.
     """
 
     mass: float  # of the half, kg
     length: float  # of the whole sleeper, m
     bending_stiffness: float  # B, N m²
     seat_distance: float  # 2 a, m
+    losses: Losses = ConstantLoss(None)
+
+    @property
+    def at_rest(self) -> "BendingSleeper":
+        """Without losses, as stiff as it is at rest."""
+        stiffness = self.bending_stiffness * self.losses.static
+        return replace(self, bending_stiffness=stiffness, losses=ConstantLoss(None))
+
+    def _bending(self, omega: ArrayLike) -> Complex | float:
+        """B, N m², at angular frequencies, rad/s."""
+        if self.losses == ConstantLoss(None):
+            return self.bending_stiffness
+        return self.bending_stiffness * self.losses.at(omega)
 
     def on(self, omega: ArrayLike, below: Complex | None) -> Complex | None:
         """Inverse of the receptance at the seat."""
@@ -260,19 +275,35 @@ class BendingSleeper(Element):
         """By Gauss's rule from the middle to the seat, and from there to the end."""
         if below is None:
             return 1.0
-        waves, seat, half = self._waves(omega, below), 0.5 * self.seat_distance, 0.5 * self.length
+        waves, seat = self._waves(omega, below), 0.5 * self.seat_distance
+        total = self._along(waves, lambda x: np.abs(waves.at(x)) ** 2)
+        return np.asarray(total / (0.5 * self.length) / np.abs(waves.at(seat)) ** 2)
+
+    def lost(self, omega: ArrayLike, below: Complex | None) -> Array:
+        """Imaginary stiffness, N/m, by which it dissipates itself, per square of how it moves by `spread`."""
+        lost = np.imag(self._bending(omega))
+        if below is None or not np.any(lost):
+            return np.zeros(np.shape(omega))
+        waves = self._waves(omega, below)
+        bent = self._along(waves, lambda x: np.abs(waves.curvature(x)) ** 2)
+        moved = self._along(waves, lambda x: np.abs(waves.at(x)) ** 2) / (0.5 * self.length)
+        return np.asarray(lost * bent / moved)
+
+    def _along(self, waves: "_SleeperWaves", value: Callable[[float], Array]) -> Array:
+        """Integral over the half of what there is at a distance from the middle."""
+        seat, half = 0.5 * self.seat_distance, 0.5 * self.length
         most = float(np.abs(waves.wavenumber).max(initial=0.0))
         node, weight = np.polynomial.legendre.leggauss(8 + math.ceil(most * half))
-        total = np.zeros(np.shape(omega))
+        total = np.zeros(np.shape(waves.wavenumber))
         for begin, length in ((0.0, seat), (seat, half - seat)):
             for at, share in zip(0.5 * (node + 1.0), 0.5 * weight, strict=True):
-                total += length * share * np.abs(waves.at(begin + length * at)) ** 2
-        return np.asarray(total / half / np.abs(waves.at(seat)) ** 2)
+                total += length * share * value(begin + length * at)
+        return total
 
     def _waves(self, omega: ArrayLike, below: Complex) -> "_SleeperWaves":
         half = 0.5 * self.length
         stiffness = (below - self.mass * np.asarray(omega, dtype=complex) ** 2) / half
-        return _SleeperWaves(stiffness, self.bending_stiffness, half, 0.5 * self.seat_distance)
+        return _SleeperWaves(stiffness, self._bending(omega), half, 0.5 * self.seat_distance)
 
 
 class _SleeperWaves:
@@ -282,7 +313,7 @@ class _SleeperWaves:
     amplitudes of what the end throws back follow from w'' = w''' = 0 there.
     """
 
-    def __init__(self, stiffness: Complex, bending: float, half: float, seat: float) -> None:
+    def __init__(self, stiffness: Complex, bending: Complex | float, half: float, seat: float) -> None:
         k = np.exp(-0.25j * np.pi) * (stiffness / bending) ** 0.25
         self.wavenumber, self.half, self.seat = k, half, seat
         self.scale = 1.0 / (4.0 * bending * k**3)
@@ -296,13 +327,21 @@ class _SleeperWaves:
 
     def at(self, x: float) -> Complex:
         """Displacement at a distance from the middle, m/N."""
+        return self._sum(x, 1.0, 1.0)
+
+    def curvature(self, x: float) -> Complex:
+        """Second derivative of the displacement there, 1/(N m)."""
+        return self._sum(x, -(self.wavenumber**2), self.wavenumber**2)
+
+    def _sum(self, x: float, of_running: Complex | float, of_fading: Complex | float) -> Complex:
+        """Sum of the waves that run, and of those that fade, each with a factor."""
         found = np.zeros_like(self.scale)
         for distance in (abs(x - self.seat), x + self.seat):
             running, fading = (np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
-            found = found - self.scale * (1j * running + fading)
+            found = found - self.scale * (1j * running * of_running + fading * of_fading)
         for distance in (self.half - x, self.half + x):
             running, fading = (np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
-            found = found + self.running * running + self.fading * fading
+            found = found + self.running * running * of_running + self.fading * fading * of_fading
         return found
 
 
@@ -365,7 +404,8 @@ class Chain:
     @property
     def static(self) -> float:
         """Stiffness at rest, N/m."""
-        still = [each.at_rest if isinstance(each, Spring) else each for each in self.elements]
+        lossy = Spring, BendingSleeper
+        still = [each.at_rest if isinstance(each, lossy) else each for each in self.elements]
         return float(Chain(tuple(still)).stiffness(0.0).real)
 
 

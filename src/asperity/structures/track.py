@@ -54,6 +54,8 @@ class Track(track_parameters.TrackParameters):
         G A kappa, N, and rho I, kg m: both for a Timoshenko rail, none for Euler-Bernoulli.
     sleeper_bending_stiffness, sleeper_length, seat_distance : float, optional
         Of a whole sleeper that bends, N m^2 and m, and the distance of its two seats, m.
+    sleeper_loss_factor : float, optional
+        Of its bending stiffness.
     under_sleeper_pad_stiffness, ballast_mass, subgrade_stiffness : float, optional
         Layers that the support has beside pad and ballast, N/m and kg; springs with a damping or a loss
         factor of their own, as the pad.
@@ -169,7 +171,7 @@ class Track(track_parameters.TrackParameters):
         sleeper: chains.Element = self.measured_sleeper or chains.RigidMass(self.sleeper_mass)
         if self.sleeper_bending_stiffness is not None:
             beam = self.sleeper_length, self.sleeper_bending_stiffness, self.seat_distance
-            sleeper = chains.BendingSleeper(self.sleeper_mass, *beam)
+            sleeper = chains.BendingSleeper(self.sleeper_mass, *beam, self._losses("sleeper"))
         bed = {} if self.ballast_mass is None else {"ballast mass": chains.RigidMass(self.ballast_mass)}
         found = {"pad": springs.pop("pad"), "sleeper": sleeper} | springs
         subgrade = {"subgrade": found.pop("subgrade")} if "subgrade" in found else {}
@@ -192,8 +194,10 @@ class Track(track_parameters.TrackParameters):
 
     @property
     def lossy(self) -> dict[str, chains.Losses]:
-        """Losses that are not causal, by part: of the rail, and of the springs below it."""
+        """Losses that are not causal, by part: of the rail, of the springs below it, and of a sleeper."""
         parts = {"rail": self.rail.losses} | {layer: each.losses for layer, each in self.springs.items()}
+        if self.sleeper_bending_stiffness is not None:
+            parts["sleeper"] = self._losses("sleeper")
         return {
             part: losses
             for part, losses in parts.items()

@@ -89,6 +89,7 @@ class Relaxations:
     pad: Relaxation | None = None
     under_sleeper_pad: Relaxation | None = None
     ballast: Relaxation | None = None
+    sleeper: Relaxation | None = None  # of its bending stiffness
     subgrade: Relaxation | None = None
 
 
@@ -191,6 +192,13 @@ class TrackParameters:
         "distance of the two rails, middle to middle",
         f"0.2 m to 5 m: {_RAILS}",
         default=1.5,
+        **_BENT,
+    )
+    sleeper_loss_factor: float | None = parameter(
+        Number(at_least=0, at_most=1),
+        0.03,
+        "loss factor of a sleeper that bends; approximated in time",
+        default=None,
         **_BENT,
     )
     under_sleeper_pad_stiffness: float | None = _UNDER_SLEEPER_PAD[0]
