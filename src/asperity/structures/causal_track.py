@@ -57,8 +57,9 @@ def causal_track(track: Track, cache: Store | None = None) -> Track:
     Least squares of the level of the mean square of 1/(α_W + α_C + α_R) over half a bay and each band, for
     three rigid wheels on a linear contact, in the strengths of the Maxwell elements of the springs below the
     rail. None of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps
-    it in all bands, and its stiffness at 300 Hz, and so does a sleeper that bends. At rest, and under a load that hardly moves, the track is
-    softer than the nominal one. Of bays that differ, the nominal one is fitted. A cache keeps the fit.
+    it in all bands, and its stiffness at 300 Hz, and so does a sleeper that bends. At rest, and under a load
+    that hardly moves, the track is softer than the nominal one. Of bays that differ, the nominal one is
+    fitted. A cache keeps the fit.
     """
     if track.is_causal:
         return track
@@ -117,7 +118,7 @@ class _Fit:
     def __init__(self, track: Track) -> None:
         self.track = track
         self.rail = _rail(track.rail_loss_factor) if track.rail_loss_factor else None
-        self.sleeper = _rail(track.sleeper_loss_factor) if "sleeper" in track.lossy else None
+        self.sleeper = _rail(track.sleeper_loss_factor) if track.sleeper_loss_factor else None
         beams = "rail", "sleeper"
         self.lossy = {part: losses for part, losses in track.lossy.items() if part not in beams}
         centres, low, high = third_octave_bands(LOWEST, HIGHEST)

@@ -197,8 +197,9 @@ def dissipated_power(track: Track, frequency: ArrayLike, x: float) -> dict[str, 
         for name, element, (square, squeezed), below in parts:
             if isinstance(element, Spring):
                 found[name] = omega * element.stiffness(omega).imag * squeezed * moved
-            bends = isinstance(element, BendingSleeper) and track.sleeper_loss_factor
-            if isinstance(element, MeasuredSleeper) or bends:
+            loses = isinstance(element, BendingSleeper) and track.sleeper_loss_factor
+            if isinstance(element, MeasuredSleeper) or loses:
+                assert isinstance(element, MeasuredSleeper | BendingSleeper)
                 found[name] = omega * element.lost(omega, below) * square * moved
     return found
 

@@ -281,7 +281,7 @@ class BendingSleeper(Element):
 
     def lost(self, omega: ArrayLike, below: Complex | None) -> Array:
         """Imaginary stiffness, N/m, by which it dissipates itself, per square of how it moves by `spread`."""
-        lost = np.imag(self._bending(omega))
+        lost: Array = np.asarray(np.imag(self._bending(omega)))
         if below is None or not np.any(lost):
             return np.zeros(np.shape(omega))
         waves = self._waves(omega, below)
