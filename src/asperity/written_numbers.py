@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Sequence
 
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -83,6 +84,12 @@ def count_of(count: int, thing: str) -> str:
     """A number of things: ``"1 sample"``, ``"8 samples"``, ``"2 frequencies"``, ``"2 passes"``."""
     stem = re.sub(r"(?<![aeiou])y$", "ie", thing)
     return f"{count} {thing}" if count == 1 else f"{count} {stem}{'es' if stem.endswith('s') else 's'}"
+
+
+def in_a_row(words: Sequence[str]) -> str:
+    """Words one after the other, "and" before the last: ``"pads, ballast and rail"``."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def unbroken(text: str) -> str:

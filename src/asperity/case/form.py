@@ -225,6 +225,19 @@ class Section:
         made.__dict__.update({name: each for name, each in chosen.items() if name not in held})
         return made
 
+    def with_known(self, **values: Any) -> Self:
+        """The same section with values, in SI, that are right and fit together: nothing is read again.
+
+        Values count as given; None takes a key out. What was worked out of other values is forgotten.
+        """
+        made = type(self).__new__(type(self))
+        taken = {name for name, value in values.items() if value is None}
+        read = {name: each for name, each in vars(self).items() if name in self.keys or self.section_at(name)}
+        usual = {name: default_value(self.keys[name]) for name in taken}
+        made.__dict__.update(read | values | usual)
+        made.__dict__["given_names"] = (self.given_names | values.keys()) - taken
+        return made
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (type(self), self._state())
 
@@ -306,6 +319,8 @@ class Numbers(Protocol):
         ...
 
 
+_PLAIN = (str, float, int, type(None))
+"""What a value mostly is: asked first, as it takes long to see that something is no `Numbers`."""
 InMemory = HeightMap | Profile | np.ndarray | Numbers
 """What Python may hand over where a case file names a file."""
 
@@ -315,6 +330,8 @@ def content(value: Any, of_file: Callable[[Path], str] = str) -> Any:
 
     `of_file` says what stands for a file: its path, or a digest of what it holds.
     """
+    if isinstance(value, _PLAIN):
+        return value
     if isinstance(value, Section):
         return {name: content(getattr(value, name), of_file) for name in (*value.keys, *value.section_names)}
     if isinstance(value, Mapping):
@@ -361,6 +378,8 @@ def case_key(
 
 def holds_memory(value: Any) -> bool:
     """Whether there is something in a value that no case file can hold."""
+    if isinstance(value, _PLAIN):
+        return False
     if isinstance(value, Mapping):
         return any(map(holds_memory, value.values()))
     return any(map(holds_memory, value)) if isinstance(value, list | tuple) else isinstance(value, InMemory)

@@ -82,7 +82,9 @@ def _of_rails(table: TableSource) -> tuple[Array, int]:
     return rows, 2 if rows.shape[1] == len(both) + 2 else 1
 
 
-def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
+def read_mobility(
+    table: TableSource, within: tuple[float, float] = MOBILITIES
+) -> tuple[Array, NDArray[np.inexact]]:
     """Read a point mobility (n,), (m/s)/N, over rising frequencies (n,), Hz: complex, or its magnitude.
 
     A table of frequency and magnitude, or real and imaginary part, e^{+iωt}; the unit in a file says whether
@@ -95,7 +97,7 @@ def read_mobility(table: TableSource) -> tuple[Array, NDArray[np.inexact]]:
     found, turn = (rows[:, 1] + 1j * rows[:, 2], 1j) if whole else (rows[:, 1], 1.0)
     mobility = found * (turn * 2.0 * np.pi * frequency) ** FORMS[unit]
     size = np.asarray(np.abs(mobility) if whole else mobility.real)
-    _refuse_beyond(table, size, MOBILITIES, "a mobility", "(m/s)/N")
+    _refuse_beyond(table, size, within, "a mobility", "(m/s)/N")
     gains = mobility.real < 0.0
     if np.mean(gains) > MOST_GAINS:
         received = f"a rail that gives power to the hammer at {frequency[gains][0]:g} Hz and elsewhere"

@@ -387,6 +387,66 @@ def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Doc
     return run_optimisation(optimisation, directory or Path("runs") / optimisation.stem, **choices)
 
 
+@_compute("Fit keys of a case to what was measured.", long_work=True)
+@click.argument("case", type=PATH)
+@click.argument("more", type=PATH, nargs=-1, metavar="[FILE]...")
+@click.option(
+    "--to",
+    "measured",
+    type=PATH,
+    multiple=True,
+    metavar="FILE",
+    help="Table of what was measured; more may follow. [default: what the case names]",
+)
+@click.option(
+    "--free",
+    multiple=True,
+    metavar="KEY",
+    help="A key that may change, or 'KEY = 100..2000 MN/m'. May be repeated. [default: what decides most]",
+)
+@click.option(
+    "--where",
+    multiple=True,
+    metavar="COLUMN=VALUE",
+    help="Of a table with a measurement in each line those where a column holds this. May be repeated.",
+)
+@click.option(
+    "--as", "what", metavar="QUANTITY", help="What the files hold, where their heading does not tell."
+)
+@click.option(
+    "--starts", type=click.IntRange(1, 100), help="Places from which is searched. [default: 8, of runs 1]"
+)
+@output("Folder of fitted.toml, its page and its table. [default: that of the case]")
+@commands.overwrite("another fit")
+@commands.device
+def fit(
+    case: Path, more: tuple[Path, ...], measured: tuple[Path, ...], directory: Path | None, **choices: Any
+) -> Document:
+    """Fit keys of a CASE to what was measured: decay rates, mobility, levels in bands, spectra, stiffness.
+
+    Says first which keys the data do not determine, then values with 95 % intervals; writes the case with
+    them, fitted.toml, and measured against fitted on a page. Finished searches are kept: interrupted, the
+    same command goes on where it was.
+
+    Examples
+    --------
+    # pads, ballast and rail from decay rates (EN 15461)
+    asperity fit track.toml --to decay_rates.csv
+    # of one section of a table with a measurement in each line; one key alone
+    asperity fit track.toml --to all.csv --where section=B5 --free track.pad_stiffness
+    # with a range of one's own
+    asperity fit track.toml --to decay_rates.csv --free 'track.pad_loss_factor = 0.05..0.35' -o fits
+    # to what the case itself names
+    asperity fit case.toml --json | jq .fitted
+    """
+    from asperity.cli.fitting import fit_case
+
+    if more and not measured:
+        received = " and ".join([str(case), *map(str, more)])
+        raise InputError("case", received, "one", "Files of what was measured follow --to.")
+    return fit_case(case, (*measured, *more), directory, **choices)
+
+
 # --- look, listen and compare
 
 

@@ -8,7 +8,7 @@ import textwrap
 import traceback
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -245,6 +245,26 @@ def taken_folder(directory: Path, received: str, what: str) -> InputError:
     """Error about a folder whose results are those of something else than this."""
     remedy = "Choose another folder with -o, or replace it with --overwrite."
     return InputError(str(directory), received, f"a new folder, or that of the same {what}", remedy)
+
+
+def mark_of(what: str, asked: str, text: str) -> str:
+    """First line of a case that was found: it tells what it answers, and whether it was changed since."""
+    from asperity.store import content_key
+
+    return f"# {content_key(what, asked, text)}\n"
+
+
+def refuse_other_case(what: str, asked: str, case: Path, by: str) -> None:
+    """Let a command replace the case that it has found itself; any other one in the folder stays."""
+    from asperity.case import toml
+
+    if not case.exists():
+        return
+    mark, text = "", ""
+    with suppress(InputError):
+        mark, _, text = toml.read_definition(case, "case", "").partition("\n")
+    if f"{mark}\n" != mark_of(what, asked, text):
+        raise taken_folder(case.parent, f"a folder that holds another {case.name}", by)
 
 
 SIGNALS = {

@@ -1,7 +1,6 @@
 """Finds a texture into a folder: its case, its bands as table and on a page, the runs before and after."""
 
 import json
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +10,7 @@ from asperity import files
 from asperity.arguments import Array
 from asperity.case import any_case, toml
 from asperity.case.form import content, file_digest
-from asperity.cli.commands import taken_folder
-from asperity.errors import InputError
+from asperity.cli.commands import mark_of, refuse_other_case
 from asperity.laws import spec_of
 from asperity.optimising.definition import load_aim
 from asperity.optimising.running import Optimised, optimised
@@ -23,7 +21,6 @@ from asperity.reporting.tables import ReportTable, number_cells, table, text_cel
 from asperity.results import save
 from asperity.scenes.report import PAGE as REPORT
 from asperity.scenes.report import write_page
-from asperity.store import content_key
 from asperity.terminal import say, say_files
 from asperity.text_files import write_csv
 from asperity.written_numbers import capital
@@ -50,7 +47,7 @@ def run_optimisation(
     files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
     asked = json.dumps([content(each, file_digest) for each in (case, aim)])
     if not overwrite:
-        _refuse_other(asked, written["case"])
+        refuse_other_case("texture", asked, written["case"], "optimisation")
     with files.alone_in(directory), progress_bar() as progress:
         found = optimised(case, aim, progress)
         columns = _columns(found)
@@ -59,7 +56,7 @@ def run_optimisation(
             _write(found, columns, rows, new, report=report)
             keys = any_case.in_toml(found.case, in_memory=lambda *_: FILES["texture"])
             text = toml.toml_text({"kind": found.case.kind, **keys})
-            files.write_bytes(new / FILES["case"], f"{_mark(asked, text)}{text}".encode())
+            files.write_bytes(new / FILES["case"], f"{mark_of('texture', asked, text)}{text}".encode())
     say(found.sentence)
     say_files(written)
     return {
@@ -75,22 +72,6 @@ def run_optimisation(
         "rows": rows,
         "files": written,
     }
-
-
-def _mark(asked: str, text: str) -> str:
-    """First line of a case that was found: it tells what it answers, and whether it was changed since."""
-    return f"# {content_key('texture', asked, text)}\n"
-
-
-def _refuse_other(asked: str, case: Path) -> None:
-    """Let an optimisation replace what it has found itself; any other case in the folder stays."""
-    if not case.exists():
-        return
-    mark, text = "", ""
-    with suppress(InputError):
-        mark, _, text = toml.read_definition(case, "case", "").partition("\n")
-    if f"{mark}\n" != _mark(asked, text):
-        raise taken_folder(case.parent, f"a folder that holds another {case.name}", "optimisation")
 
 
 def _write(

@@ -51,13 +51,13 @@ class HammerTest:
     mobility: Complex
 
     @classmethod
-    def of_track(cls, track: Track, band: ArrayLike) -> "HammerTest":
+    def of_track(cls, track: Track, band: ArrayLike, count: int = LINES) -> "HammerTest":
         """What the test would find on a computed track, in bands by their centres (b,), Hz.
 
-        Responses are summed over the band before they are compared: 1/Δ is a mean that is weighted with the
-        squared mobility.
+        Responses are summed over the band, at a count of lines, before they are compared: 1/Δ is a mean that
+        is weighted with the squared mobility.
         """
-        frequency = _lines_in(band)
+        frequency = _lines_in(band, count)
         half, lines = float(track.mid_spans[0]), frequency.ravel()
         mobility = 2j * np.pi * frequency * track.receptance(lines, half, half).reshape(frequency.shape)
         rate = _rate_in_bands(decay_rate_en15461(track, lines), mobility)
@@ -114,10 +114,10 @@ class HammerTest:
         return np.nan_to_num(self.driven(other) / computed.driven(other), nan=1.0)
 
 
-def _lines_in(band: ArrayLike) -> Array:
-    """Frequencies of each band (b, n), even over lg f, Hz."""
+def _lines_in(band: ArrayLike, count: int = LINES) -> Array:
+    """Frequencies of each band (b, count), even over lg f, Hz."""
     centre = np.atleast_1d(np.asarray(band, dtype=float))
-    steps = (np.arange(LINES) + 0.5) / LINES
+    steps = (np.arange(count) + 0.5) / count
     return np.asarray(centre[:, None] * HALF_BAND ** (2.0 * steps - 1.0))
 
 
@@ -125,6 +125,17 @@ def _rate_in_bands(rate: Array, mobility: Complex) -> Array:
     """Decay rates (b,), dB/m, of responses that are summed over each band, at its lines (b n,) and (b, n)."""
     lengths = 1.0 / rate.reshape(mobility.shape)
     return np.asarray(1.0 / np.average(lengths, axis=1, weights=np.abs(mobility) ** 2))
+
+
+def lateral_hammer_test(track: LateralTrack, band: ArrayLike, count: int = LINES) -> Array:
+    """Decay rates sideways (b,), dB/m, that a hammer on the side of the head would find, as `HammerTest`.
+
+    In bands by their centres (b,), Hz, each summed at a count of lines.
+    """
+    frequency, half = _lines_in(band, count), 0.5 * track.track.sleeper_spacing
+    lines = frequency.ravel()
+    mobility = (lines * track.receptance(lines, half, half)).reshape(frequency.shape)
+    return _rate_in_bands(track.decay_rate_en15461(lines), mobility)
 
 
 def lateral_rates(keys: TrackKeys, track: LateralTrack, band: Array) -> tuple[Values, Array | float]:
@@ -136,10 +147,7 @@ def lateral_rates(keys: TrackKeys, track: LateralTrack, band: Array) -> tuple[Va
     rates = None if keys.decay_rates is None else read_decay_rates(keys.decay_rates)
     if rates is None or rates[2] is None:
         return {}, 1.0
-    frequency, half = _lines_in(band), 0.5 * track.track.sleeper_spacing
-    lines = frequency.ravel()
-    mobility = (lines * track.receptance(lines, half, half)).reshape(frequency.shape)
-    computed = _rate_in_bands(track.decay_rate_en15461(lines), mobility)
+    computed = lateral_hammer_test(track, band)
     longer = computed / in_bands(band, rates[0], rates[2])
     laid_out: Values = {
         schema.EXPECTED_LATERAL_DECAY_RATE: np.where(np.isfinite(longer), computed, np.nan),

@@ -139,7 +139,7 @@ class Change:
         _refuse_measured(case, self.entry)
         if self.factor is None and self.former is None:
             return self.value
-        now = _value_of(case, self.entry)
+        now = value_of(case, self.entry)
         if self.factor is None:
             if content(now) != self.former:
                 raise Unfit(f"{self.entry.dotted} is {now}, not {self.former}")
@@ -149,7 +149,7 @@ class Change:
         return value_in_toml(int(found) if whole else found, self.entry.key)
 
 
-def _value_of(case: AnyCase, entry: CaseKey) -> Any:
+def value_of(case: AnyCase, entry: CaseKey) -> Any:
     """Value of a key in a case, that of a named set where it gives none."""
     section: Section = getattr(case, entry.section) if entry.section else case
     companion = entry.key.goes_with

@@ -1,0 +1,232 @@
+"""Fits a case to what was measured: the case with the values found, as a table and on a page."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity import __version__, files
+from asperity.arguments import Array
+from asperity.case.any_case import in_toml, refused
+from asperity.case.cases import load_case
+from asperity.case.form import content, file_digest
+from asperity.case.toml import toml_text
+from asperity.cli.commands import mark_of, refuse_other_case, taken_folder
+from asperity.fitting.observables import observable
+from asperity.fitting.reading import read_where
+from asperity.fitting.running import Fitted, chosen_free, fitted, measured_for
+from asperity.progress import progress_bar
+from asperity.reporting import data
+from asperity.reporting.figure import PageFigure
+from asperity.reporting.fit_figures import Compared, fit_figure
+from asperity.reporting.page import figures_page
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.terminal import say, say_files, say_table
+from asperity.text_files import csv_text
+from asperity.threads import one_thread_in_linear_algebra
+from asperity.written_numbers import capital, count_of
+
+CASE = "fitted.toml"
+FILES = {"case": CASE, "table": "fitted.csv", "page": "fitted.html"}
+HEADING = (
+    "quantity",
+    "source",
+    "axis",
+    "at",
+    "units",
+    "measured",
+    "uncertainty (dB)",
+    "before",
+    "fitted",
+    "measured over fitted (dB)",
+)
+
+
+def fit_case(
+    path: Path,
+    measured: Sequence[Path],
+    directory: Path | None,
+    *,
+    free: Sequence[str] = (),
+    where: Sequence[str] = (),
+    what: str | None = None,
+    starts: int | None = None,
+    overwrite: bool = False,
+) -> dict[str, Any]:
+    """Fit a case to files of what was measured, and write the case found, into a folder, else beside it."""
+    folder = path.parent if directory is None else directory
+    case = load_case(path)
+    data_of_case = measured_for(case, list(measured) or None, read_where(where), what)
+    chosen = chosen_free(case, data_of_case, list(free) or None)
+    files.refuse_unwritable(folder, "folder of the results", "Choose another folder with -o.")
+    asked = json.dumps(
+        [
+            content(case, file_digest),
+            [
+                [each.what, content(each.conditions), each.at.tolist(), repr(each.values.tolist())]
+                for each in data_of_case
+            ],
+            [[each.name, each.low, each.high] for each in chosen],
+        ]
+    )
+    written = {name: folder / file for name, file in FILES.items()}
+    if not overwrite:
+        _refuse_other(asked, written)
+    with files.alone_in(folder), progress_bar() as progress, one_thread_in_linear_algebra():
+        found = fitted(case, data_of_case, chosen, progress, starts)
+        with files.together(folder, last=CASE) as new:
+            files.write_bytes(new / FILES["table"], csv_text(HEADING, _rows(found)).encode())
+            files.write_bytes(new / FILES["page"], _page(found).encode())
+            text = _origin(found, path) + toml_text({"kind": case.kind, **in_toml(found.case, refused)})
+            files.write_bytes(new / CASE, f"{mark_of('fitted', asked, text)}{text}".encode())
+    _say(found)
+    say_files(written)
+    return {"case": path.resolve(), **_document(found), "files": written}
+
+
+def _refuse_other(asked: str, written: dict[str, Path]) -> None:
+    """Let a fit replace what it has written itself; other files of these names stay."""
+    case = written["case"]
+    refuse_other_case("fitted", asked, case, "fit")
+    for file in written.values():
+        if file.exists() and not case.exists():
+            raise taken_folder(case.parent, f"a folder that holds another {file.name}", "fit")
+
+
+def _origin(found: Fitted, path: Path) -> str:
+    """What was fitted from what, in comments above the case."""
+    lines = [f"Fitted by asperity {__version__}: {path.name} with values from"]
+    for each in found.measured:
+        records = f", mean of {each.records} measurements" if each.records > 1 else ""
+        lines.append(f"  {each.what} in {each.source}{records}: {count_of(each.count, 'value')}")
+    lines += [f"{each.name} = {each.words}, 95 %" for each in found.estimates]
+    lines += [each.words for each in found.undetermined]
+    lines.append(f"Left: {found.rms():.2g} dB rms; before {found.rms(before=True):.2g} dB.")
+    return "".join(f"# {line}\n" for line in lines) + "\n"
+
+
+# --- what is said
+
+
+def _say(found: Fitted) -> None:
+    """Say what is not known, then what was found."""
+    for sentence in found.open_sentences:
+        say(capital(sentence))
+    rows = []
+    for each in found.estimates:
+        interval = " to ".join(map(each.free.words, each.interval)) if each.interval else "on its limit"
+        before = each.free.words(each.free.start) if each.free.given else "–"
+        rows.append((each.name, before, each.free.words(each.value), interval))
+    say_table("Fitted", ("key", "before", "fitted", "95 %"), rows, width=120)
+    for sentence in found.remarks:
+        say(sentence)
+
+
+def _document(found: Fitted) -> dict[str, Any]:
+    """What programs are told, in SI."""
+    return {
+        "summary": found.sentence,
+        "undetermined": [{"key": each.free.name, "with": dict(each.others)} for each in found.undetermined],
+        "fitted": [
+            {
+                "key": each.name,
+                "units": each.free.units,
+                "before": each.free.start if each.free.given else None,
+                "value": each.value,
+                "interval": each.interval,
+                "limits": [each.free.low, each.free.high],
+                "limit": each.limit or None,
+            }
+            for each in found.estimates
+        ],
+        "correlations": found.correlations,
+        "rms": found.rms(),
+        "rms_before": found.rms(before=True),
+        "left_out": found.left_out,
+        "others": list(found.rivals),
+        "columns": HEADING,
+        "rows": _rows(found),
+    }
+
+
+def _real(values: Any) -> Array:
+    return np.asarray(np.abs(values) if np.iscomplexobj(values) else values, dtype=float)
+
+
+def _compared(found: Fitted) -> list[Compared]:
+    """Measurements beside what is predicted; of complex values the magnitude."""
+    compared = []
+    for each, before, after in zip(found.measured, found.predicted_before, found.predicted, strict=True):
+        of = observable(each.what)
+        deviation = of.uncertainty if each.uncertainty is None else each.uncertainty
+        told = f"{each.source}, mean of {each.records}" if each.records > 1 else each.source
+        compared.append(
+            Compared(
+                of.name,
+                of.units,
+                of.axis,
+                told,
+                at=each.at,
+                measured=_real(each.values),
+                before=_real(before),
+                fitted=_real(after),
+                deviation=np.broadcast_to(np.asarray(deviation, dtype=float), each.at.shape),
+                decade=of.decade,
+            )
+        )
+    return compared
+
+
+def _rows(found: Fitted) -> list[list[Any]]:
+    rows = []
+    for each, left in zip(_compared(found), found.residuals(), strict=True):
+        columns = (each.at, each.measured, each.deviation, each.before, each.fitted, left[: len(each.at)])
+        for at, measured, deviation, before, after, over in np.stack(columns, axis=1).tolist():
+            row = [each.what, each.title, each.axis, at, each.units, measured, deviation, before, after, over]
+            rows.append(row)
+    return rows
+
+
+def _page(found: Fitted) -> str:
+    parts = fit_figure(_compared(found), stated=found.stated)
+    figure = PageFigure.of("fitted", "Measured, before and fitted", parts)
+    return figures_page(
+        "A case fitted to what was measured",
+        capital(found.headline),
+        [figure, *_tables(found)],
+        {"case": CASE, "numbers (CSV)": FILES["table"]},
+    )
+
+
+def _tables(found: Fitted) -> list[ReportTable]:
+    """Values with their intervals, and how they depend on each other."""
+    estimates = found.estimates
+    interval = [
+        " to ".join(map(each.free.words, each.interval)) if each.interval else "on its limit"
+        for each in estimates
+    ]
+    before = [each.free.words(each.free.start) if each.free.given else "–" for each in estimates]
+    columns = {
+        "key": text_cells(each.name for each in estimates),
+        "before": text_cells(before),
+        "fitted": text_cells(each.free.words(each.value) for each in estimates),
+        "95 %": text_cells(interval),
+        "limits": text_cells(
+            f"{each.free.words(each.free.low)} to {each.free.words(each.free.high)}" for each in estimates
+        ),
+        "limits are": text_cells(each.free.range_source for each in estimates),
+    }
+    note = " ".join(map(capital, [*found.open_sentences, *found.remarks]))
+    tables = [table("values", "Values", columns, note)]
+    inside = [each.name for each in estimates if each.interval is not None]
+    if len(inside) > 1:
+        heads = {"": text_cells(inside)}
+        heads |= {
+            name: number_cells(column, data.signed)
+            for name, column in zip(inside, found.correlations.T.round(2), strict=True)
+        }
+        note = "Correlations of what was fitted, of logarithms where that is fitted by its logarithm."
+        tables.append(table("correlations", "Correlations", heads, note))
+    return tables

@@ -1,0 +1,177 @@
+"""What can be measured and predicted alike: a quantity over an axis, and how a case gives it."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array, NDArray, require, shown
+from asperity.case.any_case import AnyCase
+from asperity.case.form import Section
+
+Values = NDArray[np.inexact]
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A quantity that was measured, in SI.
+
+    Parameters
+    ----------
+    what : str
+        One of `asperity.fitting.observables.names()`, as ``"vertical decay rate"``.
+    at : array_like (n,)
+        Where along its axis: frequencies, Hz, centres of bands, Hz, loads, N.
+    values : array_like (n,)
+        In the units of the quantity; complex where a phase was measured.
+    uncertainty : array_like (n,) or float, optional
+        Standard deviation, dB; without it that of repeated measurements, else one that is usual.
+    conditions : mapping, optional
+        Keys of the case that were otherwise in this measurement, as ``{"speed": "120 km/h"}``.
+    places : tuple of two floats, optional
+        Of the response and of the force, m, where they are told.
+    source : str
+        Where it comes from.
+    records : int
+        Number of measurements of which it is the mean.
+
+    Raises
+    ------
+    InputError
+        If its arrays are not of one length, or not finite.
+    """
+
+    what: str
+    at: Array
+    values: Values
+    uncertainty: Array | float | None = None
+    conditions: Mapping[str, Any] = field(default_factory=dict)
+    places: tuple[float, float] | None = None
+    source: str = "measured"
+    records: int = 1
+
+    def __post_init__(self) -> None:
+        at = np.atleast_1d(np.asarray(self.at, dtype=float))
+        values = np.atleast_1d(np.asarray(self.values))
+        sound = values.dtype.kind in "fiuc" and at.ndim == 1 and at.shape == values.shape and at.size > 0
+        allowed = "two arrays of one length, of finite numbers"
+        require(sound, self.what, f"{shown(at)} and {shown(values)}", allowed)
+        require(np.isfinite(at).all() and np.isfinite(values).all(), self.what, "what is not finite", allowed)
+        object.__setattr__(self, "at", at)
+        object.__setattr__(self, "values", values)
+        if self.uncertainty is not None:
+            given = np.broadcast_to(np.asarray(self.uncertainty, dtype=float), at.shape)
+            positive = bool((np.isfinite(given) & (given > 0.0)).all())
+            require(
+                positive, f"uncertainty of the {self.what}", shown(self.uncertainty), "dB, greater than 0"
+            )
+            object.__setattr__(self, "uncertainty", given)
+
+    @property
+    def count(self) -> int:
+        """Real numbers that it holds."""
+        return len(self.at) * (2 if np.iscomplexobj(self.values) else 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A case with values that a fit tries.
+
+    Parameters
+    ----------
+    base : AnyCase
+        The case that is fitted.
+    changes : mapping
+        Dotted keys with their values, in SI; None takes a key out.
+    fine : bool
+        Whether bands are resolved as in a report, or enough to search.
+    """
+
+    base: AnyCase
+    changes: Mapping[str, Any]
+    fine: bool = True
+
+    @cached_property
+    def case(self) -> AnyCase:
+        """The case, whose changed sections alone are made anew; keys that are right are not read again."""
+        by_section: dict[str, dict[str, Any]] = {}
+        for dotted, value in self.changes.items():
+            title, _, name = dotted.rpartition(".")
+            by_section.setdefault(title, {})[name] = value
+        top = by_section.pop("", {})
+        sections = {
+            title: _section(self.base, title).with_known(**each) for title, each in by_section.items()
+        }
+        return self.base.with_known(**top, **sections)
+
+    @cached_property
+    def whole(self) -> AnyCase:
+        """The case, read as a whole: what follows from other keys is chosen anew."""
+        return self.base.with_(**self.changes)
+
+
+def _section(case: AnyCase, title: str) -> Section:
+    found: Section = getattr(case, title)
+    return found
+
+
+@dataclass(frozen=True)
+class Observable:
+    """A quantity over an axis that is measured, and that a case predicts.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    units : str
+        Of its values.
+    axis : str
+        What it is measured over, with the unit.
+    decade : float
+        dB that ten times the value is: 10 of rates and powers, 20 of amplitudes, 0 of levels.
+    uncertainty : float
+        Standard deviation, dB, where nothing tells it.
+    lacks : callable
+        What a case lacks to predict it, in words; empty where it lacks nothing.
+    predict : callable
+        Its values at those of a `Measured`, (n,), of a `Trial`.
+    free : callable
+        Keys that are fitted where none are named, those of the case first that decide most.
+    words : str
+        Pattern of words in a heading, or in the name of a file, that tell it.
+    read : callable, optional
+        Reads it from a file with a line for each place of its axis.
+    by_run : bool
+        Whether the case is run for it.
+    """
+
+    name: str
+    units: str
+    axis: str
+    decade: float
+    uncertainty: float
+    lacks: Callable[[AnyCase], str]
+    predict: Callable[[Trial, Measured], Values]
+    free: Callable[[AnyCase], tuple[str, ...]]
+    words: str
+    read: Callable[[Path], list[Measured]] | None = None
+    by_run: bool = False
+
+    def differs(self, values: Values, predicted: Values) -> Array:
+        """Level of measured values (n,) over predicted ones, dB; of complex ones the phase, in dB, behind it.
+
+        A phase of one radian counts as 8.7 dB, as an amplitude does that is e times as large.
+        """
+        if not self.decade:
+            return np.asarray(values - predicted, dtype=float)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = self.decade / np.log(10.0) * np.log(values / predicted)
+        return np.concatenate([ratio.real, ratio.imag]) if np.iscomplexobj(values) else ratio.real
+
+    def is_told(self, text: str) -> bool:
+        """Whether words tell this quantity."""
+        return re.search(self.words, text, re.IGNORECASE) is not None

@@ -1,0 +1,19 @@
+"""Quantities that cases are fitted to: one file each, and its name here."""
+
+from asperity.arguments import one_of
+from asperity.fitting.observable import Observable
+from asperity.fitting.observables import decay_rates, mobilities
+
+BUILT_IN: dict[str, Observable] = {
+    each.name: each for each in (*decay_rates.OBSERVABLES, *mobilities.OBSERVABLES)
+}
+
+
+def names() -> tuple[str, ...]:
+    """Names of all quantities that a case can be fitted to."""
+    return tuple(BUILT_IN)
+
+
+def observable(name: str) -> Observable:
+    """The quantity of a name; an `InputError` lists those that there are."""
+    return BUILT_IN[one_of("measured quantity", name, BUILT_IN)]

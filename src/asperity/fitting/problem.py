@@ -1,0 +1,166 @@
+"""What is left between what was measured and what a case predicts, at values of what is free."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array
+from asperity.case.any_case import AnyCase
+from asperity.case.form import content, digest
+from asperity.errors import ComputationError, InputError, PhysicsWarning
+from asperity.fitting.free import Free
+from asperity.fitting.observable import Measured, Observable, Trial, Values
+from asperity.fitting.observables import observable
+from asperity.fitting.search import FAR, differences
+from asperity.store import content_key
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A case, what was measured, and what is free.
+
+    Parameters
+    ----------
+    case : AnyCase
+        The case.
+    measured : tuple of Measured
+        What it is fitted to.
+    free : tuple of Free
+        What may change.
+    fine : bool
+        Whether bands are resolved as in a report.
+    beyond : float
+        Standard deviation of what the case leaves out, dB, beside the uncertainty of the data.
+    of_case : str
+        Digest of the case and its files.
+    """
+
+    case: AnyCase
+    measured: tuple[Measured, ...]
+    free: tuple[Free, ...]
+    fine: bool = True
+    beyond: float = 0.0
+    of_case: str = ""
+
+    @cached_property
+    def low(self) -> Array:
+        """Lower limits (p,), on the scale of the search."""
+        return np.array([each.inward(each.low) for each in self.free])
+
+    @cached_property
+    def high(self) -> Array:
+        """Upper limits (p,), likewise."""
+        return np.array([each.inward(each.high) for each in self.free])
+
+    @cached_property
+    def start(self) -> Array:
+        """Values of the case (p,), likewise."""
+        return np.array([each.inward(each.start) for each in self.free])
+
+    @cached_property
+    def observables(self) -> tuple[Observable, ...]:
+        """What each measurement is of."""
+        return tuple(observable(each.what) for each in self.measured)
+
+    @cached_property
+    def uncertainty(self) -> Array:
+        """Standard deviations of all data (n,), dB, with what the case leaves out."""
+        return np.hypot(self.of_data, self.beyond)
+
+    @cached_property
+    def of_data(self) -> Array:
+        """Standard deviations of the data alone (n,), dB."""
+        return np.concatenate(
+            [
+                np.tile(_uncertainty(each, of), 2 if np.iscomplexobj(each.values) else 1)
+                for each, of in zip(self.measured, self.observables, strict=True)
+            ]
+        )
+
+    @property
+    def stated(self) -> bool:
+        """Whether all uncertainties are known: given, or the scatter of repeated measurements."""
+        return all(each.uncertainty is not None for each in self.measured)
+
+    @property
+    def count(self) -> int:
+        """Number of data."""
+        return sum(each.count for each in self.measured)
+
+    def values(self, place: Array) -> dict[str, float]:
+        """Values of what is free, in SI, at a place on the scale of the search."""
+        return {each.name: each.outward(at) for each, at in zip(self.free, place.tolist(), strict=True)}
+
+    def changes(self, place: Array) -> dict[str, Any]:
+        """Keys of the case at a place, by their dotted names; those that they replace as None."""
+        return {**self._replaced, **changes_of(self.free, self.values(place))}
+
+    @cached_property
+    def _replaced(self) -> dict[str, None]:
+        """Keys that the case gives, and of which another one that is free takes the place."""
+        found: dict[str, None] = {}
+        for each in self.free:
+            if each.entry is not None and each.entry.section:
+                section = getattr(self.case, each.entry.section)
+                for pair in section.ALTERNATIVES:
+                    if each.entry.name in pair:
+                        other = pair[pair.index(each.entry.name) - 1]
+                        if other in section.given_names:
+                            found[f"{each.entry.section}.{other}"] = None
+        return found
+
+    def predicted(self, place: Array) -> list[Values]:
+        """What the case predicts for each measurement (n,) at a place."""
+        changes, trials = self.changes(place), dict[str, Trial]()
+        found = []
+        for each, of in zip(self.measured, self.observables, strict=True):
+            here = repr(sorted(content(each.conditions).items()))
+            if here not in trials:
+                trials[here] = Trial(self.case, {**changes, **each.conditions}, self.fine)
+            found.append(of.predict(trials[here], each))
+        return found
+
+    def left(self, place: Array) -> list[Array]:
+        """Level of what was measured over what is predicted, of each measurement, dB."""
+        both = zip(self.observables, self.measured, self.predicted(place), strict=True)
+        return [of.differs(each.values, predicted) for of, each, predicted in both]
+
+    def residuals(self, place: Array) -> Array:
+        """The same of all data (n,), in their uncertainties; `FAR` of what cannot be computed there."""
+        try:
+            with PhysicsWarning.ignored():
+                left = np.concatenate(self.left(place))
+        except (InputError, ComputationError):
+            return np.full(self.count, FAR)
+        found = left / self.uncertainty
+        return np.where(np.isfinite(found), np.clip(found, -FAR, FAR), FAR)
+
+    def slopes(self, place: Array) -> Array:
+        """Slopes of the residuals (n, p) at a place."""
+        return differences(self.residuals, self.low, self.high)(place)
+
+    def key(self, *more: object) -> str:
+        """Name of what is kept of it: all that it depends on, and more."""
+        data = [
+            [each.what, content(each.conditions), each.places, digest(each.at), digest(each.values)]
+            for each in self.measured
+        ]
+        free = [[each.name, each.low, each.high] for each in self.free]
+        return content_key("fit", self.of_case, data, digest(self.uncertainty), free, self.fine, *more)
+
+    def without(self, number: int) -> "Problem":
+        """The same with what is free but one, which is left as the case has it."""
+        return replace(self, free=tuple(each for n, each in enumerate(self.free) if n != number))
+
+
+def changes_of(free: Sequence[Free], values: Mapping[str, float]) -> dict[str, Any]:
+    """Keys of a case, by their dotted names, with values of what is free."""
+    return {each.name: values[each.name] for each in free if each.entry is not None}
+
+
+def _uncertainty(measured: Measured, of: Observable) -> Array:
+    given = of.uncertainty if measured.uncertainty is None else measured.uncertainty
+    return np.broadcast_to(np.asarray(given, dtype=float), measured.at.shape)

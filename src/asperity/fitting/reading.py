@@ -1,0 +1,287 @@
+"""What was measured, from files: with a line for each place of an axis, or a measurement in each line."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array, NDArray, listed, nearest, one_of, require, shown
+from asperity.case.any_case import AnyCase, entry_of
+from asperity.case.form import content
+from asperity.case.table_headings import WIDE, are_words
+from asperity.case.tables import LARGEST_TABLE
+from asperity.errors import InputError
+from asperity.fitting.observable import Measured, Observable
+from asperity.fitting.observables import BUILT_IN, decay_rates, observable
+from asperity.parameters import FROM_PYTHON
+from asperity.spectra import a_weighting
+from asperity.text_files import lines_of_cells, number_in, read_text
+from asperity.units import quantity, unit_in, unit_in_brackets
+from asperity.written_numbers import count_of
+
+MOST_RECORDS = 1000
+"""Measurements of one file."""
+MOST_LISTED = 12
+"""Values of a column that a message lists."""
+HEADING = 10
+"""Lines of a file among which the heading of a wide table is sought."""
+_DIRECTION = "direction"
+DIRECTIONS = {"vertical": decay_rates.VERTICAL, "lateral": decay_rates.LATERAL}
+"""Words of such a column, and what was measured."""
+
+
+def read_measured(
+    case: AnyCase, path: Path, where: Mapping[str, str], what: str | None
+) -> tuple[list[Measured], list[str]]:
+    """Measurements in a file for a case, of a wide table those alone `where` its columns hold some words.
+
+    Returns with them the titles of such columns. What they are is told by the heading, else by
+    the name of the file, unless `what` says it. Columns that are called as keys of the case are conditions.
+    """
+    allowed = "a table of what was measured, with units in its heading"
+    text = read_text(path, path.name, allowed, largest=LARGEST_TABLE, latin=True)
+    table = list(lines_of_cells(text))
+    for number, (_, cells) in enumerate(table[:HEADING]):
+        if (places := _axis_in(cells)) is not None and are_words(cells):
+            rows = [cells for _, cells in table[number + 1 :]]
+            return _wide(case, path, cells, places, rows, where, what)
+    heading = " ".join(text.splitlines()[:HEADING])
+    of = _recognised(path, heading, what, [each for each in BUILT_IN.values() if each.read is not None])
+    assert of.read is not None
+    return of.read(path), []
+
+
+def _recognised(path: Path, heading: str, what: str | None, known: Sequence[Observable]) -> Observable:
+    """What a table holds, as somebody says, else its heading, else the name of the file."""
+    if what is not None:
+        return observable(what)
+    for text in (heading, re.sub(r"[_.-]", " ", path.stem)):
+        for each in known:
+            if each.is_told(text):
+                return each
+    allowed = "a table of " + ", ".join(BUILT_IN)
+    remedy = 'Name it in the heading, with its unit, or say what it is: --as "vertical decay rate".'
+    raise InputError(path.name, "a heading that does not tell what was measured", allowed, remedy)
+
+
+# --- a measurement in each line
+
+
+def _axis_in(cells: Sequence[str]) -> dict[int, float] | None:
+    """Columns of a heading that are frequencies, Hz, by their numbers; None where they are too few."""
+    found = {}
+    for number, cell in enumerate(cells):
+        if unit_in(cell):
+            try:
+                found[number] = quantity(cell.replace(",", "."), "Hz")
+            except InputError:
+                continue
+    return found if len(found) > WIDE else None
+
+
+def _wide(
+    case: AnyCase,
+    path: Path,
+    heading: list[str],
+    places: dict[int, float],
+    rows: list[list[str]],
+    where: Mapping[str, str],
+    what: str | None,
+) -> tuple[list[Measured], list[str]]:
+    labels = {number: title for number, title in enumerate(heading) if number not in places}
+    names = {_plain(title): title for title in labels.values()}
+    asked = {name: value for name, value in where.items() if _plain(name) in names}
+    kept = [row for row in rows if _fits(row, labels, asked)]
+    if not kept:
+        told = " and ".join(f"{name}={value}" for name, value in asked.items())
+        name = next(reversed(asked), "")
+        column = next((n for n, title in labels.items() if _plain(title) == _plain(name)), 0)
+        held = list(dict.fromkeys(_cell(row, column) for row in rows))
+        listed = ", ".join(held[:MOST_LISTED]) + " …" * (len(held) > MOST_LISTED)
+        raise InputError(path.name, f"no line where {told or 'anything stands'}", f"{name}: {listed}")
+    require(len(kept) <= MOST_RECORDS, path.name, count_of(len(kept), "line"), f"at most {MOST_RECORDS}")
+    words = " ".join(labels.values())
+    of = _recognised(path, words, what, list(BUILT_IN.values()))
+    weighted = any("(A)" in unit_in_brackets(f"[{title}]") or "dB(A)" in title for title in labels.values())
+    found = [_record(case, path, row, labels, places, of, weighted=weighted) for row in kept]
+    return [each for each in found if each is not None], list(labels.values())
+
+
+def _plain(title: str) -> str:
+    """A title without its unit, in small letters."""
+    return re.sub(r"[(\[].*", "", title).strip().lower()
+
+
+def _cell(row: Sequence[str], number: int) -> str:
+    return row[number] if number < len(row) else ""
+
+
+def _fits(row: Sequence[str], labels: Mapping[int, str], where: Mapping[str, str]) -> bool:
+    """Whether a line holds what is asked for; several words, with commas, mean any of them."""
+    plain = {_plain(title): number for number, title in labels.items()}
+    for name, wanted in where.items():
+        held = _cell(row, plain[_plain(name)])
+        if not any(_same(held, each.strip()) for each in wanted.split(",")):
+            return False
+    return True
+
+
+def _same(held: str, wanted: str) -> bool:
+    if held.lower() == wanted.lower():
+        return True
+    try:
+        return number_in(held) == number_in(wanted)
+    except ValueError:
+        return False
+
+
+def _record(
+    case: AnyCase,
+    path: Path,
+    row: Sequence[str],
+    labels: Mapping[int, str],
+    places: Mapping[int, float],
+    of: Observable,
+    *,
+    weighted: bool,
+) -> Measured | None:
+    """One line as a measurement; None of one without any number."""
+    values = {}
+    for number, frequency in places.items():
+        if cell := _cell(row, number):
+            try:
+                values[frequency] = number_in(cell)
+            except ValueError:
+                raise InputError(
+                    path.name, f"{shown(cell)} below {frequency:g} Hz", "a number, or nothing"
+                ) from None
+    if not values:
+        return None
+    at = np.array(sorted(values))
+    held = np.array([values[frequency] for frequency in at])
+    centres = _centres(path, at)
+    told = {title: _cell(row, number) for number, title in labels.items() if _cell(row, number)}
+    direction = next((each for title, each in told.items() if _plain(title) == _DIRECTION), "")
+    if of.name in DIRECTIONS.values() and direction:
+        of = observable(DIRECTIONS[one_of(f"direction in {path.name}", direction.lower(), DIRECTIONS)])
+    if of.decade and (held <= 0.0).any():
+        raise InputError(path.name, f"a {of.name} of {held[held <= 0.0][0]:g}", "greater than 0")
+    held = held - a_weighting(centres) if weighted and of.units.startswith("dB re 20") else held
+    return Measured(of.name, centres, held, conditions=conditions_of(case, told), source=path.name)
+
+
+def _centres(path: Path, at: Array) -> Array:
+    """Exact centres of one-third octaves by nominal ones, Hz."""
+    numbers = np.rint(10.0 * np.log10(at))
+    off = np.abs(10.0 * np.log10(at) - numbers) > 0.06
+    if off.any() or (np.diff(numbers) == 0).any():
+        wrong = at[off][0] if off.any() else at[0]
+        raise InputError(path.name, f"a column of {wrong:g} Hz", "centres of one-third octaves, each once")
+    return np.asarray(10.0 ** (0.1 * numbers))
+
+
+# --- as a fit takes them
+
+
+def conditions_of(case: AnyCase, labels: Mapping[str, str]) -> dict[str, Any]:
+    """Labels of a measurement that are keys of a case with a unit, as ``speed (km/h)``, in SI."""
+    found = {}
+    for title, value in labels.items():
+        try:
+            entry = entry_of(type(case), _plain(title))
+        except InputError:
+            continue  # a label that is no key
+        unit = unit_in_brackets(title)
+        if entry.unit is not None and (unit or entry.unit == "1"):
+            found[entry.dotted] = entry.read(f"{value} {unit}" if unit else number_in(value), FROM_PYTHON)
+    return found
+
+
+def combined(found: Sequence[Measured]) -> list[Measured]:
+    """Repeated measurements of one quantity under the same conditions as their mean, with its uncertainty.
+
+    Of values with decades the mean is that of their logarithms. Its standard deviation is that of the values
+    about it over the root of their number, taken together over three neighbouring places of the axis.
+    """
+
+    def key(each: Measured) -> str:
+        return repr((each.what, sorted(content(each.conditions).items()), each.places))
+
+    ordered = sorted(found, key=key)  # stable: first come first
+    groups = {name: list(group) for name, group in groupby(ordered, key)}
+    wanted = dict.fromkeys(map(key, found))
+    return [_mean(groups[name]) for name in wanted]
+
+
+def _mean(group: Sequence[Measured]) -> Measured:
+    first = group[0]
+    if len(group) == 1:
+        return first
+    of = observable(first.what)
+    every = np.unique(np.concatenate([each.at for each in group]))
+    whole = all(np.iscomplexobj(each.values) for each in group)
+    held = np.full((len(group), len(every)), np.nan, dtype=complex if whole else float)
+    for number, each in enumerate(group):
+        held[number, np.searchsorted(every, each.at)] = each.values if whole else np.abs(each.values)
+    if not of.decade:
+        for number, each in enumerate(group):
+            held[number, np.searchsorted(every, each.at)] = each.values
+    scale = of.decade / np.log(10.0) if of.decade else 1.0
+    level = scale * np.log(held) if of.decade else held
+    times = np.isfinite(held).sum(axis=0)
+    middle = np.nanmean(level, axis=0)
+    square = np.nansum(np.abs(level - middle) ** 2, axis=0)
+    deviation = _pooled(square, times)
+    values = np.exp(middle / scale) if of.decade else middle
+    uncertainty = None if deviation is None else deviation / np.sqrt(times)
+    source = ", ".join(dict.fromkeys(each.source for each in group))
+    return replace(first, at=every, values=values, uncertainty=uncertainty, source=source, records=len(group))
+
+
+LEAST_SCATTER = 0.2
+"""Of repeated measurements, dB: levels are read to a tenth."""
+
+
+def _pooled(square: Array, times: NDArray[np.int_]) -> Array | None:
+    """Standard deviation at each place (n,), of squares over it and its neighbours; None without repeats."""
+    freedom = np.maximum(times - 1, 0)
+    if not freedom.any():
+        return None
+    near = np.ones(3)
+    known = np.convolve(freedom, near, "same")
+    mean = np.convolve(square, near, "same") / np.maximum(known, 1)
+    whole = square.sum() / freedom.sum()
+    return np.maximum(np.sqrt(np.where(known > 0, mean, whole)), LEAST_SCATTER)
+
+
+def beside(case: AnyCase) -> list[Measured]:
+    """What the case itself says was measured."""
+    from asperity.fitting.observables import mobilities
+
+    return [*decay_rates.rates_beside(case), *mobilities.mobility_beside(case)]
+
+
+def read_where(words: Iterable[str]) -> dict[str, str]:
+    """Columns and what they shall hold, as ``"section=B5"``."""
+    found: dict[str, str] = {}
+    for each in words:
+        name, sign, value = (part.strip() for part in each.partition("="))
+        require(name and sign and value, "where", shown(each), "a column and what it holds, as section=B5")
+        require(name not in found, "where", shown(each), "each column once", f"Write {name}=one,other.")
+        found[name] = value
+    return found
+
+
+def refuse_unfound(where: Mapping[str, str], titles: Iterable[str]) -> None:
+    """Refuse a column that no file has, of those with titles."""
+    known = list(dict.fromkeys(map(_plain, titles)))
+    for name in where:
+        if _plain(name) not in known:
+            allowed = (
+                f"a column of a file: {listed(known)}" if known else "a file with a measurement in each line"
+            )
+            raise InputError("where", f"the column {shown(name)}", allowed, nearest(_plain(name), known))

@@ -1,0 +1,485 @@
+"""Fitting a case: from measurements and free keys to values, what is known of them, and the new case."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array, NDArray, file_path, require, shown, whole
+from asperity.case import cases
+from asperity.case.any_case import AnyCase, entry_of
+from asperity.case.form import case_key
+from asperity.errors import InputError
+from asperity.fitting import determined, reading
+from asperity.fitting.free import Free, free_key, read_free, read_range
+from asperity.fitting.observable import Measured, Values
+from asperity.fitting.observables import observable
+from asperity.fitting.problem import Problem
+from asperity.fitting.search import FINE, ROUGH, Optimum, descend, on_limits, starts_within
+from asperity.progress import Progress, shown_progress
+from asperity.store import Store, made
+from asperity.threads import one_thread_in_linear_algebra
+from asperity.written_numbers import count_of, in_a_row, rounded
+
+FORMAT = 1
+"""Raise it when what is kept of a search no longer means what it meant."""
+USUALLY_LEFT_OUT = 1.0
+"""By a case, dB, while nothing is known of it."""
+ROUNDS, SAME = 6, 0.05
+"""In which it is found, and the part by which it may still change."""
+STARTS = 8
+"""From which a smallest sum of squares is sought, where predictions are quick."""
+RIVAL = 1.05
+"""Ratio of root mean squares up to which another minimum meets the data as well."""
+NEAR = 0.1
+"""On the scale of the search, by which minima are apart at least."""
+FreeKeys = Sequence[str] | Mapping[str, object] | None
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value that was fitted.
+
+    Attributes
+    ----------
+    free : Free
+        What it is.
+    value : float
+        In SI.
+    interval : tuple of two floats, optional
+        95 % interval, in SI; None of a value on a limit beyond which the data want it.
+    limit : str
+        ``"least"`` or ``"largest"`` of a value on its limit; else empty.
+    """
+
+    free: Free
+    value: float
+    interval: tuple[float, float] | None
+    limit: str
+
+    @property
+    def name(self) -> str:
+        """The dotted key, or what else it is called."""
+        return self.free.name
+
+    @property
+    def words(self) -> str:
+        """The value with its interval, for people."""
+        told = self.free.words(self.value)
+        if self.interval is not None:
+            low, high = map(self.free.words, self.interval)
+            told = f"{told} ({low} to {high})"
+        return told + f", on its limit ({self.free.range_source})" * bool(self.limit)
+
+
+@dataclass(frozen=True)
+class Undetermined:
+    """A key that the data leave open, and that was left as the case has it.
+
+    Attributes
+    ----------
+    free : Free
+        What it is.
+    others : tuple of (str, float)
+        Keys with which alone the data determine a combination: how many times its own change, in parts of
+        each, another has to change so that the data are met alike.
+    """
+
+    free: Free
+    others: tuple[tuple[str, float], ...]
+
+    @property
+    def words(self) -> str:
+        """What is not known, and what it was left at."""
+        name = self.free.name
+        left = f"left at {self.free.words(self.free.start)}" if self.free.given else "left as the case has it"
+        if not self.others:
+            return f"{name} is not determined by these data; {left}"
+        names = in_a_row([other for other, _ in self.others])
+        met = in_a_row(
+            [
+                f"{rounded(abs(by), 2)} % {'more' if by > 0.0 else 'less'} of {other}"
+                for other, by in self.others
+            ]
+        )
+        return f"{name} is not determined apart from {names}: 1 % more of it is made up for by {met}; {left}"
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A case that was fitted.
+
+    Attributes
+    ----------
+    case : Case
+        With the values found.
+    before : Case
+        As it was.
+    measured : tuple of Measured
+        What it was fitted to, repeated measurements as their means.
+    estimates : tuple of Estimate
+        Values found, in the order in which they were named.
+    undetermined : tuple of Undetermined
+        Keys that the data leave open, the worst first.
+    correlations : ndarray (k, k)
+        Of the estimates that do not lie on a limit, on the scale of the search (logarithms).
+    predicted_before, predicted : list of ndarray
+        Of each measurement what the case predicts as it was, and as it is.
+    stated : bool
+        Whether the uncertainties of the data are known.
+    left_out : float
+        Standard deviation of what the case leaves out, dB, beside uncertainties that are known; zero where it
+        meets the data within them.
+    rivals : tuple of dict
+        Values of other minima that meet the data as well.
+    """
+
+    case: AnyCase
+    before: AnyCase
+    measured: tuple[Measured, ...]
+    estimates: tuple[Estimate, ...]
+    undetermined: tuple[Undetermined, ...]
+    correlations: Array
+    predicted_before: list[Values]
+    predicted: list[Values]
+    stated: bool
+    left_out: float
+    rivals: tuple[dict[str, float], ...]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Values found, by name, in SI."""
+        return {each.name: each.value for each in self.estimates}
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float] | None]:
+        """95 % intervals by name; None of a value on its limit."""
+        return {each.name: each.interval for each in self.estimates}
+
+    def residuals(self, *, before: bool = False) -> list[Array]:
+        """Level of what was measured over what is predicted, dB, of each measurement."""
+        predicted = self.predicted_before if before else self.predicted
+        both = zip(self.measured, predicted, strict=True)
+        return [observable(each.what).differs(each.values, found) for each, found in both]
+
+    def rms(self, *, before: bool = False) -> float:
+        """Root mean square of these of all data, dB."""
+        return float(np.sqrt(np.mean(np.concatenate(self.residuals(before=before)) ** 2)))
+
+    @property
+    def sentence(self) -> str:
+        """What came of it, for people: what is not known first."""
+        found = "; ".join(f"{each.name} = {each.words}" for each in self.estimates)
+        return " ".join([*self.open_sentences, f"Fitted: {found}.", *self.remarks])
+
+    @property
+    def headline(self) -> str:
+        """What came of it in one sentence."""
+        values, fitted_keys = sum(each.count for each in self.measured), len(self.estimates)
+        told = f"{count_of(fitted_keys, 'key')} fitted to {count_of(values, 'value')}"
+        names = [each.free.name for each in self.undetermined]
+        left_open = f"; not determined: {in_a_row(names)}" if names else ""
+        return (
+            f"{told}: {self.rms():.2g} dB rms left, {self.rms(before=True):.2g} dB before"
+            f"{left_open}."
+        )
+
+    @property
+    def open_sentences(self) -> list[str]:
+        """What the data leave open, one sentence each."""
+        return [f"{each.words}." for each in self.undetermined]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is left, and what is doubtful of it, one sentence each."""
+        values = count_of(sum(each.count for each in self.measured), "value")
+        left, before = self.rms(), self.rms(before=True)
+        told = [f"Left: {left:.2g} dB rms of {values}, before {before:.2g} dB."]
+        if limited := [each for each in self.estimates if each.limit]:
+            names = in_a_row([each.name for each in limited])
+            told.append(
+                f"On a limit: {names}. What the case leaves out may be why; a range of one's own is given as "
+                f'"{limited[0].name} = least..largest".'
+            )
+        if self.left_out:
+            told.append(
+                "The case does not meet the data within their uncertainty: it leaves out "
+                f"{self.left_out:.1f} dB, which the intervals have in them."
+            )
+        if self.rivals:
+            told.append(f"{count_of(len(self.rivals), 'other set')} of values meet the data as well.")
+        return told
+
+
+def fit(
+    case: str | os.PathLike[str] | Mapping[str, Any] | AnyCase,
+    measured: object = None,
+    free: FreeKeys = None,
+    progress: Progress | None = None,
+    *,
+    where: Mapping[str, str] | None = None,
+    what: str | None = None,
+    starts: int | None = None,
+) -> Fitted:
+    """Fit keys of a case to what was measured.
+
+    Parameters
+    ----------
+    case : path, mapping or case object
+        The case, as `asperity.run` takes it.
+    measured : path, `Measured`, or a list of them, optional
+        Tables of what was measured, or objects; by default what the case itself names (``track.decay_rates``,
+        ``track.mobility``, ``noise.measured_bands``).
+    free : list of str, or mapping, optional
+        Dotted keys that may change, as ``"track.pad_stiffness"`` or ``"track.pad_stiffness = 100..2000
+        MN/m"``; or keys with their least and largest value, ``{"track.pad_stiffness": (1e8, 2e9)}``. By
+        default those that decide most of what was measured.
+    progress : callable, optional
+        ``progress(done, total, message)``, called during long work.
+    where : mapping, optional
+        Of tables with a measurement in each line those alone in which columns hold this, as ``{"section":
+        "B5"}``.
+    what : str, optional
+        What tables hold, where their heading does not tell.
+    starts : int, optional
+        From how many places the smallest sum of squares is sought.
+
+    Returns
+    -------
+    Fitted
+        Values with 95 % intervals, what the data leave open, and the case with the values found.
+
+    Raises
+    ------
+    InputError
+        If the case or a table is wrong, the case cannot predict what was measured, or there are not more data
+        than free keys.
+
+    Notes
+    -----
+    Levels of measured over predicted values, dB, divided by their standard deviations, are made small as the
+    sum of their squares (SciPy's least squares), over logarithms of what is free. Standard deviations are
+    those of repeated measurements, else the usual one of the quantity, and then the scatter that is left
+    tells the intervals, by Student. A direction in which an interval would reach beyond a factor of three
+    either way is not determined: the key that takes part most is left as it was, and the others are fitted
+    again.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> from asperity.fitting.observable import Measured
+    >>> track = asperity.WheelOnRail(surface={"smooth": True})
+    >>> stiff = track.with_(**{"track.pad_stiffness": "400 MN/m"}).track.model()
+    >>> frequency = [100.0, 160.0, 250.0, 400.0, 630.0, 1000.0]
+    >>> mobility = abs(6.283 * np.array(frequency) * stiff.receptance(frequency, 0.3, 0.3))
+    >>> found = asperity.fit(track, Measured("mobility", frequency, mobility), ["track.pad_stiffness"])
+    >>> round(found.values["track.pad_stiffness"] / 1e6)
+    400
+    """
+    given = cases.as_case(case)
+    with shown_progress(progress) as told, one_thread_in_linear_algebra():
+        found = measured_for(given, measured, where or {}, what)
+        return fitted(given, found, chosen_free(given, found, free), told, starts)
+
+
+def measured_for(
+    case: AnyCase, measured: object, where: Mapping[str, str], what: str | None
+) -> tuple[Measured, ...]:
+    """What a case is fitted to, repeated measurements combined; what the case names where none is given."""
+    if measured is None:
+        found = reading.beside(case)
+        remedy = "Name files of what was measured behind --to."
+        require(found, "what was measured", "nothing", "files, or keys of the case that name them", remedy)
+    else:
+        several = isinstance(measured, Iterable) and not isinstance(measured, str | os.PathLike)
+        each = list(measured) if several else [measured]  # type: ignore[call-overload]
+        require(each, "what was measured", "nothing", "one file or more")
+        found, titles = list[Measured](), list[str]()
+        for one in each:
+            if isinstance(one, Measured):
+                found.append(one)
+                continue
+            path = file_path("what was measured", one, "the path of a table, or a Measured")
+            read, columns = reading.read_measured(case, path, where, what)
+            found += read
+            titles += columns
+        reading.refuse_unfound(where, titles)
+    for each in found:
+        of = observable(each.what)
+        if lacks := of.lacks(case):
+            allowed = "what the case can predict"
+            raise InputError(f"{each.what} in {each.source}", f"a case with {lacks}", allowed)
+    return tuple(reading.combined(found))
+
+
+def chosen_free(case: AnyCase, measured: Sequence[Measured], free: FreeKeys) -> tuple[Free, ...]:
+    """What may change: as named, or as what was measured suggests."""
+    if free is None:
+        names = [name for each in measured for name in observable(each.what).free(case)]
+        return tuple(free_key(case, name) for name in dict.fromkeys(names))
+    require(
+        isinstance(free, Mapping | Sequence) and not isinstance(free, str),
+        "free",
+        shown(free),
+        "a list of keys",
+    )
+    asked: dict[str, object] = {}
+    named = free.items() if isinstance(free, Mapping) else (read_free(each) for each in free)
+    for name, within in named:
+        require(name not in asked, name, "free more than once", "each key once")
+        asked[name] = within
+    require(asked, "free", "no key", "one key or more")
+    return tuple(_free(case, name, within) for name, within in asked.items())
+
+
+def _free(case: AnyCase, name: str, within: object) -> Free:
+    unit = entry_of(type(case), name).unit or "1"
+    return free_key(case, name, None if within is None else read_range(name, within, unit))
+
+
+def fitted(
+    case: AnyCase,
+    measured: tuple[Measured, ...],
+    chosen: tuple[Free, ...],
+    progress: Progress,
+    starts: int | None = None,
+) -> Fitted:
+    """Fit a case to measurements by what may change, as `fit` does."""
+    problem = Problem(case, measured, chosen, of_case=case_key("fit", FORMAT, case))
+    received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"
+    require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
+    quick = not any(of.by_run for of in problem.observables)
+    count = whole("starts", starts or (STARTS if quick else 1), "1 to 100", at_least=1, at_most=100)
+    nothing = np.zeros(0)
+    before = Problem(case, measured, ()).predicted(nothing)
+    left_open = list[Undetermined]()
+    rough = replace(problem, fine=False)
+    places = starts_within(problem.low, problem.high, problem.start, count, rough.residuals)
+    while True:
+        problem, minima = _searched(problem, places, progress)
+        best, slopes = minima.best, problem.slopes(minima.best.place)
+        ends = _pushed(problem, best, slopes)
+        inside = np.flatnonzero(ends == 0)
+        spread = _spread(problem, best, len(inside))
+        if (least := determined.open_direction(slopes[:, inside], spread)) is None:
+            return _told(case, problem, before, minima, left_open)
+        open_names = [problem.free[number].name for number in inside]
+        left_open.append(_undetermined(problem.free[inside[least.number]], least, open_names))
+        problem = problem.without(int(inside[least.number]))
+        if not problem.free:
+            received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
+            raise InputError("fit", received, "data that tell one of them")
+        places = [np.delete(best.place, inside[least.number]), problem.start]
+
+
+@dataclass(frozen=True, eq=False)
+class _Minima:
+    """Where a sum of squares is smallest, and what else was met on the way."""
+
+    best: Optimum  # with bands as in a report
+    others: tuple[Optimum, ...]  # of searches from other starts, the best first
+    rough: float  # sum of squares of the best of these searches
+
+
+def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> tuple[Problem, _Minima]:
+    """Go down from each start, then from the best of these places to the end.
+
+    While it is not known what the case leaves out, data whose uncertainty is known count as if that were as
+    large as usual; it is found at the end, from what is left.
+    """
+    rough = replace(problem, fine=False, beyond=USUALLY_LEFT_OUT if problem.stated else 0.0)
+    words, found = f"search for {count_of(len(problem.free), 'key')}", list[Optimum]()
+    for number, start in enumerate(starts):
+        progress(number, len(starts) + 1, words)
+        found.append(_descent(rough, start, ROUGH))
+    progress(len(starts), len(starts) + 1, words)
+    found.sort(key=lambda each: each.square)
+    best = _descent(problem, found[0].place, FINE)
+    for _ in range(ROUNDS if problem.stated else 0):
+        left = best.residuals * problem.uncertainty
+        beyond = determined.left_out(left, problem.of_data, problem.count - len(problem.free))
+        if abs(beyond - problem.beyond) <= SAME * beyond:
+            break
+        problem = replace(problem, beyond=beyond)
+        best = _descent(problem, (best if problem.beyond else found[0]).place, FINE)
+    progress(len(starts) + 1, len(starts) + 1, words)
+    return problem, _Minima(best, tuple(found[1:]), found[0].square)
+
+
+def _spread(problem: Problem, best: Optimum, free: int) -> determined.Spread:
+    """Scatter of the data about the best values, of which so many are free."""
+    return determined.spread_of(
+        best.square, problem.count - free, believed=problem.stated and not problem.beyond
+    )
+
+
+def _descent(problem: Problem, start: Array, most: int) -> Optimum:
+    """Go down from a start; where that ended is kept, so that an interrupted fit goes on from there."""
+
+    def descended() -> dict[str, Array]:
+        end = descend(problem.residuals, start, problem.low, problem.high, most)
+        return {"place": end.place, "residuals": end.residuals}
+
+    kept = made(Store(), problem.key("descent", start.tolist(), most), descended)
+    return Optimum(kept["place"], kept["residuals"])
+
+
+def _pushed(problem: Problem, best: Optimum, slopes: Array) -> NDArray[np.int_]:
+    """Which values lie on a limit beyond which the data want them (p,), as `on_limits`.
+
+    One that lies there by chance, as the data leave it open, is none of these: beyond it the sum of squares
+    would fall by less than the data scatter.
+    """
+    ends = on_limits(best.place, problem.low, problem.high)
+    spread = _spread(problem, best, int(np.count_nonzero(ends == 0)))
+    gradient, size = slopes.T @ best.residuals, np.sum(slopes**2, axis=0)
+    gain = gradient**2 / np.maximum(size, np.finfo(float).tiny) / spread.scale**2
+    return np.where(gain > 1.0, ends, 0)
+
+
+def _undetermined(held: Free, least: determined.Open, names: Sequence[str]) -> Undetermined:
+    """A direction that is open, in words of the keys, of which one is held."""
+    return Undetermined(held, tuple((names[number], by) for number, by in least.others.items()))
+
+
+def _told(
+    case: AnyCase, problem: Problem, before: list[Values], minima: _Minima, left_open: list[Undetermined]
+) -> Fitted:
+    """Lay out what was found."""
+    place, slopes = minima.best.place, problem.slopes(minima.best.place)
+    pushed, ends = _pushed(problem, minima.best, slopes), on_limits(place, problem.low, problem.high)
+    inside = np.flatnonzero(pushed == 0)
+    spread = _spread(problem, minima.best, len(inside))
+    spreads = determined.covariance(slopes[:, inside], spread)
+    half = np.full(len(place), np.nan)
+    half[inside] = spread.quantile * np.sqrt(np.diag(spreads))
+    estimates = []
+    for each, at, by, end in zip(problem.free, place.tolist(), half.tolist(), ends.tolist(), strict=True):
+        interval = (each.end(at - by), each.end(at + by)) if np.isfinite(by) else None
+        limit = {-1: "least", 0: "", 1: "largest"}[end]
+        estimates.append(Estimate(each, each.outward(at), interval, limit))
+    return Fitted(
+        case.with_(**problem.changes(place)),
+        case,
+        problem.measured,
+        tuple(estimates),
+        tuple(left_open),
+        determined.correlations(spreads),
+        before,
+        problem.predicted(place),
+        problem.stated,
+        problem.beyond,
+        tuple(_rivals(problem, minima, np.nan_to_num(half, nan=0.0))),
+    )
+
+
+def _rivals(problem: Problem, minima: _Minima, half: Array) -> Iterable[dict[str, float]]:
+    """Values of other minima that meet the data nearly as well, and lie beyond the intervals."""
+    met = [minima.best.place]
+    for other in minima.others:
+        apart = [np.max(np.abs(other.place - each) / (2.0 * half + NEAR)) for each in met]
+        if other.square <= RIVAL**2 * minima.rough and min(apart) > 1.0:
+            met.append(other.place)
+            yield problem.values(other.place)

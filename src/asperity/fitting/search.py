@@ -1,0 +1,110 @@
+"""Least squares from several starts: the free values that leave the smallest sum of squares."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array
+
+FAR = 1e3
+"""Residual, in uncertainties, of what cannot be computed at some values."""
+SCREENED = 6
+"""Places looked at for each start of the search."""
+ROUGH, FINE = 12, 60
+"""Most evaluations of residuals of a search from one start, and of the best one's end."""
+TOLERANCE = 1e-8
+STEP = 1e-4
+"""Of differences, on the scale of the search."""
+ON_LIMIT = 2e-3
+"""Share of its range by which a value may be off a limit that it lies on."""
+
+Residuals = Callable[[Array], Array]
+Jacobian = Callable[[Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """Where a sum of squares is smallest."""
+
+    place: Array  # (p,), on the scale of the search
+    residuals: Array  # (n,), in uncertainties
+
+    @property
+    def square(self) -> float:
+        """The sum of squares."""
+        return float(self.residuals @ self.residuals)
+
+
+def starts_within(low: Array, high: Array, start: Array, count: int, residuals: Residuals) -> list[Array]:
+    """Places to search from (p,): the start, then the best of a few spread evenly between the limits."""
+    from scipy.stats import qmc
+
+    if count < 2 or not len(start):
+        return [start]
+    drawn = qmc.LatinHypercube(len(start), rng=np.random.default_rng(1)).random(SCREENED * (count - 1))
+    places = low + (0.02 + 0.96 * drawn) * (high - low)
+    squares = [float(np.sum(np.minimum(residuals(place) ** 2, FAR**2))) for place in places]
+    best = np.argsort(squares, kind="stable")[: count - 1]
+    return [start, *places[best]]
+
+
+def descend(residuals: Residuals, start: Array, low: Array, high: Array, most: int) -> Optimum:
+    """Go down from one place to the nearest smallest sum of squares between limits (p,)."""
+    from scipy.optimize import least_squares
+
+    if not len(start):
+        return Optimum(start, residuals(start))
+    room = 1e-6 * (high - low)
+    inside = np.clip(start, low + room, high - room)
+    found = least_squares(
+        residuals,
+        inside,
+        jac=forward(residuals, low, high),
+        bounds=(low, high),
+        x_scale=1.0,
+        ftol=TOLERANCE,
+        xtol=TOLERANCE,
+        gtol=TOLERANCE,
+        max_nfev=most,
+    )
+    return Optimum(np.asarray(found.x), np.asarray(found.fun))
+
+
+def forward(residuals: Residuals, low: Array, high: Array) -> Jacobian:
+    """Slopes of residuals (n, p) by differences forward, or back from an upper limit."""
+
+    def slopes(place: Array) -> Array:
+        here, columns = residuals(place), []
+        for number in range(len(place)):
+            step = STEP if place[number] + STEP <= high[number] else -STEP
+            columns.append((residuals(_moved(place, number, step)) - here) / step)
+        return np.stack(columns, axis=1)
+
+    return slopes
+
+
+def differences(residuals: Residuals, low: Array, high: Array) -> Jacobian:
+    """Slopes of residuals (n, p) by central differences, one-sided at a limit."""
+
+    def slopes(place: Array) -> Array:
+        columns = []
+        for number, at in enumerate(place.tolist()):
+            back, ahead = (float(np.clip(at + by, low[number], high[number])) - at for by in (-STEP, STEP))
+            ends = residuals(_moved(place, number, ahead)) - residuals(_moved(place, number, back))
+            columns.append(ends / (ahead - back))
+        return np.stack(columns, axis=1)
+
+    return slopes
+
+
+def _moved(place: Array, number: int, by: float) -> Array:
+    moved = place.copy()
+    moved[number] += by
+    return moved
+
+
+def on_limits(place: Array, low: Array, high: Array) -> Array:
+    """Which values lie on a limit (p,): -1 the lower one, 1 the upper one, 0 none."""
+    near = ON_LIMIT * (high - low)
+    return np.where(place <= low + near, -1, np.where(place >= high - near, 1, 0))
