@@ -26,6 +26,8 @@ def own_folder(tmp_path_factory, ran):
         Path("small.toml").write_text(SMALL)
         np.save("map.npy", np.random.default_rng(0).normal(size=(48, 40)))
         shutil.copytree(ran.folder, "a")
+        Path("track.toml").write_text('kind = "wheel-on-rail"\nsurface.smooth = true\n')
+        Path("hammer.csv").write_text("frequency (Hz), mobility (m/s/N)\n200, 4e-6\n400, 5e-6\n800, 6e-6\n")
         yield folder
 
 
@@ -56,6 +58,7 @@ COMMANDS = {
     "surface": SURFACE,
     "bearing": ("bearing", "6205", "--radial", "100 N", "-o", "load.png"),
     "study": ("study", "small.toml", "--vary", "seed=1, 2", "-o", "st", "--workers", "1"),
+    "fit": ("fit", "track.toml", "--to", "hammer.csv", "--free", "track.pad_stiffness", "--starts", "1"),
     "listen": ("listen", "a"),
     "cite": ("cite", "a"),
     "cache": ("cache",),

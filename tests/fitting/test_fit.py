@@ -1,5 +1,7 @@
 """Keys come back from data that they made, within intervals that hold; what data leave open is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,7 +24,7 @@ def test_keys_of_a_track_come_back_from_its_mobility(track):
     assert found.case.with_(**dict.fromkeys(true)) == track.with_(**dict.fromkeys(true))
 
 
-@pytest.mark.parametrize("stated", [True, False])
+@pytest.mark.parametrize("stated", [pytest.param(True, marks=pytest.mark.long), False])
 def test_values_lie_within_their_intervals_as_often_as_said(track, rubber, stated):
     """95 ± 4 % of 200 trials, of each key; the scatter of 95 % of so many is 1.5 %."""
     draws, at = np.random.default_rng(7), np.linspace(0.0, 3.0, 12)
@@ -50,6 +52,11 @@ def test_an_interval_is_that_of_a_line_of_least_squares(track, rubber):
     low, high = found.intervals["track.pad_stiffness"]
     half = 2.228139 * np.sqrt(spread[0, 0])  # Student, 10 degrees of freedom
     assert np.log(high / low) == pytest.approx(2.0 * half, rel=1e-3)
+    known = asperity.fit(track, replace(data, uncertainty=0.5), starts=1)
+    assert known.values == pytest.approx(found.values)
+    low, high = known.intervals["track.pad_stiffness"]
+    of_data = (0.5 * np.log(10.0) / 10.0) * np.sqrt(np.linalg.inv(design.T @ design)[0, 0])
+    assert np.log(high / low) == pytest.approx(2.0 * 1.959964 * of_data, rel=1e-3)  # normal
     # of the logarithm of η, whose slope is η times that of η itself
     both = spread[0, 1] / np.sqrt(spread[0, 0] * spread[1, 1])
     assert found.correlations[0, 1] == pytest.approx(both, abs=1e-3)
@@ -141,7 +148,7 @@ def test_a_fit_goes_on_where_it_was(track, rubber, monkeypatch):
     count = []
     monkeypatch.setattr(running, "descend", lambda *arguments: count.append(1) or descend(*arguments))
     found = asperity.fit(track, data, starts=3)
-    assert len(count) == 2  # the third start, and the end
+    assert len(count) == 2  # from the third start, and to the end
     assert found.values == pytest.approx(TRUE, rel=1e-5)
 
 

@@ -210,16 +210,13 @@ def bearing(
     return show_bearing(bearing, (*signal, *more), picture, options, **hints)
 
 
-@_begin("Creep force over creepage of what rolls in a case.", document=False, long_work=True)
-@click.argument("case", type=PATH)
-@click.option("--direction", type=click.Choice(["longitudinal", "lateral", "spin"]),
-              help="Creepage that grows; spin makes a lateral force. [default: longitudinal]")  # fmt: skip
-@click.option("--friction", type=float, help="Coefficient of friction. [default: the case's; 0.3]")
-@click.option("--points", type=int, help="Points up to full slip, or states. [default: 16; 6 states]")
-@click.option(
-    "--states", is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."
+@_begin(
+    "Creep force over creepage of what rolls in a case.",
+    params=commands.CREEP,
+    document=False,
+    long_work=True,
 )
-@click.option("--table", type=PATH, help="Write it to a file, CSV.")
+@click.argument("case", type=PATH)
 @commands.picture("Draw it to a file, .svg, .pdf or .png.")
 def creep(case: Path, picture: Path | None, **choices: Any) -> None:
     """Find the creep force of what rolls in a CASE under its working load, in steady rolling.
@@ -306,26 +303,12 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     return run_case(load_case(case), directory or Path("runs") / case.stem, source=str(case), **choices)
 
 
-@_compute("Compute a case for every combination of values of some keys.", long_work=True)
+@_compute(
+    "Compute a case for every combination of values of some keys.", params=commands.STUDY, long_work=True
+)
 @click.argument("study", type=PATH)
-@click.option(
-    "--vary",
-    multiple=True,
-    metavar="KEY=VALUES",
-    help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
-    "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
-)
 @commands.what_helps
-@click.option(
-    "--show",
-    multiple=True,
-    metavar="NAMES",
-    help="Columns of the table and quantities of the figures, as in the headings of study.csv, with commas. "
-    "May be repeated. [default: the usual ones]",
-)
 @commands.run_folder
-@click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]")
-@click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
 @commands.signals
 @commands.overwrite("another study")
 @commands.device
@@ -387,35 +370,9 @@ def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Doc
     return run_optimisation(optimisation, directory or Path("runs") / optimisation.stem, **choices)
 
 
-@_compute("Fit keys of a case to what was measured.", long_work=True)
+@_compute("Fit keys of a case to what was measured.", params=commands.FIT, long_work=True)
 @click.argument("case", type=PATH)
 @click.argument("more", type=PATH, nargs=-1, metavar="[FILE]...")
-@click.option(
-    "--to",
-    "measured",
-    type=PATH,
-    multiple=True,
-    metavar="FILE",
-    help="Table of what was measured; more may follow. [default: what the case names]",
-)
-@click.option(
-    "--free",
-    multiple=True,
-    metavar="KEY",
-    help="A key that may change, or 'KEY = 100..2000 MN/m'. May be repeated. [default: what decides most]",
-)
-@click.option(
-    "--where",
-    multiple=True,
-    metavar="COLUMN=VALUE",
-    help="Of a table with a measurement in each line those where a column holds this. May be repeated.",
-)
-@click.option(
-    "--as", "what", metavar="QUANTITY", help="What the files hold, where their heading does not tell."
-)
-@click.option(
-    "--starts", type=click.IntRange(1, 100), help="Places from which is searched. [default: 8, of runs 1]"
-)
 @output("Folder of fitted.toml, its page and its table. [default: that of the case]")
 @commands.overwrite("another fit")
 @commands.device
@@ -560,17 +517,8 @@ def compare(runs: tuple[Path, ...], directory: Path) -> None:
     compare_runs(runs, directory)
 
 
-@_look("Write what a run sounds like, as WAV files.")
+@_look("Write what a run sounds like, as WAV files.", params=commands.LISTEN)
 @commands.run_argument
-@click.option(
-    "--what",
-    metavar="NAME",
-    help="Variable of 'rolling' in the run, or pass_by_pressure, 7.5 m from a track. "
-    "[default: acceleration, else velocity]",
-)
-@click.option(
-    "--matched", is_flag=True, help="Make all as loud as each other. [default: louder laws are louder]"
-)
 @output("Folder of the sounds. [default: sounds, beside the run]")
 def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> Document:
     """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz.

@@ -381,3 +381,73 @@ BEARING = [
     ),
 ]
 """What a bearing carries, and where its signal is."""
+CREEP = [
+    click.Option(
+        ["--direction"],
+        type=click.Choice(["longitudinal", "lateral", "spin"]),
+        help="Creepage that grows; spin makes a lateral force. [default: longitudinal]",
+    ),
+    click.Option(["--friction"], type=float, help="Coefficient of friction. [default: the case's; 0.3]"),
+    click.Option(["--points"], type=int, help="Points up to full slip, or states. [default: 16; 6 states]"),
+    click.Option(
+        ["--states"], is_flag=True, help="Instead: stiffness in stick, and creep as it begins, over load."
+    ),
+    click.Option(["--table"], type=PATH, help="Write it to a file, CSV."),
+]
+STUDY = [
+    click.Option(
+        ["--vary"],
+        multiple=True,
+        metavar="KEY=VALUES",
+        help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
+        "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
+    ),
+    click.Option(
+        ["--show"],
+        multiple=True,
+        metavar="NAMES",
+        help="Columns of the table and quantities of the figures, as in the headings of study.csv, with "
+        "commas. May be repeated. [default: the usual ones]",
+    ),
+    click.Option(["--workers"], type=int, help="Processes of this machine. [default: one per processor]"),
+    click.Option(["--scheduler"], metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler."),
+]
+FIT = [
+    click.Option(
+        ["--to", "measured"],
+        type=PATH,
+        multiple=True,
+        metavar="FILE",
+        help="Table of what was measured; more may follow. [default: what the case names]",
+    ),
+    click.Option(
+        ["--free"],
+        multiple=True,
+        metavar="KEY",
+        help="A key that may change, or 'KEY = 100..2000 MN/m'. May be repeated. "
+        "[default: those that decide most]",
+    ),
+    click.Option(
+        ["--where"],
+        multiple=True,
+        metavar="COLUMN=VALUE",
+        help="Of a table with a measurement in each line those where a column holds this. May be repeated.",
+    ),
+    click.Option(["--as", "what"], metavar="QUANTITY", help="What files hold, where no heading tells it."),
+    click.Option(
+        ["--starts"],
+        type=click.IntRange(1, 100),
+        help="Places from which is searched. [default: 8, of runs 1]",
+    ),
+]
+LISTEN = [
+    click.Option(
+        ["--what"],
+        metavar="NAME",
+        help="Variable of 'rolling' in the run, or pass_by_pressure, 7.5 m from a track. "
+        "[default: acceleration, else velocity]",
+    ),
+    click.Option(
+        ["--matched"], is_flag=True, help="Make all as loud as each other. [default: louder laws are louder]"
+    ),
+]

@@ -23,7 +23,7 @@ class Measured:
     Parameters
     ----------
     what : str
-        One of `asperity.fitting.observables.names()`, as ``"vertical decay rate"``.
+        One of `asperity.fitting.observables.quantities()`, as ``"vertical decay rate"``.
     at : array_like (n,)
         Where along its axis: frequencies, Hz, centres of bands, Hz, loads, N.
     values : array_like (n,)
@@ -78,7 +78,7 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class TriedCase:
     """A case with values that a fit tries.
 
     Parameters
@@ -138,7 +138,7 @@ class Observable:
     lacks : callable
         What a case lacks to predict it, in words; empty where it lacks nothing.
     predict : callable
-        Its values at those of a `Measured`, (n,), of a `Trial`.
+        Its values at those of a `Measured`, (n,), of a `TriedCase`.
     free : callable
         Keys that are fitted where none are named, those of the case first that decide most.
     words : str
@@ -155,7 +155,7 @@ class Observable:
     decade: float
     uncertainty: float
     lacks: Callable[[AnyCase], str]
-    predict: Callable[[Trial, Measured], Values]
+    predict: Callable[[TriedCase, Measured], Values]
     free: Callable[[AnyCase], tuple[str, ...]]
     words: str
     read: Callable[[Path], list[Measured]] | None = None

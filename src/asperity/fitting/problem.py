@@ -12,9 +12,9 @@ from asperity.case.any_case import AnyCase
 from asperity.case.form import content, digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
 from asperity.fitting.free import Free
-from asperity.fitting.observable import Measured, Observable, Trial, Values
+from asperity.fitting.observable import Measured, Observable, TriedCase, Values
 from asperity.fitting.observables import observable
-from asperity.fitting.search import FAR, differences
+from asperity.fitting.search import FAR, central_slopes
 from asperity.store import content_key
 
 
@@ -114,12 +114,12 @@ class Problem:
 
     def predicted(self, place: Array) -> list[Values]:
         """What the case predicts for each measurement (n,) at a place."""
-        changes, trials = self.changes(place), dict[str, Trial]()
+        changes, trials = self.changes(place), dict[str, TriedCase]()
         found = []
         for each, of in zip(self.measured, self.observables, strict=True):
             here = repr(sorted(content(each.conditions).items()))
             if here not in trials:
-                trials[here] = Trial(self.case, {**changes, **each.conditions}, self.fine)
+                trials[here] = TriedCase(self.case, {**changes, **each.conditions}, self.fine)
             found.append(of.predict(trials[here], each))
         return found
 
@@ -140,7 +140,7 @@ class Problem:
 
     def slopes(self, place: Array) -> Array:
         """Slopes of the residuals (n, p) at a place."""
-        return differences(self.residuals, self.low, self.high)(place)
+        return central_slopes(self.residuals, self.low, self.high)(place)
 
     def key(self, *more: object) -> str:
         """Name of what is kept of it: all that it depends on, and more."""

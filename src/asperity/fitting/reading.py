@@ -25,8 +25,6 @@ from asperity.written_numbers import count_of
 
 MOST_RECORDS = 1000
 """Measurements of one file."""
-MOST_LISTED = 12
-"""Values of a column that a message lists."""
 HEADING = 10
 """Lines of a file among which the heading of a wide table is sought."""
 _DIRECTION = "direction"
@@ -97,18 +95,25 @@ def _wide(
     asked = {name: value for name, value in where.items() if _plain(name) in names}
     kept = [row for row in rows if _fits(row, labels, asked)]
     if not kept:
-        told = " and ".join(f"{name}={value}" for name, value in asked.items())
-        name = next(reversed(asked), "")
-        column = next((n for n, title in labels.items() if _plain(title) == _plain(name)), 0)
-        held = list(dict.fromkeys(_cell(row, column) for row in rows))
-        listed = ", ".join(held[:MOST_LISTED]) + " …" * (len(held) > MOST_LISTED)
-        raise InputError(path.name, f"no line where {told or 'anything stands'}", f"{name}: {listed}")
+        raise _no_line(path, labels, rows, asked)
     require(len(kept) <= MOST_RECORDS, path.name, count_of(len(kept), "line"), f"at most {MOST_RECORDS}")
     words = " ".join(labels.values())
     of = _recognised(path, words, what, list(BUILT_IN.values()))
     weighted = any("(A)" in unit_in_brackets(f"[{title}]") or "dB(A)" in title for title in labels.values())
     found = [_record(case, path, row, labels, places, of, weighted=weighted) for row in kept]
     return [each for each in found if each is not None], list(labels.values())
+
+
+def _no_line(
+    path: Path, labels: Mapping[int, str], rows: Sequence[Sequence[str]], asked: Mapping[str, str]
+) -> InputError:
+    """Error about a table of which no line is as asked for: what the last of these columns holds."""
+    if not asked:
+        return InputError(path.name, "no line below its heading", "a measurement in each line")
+    told, name = " and ".join(f"{name}={value}" for name, value in asked.items()), list(asked)[-1]
+    column = next(number for number, title in labels.items() if _plain(title) == _plain(name))
+    held = list(dict.fromkeys(_cell(row, column) for row in rows))
+    return InputError(path.name, f"no line where {told}", f"{name}: {listed(held)}")
 
 
 def _plain(title: str) -> str:
@@ -218,28 +223,35 @@ def combined(found: Sequence[Measured]) -> list[Measured]:
 
 
 def _mean(group: Sequence[Measured]) -> Measured:
-    first = group[0]
     if len(group) == 1:
-        return first
-    of = observable(first.what)
+        return group[0]
+    of = observable(group[0].what)
     every = np.unique(np.concatenate([each.at for each in group]))
-    whole = all(np.iscomplexobj(each.values) for each in group)
-    held = np.full((len(group), len(every)), np.nan, dtype=complex if whole else float)
-    for number, each in enumerate(group):
-        held[number, np.searchsorted(every, each.at)] = each.values if whole else np.abs(each.values)
-    if not of.decade:
-        for number, each in enumerate(group):
-            held[number, np.searchsorted(every, each.at)] = each.values
-    scale = of.decade / np.log(10.0) if of.decade else 1.0
-    level = scale * np.log(held) if of.decade else held
+    held = _side_by_side(group, every)
     times = np.isfinite(held).sum(axis=0)
-    middle = np.nanmean(level, axis=0)
-    square = np.nansum(np.abs(level - middle) ** 2, axis=0)
-    deviation = _pooled(square, times)
-    values = np.exp(middle / scale) if of.decade else middle
-    uncertainty = None if deviation is None else deviation / np.sqrt(times)
-    source = ", ".join(dict.fromkeys(each.source for each in group))
-    return replace(first, at=every, values=values, uncertainty=uncertainty, source=source, records=len(group))
+    about = np.nansum(held, axis=0) if of.decade else np.nanmean(held, axis=0)  # of a phase that may turn
+    scale = of.decade / np.log(10.0) if of.decade else 1.0
+    level = scale * np.log(held / about) if of.decade else held - about
+    mean = np.nanmean(level, axis=0)
+    deviation = _pooled(np.nansum(np.abs(level - mean) ** 2, axis=0), times)
+    return replace(
+        group[0],
+        at=every,
+        values=about * np.exp(mean / scale) if of.decade else about,
+        uncertainty=None if deviation is None else deviation / np.sqrt(times),
+        source=", ".join(dict.fromkeys(each.source for each in group)),
+        records=len(group),
+    )
+
+
+def _side_by_side(group: Sequence[Measured], every: Array) -> NDArray[np.inexact]:
+    """Values of measurements at all places (m, n), NaN without one; magnitudes unless all have phases."""
+    whole = all(np.iscomplexobj(each.values) for each in group)
+    some = any(np.iscomplexobj(each.values) for each in group)
+    held = np.full((len(group), len(every)), np.nan, dtype=complex if whole else float)
+    for row, each in zip(held, group, strict=True):
+        row[np.searchsorted(every, each.at)] = np.abs(each.values) if some and not whole else each.values
+    return held
 
 
 LEAST_SCATTER = 0.2
@@ -248,14 +260,18 @@ LEAST_SCATTER = 0.2
 
 def _pooled(square: Array, times: NDArray[np.int_]) -> Array | None:
     """Standard deviation at each place (n,), of squares over it and its neighbours; None without repeats."""
-    freedom = np.maximum(times - 1, 0)
+    freedom = np.maximum(times - 1, 0).astype(float)
     if not freedom.any():
         return None
-    near = np.ones(3)
-    known = np.convolve(freedom, near, "same")
-    mean = np.convolve(square, near, "same") / np.maximum(known, 1)
+    near, known = (_with_neighbours(each) for each in (square, freedom))
     whole = square.sum() / freedom.sum()
-    return np.maximum(np.sqrt(np.where(known > 0, mean, whole)), LEAST_SCATTER)
+    return np.maximum(np.sqrt(np.where(known > 0.0, near / np.maximum(known, 1.0), whole)), LEAST_SCATTER)
+
+
+def _with_neighbours(values: Array) -> Array:
+    """Sums of each value (n,) and those beside it."""
+    padded = np.pad(values, 1)
+    return np.asarray(padded[:-2] + padded[1:-1] + padded[2:])
 
 
 def beside(case: AnyCase) -> list[Measured]:

@@ -181,10 +181,7 @@ class Fitted:
         told = f"{count_of(fitted_keys, 'key')} fitted to {count_of(values, 'value')}"
         names = [each.free.name for each in self.undetermined]
         left_open = f"; not determined: {in_a_row(names)}" if names else ""
-        return (
-            f"{told}: {self.rms():.2g} dB rms left, {self.rms(before=True):.2g} dB before"
-            f"{left_open}."
-        )
+        return f"{told}: {self.rms():.2g} dB rms left, {self.rms(before=True):.2g} dB before{left_open}."
 
     @property
     def open_sentences(self) -> list[str]:
@@ -379,8 +376,7 @@ class _Minima:
     """Where a sum of squares is smallest, and what else was met on the way."""
 
     best: Optimum  # with bands as in a report
-    others: tuple[Optimum, ...]  # of searches from other starts, the best first
-    rough: float  # sum of squares of the best of these searches
+    rough: tuple[Optimum, ...]  # where searches from several starts ended, the best first
 
 
 def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> tuple[Problem, _Minima]:
@@ -391,21 +387,21 @@ def _searched(problem: Problem, starts: Sequence[Array], progress: Progress) -> 
     """
     rough = replace(problem, fine=False, beyond=USUALLY_LEFT_OUT if problem.stated else 0.0)
     words, found = f"search for {count_of(len(problem.free), 'key')}", list[Optimum]()
-    for number, start in enumerate(starts):
+    for number, start in enumerate(starts if len(starts) > 1 else ()):
         progress(number, len(starts) + 1, words)
         found.append(_descent(rough, start, ROUGH))
     progress(len(starts), len(starts) + 1, words)
     found.sort(key=lambda each: each.square)
-    best = _descent(problem, found[0].place, FINE)
+    best = _descent(problem, found[0].place if found else starts[0], FINE)
     for _ in range(ROUNDS if problem.stated else 0):
         left = best.residuals * problem.uncertainty
         beyond = determined.left_out(left, problem.of_data, problem.count - len(problem.free))
         if abs(beyond - problem.beyond) <= SAME * beyond:
             break
         problem = replace(problem, beyond=beyond)
-        best = _descent(problem, (best if problem.beyond else found[0]).place, FINE)
+        best = _descent(problem, best.place, FINE)
     progress(len(starts) + 1, len(starts) + 1, words)
-    return problem, _Minima(best, tuple(found[1:]), found[0].square)
+    return problem, _Minima(best, tuple(found))
 
 
 def _spread(problem: Problem, best: Optimum, free: int) -> determined.Spread:
@@ -478,8 +474,8 @@ def _told(
 def _rivals(problem: Problem, minima: _Minima, half: Array) -> Iterable[dict[str, float]]:
     """Values of other minima that meet the data nearly as well, and lie beyond the intervals."""
     met = [minima.best.place]
-    for other in minima.others:
+    for other in minima.rough[1:]:
         apart = [np.max(np.abs(other.place - each) / (2.0 * half + NEAR)) for each in met]
-        if other.square <= RIVAL**2 * minima.rough and min(apart) > 1.0:
+        if other.square <= RIVAL**2 * minima.rough[0].square and min(apart) > 1.0:
             met.append(other.place)
             yield problem.values(other.place)

@@ -60,7 +60,7 @@ def descend(residuals: Residuals, start: Array, low: Array, high: Array, most: i
     found = least_squares(
         residuals,
         inside,
-        jac=forward(residuals, low, high),
+        jac=forward_slopes(residuals, low, high),
         bounds=(low, high),
         x_scale=1.0,
         ftol=TOLERANCE,
@@ -71,7 +71,7 @@ def descend(residuals: Residuals, start: Array, low: Array, high: Array, most: i
     return Optimum(np.asarray(found.x), np.asarray(found.fun))
 
 
-def forward(residuals: Residuals, low: Array, high: Array) -> Jacobian:
+def forward_slopes(residuals: Residuals, low: Array, high: Array) -> Jacobian:
     """Slopes of residuals (n, p) by differences forward, or back from an upper limit."""
 
     def slopes(place: Array) -> Array:
@@ -84,7 +84,7 @@ def forward(residuals: Residuals, low: Array, high: Array) -> Jacobian:
     return slopes
 
 
-def differences(residuals: Residuals, low: Array, high: Array) -> Jacobian:
+def central_slopes(residuals: Residuals, low: Array, high: Array) -> Jacobian:
     """Slopes of residuals (n, p) by central differences, one-sided at a limit."""
 
     def slopes(place: Array) -> Array:

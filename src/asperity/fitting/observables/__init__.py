@@ -9,7 +9,7 @@ BUILT_IN: dict[str, Observable] = {
 }
 
 
-def names() -> tuple[str, ...]:
+def quantities() -> tuple[str, ...]:
     """Names of all quantities that a case can be fitted to."""
     return tuple(BUILT_IN)
 

@@ -1,0 +1,99 @@
+"""``asperity fit``: the case found, its table and its page; what stands there already stays."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from asperity.case.cases import load_case
+from asperity.scenes.measured import HammerTest
+from asperity.structures.track import Track
+from command_line import call
+
+CASE = """\
+kind = "wheel-on-rail"
+surface.spectrum = "iso3095"
+[track]
+name = "uic60"
+pad_stiffness = "300 MN/m"
+pad_loss_factor = 0.2
+"""
+TRUE = {"pad_stiffness": 420e6, "pad_loss_factor": 0.15}
+FIT = ("fit", "track.toml", "--to", "rates.csv", "--free", "track.pad_stiffness", "--free",
+       "track.pad_loss_factor = 0.05..0.5", "--starts", "1")  # fmt: skip
+
+
+@pytest.fixture
+def rates():
+    """A case, and decay rates of a track with other pads."""
+    Path("track.toml").write_text(CASE)
+    band = 10.0 ** (0.1 * np.arange(21, 35, 2))
+    found = HammerTest.of_track(Track.named("uic60", **TRUE), band).decay_rate
+    lines = [f"{at:.0f}, {rate!r}" for at, rate in zip(band, found.tolist(), strict=True)]
+    Path("rates.csv").write_text("\n".join(["frequency (Hz), decay rate (dB/m)", *lines]))
+
+
+def test_it_writes_the_case_a_table_and_a_page(rates):
+    told = json.loads(call(*FIT, "--json").stdout)
+    values = {each["key"]: each["value"] for each in told["fitted"]}
+    assert values == {f"track.{key}": pytest.approx(value, rel=1e-3) for key, value in TRUE.items()}
+    assert set(told["files"]) == {"case", "table", "page"}
+    case = load_case("fitted.toml")
+    assert case.track.pad_stiffness == values["track.pad_stiffness"]
+    text = Path("fitted.toml").read_text()
+    assert "# Fitted by asperity" in text
+    assert "#   vertical decay rate in rates.csv: 7 values" in text
+    assert "# track.pad_stiffness = 420 MN/m (420 MN/m to 420 MN/m), 95 %" in text
+    heading, *rows = csv.reader(Path("fitted.csv").read_text().splitlines())
+    assert [row[heading.index("quantity")] for row in rows] == ["vertical decay rate"] * 7
+    np.testing.assert_allclose([float(row[-1]) for row in rows], 0.0, atol=1e-3)
+    page = Path("fitted.html").read_text()
+    assert "2 keys fitted to 7 values" in page
+    assert "Correlations" in page
+
+
+def test_the_same_fit_replaces_its_own_files_and_no_others(rates):
+    call(*FIT, "-o", "out")
+    said = call(*FIT, "-o", "out", "-q")
+    assert "Left: " in said.stdout
+    other = (
+        "fit",
+        "track.toml",
+        "--to",
+        "rates.csv",
+        "--free",
+        "track.pad_stiffness",
+        "--starts",
+        "1",
+        "-o",
+        "out",
+    )
+    refused = call(*other, code=2).stderr
+    assert (
+        "received a folder that holds another fitted.toml; allowed: a new folder, or that of the same fit"
+        in refused
+    )
+    call(*other, "--overwrite")
+    Path("fitted.html").write_text("mine")
+    assert "holds another fitted.html" in call(*FIT, code=2).stderr
+    assert Path("fitted.html").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("fit", "track.toml"), "what was measured: received nothing; allowed: files, or keys of the case"),
+        (("fit", "track.toml", "rates.csv"), "Files of what was measured follow --to."),
+        (("fit", "track.toml", "--to", "none.csv"), "none.csv: received no such file"),
+        (
+            (*FIT, "--as", "colour"),
+            "measured quantity: received 'colour'; allowed: one of vertical decay rate",
+        ),
+        ((*FIT, "--where", "section"), "where: received 'section'; allowed: a column and what it holds"),
+    ],
+)
+def test_it_says_what_is_wrong(rates, arguments, message):
+    assert message in call(*arguments, code=2).stderr
+    assert not Path("fitted.toml").exists()
