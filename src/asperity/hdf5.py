@@ -29,7 +29,7 @@ def opened_netcdf(path: str | os.PathLike[str], source: str, **options: Any) -> 
     import h5netcdf
 
     refuse_data_elsewhere(path, source)
-    with h5netcdf.File(path, "r", **options) as opened:
+    with _broken_links_named(path, source), h5netcdf.File(path, "r", **options) as opened:
         yield opened
 
 
@@ -39,8 +39,34 @@ def opened_hdf5(path: str | os.PathLike[str], source: str) -> "Iterator[h5py.Fil
     import h5py
 
     refuse_data_elsewhere(path, source)
-    with h5py.File(path, "r") as opened:
+    with _broken_links_named(path, source), h5py.File(path, "r") as opened:
         yield opened
+
+
+@contextmanager
+def _broken_links_named(path: str | os.PathLike[str], source: str) -> Iterator[None]:
+    """Name a soft link that leads nowhere where a library fails at one: the file is whole but for it."""
+    import h5py
+
+    try:
+        yield
+    except (KeyError, RuntimeError):
+        with h5py.File(path, "r") as file:
+            links = (name for name in file if file.get(name, getlink=True).__class__ is h5py.SoftLink)
+            broken = [name for name in links if _leads_nowhere(file, name)]
+        if not broken:
+            raise
+        received = f"a link {_word(broken[0].encode())} that leads nowhere"
+        remedy = f"Remove it, as with h5py: del file[{_word(broken[0].encode())}]."
+        raise InputError(source, received, "links to what the file holds", remedy) from None
+
+
+def _leads_nowhere(file: "h5py.File", name: str) -> bool:
+    try:
+        file[name]
+    except (KeyError, RuntimeError):  # nothing is there, or links lead round and round
+        return True
+    return False
 
 
 def is_hdf5(path: str | os.PathLike[str]) -> bool:

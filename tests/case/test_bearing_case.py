@@ -84,6 +84,7 @@ test_what_no_raceway_has_is_refused = refusals(
         ({"fault": PIT | {"shape": "spall", "length": "25 mm"}}, r"raceway is 25 mm long, .* are 16\.36 mm"),
         ({"outer_raceway": {"waves": [4], "amplitudes": ["50 um"]}}, r"Waves all around of ± 50 µm are"),
         ({"bearing": {"name": "6205", "clearance": "-100 um"}}, r"-100 µm alone presses .* a looser fit"),
+        ({"bearing": {"name": "6205", "clearance": "-20 um"}}, r"-20 µm presses every .* GPa, .* unit right"),
         ({"axial": "6 kN"}, r"Lower the load"),
     ],
 )
@@ -104,6 +105,8 @@ def test_a_bare_speed_is_asked_for_in_turns_per_minute():
 def test_an_ordinary_bearing_is_not_doubted():
     plain = CASE | {"outer_raceway": {"waviness": "0.5 um"}, "fault": PIT, "radial": "100 N"}
     assert not prepare_bearing(as_case(plain)).caught
+    tight = {"bearing": {"name": "6205", "clearance": "-8 um"}}  # as spindles have it
+    assert not prepare_bearing(as_case(plain | tight)).caught
     eccentric = {"inner_raceway": {"waves": [1], "amplitudes": ["30 um"]}}  # moves the ring, not the balls
     assert not prepare_bearing(as_case(CASE | eccentric)).caught
 

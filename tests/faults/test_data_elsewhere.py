@@ -157,3 +157,22 @@ def test_a_system_without_it_stays_as_it_was(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "platform", "darwin")
     assert not confine(str(tmp_path / "a.nc"))
     (tmp_path / "b.nc").touch()
+
+
+@pytest.mark.parametrize("target", ["/nowhere", "/round", "deeper/heights"])
+def test_a_soft_link_that_leads_nowhere_is_called_so(tmp_path, target):
+    """It damages nothing else; and one that leads to what is there is followed."""
+    file = tmp_path / "linked.nc"
+    heights = 1e-6 * np.random.default_rng(0).normal(size=(30, 40))
+    with h5py.File(file, "w") as opened:
+        opened["heights"] = heights
+        opened["again"] = h5py.SoftLink("/heights")
+        opened["round"] = h5py.SoftLink(target)
+    with pytest.raises(
+        InputError, match=r"received a link 'round' that leads nowhere; .* del file\['round'\]"
+    ):
+        asperity.read_surface(file, array="heights", height_unit="m", pixel="1 um")
+    with h5py.File(file, "a") as opened:
+        del opened["round"]
+    read = asperity.read_surface(file, array="again", height_unit="m", pixel="1 um")
+    np.testing.assert_array_equal(read.heights, heights)

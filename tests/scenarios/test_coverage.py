@@ -42,6 +42,13 @@ def test_bands_are_those_of_the_waves_at_the_speed(speed, longest, count, covere
     assert f"at {speed:g} m/s {covered} of 18 one-third octaves from 100 Hz to 5 kHz" in found.at(speed)
 
 
+@pytest.mark.parametrize(("count", "doubted"), [(4, True), (8, True), (9, False), (18, False)])
+def test_fewer_than_half_of_the_bands_are_doubted(count, doubted):
+    prepared = prepare(case(table(-0.5, count)), "case")
+    told = [str(each.message) for each in prepared.caught if f"{count} of 18" in str(each.message)]
+    assert bool(told) is doubted
+
+
 def test_few_bands_are_doubted_and_none_is_refused():
     prepared = prepare(case(table(-0.5, 2)), "case")
     (doubt,) = [each for each in prepared.caught if "one-third octaves" in str(each.message)]

@@ -1,11 +1,17 @@
 """Sizes beyond belief are refused with the likely cause, unusual ones doubted, in every reader."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from asperity import HeightMap, Profile, read_surface
+from asperity.case.surface import Surface
+from asperity.cli.surface import scale_in_words
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.reference.cnossos import rail_roughness
+from asperity.scenarios.records import measured_maps
 from asperity.surfaces.bands import from_bands
 from asperity.surfaces.readers.belief import SLOPES, USUAL_SLOPES, judge_sizes, typical_slope
 from asperity.surfaces.readers.hints import Hints
@@ -97,3 +103,17 @@ def test_form_is_no_roughness():
         judge_sizes(
             HeightMap(form + 1e-7 * np.random.default_rng(1).normal(size=x.shape), (4e-6, 4e-6)), Hints()
         )
+
+
+@pytest.mark.parametrize("surface", [
+    HeightMap(4e-10 * ROUGH, (1e-9, 1e-9)), Profile(4e-10 * ROUGH.ravel(), 1e-9),
+])  # fmt: skip
+def test_lengths_that_are_all_a_thousand_too_small_are_told_with_the_larger_reading(surface):
+    """Slopes stay as they are, and waves go up to what nobody hears."""
+    judge_sizes(surface, Hints())  # without a word: microscopes of atomic force measure so
+    larger = r"thousand times too small, it has heights of 0\.4 µm over .* correct both units"
+    assert re.search(larger, scale_in_words(surface))
+    assert "thousand" not in scale_in_words(replace(surface, spacing=np.multiply(200, surface.spacing)))
+    if isinstance(surface, HeightMap):
+        with pytest.raises(InputError, match=rf"a map of 40 nm × 30 nm; .* 20 um along each side.*{larger}"):
+            measured_maps(Surface(file=surface), 20e-6)

@@ -23,7 +23,7 @@ from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level
 from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
 from asperity.surfaces.readers import read_all
-from asperity.surfaces.readers.belief import typical_slope
+from asperity.surfaces.readers.belief import larger_reading, typical_slope
 from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.readers.text import COLUMNS
 from asperity.surfaces.spectra import psd_1d, psd_radial
@@ -230,8 +230,8 @@ def scale_in_words(surface: HeightMap | Profile) -> str:
     angle = f"{rounded(math.degrees(math.atan(slope)), 2)}°"
     return (
         f"Slopes from point to point: {rounded(slope, 2)} ({angle}). Waves of {held} pass with "
-        f"{passed} at {name}."
-    )
+        f"{passed} at {name}. {larger_reading(surface)}"
+    ).rstrip()
 
 
 def _frequency(hertz: float) -> str:

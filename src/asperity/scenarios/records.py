@@ -21,6 +21,7 @@ from asperity.surfaces.bands import SAMPLES, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import QUARTER, band_limit, level, resample, rotated
 from asperity.surfaces.readers import read_all, read_surface
+from asperity.surfaces.readers.belief import larger_reading, told_length
 from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.strip import Rows, Strip
 from asperity.written_numbers import count_of, rounded
@@ -169,6 +170,12 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
             )
             remedy = "Is the pixel in µm, not mm? Else cut the map, or coarsen contact.spacing."
             raise InputError("surface.file", received, f"at most {rounded(MOST_POINTS, 2)} points", remedy)
+        if min(measured.size) < 2.0 * spacing:
+            received = "a map of " + " × ".join(map(told_length, measured.size))
+            allowed = f"two points or more at contact.spacing = {rounded(spacing * 1e6)} um along each side"
+            with spelled(in_case("surface", _MAP_KEYS)):
+                remedy = larger_reading(measured) or "Measure a larger one, or refine contact.spacing."
+            raise InputError("surface.file", received, allowed, remedy)
         if max(measured.spacing) > spacing * (1 + 1e-9):
             ShortRecordWarning.warn(
                 f"the map's points are {rounded(max(measured.spacing) * 1e6)} µm apart, more than "

@@ -33,6 +33,8 @@ CLEARANCE = 10e-6
 """Diametral clearance of the named bearings, m, chosen here."""
 STATIC_PRESSURE = 4.2e9
 """Peak pressure, Pa, from which on a dent of about 1/10 000 of the ball's diameter remains (ISO 76:2006)."""
+FATIGUE_PRESSURE = 1.5e9
+"""Peak pressure, Pa, of the fatigue load limit, below which bearing steel lasts (ISO 281:2007)."""
 HARDNESS = 7.0e9
 """Of hardened rings, Pa: about 700 HV, chosen here."""
 SLIP = 0.01

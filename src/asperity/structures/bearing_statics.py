@@ -12,7 +12,7 @@ import numpy as np
 from asperity.arguments import Array, ArrayLike, finite_array, not_negative, require
 from asperity.contact.hertz import Hertz, check_half_space
 from asperity.errors import ComputationError, Grade, InputError, OutOfRangeWarning
-from asperity.structures.ball_bearing import FASTEST, STATIC_PRESSURE, BallBearing
+from asperity.structures.ball_bearing import FASTEST, FATIGUE_PRESSURE, STATIC_PRESSURE, BallBearing
 from asperity.written_numbers import rounded
 
 STEPS = 24
@@ -287,6 +287,7 @@ def _solved(bearing: BallBearing, radial: float, axial: float, speed: float, ang
 def _doubt(found: LoadedBearing) -> None:
     """Refuse or warn of contacts that fill their grooves, of dents, of balls that leave the inner ring."""
     of = found.bearing
+    _doubt_fit(of)
     alone = _pressed_unloaded(found)
     sides = zip(("inner", "outer"), (of.inner_conformity, of.outer_conformity), of.raceway_radii, strict=True)
     for ring, conformity, raceway in sides:
@@ -316,6 +317,19 @@ def _doubt(found: LoadedBearing) -> None:
             f"At {rounded(60.0 * found.speed, 5)} 1/min centrifugal force lifts balls off the inner ring, "
             "all of which are pressed at rest; the first one leaves at "
             f"{rounded(60.0 * found.leaving_speed, 5)} 1/min. Raise axial load or preload."
+        )
+
+
+def _doubt_fit(of: BallBearing) -> None:
+    """Warn of a clearance below zero by which balls are pressed beyond what steel lasts under, unloaded."""
+    squeezed = of.series_stiffness * max(-0.5 * of.radial_clearance, 0.0) ** 1.5
+    peak = max(each.peak_pressure(each.approach(squeezed)) for each in (of.inner_contact, of.outer_contact))
+    if peak > FATIGUE_PRESSURE:
+        OutOfRangeWarning.warn(
+            f"clearance = {rounded(of.radial_clearance * 1e6, 4)} µm presses every ball with "
+            f"{rounded(peak / 1e9)} GPa, {rounded(squeezed, 4)} N, without any load: beyond "
+            f"{FATIGUE_PRESSURE / 1e9:g} GPa bearing steel fatigues (ISO 281), and fits stay below. Is the "
+            "unit right? Take a looser fit."
         )
 
 

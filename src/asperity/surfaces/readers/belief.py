@@ -28,6 +28,9 @@ USUAL = 0.03
 ROUGHEST = 50e-6
 """Rms height of a map about a smooth form, m, beyond which nothing rolls: machined and worn surfaces have up
 to some 10 µm, castings 50 µm. Slopes tell no unit that is wrong for heights and places alike; this does."""
+SMALLEST = 5e-6
+"""Longest side of a map or line, m, below which microscopes of atomic force measure; nothing rolls. Slopes
+tell no unit that is wrong for heights and places alike; this does."""
 SIDE = 200
 """Points along either side of a map whose rms height is taken."""
 MOST_POINTS = 2**20
@@ -114,6 +117,19 @@ def _about_form(surface: HeightMap) -> float:
         return 0.0
     about = level(HeightMap(some, surface.spacing), "quadratic").heights
     return _NORMAL * float(np.nanmedian(np.abs(about - np.nanmedian(about))))
+
+
+def larger_reading(surface: HeightMap | Profile) -> str:
+    """Say what a tiny map or line is in units a thousand times larger; empty for those of usual sizes."""
+    if float(np.max(surface.size)) >= SMALLEST:
+        return ""
+    rms = told_length(1e3 * _rms(surface))
+    sides = 1e3 * np.atleast_1d(surface.size)
+    return (
+        f"If all of its lengths are a thousand times too small, it has heights of {rms} over "
+        f"{' × '.join(map(told_length, sides))}: then correct both units, {spell('height_unit')} and "
+        f"{spell('pixel')}."
+    )
 
 
 def _two_readings(surface: HeightMap, rough: float) -> str:
