@@ -80,6 +80,26 @@ def test_force_closes_around_a_rough_raceway():
     assert np.std(averaged - exact) < 1.5 * second_order < 0.1 * np.std(exact)
 
 
+def test_states_and_positions_that_a_motion_asks_for_have_the_forces_of_all():
+    surface = rough(20 * NM, radius=0.1 * MM)
+    every, on = (OnRaceway(CONTACT, surface, LOAD, shortest=wave) for wave in (0.0, 1.5 * ALONG))
+    assert on.scanned_stride == 2 * every.scanned_stride
+    states = on.states_under(0.8 * LOAD, LOAD)
+    few, whole = on.tabled(states), every.law("table")
+    assert 3 <= few.law.table.forces.shape[0] <= 5
+    places = np.linspace(0.0, surface.circumference, 100)
+    for load in (0.6 * LOAD, 0.9 * LOAD, 1.25 * LOAD):
+        exact, found = (force(law, places, CONTACT.approach(load)) for law in (whole, few))
+        assert abs(20.0 * np.log10(np.std(found) / np.std(exact))) < 0.1
+        assert np.std(found - exact) < 0.05 * np.std(exact)
+    least, most = 0.3 * LOAD, 2.0 * LOAD
+    wider = on.wider(states, few, least, most)
+    forces = whole.law.table.forces[wider]
+    assert forces[0].max() <= least < forces[1].max()
+    assert forces[-2].min() < most <= forces[-1].min()
+    assert on.wider(wider, whole, least, most) == wider
+
+
 @pytest.mark.parametrize("waves", [4, 12])
 def test_waves_are_felt_by_sin_q_over_q(waves):
     radius, texture = 0.7 * MM, AroundTexture(waves=(waves,), amplitudes=(5 * NM,))

@@ -12,7 +12,7 @@ from asperity.case.cases import as_case
 from asperity.errors import OutOfRangeWarning, percent
 from asperity.reference.materials import MATERIALS
 from asperity.running import prepare_case
-from asperity.scenarios import raceway_laws, run_time
+from asperity.scenarios import raceway_laws, run_time, scanned_states
 from asperity.scenes.bearing import (
     CELL_TIME,
     _out_of_place,
@@ -21,6 +21,7 @@ from asperity.scenes.bearing import (
     expected,
     heard_group,
     prepare_bearing,
+    rolled,
     thinned,
 )
 from asperity.scenes.figures.bearing import load_zone
@@ -248,13 +249,13 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
          "laws": ["areal", "direct"], "duration": "2.1 ms", "settling": "0 s", "time_step": "3 us",
          "centrifugal": False, "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
     )  # fmt: skip
-    directions, made = [], raceway_laws.raceway_laws
+    directions, made = [], raceway_laws.laws_on
 
     def seen(*given, forwards, **keys):
         directions.append(forwards)
         return made(*given, forwards=forwards, **keys)
 
-    monkeypatch.setattr("asperity.scenes.bearing.raceway_laws", seen)
+    monkeypatch.setattr("asperity.scenes.bearing.laws_on", seen)
     monkeypatch.setattr(raceway_laws, "CELLS", (3, 4))
     tree = asperity.run(case, brief=True)
     assert directions == [False, True]  # balls run forwards on the ring that stands still
@@ -269,6 +270,27 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
     *_, check = json.loads(tree["contact"].attrs["validity"])
     assert check["quantity"].startswith("areal from direct")
     assert check["value"].split(", ")[:2] == off
+
+
+def test_forces_that_leave_the_states_scanned_have_more_scanned_and_are_those_of_all(monkeypatch):
+    of = {"balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"}
+    keys = {"bearing": of, "radial": "5 N", "axial": "60 N", "speed": "120000 1/min", "centrifugal": False}
+    keys |= {"laws": ["table"], "duration": "2.1 ms", "settling": "0 s", "time_step": "3 us"}
+    prepared = prepare_bearing(as_case(BEARING | keys))
+    ends, found = [], []
+    monkeypatch.setattr(
+        raceway_laws.OnRaceway,
+        "tabled",
+        lambda on, states, made=raceway_laws.OnRaceway.tabled: ends.append(states.stop) or made(on, states),
+    )
+    for shares in ((0.0, 1e9), (0.2, 0.3)):
+        monkeypatch.setattr(scanned_states, "EXPECTED", shares)
+        found += rolled(prepared, lambda *_: None).values()
+    whole, *_ = ends
+    first, last = ends[4], ends[-2]
+    assert first < last < whole
+    every, few = (run.outer_force for run in found)
+    assert np.std(few - every) < 3e-3 * np.std(every)
 
 
 def test_no_force_is_written_below_zero_where_a_ball_leaves_the_ring(runs):

@@ -79,6 +79,7 @@ class RolledBearing:
     inner_motion: Array  # (3, n), along the radial load, across it, along the axis
     outer_motion: Array  # (3, n)
     acceleration: Array  # (sensors, n), m/s²
+    reached: Array  # (2, 2), least and largest force with inner and outer ring, in run-in and run
     softening: Array  # (2, Z), of the contacts with both rings, by the time step, m/N
     energy: Ledger
     unconverged_steps: int
@@ -190,7 +191,7 @@ def roll_bearing(
         progress=progress,
         checkpoint=checkpoint,
     )
-    steps = run.contact_force.shape[1]
+    steps, reached = run.contact_force.shape[1], run.reached[:contacts]
     return RolledBearing(
         np.asarray(time_step * np.arange(steps)),
         turning.cage(turning.total + 1 - steps, turning.total + 1),
@@ -200,6 +201,7 @@ def roll_bearing(
         run.displacement[:3],
         run.displacement[3:6],
         run.acceleration[6:],
+        np.array([(each[:, 0].min(), each[:, 1].max()) for each in (reached[0::2], reached[1::2])]),
         run.softening[:contacts].reshape(-1, len(RINGS)).T,
         run.energy,
         run.unconverged_steps,

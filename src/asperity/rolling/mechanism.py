@@ -192,6 +192,7 @@ class RolledMechanism:
     bodies: tuple[Array, ...]  # coordinates of each (d, t), m or rad, positive as its contacts open
     displacement: Array  # (sensors, t), m
     acceleration: Array  # (sensors, t), m/s²
+    reached: Array  # (n, 2), least and largest contact force in run-in and run, N
     softening: Array  # (n,), compliance that the time step puts in series with the contacts, m/N
     energy: roll.Ledger  # where the work of the loads went, in run-in and run
     unconverged_steps: int
@@ -262,6 +263,7 @@ def roll_mechanism(
         ),
         record.displacement[:, kept],
         record.acceleration[:, kept],
+        np.column_stack([record.contact_force.min(axis=1), record.contact_force.max(axis=1)]),
         stepper.system.softening,
         roll.ledger_of(stepper, energies),
         int(stepper.motion.counts[1]),

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
@@ -28,6 +29,8 @@ from asperity.reduction.stiffness import ForceCurve, ForceTable, patches, stiffn
 from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
 from asperity.scenarios.reducing import chosen_states
+from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
+from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
@@ -184,6 +187,8 @@ class OnRaceway:
         Told how far the scan is.
     balls : sequence of Raceway
         Surfaces over whose faults the window reaches, too.
+    shortest : float
+        Shortest wave along the raceway that is looked at, m; by default none is too short.
     """
 
     contact: Hertz
@@ -195,6 +200,7 @@ class OnRaceway:
     cache: Store | None = None
     progress: Progress | None = None
     balls: Sequence[Raceway] = ()
+    shortest: float = 0.0
 
     @cached_property
     def axes(self) -> tuple[float, float]:
@@ -206,6 +212,16 @@ class OnRaceway:
         """Rows between positions: the most up to an eighth of a half axis that divide a turn."""
         most = max(1, math.floor(self.axes[0] / CELLS[0] / self.surface.spacing[0] * (1.0 + 1e-3)))
         return next(each for each in range(most, 0, -1) if self.rows % each == 0)
+
+    @cached_property
+    def scanned_stride(self) -> int:
+        """Rows between positions of the scan, whole strides: those of a path, see `table_stride`."""
+        if self.surface.faults.any():
+            return self.stride
+        apart = min(self.axes[0] / OF_TEXTURE, self.shortest / OF_WAVE) / self.surface.spacing[0]
+        times = max(1, math.floor(apart / self.stride * (1.0 + 1e-3)))
+        count = len(self.positions)
+        return self.stride * next(each for each in range(times, 0, -1) if count % each == 0)
 
     @property
     def rows(self) -> int:
@@ -329,31 +345,58 @@ class OnRaceway:
         places = [self.scanned[row : row + window] - plane for row, plane in chosen]
         return chosen_states(places, self.shape, self.space)
 
-    @cached_property
+    @property
     def around(self) -> ScannedForces:
-        """Forces (states, positions) once around; where nothing is in the window they are solved once."""
-        window, lines = self.shape.body.shape
-        new, counts = self._met(self.surface.heights + self.surface.faults), []
-        forces, alike = np.empty((len(self.approaches), len(new))), np.zeros((window, lines))
+        """Forces (states, positions) once around, in all states."""
+        return self.scanned_in(slice(0, len(self.approaches)))
+
+    def scanned_in(self, states: slice) -> ScannedForces:
+        """Forces (states, positions) once around in some states, each scanned for itself.
+
+        Where nothing is in the window they are solved once.
+        """
+        (window, lines), stride = self.shape.body.shape, self.scanned_stride
+        step = stride // self.stride
+        new, planes = self._met(self.surface.heights + self.surface.faults)[::step], self.planes[::step]
+        alike = np.zeros((window, lines))
         runs: list[tuple[Any, Array, Array]] = [] if new.all() else [(~new, alike, np.zeros(1))]
         for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
-            under = self.scanned[first * self.stride : (stop - 1) * self.stride + window]
-            runs.append((slice(first, stop), under, self.planes[first:stop]))
-        fixed = self.shape.body, self.approaches, self.stride, rtol_for(self.accuracy)
-        for at, rows, planes in runs:
-            job = scan.ScanJob(self.space, Rows(rows), *fixed, planes)
+            under = self.scanned[first * stride : (stop - 1) * stride + window]
+            runs.append((slice(first, stop), under, planes[first:stop]))
+        approaches, counts, single = self.approaches[states], list[scan.Counts](), False
+        forces = np.empty((len(approaches), len(new)))
+        for state, (at, rows, felt) in product(range(len(approaches)), runs):
+            solved = self.shape.body, approaches[state], stride, rtol_for(self.accuracy), felt
+            job = scan.ScanJob(self.space, Rows(rows), *solved)
             found = scan.scan_forces(job, cache=self.cache, progress=self.progress)
-            forces[:, at] = found.forces
+            forces[state, at] = found.forces[0]
             counts.append(found.counts)
+            single |= found.single
         scan.warn_of_flaws(scan.total(counts), "the raceway", "accuracy")
-        return ScannedForces(forces, scan.total(counts), False)
+        return ScannedForces(forces, scan.total(counts), single)
 
-    @cached_property
-    def table(self) -> ForceTable:
-        """The scan, to look forces up in."""
-        step, touches = self.stride * self.surface.spacing[0], self._around(self.touches, OVERLAP)
-        forces = self._around(self.around.forces, OVERLAP, axis=1)
-        return ForceTable(forces, self.approaches, -OVERLAP * step, step, touches)
+    def table_in(self, states: slice) -> ForceTable:
+        """The scan in some states, to look forces up in."""
+        stride = self.scanned_stride
+        step, touches = stride * self.surface.spacing[0], self.touches[:: stride // self.stride]
+        forces = self._around(self.scanned_in(states).forces, OVERLAP, axis=1)
+        closed = self._around(touches, OVERLAP)
+        return ForceTable(forces, self.approaches[states], -OVERLAP * step, step, closed)
+
+    def states_under(self, least: float, most: float) -> slice:
+        """States that are visited under loads between two, N, as far as is known before."""
+        forces = self.contact.stiffness_constant * np.maximum(self.approaches, 0.0) ** 1.5
+        return states_expected(self.approaches, forces, np.array([least, most]))
+
+    def wider(self, scanned: slice, law: Closed, least: float, most: float) -> slice:
+        """States for a motion with forces between two, N, anywhere, too, by the `table` of those scanned."""
+        assert isinstance(law.law, Table)
+        table = law.law.table
+        root, wanted = np.cbrt(table.forces) ** 2, np.cbrt([least, most]) ** 2
+        both = zip(wanted.tolist(), (root.max(axis=1), root.min(axis=1)), strict=True)
+        low, high = (_straight(value, known, table.approaches) for value, known in both)
+        needed = states_around(self.approaches, (low, high))
+        return slice(min(scanned.start, needed.start), max(scanned.stop, needed.stop))
 
     def _texture(self, heights: Array, states: Array | None = None) -> StateTexture:
         """Heights (k, rows) of states (k,), m, as laws take them: closed, positive away from contact."""
@@ -421,15 +464,20 @@ class OnRaceway:
         return replace(self.law("direct"), ball=on_ball, radius=radius)
 
     def law(self, name: str) -> Closed:
-        """A law of `LAWS` by its name."""
+        """A law of `LAWS` by its name; `table` of all states."""
+        if Need.SCAN in spec_of(name).needs:
+            return self.tabled(slice(0, len(self.approaches)))
         return Closed(self._open(name), self.surface.circumference)
+
+    def tabled(self, states: slice) -> Closed:
+        """The law `table` of some states."""
+        table = Table(self.table_in(states), self.damping, self._texture(self.felt))
+        return Closed(table, self.surface.circumference)
 
     def _open(self, name: str) -> Law:
         if spec_of(name).solved_every_step:
             return self.direct
         plane = self._texture(self.felt)
-        if Need.SCAN in spec_of(name).needs:
-            return Table(self.table, self.damping, plane)
         if name == "hertz":
             texture = self._texture(self.wavy[:, self.wavy.shape[1] // 2] + self.over_faults)
             return HertzLaw(self.contact.stiffness_constant, texture, self.damping)
@@ -438,6 +486,14 @@ class OnRaceway:
         loaded = forces > 0.0
         heights = self.averaged(self.wavy, axes[loaded])
         return Areal(self.curve, self._texture(heights, self.approaches[loaded]), self.damping, plane=plane)
+
+
+def _straight(value: float, rising: Array, places: Array) -> float:
+    """Place at which values (k,), k ≥ 2, that rise with places are one, straight between and beyond them."""
+    at = int(np.clip(np.searchsorted(rising, value), 1, len(rising) - 1))
+    step = max(float(rising[at] - rising[at - 1]), 1e-3 * float(rising[-1]))
+    share = (value - float(rising[at - 1])) / step if step > 0.0 else 1.0
+    return float(places[at - 1] + share * (places[at] - places[at - 1]))
 
 
 def raceway_laws(
@@ -483,9 +539,20 @@ def raceway_laws(
     follows the average under the patch, `hertz` the middle line. Both take a fault as the height that it has
     for the contact under the load (`OnRaceway.over_faults`): exact there, and off under other loads.
     """
-    on = OnRaceway(contact, surface, positive("load of a ball (N)", load), **of_contact)
+    return laws_on(
+        OnRaceway(contact, surface, positive("load of a ball (N)", load), **of_contact),
+        names,
+        balls=balls,
+        forwards=forwards,
+    )
+
+
+def laws_on(
+    on: OnRaceway, names: Iterable[str], *, balls: Sequence[Raceway] = (), forwards: bool = True
+) -> dict[str, Any]:
+    """Laws of a ball on a raceway by their names, as from `raceway_laws`; `table` is that of all states."""
     chosen = [one_of("law of a raceway", name, LAWS) for name in names]
-    if surface.faults.any() and set(chosen) & {"areal", "hertz"}:
+    if on.surface.faults.any() and set(chosen) & {"areal", "hertz"}:
         on.warn_of_faults()
     laws: dict[str, Any] = {name: on.law(name) for name in chosen}
     on = replace(on, balls=balls)

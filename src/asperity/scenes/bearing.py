@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,7 +23,7 @@ from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_b
 from asperity.scenarios import compiling, preparing, reducing, run_time
 from asperity.scenarios.doubts import doubt_bearing
 from asperity.scenarios.problems import refuse
-from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, raceway_laws, raceway_on
+from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
 from asperity.scenes.result import root_attributes, scenario_group
@@ -145,10 +146,11 @@ def expected(prepared: PreparedBearing) -> tuple[list[tuple[str, str]], preparin
     steps = round((case.settling + case.duration) / case.step)
     textured = sum(bool(getattr(case, key).given()) for key in ON)
     runs, solutions = len(case.laws) + textured + (textured > 0), {}
-    for name, surface in zip(RINGS, prepared.raceways, strict=True):
-        rough = np.count_nonzero((surface.heights + surface.faults).any(axis=1))
+    for name, on in zip(RINGS, raceways_of(prepared, progress=None), strict=True):
+        rough = np.count_nonzero((on.surface.heights + on.surface.faults).any(axis=1))
         if rough and any(Need.SCAN in spec_of(law).needs for law in case.laws):
-            solutions[f"scan of the {NAMES[name]}"] = int(rough) * reducing.STATES
+            positions = math.ceil(int(rough) / on.scanned_stride)
+            solutions[f"scan of the {NAMES[name]}"] = positions * reducing.STATES
     for law in (law for law in case.laws if spec_of(law).solved_every_step):
         solutions[law] = steps * int(found.touching.max() + found.bearing.balls)
     rolled_once = STEP_TIME * steps * found.bearing.balls
@@ -221,34 +223,80 @@ def cage_slip(case: BallBearingCase) -> Callable[[Array], Array]:
     return lambda at: np.interp((at + case.settling) * rate + 1.0, np.arange(turns), drawn)
 
 
+def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[OnRaceway]:
+    """What a ball feels of the inner and the outer raceway, and their scans."""
+    case, of, turning = prepared.case, prepared.case.bearing.bearing, prepared.case.kinematics
+    passing = [2.0 * np.pi * abs(turning.cage - ring) for ring in (turning.inner, turning.outer)]
+    each = zip(case.contacts, prepared.raceways, of.raceway_radii, passing, strict=True)
+    return [
+        OnRaceway(
+            smooth, surface, load, case.contact_damping, of.hardness, cache=Store(), progress=progress,
+            shortest=radius * pace / case.highest_frequency,
+        )
+        for (smooth, load), surface, radius, pace in each
+    ]  # fmt: skip
+
+
 def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBearing]:
     """Run the bearing by each law, at the sampling rate of the case."""
-    case, of = prepared.case, prepared.case.bearing.bearing
-    keys: dict[str, Any] = {"damping": case.contact_damping, "hardness": of.hardness, "balls": prepared.balls}
-    keys |= {"cache": Store(), "progress": progress}
+    case, of, ons = prepared.case, prepared.case.bearing.bearing, raceways_of(prepared, progress)
+    looked_up = {name for name in case.laws if Need.SCAN in spec_of(name).needs}
+    others = [name for name in case.laws if name not in looked_up]
     laws_of = [  # balls run forwards on the ring that stands still
-        raceway_laws(case.laws, smooth, surface, load, forwards=ring != of.turning, **keys)
-        for ring, (smooth, load), surface in zip(RINGS, case.contacts, prepared.raceways, strict=True)
+        laws_on(on, others, balls=prepared.balls, forwards=ring != of.turning)
+        for ring, on in zip(RINGS, ons, strict=True)
     ]
     smooth, load = case.contacts[1]
     averaged = [ball_heights(smooth, surface, load) for surface in prepared.balls]
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
-    found = {}
-    for name in case.laws:
-        inner, outer = (built[name] for built in laws_of)
-        heights = [] if isinstance(inner, list) else averaged
-        run = roll_bearing(
+
+    def once(inner: Any, outer: Any, duration: float = case.duration) -> RolledBearing:
+        return roll_bearing(
             of, bearing_rings(case), inner, outer,
             speed=case.speed, radial=case.radial, axial=case.axial, rotating=case.rotating,
-            duration=case.duration, time_step=case.step, settling=case.settling, slip=cage_slip(case),
-            ball_heights=heights, centrifugal=case.centrifugal, sensors=sensors,
+            duration=duration, time_step=case.step, settling=case.settling, slip=cage_slip(case),
+            ball_heights=[] if isinstance(inner, list) else averaged,
+            centrifugal=case.centrifugal, sensors=sensors,
             highest_frequency=case.highest_frequency, progress=progress
         )  # fmt: skip
+
+    found = {}
+    for name in case.laws:
+        run = _within_scan(case, ons, once) if name in looked_up else once(*(of[name] for of in laws_of))
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
         found[name] = replace(run, time=run.time[::every], cage=run.cage[::every], **signals)
     return found
+
+
+DAMPED = 0.05
+"""Share by which the force of a contact that is looked up may lie beside what its damping leaves of it."""
+TRIED = 0.1
+"""Share of the record after which it is asked first whether forces leave what was scanned."""
+
+
+def _within_scan(
+    case: BallBearingCase, ons: Sequence[OnRaceway], once: Callable[[Any, Any, float], RolledBearing]
+) -> RolledBearing:
+    """Run by `table` in the states expected; where forces leave what was scanned, scan more and run anew."""
+    loads = case.static.inner_load, case.static.outer_load
+    states = [on.states_under(each.min(), each.max()) for on, each in zip(ons, loads, strict=True)]
+    duration = max(TRIED * case.duration, case.step)
+    while True:
+        with PhysicsWarning.caught() as caught:
+            inner, outer = (on.tabled(each) for on, each in zip(ons, states, strict=True))
+            run = once(inner, outer, duration)
+        wider = [
+            on.wider(each, law, (1.0 - DAMPED) * least, (1.0 + DAMPED) * most)
+            for on, each, law, (least, most) in zip(ons, states, (inner, outer), run.reached, strict=True)
+        ]
+        if wider == states and duration == case.duration:
+            break
+        states, duration = wider, case.duration
+    for each in caught:
+        warnings.warn(each.message, stacklevel=2)
+    return run
 
 
 FORCES = ("inner_force", "outer_force")
