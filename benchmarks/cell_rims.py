@@ -1,7 +1,9 @@
 """The gap that is left in cells at the rim of a contact, and their covered share: curves of `kernels.rims`.
 
     python benchmarks/cell_rims.py            # the curves, as they stand in the kernel
-    python benchmarks/cell_rims.py --check    # against Hertz, 4 to 24 cells
+    python benchmarks/cell_rims.py --check    # against Hertz, 4 to 24 cells, balls and ellipses
+    python benchmarks/cell_rims.py --rough    # rough balls against grids four times as fine
+    python benchmarks/cell_rims.py --cost     # time and iterations against those of whole cells, in turn
 
 The contact of a ball on a half-space is known in closed form: half-width, approach, radius and modulus E*
 are one, δ = a² = 1, and the pressure is (2/π) √(1 − r²). Its means over cells, displaced by the coefficients
@@ -17,13 +19,17 @@ between a straight rim and the smallest contacts that have a rim at all.
 
 import argparse
 import math
+import time
 
 import numpy as np
+from scan_step import MODULUS, problem
 
-from asperity import HalfSpace
+from asperity import HalfSpace, Hertz
+from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels.batched import convolve_padded, padded_spectrum
 from asperity.kernels.influence import means_table
 from asperity.kernels.rims import END, KNOTS, PER_UNIT, SLANTS, cubics
+from asperity.surfaces.strip import Rows
 
 BALLS = {6: 60, 8: 50, 12: 50, 16: 40, 24: 30, 40: 14}
 """Cells in the half-width, at least, and how many balls."""
@@ -132,41 +138,133 @@ def print_curves():
         print(f"{name} = np.array({text})")
 
 
-def errors_of_ball(across, offset, count=200):
-    """Stiffness (difference quotients), force and area of a ball against Hertz, relative."""
-    side = 1.0 / across
-    shape = (math.ceil(2.5 / side) + 6,) * 2
+def errors_of_ellipse(slender, across, offset, cells, count):
+    """Stiffness (difference quotients), force and area of a smooth contact against Hertz, relative.
+
+    So many cells in the smaller semi-axis, along x, at an approach of one; the other is `slender` times it.
+    """
+    low, high = 1.0, 4.0 * slender**2  # of the other radius over the first: bisected
+    while high / low > 1.0 + 1e-12:
+        middle = math.sqrt(low * high)
+        axes = Hertz(1.0, 1.0, middle).semi_axes(1.0)
+        low, high = (middle, high) if axes[1] < slender * axes[0] else (low, middle)
+    hertz, radii = Hertz(1.0, 1.0, low), (1.0, low)
+    axes = hertz.semi_axes(1.0)
+    side = axes[0] / across
+    shape = [math.ceil(2.4 * a / side) + 6 for a in axes]
     x, y = ((np.arange(n) - 0.5 * (n - 1) - o) * side for n, o in zip(shape, offset, strict=True))
-    gap = 0.5 * np.add.outer(x**2, y**2) + side**2 / 12.0
-    half_space = HalfSpace(shape, side, 1.0, cells="covered")
-    approaches = np.linspace(0.85, 1.15, count)
-    contacts = [half_space.solve(gap, approach=d, rtol=1e-9) for d in approaches]
+    gap = np.add.outer(x**2 / (2 * radii[0]), y**2 / (2 * radii[1]))
+    if cells == "covered":
+        gap += side**2 / 24.0 * sum(1.0 / r for r in radii)
+    half_space = HalfSpace(tuple(shape), side, 1.0, cells=cells)
+    approaches, contacts, start = np.linspace(0.85, 1.15, count), [], None
+    for approach in approaches:
+        contacts.append(half_space.solve(gap, approach=approach, start=start, rtol=1e-8))
+        start = contacts[-1].pressure
     force, area = (np.array([getattr(c, name) for c in contacts]) for name in ("force", "area"))
-    middle = 0.5 * (approaches[1:] + approaches[:-1])
-    quotient = np.diff(force) / np.diff(approaches)
-    return (
-        quotient / (2.0 * np.sqrt(middle)) - 1.0,
-        force / (4.0 / 3.0 * approaches**1.5) - 1.0,
-        area / (math.pi * approaches) - 1.0,
-    )
+    exact = np.array([hertz.force(d) for d in approaches])
+    areas = np.array([math.pi * np.prod(hertz.semi_axes(d)) for d in approaches])
+    return np.diff(force) / np.diff(exact) - 1.0, force / exact - 1.0, area / areas - 1.0
 
 
-def check():
+def check(count=200):
     """Print errors against Hertz."""
-    print(
-        "cells in the half-width: largest error of k, mean and largest of F, mean and largest of the area, %"
+    print("| semi-axes | cells in the smaller | k, least and most, % | F, rms, % | area, rms, % |")
+    print("|---|---|---|---|---|")
+    for slender in (1.0, 3.0, 8.0):
+        sizes = (4, 6, 9, 12, 18, 24) if slender < 8.0 else (4, 6, 9, 12)
+        for cells in ("covered", "whole"):
+            bounds = []
+            for across in sizes:
+                found = [errors_of_ellipse(slender, across, o, cells, count) for o in OFFSETS]
+                k, force, area = (100.0 * np.concatenate(each) for each in zip(*found, strict=True))
+                rms = [math.sqrt(np.mean(np.square(each))) for each in (force, area)]
+                bounds.append([np.abs(k).max(), *rms])
+                row = f"| 1 : {slender:.0f}, {cells} | {across} | {k.min():+.2f} to {k.max():+.2f} "
+                print(row + f"| {rms[0]:.4f} | {rms[1]:.3f} |", flush=True)
+            rates = np.polyfit(np.log(sizes), np.log(bounds), 1)[0]
+            row = f"| 1 : {slender:.0f}, {cells} | order in h | "
+            print(row + " | ".join(f"{-rate:.1f}" for rate in rates) + " |")
+
+
+def rough_ball(fine, across, height, seed, times=4):
+    """Gap of a ball with waves of its half-width and less, on a grid of so many parts of a cell."""
+    count = (math.ceil(3.2 * across) + 2) * times
+    x = (np.arange(count) - 0.5 * count + 0.3) * fine
+    rng = np.random.default_rng(seed)
+    waves = sum(
+        rng.normal() * np.cos(np.add.outer(k * x, m * x) + 6.3 * rng.random())
+        for k, m in rng.normal(0.0, 5.0, (30, 2))
     )
-    for across in (4, 6, 9, 12, 18, 24):
-        found = [
-            100.0 * np.concatenate(e) for e in zip(*(errors_of_ball(across, o) for o in OFFSETS), strict=True)
-        ]
-        k, force, area = found
-        words = [f"{np.abs(k).max():.3f}"]
-        words += [f"{e.mean():+.4f} {np.abs(e).max():.4f}" for e in (force, area)]
-        print(f"{across:3d}: " + ", ".join(words))
+    return 0.5 * np.add.outer(x**2, x**2) + height * waves / math.sqrt(15.0)
+
+
+def check_rough():
+    """Print stiffness and force of rough balls against covered cells a quarter as large, of the same gap."""
+    print("| rms / approach | cells in the half-width | k, rms, %: covered | whole | F: covered | whole |")
+    print("|---|---|---|---|---|---|")
+    approaches = np.linspace(0.8, 1.2, 41)
+    for height in (0.003, 0.03, 0.1, 0.3):
+        for across in (6, 9, 12):
+            errors = {"covered": [], "whole": []}
+            for seed in range(3):
+                gap = rough_ball(0.25 / across, across, height, seed)
+                n = len(gap) // 4
+                means, middles = gap.reshape(n, 4, n, 4).mean(axis=(1, 3)), gap.reshape(n, 4, n, 4)
+                grids = {"fine": (gap, "covered"), "covered": (means, "covered")}
+                grids["whole"] = (middles[:, 1:3, :, 1:3].mean(axis=(1, 3)), "whole")
+                forces = {}
+                for name, (heights, cells) in grids.items():
+                    space = HalfSpace(heights.shape, 1.0 / across / (len(heights) / n), 1.0, cells=cells)
+                    solved, start = [], None
+                    for approach in approaches:
+                        solved.append(space.solve(heights, approach=approach, start=start, rtol=1e-7))
+                        start = solved[-1].pressure
+                    forces[name] = np.array([c.force for c in solved])
+                for name, kept in errors.items():
+                    steps = np.diff(forces[name]) / np.diff(forces["fine"]) - 1.0
+                    kept.append([np.mean(steps**2), np.mean((forces[name] / forces["fine"] - 1.0) ** 2)])
+            rms = {name: 100.0 * np.sqrt(np.mean(kept, axis=0)) for name, kept in errors.items()}
+            columns = [rms[name][i] for i in (0, 1) for name in ("covered", "whole")]
+            print(f"| {height} | {across} | " + " | ".join(f"{c:.2f}" for c in columns) + " |", flush=True)
+
+
+def cost(rounds=7):
+    """Print time and iterations of scans of 64 contacts, and of 8 approaches at each, against whole cells."""
+    print(
+        "| rms / approach | cells in the half-width | approaches | rtol | iterations | to whole | time | us |"
+    )
+    print("|---|---|---|---|---|---|---|---|")
+    given = {"radius_share": 0.35, "stride": None, "positions": 64, "loading": 0, "cropped": False}
+    for rms, across, count, rtol in (
+        (1e-4, 6, 1, 4e-5), (0.02, 6, 1, 4e-5), (0.3, 6, 1, 4e-5), (1e-3, 12, 1, 4e-5), (0.05, 12, 1, 4e-5),
+        (0.3, 12, 1, 4e-5), (1.0, 24, 1, 4e-5), (0.05, 12, 1, 1e-8), (0.05, 12, 8, 4e-5), (0.5, 12, 8, 4e-5),
+    ):  # fmt: skip
+        p = problem(round(across / 0.175), argparse.Namespace(**given, rms=rms, rtol=rtol))
+        approaches = (
+            p["approaches"][0] * np.linspace(0.3, 1.0, count)[-count:] if count > 1 else p["approaches"][:1]
+        )
+        seconds, counts = {"whole": [], "covered": []}, {}
+        for _ in range(rounds + 1):
+            for cells, taken in seconds.items():
+                space = HalfSpace(p["body"].shape, float(p["spacing"]), MODULUS, cells=cells)
+                job = ScanJob(space, Rows(p["heights"]), p["body"], approaches, int(p["offsets"][1]), rtol)
+                began = time.process_time()
+                counts[cells] = scan_forces(job, workers=1).counts
+                taken.append(time.process_time() - began)
+        least = {cells: min(taken[1:]) / counts[cells].solved for cells, taken in seconds.items()}
+        iterations = {cells: each.iterations / each.solved for cells, each in counts.items()}
+        print(
+            f"| {rms} | {across} | {count} | {rtol:.0e} | {iterations['covered']:.1f} "
+            f"| {iterations['covered'] / iterations['whole']:.2f} | {least['covered'] / least['whole']:.2f} "
+            f"| {1e6 * least['covered']:.0f} |", flush=True,
+        )  # fmt: skip
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="contacts against Hertz")
-    check() if parser.parse_args().check else print_curves()
+    work = {"check": check, "rough": check_rough, "cost": cost}
+    chosen = parser.add_mutually_exclusive_group()
+    for name, function in work.items():
+        chosen.add_argument(f"--{name}", dest="work", action="store_const", const=function)
+    (parser.parse_args().work or print_curves)()

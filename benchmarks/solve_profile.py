@@ -99,7 +99,7 @@ class Timed:
         self.seconds, self.convolving = 0.0, 0.0
         self.iterations = self.solutions = 0
 
-    def __call__(self, c: Any, taps: Any, b: Any, task: Any, done: int) -> tuple[int, bool]:
+    def __call__(self, c: Any, taps: Any, b: Any, task: Any, done: int, rims: Any) -> tuple[int, bool]:
         """Solve, timed."""
         arguments = (b.pressure.copy(), b.residual.copy(), c, taps, b, task)
         self.seconds += least(lambda: repeated(*arguments[:2], 5, *arguments[2:]), 2) / 5

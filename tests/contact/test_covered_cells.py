@@ -180,6 +180,26 @@ def test_a_scan_is_what_its_contacts_are_one_by_one():
         assert forces.values[1, position] == pytest.approx(alone, rel=1e-6)
 
 
+def rough_scan(cells, count=12):
+    """Iterations of contacts of a rough ball, each from those before, and whether all converged."""
+    half_space, gap = ball_on_cells(9, (0.2, 0.4), cells=cells)
+    rows = np.arange(len(gap) + count)
+    rng = np.random.default_rng(4)
+    surface = sum(
+        0.02 * rng.normal() * np.cos(np.add.outer(k * rows, m * np.arange(gap.shape[1])) + 6.0 * rng.random())
+        for k, m in rng.normal(0.0, 0.7, (20, 2))
+    )
+    forces = half_space.scan(surface - surface.mean(), gap - gap.min(), [0.9], rtol=4e-5)
+    return forces.iterations, forces.unconverged
+
+
+def test_covered_cells_take_no_more_iterations_than_whole_ones():
+    whole, _ = rough_scan("whole")
+    covered, unconverged = rough_scan("covered")
+    assert covered < 1.15 * whole
+    assert unconverged == 0
+
+
 def test_nothing_is_left_of_the_gap_far_inside_a_rim():
     for slant in (0.0, 0.3, 1.0):
         assert rims.remaining_gap(rims.END, slant)[0] == pytest.approx(0.0, abs=1e-12)

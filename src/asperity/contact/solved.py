@@ -30,7 +30,8 @@ class Contact:
     iterations : int
         Conjugate-gradient iterations, all inner solutions together.
     residual : float
-        Largest complementarity residual relative to the largest overlap of the undeformed bodies.
+        Largest complementarity residual relative to the largest overlap of the undeformed bodies. Of cells
+        that are covered in part it counts as far as it moves pressure.
     outcome : Outcome
         How the solution ended, with advice.
 

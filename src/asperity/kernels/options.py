@@ -44,7 +44,9 @@ ONCE: dict[str, Any] = {"_nrt": False, "inline": "always"}
 """For what is called in one place and contains much: it is compiled there, not before and there again."""
 REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}
 """Lets sums over poles be vectorised; NaN stays NaN."""
-DOCUMENTED = ("fastmath", "inline", "nogil")
+UNCHECKED: dict[str, Any] = {"error_model": "numpy"}
+"""Divides without a look at the divisor: nothing leaves a loop then, which may become one of vectors."""
+DOCUMENTED = ("error_model", "fastmath", "inline", "nogil")
 HIDDEN = ("_nrt", "forceinline", "no_cpython_wrapper", "no_cfunc_wrapper")
 
 

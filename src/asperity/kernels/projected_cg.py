@@ -9,7 +9,7 @@ from asperity.kernels.at_load import balance_load, find_level, mark_free, projec
 from asperity.kernels.box import REACH, Box
 from asperity.kernels.influence import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
-from asperity.kernels.rims import Rims, bend, hold_back, set_rims, weigh, weigh_step
+from asperity.kernels.rims import Rims, bend, follow, set_rims, set_shares, still_violated, weigh, weigh_step
 
 
 def inverse_stencil(table: NDArray) -> NDArray:
@@ -66,6 +66,10 @@ LEAST, MOST = 0.1, 3.0
 """Bounds of the expected length of a step; an exact inverse as preconditioner would make it one."""
 PATIENCE, OFTEN = 100, 10
 """Iterations after which every tenth is a step of the projected gradient."""
+NEAR, NEARLY = 0.03, 0.2
+"""Error that gaps at rims may have between their computations: of the residual, and of the tolerance."""
+RENEWED = 3
+"""Iterations after which the cells at rims are found anew."""
 CONJUGATE, PRECONDITIONED, STEEPEST = range(3)
 """What a step aims at: each is tried if the one before would do no work."""
 
@@ -143,16 +147,13 @@ def _project(b: Box, length: float, hardness: float) -> tuple[float, float]:
 
 
 @compiled(**INNER)
-def _aim(
-    b: Box, aim: int, beta: float, length: float, level: float, task: Task, rims: Rims | None, iteration: int
-) -> tuple[float, float]:
+def _aim(b: Box, aim: int, beta: float, length: float, level: float, task: Task) -> tuple[float, float]:
     """Set direction and step; return the work of the step and how many cells the bounds held back."""
     if aim == STEEPEST:
         _turn_to_gradient(b, level)
         length = 1.0 / task.softest
     else:
         _turn(b, beta if aim == CONJUGATE else 0.0)
-    hold_back(b, rims, length, iteration)
     if task.total < 0.0:
         return _project(b, length, task.hardness)
     work, clipped, _found = project_at_load(b, length, level, task.hardness, task.total)
@@ -207,21 +208,27 @@ def true_residual(c: Convolution, b: Box, task: Task) -> None:
 
 
 @compiled(**CALLED)
-def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
+def survey(
+    b: Box, task: Task, rims: Rims | None, stiffness: float
+) -> tuple[float, float, int, int, int, int]:
     """Find how well a pressure with a known residual solves the task, and where something is left to solve.
 
+    Residuals at rims count by the share that they move of what other cells would, whose stiffness is in Pa/m.
     Returns the largest complementarity residual, m; the approach beyond that of the overlap, m, zero if that
     is given and the bodies do not yield; and first and end row and column of the smallest box that holds all
     cells under pressure or in overlap, zeros if there are none.
     """
     level = find_level(b, task.hardness) if task.total >= 0.0 else 0.0
+    if rims is not None:
+        set_shares(b, rims, stiffness)
     first, end, left, right = b.nx, 0, b.ny, 0
     worst, total = 0.0, 0.0
     for i in range(b.nx):
         for j in range(b.ny):
             p, r = b.pressure[i * b.pitch + j], b.residual[i * b.pitch + j] - level
             if p > 0.0 or r < 0.0:
-                worst = max(worst, abs(r) if p < task.hardness else r)
+                unmet = abs(r) if p < task.hardness else r
+                worst = max(worst, unmet if rims is None else unmet * b.z[i * b.pitch + j])
                 total += p
                 first, end = min(first, i), i + 1
                 left, right = min(left, j), max(right, j + 1)
@@ -235,20 +242,29 @@ def solve(
 ) -> tuple[int, bool]:
     """Solve the task on a box, from a residual and a pressure that is within the bounds and carries the load.
 
-    Kernel in m/Pa, taps of `inverse_stencil` in Pa/m; room for rims where cells are covered in part. Returns
-    the iterations in all, with those done before, and whether there is a step that lowers the energy: if not,
-    rounding allows no more.
+    Kernel in m/Pa, taps of `inverse_stencil` in Pa/m; rims where cells are covered in part, as `set_rims`
+    left them. Returns the iterations in all, with those done before, and whether there is a step that lowers
+    the energy: if not, rounding allows no more.
     """
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
     margin = rounding(cap, task.total)
     rho, length, iteration, moving, yielded = 0.0, 1.0, done, True, 0.0
+    # iterations since cells at rims were found; a literal number would be compiled apart
+    followed: int = np.int64(0)  # type: ignore[assignment]
     for q in range(len(b.pressure)):
         yielded += task.compliance * b.pressure[q]
     while iteration < task.max_iterations:
-        set_rims(b, rims, level, cap, taps[0], iteration - done)
         if at_load:
             level = find_level(b, cap)
-        if not _free(b.pressure, b, cap, level, task.rtol * (task.largest + level - yielded)):
+        tolerance = task.rtol * (task.largest + level - yielded)
+        violated = _free(b.pressure, b, cap, level, tolerance)
+        if rims is not None and 0.0 < violated <= rims.number[0]:
+            violated = still_violated(b, rims, violated, tolerance, taps[0])
+        if rims is not None and followed > 0 and (not violated or followed >= RENEWED):
+            set_rims(b, rims, level, taps[0])
+            followed = 0
+            continue
+        if not violated:
             break
         iteration += 1
         before = rho
@@ -256,16 +272,17 @@ def solve(
             weigh(b, rims)
         rho, change, added = precondition(b, taps, b.z)
         if rims is not None:
-            moved, lost = weigh_step(b, rims, b.z)
-            change += moved
-            added -= lost
+            own, moved, gained = weigh_step(b, rims, b.z)
+            rho += own
+            change += own - moved
+            added += gained
         if at_load:
             mark_free(b, cap, level)
             if rims is not None:
                 weigh(b, rims)
             units = precondition(b, taps, b.unit)[2]
             if rims is not None:
-                units -= weigh_step(b, rims, b.unit)[1]
+                units += weigh_step(b, rims, b.unit)[2]
                 mark_free(b, cap, level)
             rho, change = balance_load(b, added / units, level)
         beta = max(0.0, change / before) if before > 0.0 else 0.0
@@ -274,7 +291,7 @@ def solve(
             aim = STEEPEST
         moving, work, clipped = False, 0.0, 0.0
         while not moving and aim <= STEEPEST:
-            work, clipped = _aim(b, aim, beta, length, level, task, rims, iteration - done - 1)
+            work, clipped = _aim(b, aim, beta, length, level, task)
             moving = work < 0.0
             aim += not moving
         if not moving:
@@ -297,5 +314,11 @@ def solve(
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
         _advance(b, share, cap, margin)
+        if rims is not None:
+            allowed = max(NEAR * np.sqrt(rho / taps[0]), NEARLY * task.rtol * task.largest)
+            follow(b, rims, level, taps[0], allowed)
+            followed += 1
         yielded += share * further
+    if rims is not None and followed > 0:
+        set_rims(b, rims, level, taps[0])
     return iteration, moving

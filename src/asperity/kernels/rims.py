@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from asperity.kernels.box import FAR, Box
-from asperity.kernels.options import CALLED, INNER, LOOP, compiled
+from asperity.kernels.box import Box
+from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, UNCHECKED, compiled
 
 KNOTS, SLANTS = 33, 7
 """Values of a curve, even in √(p/S) from 0 to END, and curves, even in the root of the slant.
@@ -81,15 +81,12 @@ COVERED = np.array([
 """Share of a cell inside the rim, likewise."""
 LEAST_SLOPE = 0.02
 """Slope of a curve, at least, by which the pressure that a residual asks for is estimated."""
-LEVEL = 0.8
-"""Ratio √(p/S) from which on curves are nearly level."""
+STEEP, MOST_LEFT = 9.0, 3.0
+"""Bounds of the gap that is left without pressure, over the larger difference and that of both."""
+NO_STEP = 1e-30
+"""Square of a difference of pressures, Pa², beside which none is zero."""
 TOGETHER = 1e-4
 """Difference in √(p/S) below which a slope stands for a difference quotient."""
-STRIDE, CALM = 0.4, 30
-"""Largest change of √(p/S) in one step, from as many iterations on; it becomes smaller, as one over them.
-
-What goes back and forth comes to rest.
-"""
 SHARED = 0.5
 """Share of what a cell yields more that a preconditioner takes: its neighbours give way, too."""
 
@@ -107,32 +104,47 @@ def cubics(values: NDArray) -> NDArray:
     return np.stack([values[:, :-1], low, 3.0 * step - 2.0 * low - high, low + high - 2.0 * step], axis=2)
 
 
-_LEFT, _COVERED = cubics(LEFT), cubics(COVERED)
+_LEFT, _COVERED = cubics(LEFT).ravel(), cubics(COVERED).ravel()
 
 
-@compiled(**INNER)
+@compiled(**INNER, **UNCHECKED)
 def between_curves(curves: NDArray, ratio: float, slant: float) -> tuple[float, float, float]:
     """Find a value of curves, and its derivatives by the ratio √(p/S), from 0 to END, and by the slant."""
-    place = ratio * PER_UNIT
-    k = min(int(place), KNOTS - 2)
-    t = place - k
-    j = min(int(np.sqrt(slant) * (SLANTS - 1)), SLANTS - 2)
-    per_slant = (SLANTS - 1) ** 2 / (2.0 * j + 1.0)
-    share = (slant - (j / (SLANTS - 1)) ** 2) * per_slant
-    a, b, c, d = curves[j, k, 0], curves[j, k, 1], curves[j, k, 2], curves[j, k, 3]
-    i = j + 1
+    place, turn = ratio * PER_UNIT, np.sqrt(slant) * (SLANTS - 1)
+    k = min(np.int32(place), np.int32(KNOTS - 2))  # whole numbers that fit beside each other into a vector
+    j = min(np.int32(turn), np.int32(SLANTS - 2))
+    t, lower = place - k, float(j)
+    per_slant = (SLANTS - 1) ** 2 / (2.0 * lower + 1.0)
+    share = slant * per_slant - lower * lower / (2.0 * lower + 1.0)
+    i = 4 * (j * np.int32(KNOTS - 1) + k)
+    o = i + np.int32(4 * (KNOTS - 1))
+    a, b, c, d = curves[i], curves[i + 1], curves[i + 2], curves[i + 3]
     one = a + t * (b + t * (c + t * d))
-    other = curves[i, k, 0] + t * (curves[i, k, 1] + t * (curves[i, k, 2] + t * curves[i, k, 3]))
     slope = b + t * (2.0 * c + t * 3.0 * d)
-    beside = curves[i, k, 1] + t * (2.0 * curves[i, k, 2] + t * 3.0 * curves[i, k, 3])
-    turned = other - one
-    return one + share * turned, (slope + share * (beside - slope)) * PER_UNIT, turned * per_slant
+    a, b, c, d = curves[o], curves[o + 1], curves[o + 2], curves[o + 3]
+    turned = a + t * (b + t * (c + t * d)) - one
+    steeper = b + t * (2.0 * c + t * 3.0 * d) - slope
+    return one + share * turned, (slope + share * steeper) * PER_UNIT, turned * per_slant
 
 
-@compiled(**INNER)
+@compiled(**INNER, **UNCHECKED)
 def remaining_gap(ratio: float, slant: float) -> tuple[float, float, float]:
     """Find the gap that is left at a ratio √(p/S), over S times the width and E*, and its derivatives."""
     return between_curves(_LEFT, ratio, slant)
+
+
+CHUNK = 64
+"""Cells at rims that are computed in one go."""
+P, X, Y, UNMET, GAP, OWN, BY_P, BY_X, BY_Y, CURVED, BENT, WEIGHT, ALONE, MASKED = range(14)
+"""What is known of a cell at a rim, one number after the other.
+
+Its pressure and the differences beside it, along and across, Pa, and the residual, m, of which all else is
+computed; the gap that is left, m; its difference quotient up to the pressure that the residual asks for, not
+positive, and its derivatives by the first three, m/Pa; halves of the second derivatives by the pressure and
+by the differences, about, m/Pa²; weight of the cell where steps are preconditioned, and what it yields beyond
+that to a residual of its own, Pa/m; residual on the free set, m, before it is weighed.
+"""
+NUMBERS = 16
 
 
 class Rims(NamedTuple):
@@ -144,21 +156,24 @@ class Rims(NamedTuple):
     along: float  # side of a cell over E*, m/Pa
     across: float  # likewise
     number: NDArray  # (1,), number of cells at rims
+    row: NDArray  # in which they lie
     cell: NDArray  # their places in the box
     above: NDArray  # places of the cells before them, along; idle ones where there are none
     below: NDArray  # places of those after them
     gap: NDArray  # that is left in them, and off the residual, m
-    own: NDArray  # its difference quotient by the pressure of the cell, m/Pa, not positive
-    low: NDArray  # pressure to which one step may take them, Pa
-    high: NDArray  # likewise
-    weight: NDArray  # of the cell where steps are preconditioned; one for cells that are none at rims
+    known: NDArray  # (NUMBERS times their number,), what is known of each
+    due: NDArray  # those, by number, of which it has to be computed anew
+    chunk: NDArray  # room for what is computed in one go
 
 
 def rims(along: float, across: float, count: int, dtype: DTypeLike) -> Rims:
     """Make room for what is known of the rims among so many cells, with sides over E*, m/Pa."""
-    places = np.zeros((3, count), dtype=np.int64)
-    fields: NDArray = np.zeros((5, count), dtype=dtype)
-    return Rims(along, across, np.zeros(1, dtype=np.int64), *places, *fields)
+    row, cell, above, below, due = np.zeros((5, count), dtype=np.int64)
+    number = np.zeros(1, dtype=np.int64)
+    gap: NDArray = np.zeros(count, dtype=dtype)
+    known: NDArray = np.zeros(NUMBERS * count, dtype=dtype)
+    chunk: NDArray = np.zeros(NUMBERS * CHUNK, dtype=dtype)
+    return Rims(along, across, number, row, cell, above, below, gap, known, due, chunk)
 
 
 @compiled(**INNER)
@@ -168,25 +183,38 @@ def cells_beside(rims: Rims | None) -> int:
 
 
 @compiled(**INNER)
-def _find_rims(b: Box, rims: Rims) -> int:
-    """List the cells whose pressure is less than the step between their neighbours."""
-    found, p = 0, b.pressure
-    for i in range(b.nx):
-        first = i * b.pitch
-        idle = first + b.ny  # no pressure acts there
-        above = first - b.pitch if i > 0 else -1
-        below = first + b.pitch if i + 1 < b.nx else -1
-        for j in range(b.ny):
-            q = first + j
-            up, down = above + j if above >= 0 else idle, below + j if below >= 0 else idle
-            x, y = p[down] - p[up], p[q + 1] - p[q - 1]
-            if p[q] * p[q] < END**4 * (x * x + y * y):
-                rims.cell[found], rims.above[found], rims.below[found] = q, up, down
-                found += 1
-    return found
+def _place(b: Box, rims: Rims, k: int, i: int, j: int) -> None:
+    """Place a cell of the list in a row and a column of a box."""
+    q, idle = i * b.pitch + j, i * b.pitch + b.ny  # no pressure acts there
+    rims.row[k], rims.cell[k] = i, q
+    rims.above[k] = q - b.pitch if i > 0 else idle
+    rims.below[k] = q + b.pitch if i + 1 < b.nx else idle
 
 
 @compiled(**INNER)
+def _find_rims(b: Box, rims: Rims, level: float) -> int:
+    """List the cells whose pressure is less than the step between their neighbours.
+
+    Not those without pressure that stay apart by more than a rim leaves in any cell.
+    """
+    found, p, side = 0, b.pressure, max(rims.along, rims.across)
+    for i in range(b.nx):
+        first = i * b.pitch
+        above, below = first - b.pitch if i > 0 else first, first + b.pitch if i + 1 < b.nx else first
+        before, after = 1.0 if i > 0 else 0.0, 1.0 if i + 1 < b.nx else 0.0
+        for j in range(b.ny):
+            q = first + j
+            x, y = after * p[below + j] - before * p[above + j], p[q + 1] - p[q - 1]
+            if p[q] * p[q] < END**4 * (x * x + y * y):
+                far, near = max(abs(x), abs(y)), min(abs(x), abs(y))
+                most = side * min(far + STEEP * near, MOST_LEFT * (far + near))
+                if p[q] > 0.0 or b.residual[q] - level < most:
+                    _place(b, rims, found, i, j)
+                    found += 1
+    return found
+
+
+@compiled(**INNER, **UNCHECKED)
 def _at_rim(
     p: float, x: float, y: float, x_share: float, y_share: float
 ) -> tuple[float, float, float, float, float, float, float, float]:
@@ -196,27 +224,78 @@ def _at_rim(
     the step S; ratio and slant; the gap over the scale, and its derivative by the ratio; derivatives of
     the gap by the differences along and across, m/Pa.
     """
-    squares = x * x + y * y
-    step, width = np.sqrt(squares), 1.0 / np.sqrt(x * x * x_share + y * y * y_share)
+    xx, yy = x * x + NO_STEP, y * y
+    squares = xx + yy
+    step, width = np.sqrt(squares), 1.0 / np.sqrt(xx * x_share + yy * y_share)
     scale = squares * width
-    ratio = np.sqrt(p / step)
-    far, near = max(abs(x), abs(y)), min(abs(x), abs(y))
-    slant = near / far
+    ratio = min(np.sqrt(p / step), END)
+    wide = xx >= yy
+    along, across = np.sqrt(xx), abs(y)
+    far, near = along if wide else across, across if wide else along
+    per_far = 1.0 / far
+    slant = near * per_far
     left, slope, turn = remaining_gap(ratio, slant)
     by_step = (2.0 * left - 0.5 * slope * ratio) * width
     by_width = left * scale * width * width
-    by_near = turn * scale / far
+    by_near = turn * scale * per_far
     by_far = -slant * by_near
-    wide = abs(x) >= abs(y)
     along = x * (by_step - by_width * x_share) + np.copysign(1.0, x) * (by_far if wide else by_near)
     across = y * (by_step - by_width * y_share) + np.copysign(1.0, y) * (by_near if wide else by_far)
     return scale, step, ratio, slant, left, slope, along, across
 
 
+@compiled(**CALLED, **REASSOCIATE, **UNCHECKED)
+def _compute(c: NDArray, count: int, x_share: float, y_share: float, stiffness: float) -> None:
+    """Compute what is known of the cells of a chunk: see `set_rims`."""
+    for k in range(count):
+        p, unmet = c[P * CHUNK + k], c[UNMET * CHUNK + k]
+        scale, step, ratio, _slant, left, slope, along, across = _at_rim(
+            p, c[X * CHUNK + k], c[Y * CHUNK + k], x_share, y_share
+        )
+        unmet -= scale * left
+        # what p - p₀ + stiffness (unmet - gap + gap₀) = 0 gives, the gap straight in the ratio
+        steep, some = min(slope, -LEAST_SLOPE), max(ratio, TOGETHER)
+        soft, per_step = step / stiffness, scale / step
+        half = 0.5 * scale * steep / soft
+        far = half * half - 2.0 * half * ratio + ratio * ratio - unmet / soft
+        other = max(half + np.sqrt(max(far, 0.0)), 0.0)
+        own = per_step * steep / max(ratio + other, TOGETHER)
+        weight = 1.0 / (1.0 - SHARED * own * stiffness)
+        c[GAP * CHUNK + k], c[OWN * CHUNK + k] = scale * left, own
+        c[BY_P * CHUNK + k] = 0.5 * per_step * slope / some
+        c[BY_X * CHUNK + k], c[BY_Y * CHUNK + k] = along, across
+        bent = per_step / step
+        c[BENT * CHUNK + k] = bent
+        c[CURVED * CHUNK + k] = bent * (1.0 - 0.125 * steep / (some * some * some))
+        c[WEIGHT * CHUNK + k] = weight
+        c[ALONE * CHUNK + k] = stiffness * (1.0 / (1.0 - own * stiffness) - weight * weight)
+
+
 @compiled(**CALLED)
-def set_rims(
-    b: Box, rims: Rims | None, level: float, hardness: float, stiffness: float, iteration: int
-) -> None:
+def _renew(b: Box, rims: Rims, number: int, level: float, stiffness: float) -> None:
+    """Compute what is known of the cells that are due, so many, and take their gap off the residual."""
+    x_share, y_share = 1.0 / rims.along**2, 1.0 / rims.across**2
+    c, p, known = rims.chunk, b.pressure, rims.known
+    for first in range(0, number, CHUNK):
+        count = min(CHUNK, number - first)
+        for i in range(count):
+            k = rims.due[first + i]
+            q = rims.cell[k]
+            c[P * CHUNK + i], c[UNMET * CHUNK + i] = p[q], b.residual[q] - level
+            c[X * CHUNK + i] = p[rims.below[k]] - p[rims.above[k]]
+            c[Y * CHUNK + i] = p[q + 1] - p[q - 1]
+        _compute(c, count, x_share, y_share, stiffness)
+        for i in range(count):
+            k = rims.due[first + i]
+            for n in range(MASKED):
+                known[NUMBERS * k + n] = c[n * CHUNK + i]
+            gap = c[GAP * CHUNK + i]
+            rims.gap[k] = gap
+            b.residual[rims.cell[k]] -= gap
+
+
+@compiled(**CALLED)
+def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
     """Find the cells at rims, and take the gap that is left in them off the residual, from the pressure.
 
     What was taken off before is given back. The gap falls with the pressure, the steeper the less there is:
@@ -225,45 +304,28 @@ def set_rims(
     """
     if rims is not None:
         give_back(b, rims)
-        rims.number[0] = _find_rims(b, rims)
-        stride = STRIDE * CALM / max(iteration, CALM)
-        x_share, y_share = 1.0 / rims.along**2, 1.0 / rims.across**2
-        for k in range(rims.number[0]):
-            q = rims.cell[k]
-            p = float(b.pressure[q])
-            x = float(b.pressure[rims.below[k]]) - float(b.pressure[rims.above[k]])
-            y = float(b.pressure[q + 1]) - float(b.pressure[q - 1])
-            scale, step, ratio, slant, left, slope, _along, _across = _at_rim(p, x, y, x_share, y_share)
-            gap = scale * left
-            b.residual[q] -= gap
-            unmet = float(b.residual[q]) - level
-            own, weight = 0.0, 1.0
-            free = (p > 0.0 or unmet < 0.0) and (p < hardness or unmet > 0.0)
-            if free and (ratio < LEVEL or unmet > LEAST_SLOPE * scale):
-                own = _quotient(ratio, slant, left, slope, unmet / scale, step / (stiffness * scale))
-                own *= scale / step
-                weight = 1.0 / np.sqrt(1.0 - SHARED * own * stiffness)
-            rims.gap[k], rims.own[k], rims.weight[k] = gap, own, weight
-            if iteration >= CALM:
-                rims.low[k] = step * max(ratio - stride, 0.0) ** 2
-                rims.high[k] = step * (ratio + stride) ** 2 if ratio + stride < END else FAR
+        number = _find_rims(b, rims, level)
+        rims.number[0] = number
+        for k in range(number):
+            rims.due[k] = k
+        _renew(b, rims, number, level, stiffness)
 
 
 @compiled(**INNER)
-def _quotient(ratio: float, slant: float, share: float, slope: float, unmet: float, softness: float) -> float:
-    """Difference quotient of the gap by the pressure up to where a residual is met; neither is positive.
+def take_off(b: Box, rims: Rims | None) -> None:
+    """Take the gap that is left at rims off the residual."""
+    if rims is not None:
+        for k in range(rims.number[0]):
+            b.residual[rims.cell[k]] -= rims.gap[k]
 
-    Gap and residual over the scale, pressure over the step, and the softness of a cell among others likewise.
-    """
-    other, there, its_slope = ratio, share, slope
-    for _ in range(2):
-        missing = unmet + softness * (other * other - ratio * ratio) - (there - share)
-        other -= missing / (2.0 * softness * other - min(its_slope, -LEAST_SLOPE))
-        other = min(max(other, 0.0), END)
-        there, its_slope, _turn = remaining_gap(other, slant)
-    if abs(other - ratio) > TOGETHER:
-        slope = (there - share) / (other - ratio)
-    return min(slope / max(ratio + other, TOGETHER**2), 0.0)
+
+@compiled(**INNER)
+def move_rims(b: Box, rims: Rims | None, pitch: int, row: int, column: int) -> None:
+    """Place cells at rims in a box that begins in a row and a column of theirs, whose pitch is given."""
+    if rims is not None:
+        for k in range(rims.number[0]):
+            i = rims.row[k]
+            _place(b, rims, k, i - row, rims.cell[k] - i * pitch - column)
 
 
 @compiled(**INNER)
@@ -275,11 +337,58 @@ def forget_rims(rims: Rims | None) -> None:
 
 @compiled(**INNER)
 def give_back(b: Box, rims: Rims | None) -> None:
-    """Give the gap that was taken off the residual back, and forget the cells at rims."""
+    """Give the gap that was taken off the residual back."""
     if rims is not None:
         for k in range(rims.number[0]):
             b.residual[rims.cell[k]] += rims.gap[k]
-        forget_rims(rims)
+
+
+@compiled(**CALLED)
+def follow(b: Box, rims: Rims, level: float, stiffness: float, allowed: float) -> None:
+    """Let the gap that is left follow the pressure, straight where an error that is allowed, m, permits."""
+    due, p, known = 0, b.pressure, rims.known
+    for k in range(rims.number[0]):
+        q, o = rims.cell[k], NUMBERS * k
+        dp = p[q] - known[o + P]
+        dx = p[rims.below[k]] - p[rims.above[k]] - known[o + X]
+        dy = p[q + 1] - p[q - 1] - known[o + Y]
+        error = known[o + CURVED] * dp * dp + known[o + BENT] * (dx * dx + dy * dy)
+        before = rims.gap[k]
+        b.residual[q] += before
+        if error > allowed:
+            rims.due[due] = k
+            due += 1
+        else:
+            gap = known[o + GAP] + known[o + BY_P] * dp + known[o + BY_X] * dx + known[o + BY_Y] * dy
+            rims.gap[k] = gap
+            b.residual[q] -= gap
+    _renew(b, rims, due, level, stiffness)
+
+
+@compiled(**INNER, **UNCHECKED)
+def _stiffness_share(rims: Rims, k: int, stiffness: float) -> float:
+    """How far a cell at a rim gives way to a residual, over what a cell among others does."""
+    return 1.0 / (1.0 - rims.known[NUMBERS * k + OWN] * stiffness)
+
+
+@compiled(**CALLED)
+def still_violated(b: Box, rims: Rims, violated: float, tolerance: float, stiffness: float) -> float:
+    """Take those cells off a number of violated ones that are soft enough not to matter."""
+    margin = (len(b.masked) - len(b.residual)) // 2
+    for k in range(rims.number[0]):
+        m = abs(b.masked[margin + rims.cell[k]])
+        if m > tolerance and m * _stiffness_share(rims, k, stiffness) <= tolerance:
+            violated -= 1.0
+    return violated
+
+
+@compiled(**INNER)
+def set_shares(b: Box, rims: Rims, stiffness: float) -> None:
+    """Set `z` to what the residual of each cell counts for."""
+    for q in range(len(b.z)):
+        b.z[q] = 1.0
+    for k in range(rims.number[0]):
+        b.z[rims.cell[k]] = _stiffness_share(rims, k, stiffness)
 
 
 @compiled(**INNER)
@@ -287,31 +396,25 @@ def weigh(b: Box, rims: Rims) -> None:
     """Weigh what is masked by how much softer cells at rims are than others."""
     margin = (len(b.masked) - len(b.residual)) // 2
     for k in range(rims.number[0]):
-        b.masked[margin + rims.cell[k]] *= rims.weight[k]
+        m = b.masked[margin + rims.cell[k]]
+        rims.known[NUMBERS * k + MASKED] = m
+        b.masked[margin + rims.cell[k]] = m * rims.known[NUMBERS * k + WEIGHT]
 
 
 @compiled(**INNER)
-def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float]:
-    """Weigh a preconditioned residual likewise; return what previous·target and its sum lose."""
-    moved, total = 0.0, 0.0
+def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float]:
+    """Weigh a preconditioned residual likewise; return what m·target, previous·target and its sum gain."""
+    rho, moved, total = 0.0, 0.0, 0.0
     for k in range(rims.number[0]):
-        q = rims.cell[k]
-        lost = target[q] * (1.0 - rims.weight[k])
-        target[q] -= lost
-        moved += b.previous[q] * lost
-        total += lost
-    return moved, total
-
-
-@compiled(**INNER)
-def hold_back(b: Box, rims: Rims | None, length: float, iteration: int) -> None:
-    """Keep cells at rims from going farther than is known of their gap, at a length along the direction."""
-    if rims is not None:
-        for k in range(rims.number[0] if iteration >= CALM else 0):
-            q = rims.cell[k]
-            p = b.pressure[q]
-            least, most = (rims.low[k] - p) / length, (rims.high[k] - p) / length
-            b.direction[q] = min(max(b.direction[q], least), most)
+        q, o = rims.cell[k], NUMBERS * k
+        before, m = target[q], rims.known[o + MASKED]
+        alone = rims.known[o + ALONE] * m
+        target[q] = before * rims.known[o + WEIGHT] + alone
+        gained = target[q] - before
+        rho += alone * m
+        moved += b.previous[q] * gained
+        total += gained
+    return rho, moved, total
 
 
 @compiled(**INNER)
@@ -320,7 +423,7 @@ def bend(b: Box, rims: Rims) -> float:
     stored = 0.0
     for k in range(rims.number[0]):
         step = b.step[rims.cell[k]]
-        stored -= rims.own[k] * step * step
+        stored -= rims.known[NUMBERS * k + OWN] * step * step
     return stored
 
 

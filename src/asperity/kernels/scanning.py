@@ -11,7 +11,15 @@ from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
 from asperity.kernels.lanes import VECTOR_BYTES, lanes, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
 from asperity.kernels.projected_cg import Task, solve, survey, true_residual
-from asperity.kernels.rims import Rims, cells_beside, forget_rims, give_back, rims, set_rims
+from asperity.kernels.rims import (
+    Rims,
+    cells_beside,
+    forget_rims,
+    move_rims,
+    rims,
+    set_rims,
+    take_off,
+)
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
@@ -209,8 +217,8 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     true_residual(everywhere, outer, task)
     if guessed and load < 0.0 and not _scale(outer, hardness):
         true_residual(everywhere, outer, task)
-    set_rims(outer, b.room.rims, 0.0, hardness, known.taps[0], 0)
-    worst, level, top, bottom, near, far = survey(outer, task)
+    set_rims(outer, b.room.rims, 0.0, known.taps[0])
+    worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     moving, last = True, (0, 0, 0, 0)
     while moving and worst > b.rtol * (largest + level) and iterations < b.max_iterations:
@@ -221,20 +229,20 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
         before, again = worst, last == (row, column, rows, columns)
         last = (row, column, rows, columns)
         part, inner = rows < nx or columns < ny, outer
-        give_back(outer, b.room.rims)
         if part:
             inner = empty_box(rows, columns, b.room.inner)
             cut(outer, row, column, inner)
+            move_rims(inner, b.room.rims, outer.pitch, row, column)
         iterations, moving = solve(
             convolution(known, rows, columns), known.taps, inner, task, iterations, b.room.rims
         )
         if part:
             paste(inner, outer, row, column)
-        give_back(inner, b.room.rims)
+            move_rims(outer, b.room.rims, inner.pitch, -row, -column)
         if part or not _recurs(outer, b.rtol):
             true_residual(everywhere, outer, task)
-        set_rims(outer, b.room.rims, 0.0, hardness, known.taps[0], 0)
-        worst, level, top, bottom, near, far = survey(outer, task)
+            take_off(outer, b.room.rims)
+        worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, pressure, first, left)
     converged = worst <= b.rtol * (largest + level)
