@@ -15,6 +15,7 @@ from asperity.arguments import ArrayLike, NDArray, file_path, no_file, shown
 from asperity.errors import InputError, reason
 from asperity.files import is_sealed, write_bytes
 from asperity.hdf5 import MOST_UNPACKED, SIGNATURE, most_unpacked, opened_netcdf, size_unpacked
+from asperity.netcdf import write_netcdf
 from asperity.sandbox import Answer, sandboxed
 from asperity.schema import VERSION, provenance
 
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     import xarray
 
 GROUPS = ("scenario", "contact", "rolling", "spectra")
-PACKED = {"fletcher32": True, "zlib": True, "complevel": 1, "shuffle": True}
-"""How numbers are written: with a checksum, and compressed."""
 LARGEST_FILE = 16 * 2**30  # bytes
 _ALLOWED = "a result file that a run has written (run.nc)"
 _AGAIN = "Run its case again."
@@ -68,12 +67,8 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     bare = [path for path, values in all_of if not {"units", "long_name"} <= values.attrs.keys()]
     if bare:  # a fault of the program
         raise ValueError(f"results without units or long_name: {', '.join(bare)}".replace("//", "/"))
-    encoding = {
-        path: {name: PACKED for name, values in held.items() if values.dtype.kind in "iuf" and values.ndim}
-        for path, held in nodes.items()
-    }
     image = io.BytesIO()  # HDF5 itself ends the process where a disk is full
-    _storable(tree).to_netcdf(image, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
+    write_netcdf(_storable(tree), image)
     return write_bytes(path, image.getbuffer(), sealed=True)
 
 

@@ -421,7 +421,9 @@ def path_of(
 
 
 def middle_line(strip: Strip) -> Array:
-    """Take the line (rows,) in the middle of a strip, m."""
+    """Take the line (rows,) in the middle of a strip, m: of a drawn one without what lies beside it."""
+    if isinstance(strip, LongStrip):
+        strip = replace(strip, shape=(strip.shape[0], 1))
     rows, ny = strip.shape
     piece = max(1, READ_POINTS // ny)
     lines = [strip.rows(i, min(i + piece, rows))[:, ny // 2].copy() for i in range(0, rows, piece)]

@@ -32,6 +32,8 @@ BLEND_ACROSS = 1.0 / 3.0
 """Width of the blend of two tiles across, in tiles."""
 HIGHEST_ACROSS = 16.0
 """Largest wavenumber across, in κ: the mean square beyond, 0.2 %, goes to the others."""
+KEPT_LINES = 200
+"""Lines of a strip up to which the waves across it are kept, some 0.1 MB a line."""
 MIDDLE = 2**40
 """Number of the random numbers of the middle line, which no block of waves beside it has."""
 ALL = 2**20
@@ -217,9 +219,14 @@ class _Block(NamedTuple):
     coherence: Array  # with the middle of the tile
 
 
-@lru_cache(maxsize=1)  # of a range, until it is laid along the path
 def _blocks_across(first: int, count: int, z: bytes) -> tuple[list[_Block], int]:
     """Blocks of so many waves, `first` the number of the first on a tile, z its distances; and lines."""
+    make = _made_blocks if len(z) <= KEPT_LINES * np.dtype(np.float64).itemsize else _made_blocks.__wrapped__
+    return make(first, count, z)
+
+
+@lru_cache(maxsize=8)  # those of each range, as tiles of all follow each other along the path
+def _made_blocks(first: int, count: int, z: bytes) -> tuple[list[_Block], int]:
     tiling, (_, weight) = Tiling.around_zero(TILE_ACROSS, BLEND_ACROSS), _across_waves()
     number = np.log(np.arange(first, first + count) / first) / math.log(SAME_COHERENCE)
     blocks, number, near = list[_Block](), np.floor(number + 1e-9), np.frombuffer(z)

@@ -18,7 +18,7 @@ BYTES_IN_MEMORY = 2**26
 """The same in memory: of fields that need no file, and where none can be written."""
 FEWEST = 3
 """Fields that are kept whatever their size: neighbours are read together."""
-PIECE = 2**13
+PIECE = 2**11
 """Rows of a strip that are made together."""
 
 

@@ -1,0 +1,90 @@
+"""NetCDF-4 files as they lie in HDF5: groups, variables, and dimensions as scales, each with a number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import h5py
+    import xarray
+
+NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable. {:10d}"
+"""Name of a scale that is a dimension alone, as the format words it."""
+WHOLE_CHUNK = 2**20
+"""Bytes up to which a variable is one chunk."""
+PACKED = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
+"""How numbers are written: compressed, and with a checksum."""
+
+
+def write_netcdf(tree: xarray.DataTree, file: IO[bytes]) -> None:
+    """Write a tree of groups to an empty file; each group defines its own dimensions.
+
+    The layout is that of the netCDF-4 format specification (Unidata, "NetCDF-4 on top of HDF5"). xarray
+    encodes values; h5py writes them, in a fraction of the time that the netCDF engines of xarray take for
+    many small variables.
+
+    Parameters
+    ----------
+    tree : xarray.DataTree
+        Groups of variables, whose attributes are text and numbers.
+    file : binary file
+        Where it is written.
+    """
+    import h5py
+
+    with h5py.File(file, "w", track_order=True) as root:
+        root.attrs["_NCProperties"] = np.bytes_(f"version=2,h5py={h5py.__version__}")
+        numbers: dict[str, int] = {}  # of dimensions, by their paths
+        for node in tree.subtree:
+            group = root if node.path == "/" else root.create_group(node.path, track_order=True)
+            _write_group(group, node.to_dataset(inherit=False), numbers)
+
+
+def _write_group(group: h5py.Group, dataset: xarray.Dataset, numbers: dict[str, int]) -> None:
+    from xarray.conventions import cf_encoder, encode_dataset_coordinates
+
+    variables, attributes = cf_encoder(*encode_dataset_coordinates(dataset))
+    _describe(group, attributes)
+    sizes = {str(name): size for name, size in dataset.sizes.items()}
+    numbers |= {f"{group.name}/{name}": len(numbers) + i for i, name in enumerate(sizes)}
+    written = {str(name): _write_variable(group, str(name), held) for name, held in variables.items()}
+    for name, size in sizes.items():
+        scale = written.get(name)
+        if scale is None:
+            scale = group.create_dataset(name, (size,), ">f4", track_order=True)
+            scale.make_scale(NO_VARIABLE.format(size))
+        else:
+            scale.make_scale(name)
+        scale.attrs["_Netcdf4Dimid"] = np.int32(numbers[f"{group.name}/{name}"])
+    for name, dataset_of in written.items():
+        dimensions = [str(each) for each in variables[name].dims]
+        if dimensions != [name]:
+            for axis, each in enumerate(dimensions):
+                dataset_of.dims[axis].attach_scale(group[each])
+        if dimensions:
+            ids = [numbers[f"{group.name}/{each}"] for each in dimensions]
+            dataset_of.attrs["_Netcdf4Coordinates"] = np.array(ids, np.int32)
+
+
+def _write_variable(group: h5py.Group, name: str, variable: xarray.Variable) -> h5py.Dataset:
+    import h5py
+
+    values, attributes = np.asarray(variable.values), dict(variable.attrs)
+    how: dict[str, Any] = {"track_order": True}
+    if values.dtype.kind in "OU":
+        values, how["dtype"] = values.astype(object), h5py.string_dtype()
+    elif values.size and values.ndim:
+        how |= PACKED | {"chunks": values.shape if values.nbytes <= WHOLE_CHUNK else True}
+    if "_FillValue" in attributes:
+        how["fillvalue"] = attributes["_FillValue"]
+    written = group.create_dataset(name, data=values, **how)
+    _describe(written, attributes)
+    return written
+
+
+def _describe(of: h5py.Group | h5py.Dataset, attributes: Mapping[Any, Any]) -> None:
+    for name, value in attributes.items():
+        of.attrs[str(name)] = value if isinstance(value, str) else np.atleast_1d(value)
