@@ -1,9 +1,9 @@
 """Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import xarray
@@ -276,60 +276,35 @@ def radiation(computed: compute.Computed, values: Array, side: SidewaysPower | N
     side : SidewaysPower or None
         That of what moves sideways, if something does.
     """
-    case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
+    case, band = computed.case, computed.band
     edges = band / HALF_BAND, band * HALF_BAND
     density, of_modes = _radiated(computed)
 
     def in_bands(density: Array) -> Array:
         return np.maximum(band_energies(computed.frequency, density, *edges), 0.0)
 
-    power = in_bands(density)
     beside = None if side is None else in_bands(side.parts)
-
-    def level(power: Array) -> Array:
-        return level_of(2.0 * power / PICOWATT)  # of two rails
-
-    def laid_out(power: Array, levels: Entry, totals: Entry) -> Values:
-        parts = _all_parts(power, beside)
-        whole = np.concatenate([parts, parts.sum(axis=1, keepdims=True)], axis=1)
-        if silent != "computed":
-            whole[:, -2] = np.nan
-        said = {"wheel": silent}
-        if not power[:, 1].any():
-            of_wheel = () if silent == "computed" else (schema.SILENT,)
-            said["missing"] = "; ".join((schema.STILL, *of_wheel))
-        found = level(whole)
-        return {
-            levels: levels.variable(found, **said),
-            totals: totals.variable(a_weighted_total(found, band), **said),
-        }
-
+    power = _SoundPower(band, in_bands(density), beside, silent_wheel(case) or "computed")
     more: Values = {}
     longer: ArrayLike = 1.0
     if (found := measured.measured_track(computed)) is not None:
-        more = laid_out(power, schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWER_LEVEL_A)
+        more = power.laid_out(schema.UNMEASURED_POWER_LEVEL, schema.UNMEASURED_POWER_LEVEL_A)
         own, louder, longer = found
         more |= own
-        power[:, :2] *= louder
-        if side is not None and beside is not None:
+        longer_sideways: Array | float = 1.0
+        if side is not None:
             own, longer_sideways = measured.lateral_rates(case.track, side.track, band)
             more |= own
-            beside[:, 0] *= longer_sideways
-    if beside is not None:
-        alone = level(np.stack([power[:, 2], beside[:, 2], power.sum(axis=1)], axis=1))
-        more[schema.SINGLE_FORCE] = schema.SINGLE_FORCES
-        more[schema.SINGLE_FORCE_POWER_LEVEL] = alone
-        more[schema.SINGLE_FORCE_POWER_LEVEL_A] = a_weighted_total(alone, band)
+        power = power.changed(louder, longer_sideways)
     rung: Values = {}
     if of_modes.shape[1]:
         each = 2.0 * in_bands(of_modes if side is None else side.of_modes)
         rung = mode_by_mode(case, each, band, every=side is not None)
     # the length 8.686/Δ of the decay is the mean of those over a band
     lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * WITHIN)
-    radiated = laid_out(power, schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A)
-    deviation = _deviation(
-        computed, _all_parts(density, None if side is None else side.parts), _all_parts(power, beside), values
-    )
+    radiated = power.laid_out(schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A)
+    densities = _all_parts(density, None if side is None else side.parts)
+    deviation = _deviation(computed, densities, power.parts, values)
     said = radiated[schema.RADIATED_POWER_LEVEL_A].attrs
     told = {name: said[name] for name in ("wheel", "missing") if name in said}
     return {
@@ -338,8 +313,64 @@ def radiation(computed: compute.Computed, values: Array, side: SidewaysPower | N
         schema.RADIATED_POWER_DEVIATION: schema.RADIATED_POWER_DEVIATION.variable(deviation, **told),
         schema.BAND_DECAY_RATE: 1.0 / np.mean(lengths, axis=1) / longer,
         **more,
+        **power.single_forces(),
         **rung,
     }
+
+
+@dataclass(frozen=True, eq=False)
+class _SoundPower:
+    """Sound power in bands, W, of what was rolled on one rail."""
+
+    band: Array  # (b,), Hz
+    up: Array  # (laws, 3, b), of rail, sleepers and wheel, by what moves up and down
+    beside: Array | None  # the same sideways, if something moves so
+    silent: str  # why the wheel's is not known, or "computed"
+
+    @property
+    def parts(self) -> Array:
+        """All that radiates (laws, n, b), as the result orders it."""
+        return _all_parts(self.up, self.beside)
+
+    def changed(self, louder: Array, longer_sideways: Array | float) -> Self:
+        """Power with that of rail and sleepers, and of the rail sideways, times factors, band by band."""
+        up, beside = np.array(self.up), self.beside
+        up[:, :2] *= louder
+        if beside is not None:
+            beside = np.array(beside)
+            beside[:, 0] *= longer_sideways
+        return replace(self, up=up, beside=beside)
+
+    def laid_out(self, levels: Entry, totals: Entry) -> Values:
+        """Levels of all parts and their sum, and their A-weighted totals."""
+        whole = np.concatenate([self.parts, self.parts.sum(axis=1, keepdims=True)], axis=1)
+        if self.silent != "computed":
+            whole[:, -2] = np.nan
+        said = {"wheel": self.silent}
+        if not self.up[:, 1].any():
+            of_wheel = () if self.silent == "computed" else (schema.SILENT,)
+            said["missing"] = "; ".join((schema.STILL, *of_wheel))
+        found = _level(whole)
+        return {
+            levels: levels.variable(found, **said),
+            totals: totals.variable(a_weighted_total(found, self.band), **said),
+        }
+
+    def single_forces(self) -> Values:
+        """Levels by one force alone, up and down or sideways; nothing where nothing moves sideways."""
+        if self.beside is None:
+            return {}
+        alone = _level(np.stack([self.up[:, 2], self.beside[:, 2], self.up.sum(axis=1)], axis=1))
+        return {
+            schema.SINGLE_FORCE: schema.SINGLE_FORCES,
+            schema.SINGLE_FORCE_POWER_LEVEL: alone,
+            schema.SINGLE_FORCE_POWER_LEVEL_A: a_weighted_total(alone, self.band),
+        }
+
+
+def _level(power: Array) -> Array:
+    """Level of a sound power of one rail, W, for two of them, dB re 1 pW."""
+    return level_of(2.0 * power / PICOWATT)
 
 
 def _all_parts(up: Array, side: Array | None) -> Array:
