@@ -126,7 +126,7 @@ def test_pit_narrower_than_the_contact_takes_a_part_of_it_away():
         exact = solved(lambda x, y, x0=away: -0.28 * MM * (np.hypot(x + x0, y) < 0.09 * MM), approach)
         found = force(law["table"], [middle + away, middle - away], approach)
         assert 0.5 < exact / CONTACT.force(approach) < 1.001
-        assert_allclose(found, exact, rtol=6e-3)
+        assert_allclose(found, exact, rtol=1.5e-3)
         assert_allclose(found[0], found[1], rtol=2e-3)
     assert 0.02 < 1.0 - force(law["table"], middle, APPROACH) / LOAD < 0.3
     # under the load for which they are made the simple laws have it, too; far from it nothing is lost
@@ -144,8 +144,8 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
     along, across = (length / 2) ** 2 / (2 * CONTACT.radius_x), (width / 2) ** 2 / (2 * CONTACT.radius_y)
     sinks, middle = min(along, across), np.pi * MM
     cell = ALONG / 8 * length / 2 / CONTACT.radius_x, ACROSS / 16 * width / 2 / CONTACT.radius_y
-    cell = cell[across < along]  # that faults are off by, on a grid
-    within = 0.02 * sinks + cell
+    cell = cell[across < along]
+    within = 0.02 * sinks + 0.3 * cell  # the first cells touch with their middles
     assert force(law, middle, sinks - within) == 0.0
     assert 0.0 < force(law, middle, sinks + within) < CONTACT.force(sinks)
     if along < across:  # on the nearer edge, sooner
@@ -153,8 +153,8 @@ def test_ball_over_a_spall_touches_its_edges_first(width):
         assert (force(law, beside, along / 4 - within) == 0.0).all()
         assert (force(law, beside, along / 4 + within) > 0.0).all()
     deep = sinks + 4 * APPROACH
-    hollow = solved(lambda x, y: -depth * (abs(x) < length / 2) * (abs(y) < width / 2), deep, (8, 20))
-    assert_allclose(force(law, middle, deep), hollow, rtol=1.5 * cell / (4 * APPROACH))
+    hollow = solved(lambda x, y: -depth * (abs(x) < length / 2) * (abs(y) < width / 2), deep)
+    assert_allclose(force(law, middle, deep), hollow, rtol=0.5 * cell / (4 * APPROACH))
     both = force(law, middle + 0.375 * np.array([-length, length]), 2 * APPROACH)
     assert_allclose(both[0], both[1], rtol=1e-3)
 
@@ -171,9 +171,7 @@ def test_direct_over_a_pit_stays_between_its_rows():
     places = np.pi * MM + np.array([-0.13, -0.09, -0.03, 0.0, 0.05]) * MM
     places = surface.spacing[0] * (np.round(places / surface.spacing[0])[:, None] + [0.0, 0.3, 0.5, 0.8])
     found, exact = (force(law, places.ravel(), APPROACH) for law in (direct, table))
-    assert_allclose(found, exact, rtol=0.012)  # half a cell more or less of the pit
-    assert_allclose(found[::4], exact[::4], rtol=1e-3)
-    assert_allclose(found[1::4], found[::4], rtol=3e-4)  # edges are where the nearer row has them
+    assert_allclose(found, exact, rtol=4e-4)
 
 
 @pytest.mark.parametrize("forwards", [True, False])
@@ -191,7 +189,7 @@ def test_direct_sees_the_pits_of_ball_and_raceway_where_they_are(forwards):
         def both(x, y, places=places):
             return -0.28 * MM * sum(np.hypot(x - at, y) < 0.09 * MM for at in places)
 
-        assert_allclose(on.evaluate(step, APPROACH)[0], solved(both, APPROACH), rtol=8e-3)
+        assert_allclose(on.evaluate(step, APPROACH)[0], solved(both, APPROACH), rtol=2e-3)
         on.accept(step)
 
 

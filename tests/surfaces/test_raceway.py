@@ -111,14 +111,41 @@ def test_the_burr_of_a_hollow_has_its_height_and_volume_and_ends_with_its_size()
 
 def test_faults_lie_where_they_are_told_across_the_seam_and_all_around():
     one = Fault("mark", length=0.2 * MM, width=0.4 * MM, depth=UM, offset=0.1 * MM)
-    found = lay((one,), (2000, 41), CELLS)
+    found, edges = lay((one,), (2000, 41), CELLS)
+    assert edges is None
     assert found[0, 25] == found.min() == -UM
     assert_allclose(found[-5, 25], found[5, 25], rtol=1e-12)
     assert_array_equal(np.flatnonzero(found.any(axis=1)), [*range(10), *range(1991, 2000)])
-    four = lay((Fault("mark", length=0.2 * MM, depth=UM, angle=0.5 * np.pi, count=4),), (2000, 41), CELLS)
+    four, _ = lay((Fault("mark", length=0.2 * MM, depth=UM, angle=0.5 * np.pi, count=4),), (2000, 41), CELLS)
     assert_allclose(np.roll(four, 500, axis=0), four, atol=1e-12 * UM)
     assert four[500, 20] == -UM
     assert four[250].any() is np.False_
+
+
+def test_edges_of_faults_leave_the_area_that_is_sound():
+    """Counted by shares of cells, wherever the fault lies; heights are those of the sound surface."""
+    for shape, area in (("pit", np.pi / 4), ("spall", 1.0)):
+        for angle, offset in ((0.0, 0.0), (1.0, 0.007 * MM)):
+            fault = Fault(shape, length=0.23 * MM, width=0.31 * MM, depth=UM, angle=angle, offset=offset)
+            heights, edges = lay((fault,), (2000, 41), CELLS)
+            lost = (1.0 - edges.shares).sum() * CELLS[0] * CELLS[1] / (0.23 * MM * 0.31 * MM)
+            assert lost == pytest.approx(area, rel=4e-3)
+            assert_array_equal(heights[edges.sound], 0.0)
+            assert_array_equal(heights[edges.distance < -0.02 * MM], -UM)
+            crossed = np.abs(edges.places) < 0.45
+            off = np.abs(edges.drop[crossed] - UM * (1.0 - edges.shares[crossed])) > 0.12 * UM
+            assert off.sum() <= 4  # at the corners of a spall
+
+
+def test_of_two_pits_each_cell_has_the_next_edge():
+    one, other = (Fault("pit", angle=a, length=0.2 * MM, depth=UM) for a in (1.0, 1.07))
+    (_, left), (_, right), (_, both) = (
+        lay(each, (2000, 41), CELLS) for each in ((one,), (other,), (one, other))
+    )
+    assert_allclose(both.distance, np.minimum(left.distance, right.distance))
+    met = left.with_others(right)
+    assert_allclose(met.distance, both.distance)
+    assert_allclose(met.drop, left.drop + right.drop)
 
 
 def test_map_of_a_fault_lies_about_its_middle():

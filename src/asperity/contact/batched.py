@@ -143,19 +143,24 @@ def _solved(half_space: HalfSpace, b: Block, positions: slice, device: Device) -
     rows = xp.arange(positions.start, positions.stop)[:, None] * b.stride + xp.arange(len(b.body))
     gap = xp.asarray(b.body) + xp.asarray(b.planes[positions])[:, None, None] - xp.asarray(b.rows)[rows]
     pressure, taps = xp.zeros_like(gap), tuple(influence.taps.tolist())
+    edges = b.room.edges
+    fields = (edges.softness, edges.drop, edges.flow) if len(edges.softness) else ()
+    at_edges = [xp.asarray(each)[rows] for each in fields]
+    softest = influence.softest + float(edges.softness.max(initial=0.0)) + edges.yielding
     totals, counts = [], np.zeros(4, dtype=np.int64)
     for approach in b.approaches.tolist():
         overlapping = gap < approach
-        rows, columns = (_cells(overlapping.any(axis=axis), xp) for axis in (2, 1))
-        box = (xp.arange(len(gap))[:, None, None], rows[:, :, None], columns[:, None, :])
+        along, across = (_cells(overlapping.any(axis=axis), xp) for axis in (2, 1))
+        box = (xp.arange(len(gap))[:, None, None], along[:, :, None], across[:, None, :])
         overlap, p = approach - gap[box], pressure[box]
         spectrum = xp.asarray(batched.padded_spectrum(influence.table, *p.shape[1:]))
-        task = batched.BatchTask(spectrum, taps, b.hardness, influence.softest, b.max_iterations)
+        task = batched.BatchTask(spectrum, taps, b.hardness, softest, b.max_iterations, edges.yielding)
         fresh = ~p.any(axis=(1, 2))
         if bool(fresh.any()):
             p = xp.where(fresh[:, None, None], batched.first_guess(overlap, task, xp), p)
         tolerance = b.rtol * xp.maximum(overlap.max(axis=(1, 2)), 0.0)
-        iterations, worst = batched.solve_batch(overlap, p, tolerance, task, xp)
+        soft = (each[box] for each in at_edges)
+        iterations, worst = batched.solve_batch(overlap, p, tolerance, task, xp, *soft)
         pressure[box] = p
         total, missed, cut_off = p.sum(axis=(1, 2)), worst > tolerance, edge_share(pressure) > TRUNCATED
         totals.append(device.to_host(total))

@@ -3,13 +3,14 @@
 import math
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from asperity import arguments
 from asperity.arguments import Array, ArrayLike, NDArray, real, require, shown
 from asperity.contact import periodic
+from asperity.contact.edges import Softness, check_edges, softness_at
 from asperity.contact.solved import Contact
 from asperity.errors import Outcome, UnconvergedWarning
 from asperity.kernels import fourier, projected_cg, rims, scanning
@@ -18,6 +19,7 @@ from asperity.kernels.box import foundation_approach
 from asperity.kernels.influence import Influence, influence, influence_table, means_table, prepared
 from asperity.progress import Progress
 from asperity.store import Store
+from asperity.surfaces.edges import Edges
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
 from asperity.threads import refuse_to_go_on
@@ -148,7 +150,7 @@ class HalfSpace:
         p, spectrum = self._field("pressure", pressure), padded_spectrum(self.influence.table, *self.shape)
         return np.asarray(convolve_padded(p[None], spectrum, np)[0]) - self.lift * p.sum()
 
-    def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
+    def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9, edges: Edges | None = None) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
 
         Parameters
@@ -157,6 +159,8 @@ class HalfSpace:
             A solved pressure, Pa. Cells at the hardness cap carry no further load.
         rtol : float
             Relative residual of the linear solution.
+        edges : Edges, optional
+            Sharp edges that the pressure was solved with.
 
         Returns
         -------
@@ -174,7 +178,11 @@ class HalfSpace:
         rows, columns = (np.flatnonzero(free.any(axis=axis)) for axis in (1, 0))
         inside = free[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         taps = tuple(self.influence.taps.tolist())
-        rise, converged = unit_indentation(self.influence.table, taps, inside, rtol, MAX_ITERATIONS)
+        soft = None
+        if edges is not None:
+            giving = self.softness(edges).compliance(p)
+            soft = giving[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        rise, converged = unit_indentation(self.influence.table, taps, inside, rtol, MAX_ITERATIONS, soft)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         stiffness = float(rise.sum()) * self.cell_area
@@ -225,6 +233,7 @@ class HalfSpace:
         load: float | None = None,
         start: ArrayLike | None = None,
         rtol: float = 1e-6,
+        edges: Edges | None = None,
     ) -> Contact:
         """Solve the contact at a prescribed approach or load.
 
@@ -241,6 +250,8 @@ class HalfSpace:
             Pressure to start from, Pa.
         rtol : float
             Largest complementarity residual relative to the largest overlap of the undeformed bodies.
+        edges : Edges, optional
+            Sharp edges on the grid: in cells that they cross, the gap is that of the sound surface.
 
         Returns
         -------
@@ -258,11 +269,15 @@ class HalfSpace:
         require(one, "approach and load", given, "exactly one of them", "Give one of the two.")
         rtol = _tolerance(rtol)
         p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self.pressure_cap)
+        if edges is not None:
+            check_edges(edges, self, self.shape)
         solver = periodic if self.boundary == "periodic" else HalfSpace
+        known: dict[str, Any] = {} if edges is None else {"edges": edges}
         if approach is not None:
-            contact = solver.at_approach(self, g, real("approach", approach, "a finite length, m"), p, rtol)
+            at = real("approach", approach, "a finite length, m")
+            contact = solver.at_approach(self, g, at, p, rtol, **known)
         else:
-            contact = solver.at_load(self, g, self.checked_load(load), p, rtol)
+            contact = solver.at_load(self, g, self.checked_load(load), p, rtol, **known)
         if not contact.converged:
             _warn_unconverged(f"contact at approach {rounded(contact.approach, 4)} m", contact.outcome)
         return contact
@@ -280,6 +295,7 @@ class HalfSpace:
         cache: Store | None = None,
         progress: Progress | None = None,
         device: str | None = None,
+        edges: Edges | None = None,
     ) -> "xarray.DataArray":
         """Move a body along a surface and record the contact force at fixed approaches.
 
@@ -306,6 +322,8 @@ class HalfSpace:
         device : str, optional
             ``"cpu"``, or ``"gpu"`` to solve in batches through CuPy; by default what ``$ASPERITY_DEVICE``
             says, else ``"cpu"``. Forces agree within the tolerance.
+        edges : Edges, optional
+            Sharp edges of the surface: in cells that they cross, its heights are those of the sound surface.
 
         Returns
         -------
@@ -344,6 +362,7 @@ class HalfSpace:
             stride,
             tolerance,
             device=batched.find_device(device),
+            edges=edges,
         )
         scan.check_settings(workers, cache, progress)
         found = scan.scan_forces(job, cache=cache, workers=workers, progress=progress)
@@ -444,14 +463,26 @@ class HalfSpace:
         allowed = f"finite numbers, an array of the half-space's shape {self.shape}"
         return _array(arguments.finite_array(name, values, allowed, shape=self.shape))
 
+    def softness(self, edges: Edges) -> Softness:
+        """Find how cells at edges give way."""
+        return softness_at(edges, self.modulus, self.hardness)
+
     def at_approach(
-        self, gap: Array, approach: float, start: Array | None, rtol: float, total: float = -1.0
+        self,
+        gap: Array,
+        approach: float,
+        start: Array | None,
+        rtol: float,
+        total: float = -1.0,
+        edges: Edges | None = None,
     ) -> Contact:
         """Solve at an approach, unchecked and silent; a sum of the pressure, Pa, is negative if not given.
 
         On a period the approach is the lifted one of `asperity.contact.periodic`, there and in `at_load`.
         """
-        block = self.block(np.zeros(self.shape), gap, np.zeros(1), np.array([approach]), 0, rtol, load=total)
+        soft = None if edges is None else self.softness(edges)
+        rows, at = np.zeros(self.shape), np.array([approach])
+        block = self.block(rows, gap, np.zeros(1), at, 0, rtol, load=total, soft=soft)
         if start is not None:
             block.pressures[1, 0], block.solved[0] = start, 1
         self.solve_block(block)
@@ -461,12 +492,14 @@ class HalfSpace:
             outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.STALLED
         return Contact(
             pressure, float(block.totals[0, 0]) * self.cell_area, approach + float(block.levels[0, 0]),
-            self._covered_cells(pressure) * self.cell_area, iterations, float(block.residuals[0, 0]),
-            outcome, self, gap,
+            self._covered_cells(pressure, edges) * self.cell_area, iterations, float(block.residuals[0, 0]),
+            outcome, self, gap, edges,
         )  # fmt: skip
 
-    def _covered_cells(self, pressure: Array) -> float:
-        """Number of cells in contact, those at rims as far as they are covered."""
+    def _covered_cells(self, pressure: Array, edges: Edges | None) -> float:
+        """Number of cells in contact, those at rims as far as they are covered, at edges as far as sound."""
+        if edges is not None:
+            return self.softness(edges).covered_cells(pressure, edges.shares)
         if self.cells == "whole":
             return int(np.count_nonzero(pressure))
         return float(self._rims_of(pressure)[1].sum())
@@ -488,17 +521,21 @@ class HalfSpace:
         rtol: float,
         single: bool = False,
         load: float = -1.0,
+        soft: Softness | None = None,
     ) -> scanning.Block:
         """Lay out contacts to be solved, with nothing known of them; arguments as in `scanning.Block`.
 
         In single precision the iteration is half again as fast, down to a tolerance of about 1e-6.
         """
         rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
+        if soft is not None:
+            softness, drop, flow = map(_array, (soft.softness, soft.drop, soft.flow))
+            soft = Softness(softness, drop, flow, soft.yielding)
         k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
         known = self._known[np.float32 if single else np.float64]
         return scanning.Block(
             rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
-            scanning.room(known, *shape, self._sides), np.empty(shape), np.empty(shape),
+            scanning.room(known, *shape, self._sides, soft), np.empty(shape), np.empty(shape),
             np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
             np.zeros(size), np.zeros(4, dtype=np.int64),
@@ -519,19 +556,21 @@ class HalfSpace:
                 self._known[precision] = prepared(self._known[precision], nx, ny)
         return block
 
-    def at_load(self, gap: Array, load: float, start: Array | None, rtol: float) -> Contact:
+    def at_load(
+        self, gap: Array, load: float, start: Array | None, rtol: float, edges: Edges | None = None
+    ) -> Contact:
         """Solve at a given load as `solve` does, unchecked and silent: look at `converged`.
 
         The overlap at an estimated approach is all that needs a grid.
         """
         lowest = float(gap.min())
         if load == 0.0:
-            return self.at_approach(gap, lowest, None, rtol)
+            return self.at_approach(gap, lowest, None, rtol, edges=edges)
         estimate = foundation_approach(gap, load, self.modulus, self.cell_area, self.pressure_cap)
         iterations = 0
         while True:
             reach = lowest + scanning.REACH * (estimate - lowest)
-            contact = self.at_approach(gap, reach, start, rtol, load / self.cell_area)
+            contact = self.at_approach(gap, reach, start, rtol, load / self.cell_area, edges)
             iterations += contact.iterations
             if contact.approach <= reach:
                 return replace(contact, iterations=iterations)

@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from asperity.arguments import Array, ArrayLike, finite_array, real, real_array, require, shown, whole
 from asperity.contact.batched import Device, find_device, solve_batched
+from asperity.contact.edges import check_edges
 from asperity.errors import Grade, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress, counted
 from asperity.store import PATIENCE, Store, content_key, made
+from asperity.surfaces.edges import Edges
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import in_order, thread_count
@@ -193,6 +195,7 @@ class ScanJob:
     anchor: int = 0  # row from which positions and blocks count: surfaces alike from there on share them
     device: Device | None = field(default_factory=find_device)
     """Where contacts are solved in batches; None for the processor, which solves them one by one."""
+    edges: Edges | None = None  # of the surface, on the same rows
 
     def __post_init__(self) -> None:
         cells, (n, width) = self.half_space.shape, self.surface.shape
@@ -202,6 +205,8 @@ class ScanJob:
         what, allowed = "approaches of the scan", "finite, increasing lengths in m"
         approaches = finite_array(what, np.atleast_1d(self.approaches), allowed, rising=True)
         require(approaches.size, what, "none", allowed)
+        if self.edges is not None:
+            check_edges(self.edges, self.half_space, (n, width))
         whole("stride of the scan", self.stride, "a whole number ≥ 1", at_least=1)
         object.__setattr__(self, "body", body)
         object.__setattr__(self, "approaches", approaches)
@@ -246,27 +251,33 @@ class ScanJob:
         """What the kept blocks take on disk, about."""
         return 8 * self.positions * self.approaches.size + BLOCK_BYTES * len(self.starts)
 
-    def under(self, start: int) -> tuple[Array, Array]:
-        """Heights under a block, m, shape (rows, ny), and the planes of its positions, m."""
+    def under(self, start: int) -> tuple[Array, Array, Edges | None]:
+        """Heights under a block, m, (rows, ny), the planes of its positions, m, and edges there, if any."""
         known = np.broadcast_to(np.asarray(self.planes, dtype=np.float64), (self.positions,))
         beyond = self.block * ((start + self.ahead) // self.block + 1) - self.ahead
         planes = np.ascontiguousarray(known[start:beyond])
         row = self.first + start * self.stride
         stop = row + (len(planes) - 1) * self.stride + self.body.shape[0]
-        return np.ascontiguousarray(self.surface.rows(row, stop)), planes
+        edges = None if self.edges is None else self.edges.rearranged(lambda field: field[row:stop])
+        crossed = edges is not None and edges.crossed.any()
+        return np.ascontiguousarray(self.surface.rows(row, stop)), planes, edges if crossed else None
 
-    def key(self, rows: Array, planes: Array) -> str:
-        """Name in the store of the block on these heights."""
+    def key(self, rows: Array, planes: Array, edges: Edges | None = None) -> str:
+        """Name in the store of the block on these heights, with these edges."""
         space = self.half_space
         parameters = [list(space.spacing), space.modulus, space.hardness, self.stride, self.rtol]
         parameters += ["batched"] if self.device else ["single"] if self.single else []
         parameters += [] if space.cells == "whole" else [space.cells]
-        return content_key("scan", rows, self.body, self.approaches, planes, parameters)
+        sharp = [] if edges is None else [edges.distance, edges.normal, edges.drop]
+        return content_key("scan", rows, self.body, self.approaches, planes, *sharp, parameters)
 
-    def solve(self, rows: Array, planes: Array) -> dict[str, NDArray[Any]]:
+    def solve(self, rows: Array, planes: Array, edges: Edges | None = None) -> dict[str, NDArray[Any]]:
         """Forces of a block from a cold start, N, (k, positions), and its `Counts`, as a cache keeps them."""
         space, stride = self.half_space, self.stride
-        block = space.block(rows, self.body, planes, self.approaches, stride, self.rtol, self.single)
+        soft = None if edges is None else space.softness(edges)
+        block = space.block(
+            rows, self.body, planes, self.approaches, stride, self.rtol, self.single, soft=soft
+        )
         if self.device is None:
             space.solve_block(block)
         else:
@@ -311,19 +322,19 @@ def solved_blocks(
     def help_along() -> None:
         while spare:
             other, start = spare.pop()
-            rows, planes = other.under(start)
-            key = other.key(rows, planes)
+            under = other.under(start)
+            key = other.key(*under)
             assert cache is not None
             with cache.claim(key) as free:
                 if free and cache.get(key) is None:
-                    cache.put(key, other.solve(rows, planes))
+                    cache.put(key, other.solve(*under))
                     return
         time.sleep(PATIENCE)
 
     def block(start: int) -> tuple[Array, Counts]:
-        rows, planes = job.under(start)
-        solve = partial(job.solve, rows, planes)
-        kept = solve() if cache is None else made(cache, job.key(rows, planes), solve, help_along)
+        under = job.under(start)
+        solve = partial(job.solve, *under)
+        kept = solve() if cache is None else made(cache, job.key(*under), solve, help_along)
         return kept["forces"], Counts(*kept["counts"].tolist())
 
     with closing(in_order(block, job.starts, min(count, len(job.starts)))) as blocks:

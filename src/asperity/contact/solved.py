@@ -11,6 +11,7 @@ from asperity.errors import Outcome
 
 if TYPE_CHECKING:
     from asperity.contact.halfspace import HalfSpace
+    from asperity.surfaces.edges import Edges
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +27,8 @@ class Contact:
     approach : float
         Approach of the bodies, m, positive closing.
     area : float
-        Real area of contact, m²: cells under pressure, those at rims as far as they are covered.
+        Real area of contact, m²: cells under pressure, those at rims as far as they are covered, and those at
+        sharp edges as far as they are sound.
     iterations : int
         Conjugate-gradient iterations, all inner solutions together.
     residual : float
@@ -55,6 +57,7 @@ class Contact:
     outcome: Outcome
     half_space: "HalfSpace" = field(repr=False)
     undeformed_gap: Array = field(repr=False)
+    edges: "Edges | None" = field(repr=False, default=None)
 
     @property
     def converged(self) -> bool:
@@ -67,7 +70,8 @@ class Contact:
 
         Below zero only where the hardness caps the pressure.
         """
-        return self.undeformed_gap + self.half_space.displacement(self.pressure) - self.approach
+        gap = self.undeformed_gap + self.half_space.displacement(self.pressure) - self.approach
+        return gap if self.edges is None else gap + self.half_space.softness(self.edges).sunk(self.pressure)
 
     @cached_property
     def plastic_indentation(self) -> Array:
@@ -88,7 +92,7 @@ class Contact:
     @cached_property
     def stiffness(self) -> float:
         """Tangent stiffness dF/dδ of this contact, N/m: one linear solution on the contact set, exact."""
-        return self.half_space.tangent_stiffness(self.pressure)
+        return self.half_space.tangent_stiffness(self.pressure, edges=self.edges)
 
     @property
     def edge_share(self) -> float:

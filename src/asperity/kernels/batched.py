@@ -46,24 +46,33 @@ def convolve_padded(fields: Array, spectrum: Array, xp: Any) -> Array:
 
 
 def unit_indentation(
-    table: NDArray, taps: tuple[float, ...], inside: NDArray, rtol: float, max_iterations: int
+    table: NDArray,
+    taps: tuple[float, ...],
+    inside: NDArray,
+    rtol: float,
+    max_iterations: int,
+    soft: NDArray | None = None,
 ) -> tuple[NDArray, bool]:
     """Find the pressure that displaces a set of cells by one: K p = 1 on the set, p = 0 elsewhere.
 
     Preconditioned conjugate gradients. Influence table (≥ nx, ≥ ny), m/Pa, taps of `inverse_stencil`, Pa/m,
-    and the set (nx, ny). Returns the pressure (nx, ny) in Pa per m of indentation, whose integral is the
-    tangent stiffness, and whether the residual, relative to one, fell below `rtol`.
+    the set (nx, ny), and the softness of cells at edges, m/Pa, which sink by that besides. Returns the
+    pressure (nx, ny) in Pa per m of indentation, whose integral is the tangent stiffness, and whether the
+    residual, relative to one, fell below `rtol`.
     """
     spectrum, rho = padded_spectrum(table, *inside.shape), 1.0
     pressure, direction = np.zeros(inside.shape), np.zeros(inside.shape)
     residual = -inside.astype(np.float64)
+    weight = inside.astype(np.float64) if soft is None else inside / np.sqrt(1.0 + soft * taps[0])
     for _ in range(max_iterations):
         if np.abs(residual).max() <= rtol:  # never of NaN
             return pressure, True
-        z = apply_stencil(residual[None], taps, np)[0] * inside
+        z = apply_stencil((residual * weight)[None], taps, np)[0] * weight
         before, rho = rho, float(np.vdot(residual, z))
         direction = rho / before * direction - z
         response = convolve_padded(direction[None], spectrum, np)[0]
+        if soft is not None:
+            response += soft * direction
         length = rho / float(np.vdot(direction, response))
         pressure += length * direction
         residual += length * response * inside
@@ -83,6 +92,11 @@ class _Members(NamedTuple):
     length: Array
     iterations: Array
     active: Array
+    # of cells at edges, as in `kernels.edges`, None where there is no edge: softness, m/Pa, drop, m, and
+    # pressure at which they flow, Pa
+    softness: Array | None
+    drop: Array | None
+    flow: Array | None
 
 
 class BatchTask(NamedTuple):
@@ -93,6 +107,7 @@ class BatchTask(NamedTuple):
     hardness: float  # upper bound of the pressure, Pa (may be infinite)
     softest: float  # no pressure of unit norm displaces by more, m/Pa
     max_iterations: int
+    yielding: float = 0.0  # by how much more cells at edges sink beyond the pressure at which they flow, m/Pa
 
 
 def first_guess(overlap: Array, task: BatchTask, xp: Any) -> Array:
@@ -107,12 +122,20 @@ def first_guess(overlap: Array, task: BatchTask, xp: Any) -> Array:
 
 
 def solve_batch(
-    overlap: Array, pressure: Array, tolerance: Array, task: BatchTask, xp: Any
+    overlap: Array,
+    pressure: Array,
+    tolerance: Array,
+    task: BatchTask,
+    xp: Any,
+    softness: Array | None = None,
+    drop: Array | None = None,
+    flow: Array | None = None,
 ) -> tuple[Array, Array]:
     """Solve a task for many overlaps (b, nx, ny), m, from pressures, Pa, which are overwritten.
 
-    Returns for each the iterations and the largest complementarity residual, m: where that is above its
-    tolerance, the solution did not converge.
+    Softness and drop, m/Pa and m, of cells at edges and the pressure at which they flow, Pa, are given for
+    all cells. Returns for each the iterations and the largest complementarity residual, m: where that is
+    above its tolerance, the solution did not converge.
 
     Residuals are carried on from step to step. Where they claim convergence, true ones confirm it, or the
     iteration goes on from these. Members that are done are frozen; as soon as half of a batch is, they are
@@ -122,6 +145,8 @@ def solve_batch(
     iterations, worst = xp.zeros(count, dtype=np.int64), xp.ones(count) * np.inf
     while True:
         residual = convolve_padded(pressure, task.spectrum, xp) - overlap
+        if softness is not None:
+            residual += _sunk(softness, drop, flow, task.yielding, pressure, xp)
         before, worst = worst, _complementarity(pressure, residual, task.hardness, xp)
         active = (worst > tolerance) & (worst <= STUCK * before) & (iterations < task.max_iterations)
         if not bool(active.any()):
@@ -129,16 +154,21 @@ def solve_batch(
         nothing, none = xp.zeros_like(residual), xp.zeros(count)
         members = _Members(
             xp.arange(count), tolerance, pressure, residual, nothing, nothing, none, none + 1.0, iterations,
-            active,
+            active, softness, drop, flow,
         )  # fmt: skip
         while running := int(members.active.sum()):
             size = max(SMALLEST, 1 << (running - 1).bit_length())  # few: each needs a plan of transforms
             if size < len(members.active):
                 _record(members, pressure, iterations)
                 kept = xp.argsort(~members.active, kind="stable")[:size]
-                members = _Members(*(values[kept] for values in members))
+                members = _Members(*(None if each is None else each[kept] for each in members))
             members = _iterate(members, task, xp)
         _record(members, pressure, iterations)
+
+
+def _sunk(softness: Array, drop: Array, flow: Array, yielding: float, pressure: Array, xp: Any) -> Array:
+    """By how much cells at edges sink under a pressure, Pa; m."""
+    return xp.minimum(softness * pressure + yielding * xp.maximum(pressure - flow, 0.0), drop)
 
 
 def _record(members: _Members, pressure: Array, iterations: Array) -> None:
@@ -159,6 +189,11 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         return step, _dot(m.residual, step), (kept != wanted).any(axis=(1, 2))
 
     free = ((m.pressure > 0.0) | (m.residual < 0.0)) & ((m.pressure < hardness) | (m.residual > 0.0))
+    at_edges = m.softness, m.drop, m.flow, task.yielding
+    if m.softness is not None:
+        sunk = _sunk(*at_edges, m.pressure, xp)
+        giving = m.softness + task.yielding * (m.pressure > m.flow)
+        free = free / xp.sqrt(1.0 + task.taps[0] * giving * (sunk < m.drop))
     z = apply_stencil(m.residual * free, task.taps, xp) * free
     rho, known = _dot(m.residual, z), m.rho > 0.0
     beta = xp.maximum((rho - _dot(m.previous, z)) / xp.where(known, m.rho, 1.0), 0.0) * known
@@ -174,6 +209,9 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         direction = xp.where(_each(steepest), -m.residual, direction)
         step, work, clipped = project(direction, xp.where(steepest, 1.0 / task.softest, m.length))
     response = convolve_padded(step, task.spectrum, xp)
+    if m.softness is not None:
+        sinks = _sunk(*at_edges, m.pressure + step, xp) - sunk
+        response += sinks
     curvature = _dot(step, response)
     moving = m.active & (work < 0.0) & (curvature > 0.0)
     share = xp.where(moving, -work / xp.where(curvature > 0.0, curvature, 1.0), 0.0)
@@ -184,6 +222,8 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
     share = _each(xp.where(whole, 1.0, share))
     pressure = xp.clip(m.pressure + share * step, 0.0, hardness)
     residual = m.residual + share * response
+    if m.softness is not None:  # no straight line once what lies deeper carries, too
+        residual += _sunk(*at_edges, pressure, xp) - sunk - share * sinks
     unmet = _complementarity(pressure, residual, hardness, xp) > m.tolerance
     return m._replace(
         pressure=pressure, residual=residual, previous=m.residual, direction=direction,

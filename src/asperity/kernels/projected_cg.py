@@ -7,6 +7,15 @@ from numpy.typing import NDArray
 
 from asperity.kernels.at_load import balance_load, find_level, mark_free, project_at_load, rounding
 from asperity.kernels.box import REACH, Box
+from asperity.kernels.edges import (
+    SoftCells,
+    sink,
+    sink_by_share,
+    sink_by_step,
+    weigh_edges,
+    weigh_masked,
+    weigh_target,
+)
 from asperity.kernels.influence import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
 from asperity.kernels.rims import Rims, bend, follow, set_rims, set_shares, still_violated, weigh, weigh_step
@@ -57,6 +66,26 @@ def precondition(b: Box, taps: NDArray, target: NDArray) -> tuple[float, float, 
         rho += g * s
         change += (g - b.previous[q]) * s
         total += s
+    return rho, change, total
+
+
+@compiled(**INNER)
+def _precondition(
+    b: Box, taps: NDArray, target: NDArray, rims: Rims | None, edges: SoftCells
+) -> tuple[float, float, float]:
+    """Precondition as `precondition` does, and move the less what gives way at rims and edges."""
+    weigh_masked(b, edges)
+    if rims is not None:
+        weigh(b, rims)
+    rho, change, total = precondition(b, taps, target)
+    moved, lost = weigh_target(b, edges, target)
+    change += moved
+    total -= lost
+    if rims is not None:
+        own, moved, gained = weigh_step(b, rims, target)
+        rho += own
+        change += own - moved
+        total += gained
     return rho, change, total
 
 
@@ -198,13 +227,14 @@ def _yield(pressure: NDArray, compliance: float, response: NDArray) -> float:
 
 
 @compiled(**CALLED)
-def true_residual(c: Convolution, b: Box, task: Task) -> None:
-    """Compute the residual of the pressure, with the kernel for this box and what a task says."""
+def true_residual(c: Convolution, b: Box, task: Task, edges: SoftCells) -> None:
+    """Compute the residual of the pressure, with the kernel for this box, its edges and what a task says."""
     convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
     if task.compliance > 0.0:
         _yield(b.pressure, task.compliance, b.response)
     for q in range(len(b.residual)):
         b.residual[q] = b.response[q] - b.overlap[q]
+    sink(b, edges)
 
 
 @compiled(**CALLED)
@@ -238,13 +268,13 @@ def survey(
 
 @compiled(**CALLED)
 def solve(
-    c: Convolution, taps: NDArray, b: Box, task: Task, done: int, rims: Rims | None
+    c: Convolution, taps: NDArray, b: Box, task: Task, done: int, rims: Rims | None, edges: SoftCells
 ) -> tuple[int, bool]:
     """Solve the task on a box, from a residual and a pressure that is within the bounds and carries the load.
 
     Kernel in m/Pa, taps of `inverse_stencil` in Pa/m; rims where cells are covered in part, as `set_rims`
-    left them. Returns the iterations in all, with those done before, and whether there is a step that lowers
-    the energy: if not, rounding allows no more.
+    left them; the edges in this box. Returns the iterations in all, with those done before, and whether there
+    is a step that lowers the energy: if not, rounding allows no more.
     """
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
     margin = rounding(cap, task.total)
@@ -268,21 +298,12 @@ def solve(
             break
         iteration += 1
         before = rho
-        if rims is not None:
-            weigh(b, rims)
-        rho, change, added = precondition(b, taps, b.z)
-        if rims is not None:
-            own, moved, gained = weigh_step(b, rims, b.z)
-            rho += own
-            change += own - moved
-            added += gained
+        weigh_edges(b, edges, taps[0])
+        rho, change, added = _precondition(b, taps, b.z, rims, edges)
         if at_load:
             mark_free(b, cap, level)
-            if rims is not None:
-                weigh(b, rims)
-            units = precondition(b, taps, b.unit)[2]
-            if rims is not None:
-                units += weigh_step(b, rims, b.unit)[2]
+            units = _precondition(b, taps, b.unit, rims, edges)[2]
+            if rims is not None or edges.number[0]:
                 mark_free(b, cap, level)
             rho, change = balance_load(b, added / units, level)
         beta = max(0.0, change / before) if before > 0.0 else 0.0
@@ -297,6 +318,7 @@ def solve(
         if not moving:
             break
         convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)
+        sink_by_step(b, edges)
         further = _yield(b.step, task.compliance, b.response) if task.compliance > 0.0 else 0.0
         curvature = _dot(b.step, b.response)
         if rims is not None:
@@ -314,6 +336,7 @@ def solve(
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
         _advance(b, share, cap, margin)
+        sink_by_share(b, edges, share)
         if rims is not None:
             allowed = max(NEAR * np.sqrt(rho / taps[0]), NEARLY * task.rtol * task.largest)
             follow(b, rims, level, taps[0], allowed)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.at_load import carry
 from asperity.kernels.box import Box, box_room, cut, empty_box, overlap_box, paste
+from asperity.kernels.edges import SoftCells, find_edges, soft_cells
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
 from asperity.kernels.lanes import VECTOR_BYTES, lanes, width
 from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, REASSOCIATE, compiled
@@ -40,6 +41,7 @@ class Room(NamedTuple):
     outer: NDArray  # for the box of the overlap
     inner: NDArray  # for the box of the contact
     rims: Rims | None  # for cells that are covered in part; None where they are whole
+    edges: SoftCells  # for cells at sharp edges
 
 
 class Block(NamedTuple):
@@ -71,13 +73,23 @@ class Block(NamedTuple):
     counts: NDArray  # (4,), solutions, iterations, unconverged and truncated solutions so far
 
 
-def room(known: Influence, nx: int, ny: int, sides: tuple[float, float] | None = None) -> Room:
-    """Make room for solutions on a grid of nx × ny cells, with sides over E*, m/Pa, if covered in part."""
+def room(
+    known: Influence,
+    nx: int,
+    ny: int,
+    sides: tuple[float, float] | None = None,
+    soft: tuple[NDArray, NDArray, NDArray, float] | None = None,
+) -> Room:
+    """Make room for solutions on a grid of nx × ny cells, with sides over E*, m/Pa, if covered in part.
+
+    What is `soft` at edges is given for all rows of a block, as the first fields of `SoftCells`.
+    """
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
     dtype = known.spectra.dtype
     size = box_room(nx, ny, mx, my, width(dtype))
     covered = None if sides is None else rims(*sides, nx * ny, dtype)
-    return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype), covered)
+    edges = soft_cells(soft, nx * ny, dtype)
+    return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype), covered, edges)
 
 
 class Solution(NamedTuple):
@@ -126,6 +138,7 @@ def solve_positions(
 def _set_gap(b: Block, m: int) -> float:
     """Set the gap at a position; return the approach of first touch."""
     plane, gap, lowest = b.planes[m], b.gap, b.room.lowest
+    b.room.edges.row[0] = m * b.stride
     for j in range(len(lowest)):
         lowest[j] = np.inf
     for i in range(gap.shape[0]):
@@ -206,17 +219,17 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     nx, ny = end - first, right - left
     if not is_prepared(known, nx, ny):
         return Solution(False, False, 0, 0.0, 0.0, 0.0, nx, ny)
-    softest = known.softest + compliance * nx * ny
+    outer, everywhere, edges = empty_box(nx, ny, b.room.outer), convolution(known, nx, ny), b.room.edges
+    softest = known.softest + compliance * nx * ny + find_edges(outer, edges, first, left)
     task = Task(hardness, load, compliance, largest, b.rtol, softest, b.max_iterations)
-    outer, everywhere = empty_box(nx, ny, b.room.outer), convolution(known, nx, ny)
     guessed = not _enter(outer, b.gap, approach, b.start, first, left, NOTHING * known.taps[0] * largest)
     if guessed:
         _guess(outer, largest, largest / REACH if load >= 0.0 else largest, known.taps[0])
     if load >= 0.0:
         carry(outer, hardness, load, known.taps[0])
-    true_residual(everywhere, outer, task)
-    if guessed and load < 0.0 and not _scale(outer, hardness):
-        true_residual(everywhere, outer, task)
+    true_residual(everywhere, outer, task, edges)
+    if guessed and load < 0.0 and (not _scale(outer, hardness) or edges.number[0]):
+        true_residual(everywhere, outer, task, edges)
     set_rims(outer, b.room.rims, 0.0, known.taps[0])
     worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
@@ -233,14 +246,16 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
             inner = empty_box(rows, columns, b.room.inner)
             cut(outer, row, column, inner)
             move_rims(inner, b.room.rims, outer.pitch, row, column)
+            find_edges(inner, edges, first + row, left + column)
         iterations, moving = solve(
-            convolution(known, rows, columns), known.taps, inner, task, iterations, b.room.rims
+            convolution(known, rows, columns), known.taps, inner, task, iterations, b.room.rims, edges
         )
         if part:
             paste(inner, outer, row, column)
             move_rims(outer, b.room.rims, inner.pitch, -row, -column)
+            find_edges(outer, edges, first, left)
         if part or not _recurs(outer, b.rtol):
-            true_residual(everywhere, outer, task)
+            true_residual(everywhere, outer, task, edges)
             take_off(outer, b.room.rims)
         worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left

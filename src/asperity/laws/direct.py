@@ -11,6 +11,7 @@ import numpy as np
 
 from asperity.arguments import Array, ArrayLike, NDArray
 from asperity.laws import spec
+from asperity.surfaces.edges import FAR, Edges
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -48,6 +49,8 @@ class Direct:
         m, those of the nearer row.
     drop : float
         That.
+    edges : Edges, optional
+        Sharp edges of these, which lie between rows as they do.
     remedies : tuple of str
         What is made smaller if solutions miss their tolerance, and what to do if the window cuts them off.
     """
@@ -63,6 +66,7 @@ class Direct:
     name: str = "direct"
     faults: Array | None = None
     drop: float = 0.0
+    edges: Edges | None = None
     remedies: tuple[str, str] = "numerics.rtol", 'contact.window = "{:.3g} mm" holds them.'
 
     @cached_property
@@ -72,8 +76,14 @@ class Direct:
 
         return make_interp_spline(np.arange(len(self.heights)), self.heights, k=5)
 
-    def prepare(self, positions: ArrayLike) -> DirectOnPath:
-        """Lay the law out on positions (n,) of the contact, m."""
+    @cached_property
+    def sound(self) -> NDArray[np.bool_]:
+        """Where heights of faults are those of the sound surface beside their edges (rows, ny)."""
+        assert self.edges is not None
+        return self.edges.sound
+
+    def prepare(self, positions: ArrayLike, other: DirectOnPath | None = None) -> DirectOnPath:
+        """Lay the law out on positions (n,) of the contact, m, with what rolls on it where that is rough."""
         from asperity.contact.halfspace import HalfSpace
         from asperity.reduction.texture import grid_index
 
@@ -82,7 +92,7 @@ class Direct:
         grid_index("texture under the contact window", rows, self.start + half * dx, dx, positions)
         index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / dx
         half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness)
-        return DirectOnPath(self, half_space, index - half)
+        return DirectOnPath(self, half_space, index - half, other)
 
 
 class Accepted(NamedTuple):
@@ -103,6 +113,8 @@ class DirectOnPath:
         On which its contacts are solved, one after the other, without making anything anew.
     offsets : ndarray, shape (n,)
         First row of the window at each position; between rows the texture is interpolated.
+    other : DirectOnPath, optional
+        What rolls on it, where that is rough, too.
 
     Attributes
     ----------
@@ -112,14 +124,20 @@ class DirectOnPath:
         Of the last solution, Pa.
     """
 
-    def __init__(self, law: Direct, half_space: HalfSpace, offsets: Array) -> None:
-        self.law, self.half_space, self.offsets = law, half_space, offsets
+    def __init__(
+        self, law: Direct, half_space: HalfSpace, offsets: Array, other: DirectOnPath | None = None
+    ) -> None:
+        self.law, self.half_space, self.offsets, self.other = law, half_space, offsets, other
+        self._sharp = law.edges is not None or (other is not None and other.law.edges is not None)
         heights = np.zeros(half_space.shape)
-        self.block = half_space.block(heights, law.body, np.zeros(1), np.zeros(1), 0, law.rtol)
+        none = np.zeros(half_space.shape)
+        self._without = Edges(none + FAR, none, none, half_space.spacing)
+        soft = half_space.softness(self._without) if self._sharp else None
+        self.block = half_space.block(heights, law.body, np.zeros(1), np.zeros(1), 0, law.rtol, soft=soft)
         self.pressure, self.start = self.block.pressures[:, 0]
         self.counts, self.overlap = self.block.counts, 0.0
-        self.other: DirectOnPath | None = None  # what rolls on it, where that is rough, too
         self._step, self._heights = -1, np.zeros(0)
+        self._edges: Edges | None = None
         self._tried = False  # whether there is a solution of this step
         self._last: Accepted | None = None
         self._before: Accepted | None = None
@@ -127,12 +145,14 @@ class DirectOnPath:
     def evaluate(self, step: int, approach: float) -> tuple[float, float]:
         """Elastic force, N, and its exact tangent dF/dδ, N/m, at a step of the path."""
         force = self.settle(step, approach, 0.0)
-        return force, self.half_space.tangent_stiffness(self.pressure) if force > 0.0 else 0.0
+        space = self.half_space
+        return force, space.tangent_stiffness(self.pressure, edges=self._edges) if force > 0.0 else 0.0
 
     def settle(self, step: int, approach: float, compliance: float) -> float:
         """Elastic force, N, of bodies that yield to it by a compliance, m/N; approach without force, m."""
         if self._step != step:
             self._step, self._heights, self._tried = step, self._under(step), False
+            self._set_edges(step)
         if self._tried:
             self.start[:], self.block.solved[0] = self.pressure, 1
         else:
@@ -187,6 +207,38 @@ class DirectOnPath:
         own = self._rows_at(float(self.offsets[step]))
         return own if self.other is None else own + self.other._under(step)
 
+    def _set_edges(self, step: int) -> None:
+        """Find the edges in the window at a step, of both surfaces if there are two."""
+        self._edges = self._edges_at(step)
+        if self._sharp:
+            room, soft = self.block.room.edges, self.half_space.softness(self._edges or self._without)
+            for each, values in (
+                (room.softness, soft.softness),
+                (room.drop, soft.drop),
+                (room.flow, soft.flow),
+            ):
+                each[:] = values
+
+    def _edges_at(self, step: int) -> Edges | None:
+        own = self._own_edges(float(self.offsets[step]))
+        other = None if self.other is None else self.other._edges_at(step)
+        return own if other is None else other if own is None else own.with_others(other)
+
+    def _own_edges(self, offset: float) -> Edges | None:
+        """Edges in the window from an offset on, if any: distances are straight between rows."""
+        first, count, edges = round(offset), self.law.body.shape[0], self.law.edges
+        if edges is None or (edges.distance[first - 1 : first + count + 1] == FAR).all():
+            return None
+        whole, low = abs(offset - first) < 1e-6, math.floor(offset)
+        low, share = (first, 0.0) if whole else (low, offset - low)
+        return edges.rearranged(
+            lambda field: (
+                (1.0 - share) * field[low : low + count] + share * field[low + 1 : low + 1 + count]
+                if share
+                else field[low : low + count]
+            )
+        )
+
     def _rows_at(self, offset: float) -> Array:
         """Rows of the texture from an offset on; between rows by quintic splines, which keep short waves."""
         first, count = round(offset), self.law.body.shape[0]
@@ -201,7 +253,13 @@ class DirectOnPath:
         low, share = math.floor(offset), offset % 1.0
         before, after = faults[low : low + count], faults[low + 1 : low + 1 + count]
         straight = before + share * (after - before)
-        return np.asarray(rows + np.where(np.abs(after - before) > self.law.drop, nearer, straight))
+        found = np.where(np.abs(after - before) > self.law.drop, nearer, straight)
+        edges = self._own_edges(offset)
+        if edges is not None:
+            was, will_be = self.law.sound[low : low + count], self.law.sound[low + 1 : low + 1 + count]
+            sound = np.where(was & will_be, found, np.maximum(before, after))
+            found = np.where(edges.sound, sound, np.where(was | will_be, np.minimum(before, after), found))
+        return np.asarray(rows + found)
 
     def _between(self, offset: float) -> Array:
         return np.asarray(self.law.between_rows(offset + np.arange(self.law.body.shape[0])))

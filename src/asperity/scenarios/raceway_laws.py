@@ -20,7 +20,7 @@ from asperity.kernels.curves import OVERLAP
 from asperity.kernels.pointforce import Prepared
 from asperity.laws import Law, Need, spec_of
 from asperity.laws.areal import Areal
-from asperity.laws.direct import Direct, DirectOnPath
+from asperity.laws.direct import Direct
 from asperity.laws.hertz import HertzLaw
 from asperity.laws.spec import SteppedLaw
 from asperity.laws.table import Table
@@ -32,6 +32,7 @@ from asperity.scenarios.reducing import chosen_states
 from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
+from asperity.surfaces.edges import Edges
 from asperity.surfaces.faults import Fault
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
 from asperity.surfaces.strip import Rows
@@ -157,10 +158,9 @@ class Closed:
         at = np.asarray(positions, dtype=float)
         if self.ball is None:
             return self.law.prepare(np.mod(at, self.circumference))
-        found = self.law.prepare(np.mod(at[:, 0], self.circumference))
-        assert isinstance(found, DirectOnPath)
-        found.other = self.ball.prepare(np.mod(self.radius * at[:, 1], 2.0 * math.pi * abs(self.radius)))
-        return found
+        assert isinstance(self.law, Direct)
+        on_ball = self.ball.prepare(np.mod(self.radius * at[:, 1], 2.0 * math.pi * abs(self.radius)))
+        return self.law.prepare(np.mod(at[:, 0], self.circumference), on_ball)
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,7 +216,7 @@ class OnRaceway:
     @cached_property
     def scanned_stride(self) -> int:
         """Rows between positions of the scan, whole strides: those of a path, see `table_stride`."""
-        if self.surface.faults.any():
+        if self.surface.damaged.any():
             return self.stride
         apart = min(self.axes[0] / OF_TEXTURE, self.shortest / OF_WAVE) / self.surface.spacing[0]
         times = max(1, math.floor(apart / self.stride * (1.0 + 1e-3)))
@@ -245,7 +245,7 @@ class OnRaceway:
     def _reach(self, surface: Raceway) -> float:
         """How far before and behind the middle a ball may touch over the faults of a surface, m."""
         faults, radius = surface.faults, self.contact.radius_x
-        sound = np.flatnonzero(~faults.any(axis=1))
+        sound = np.flatnonzero(~surface.damaged.any(axis=1))
         longest = surface.spacing[0] * np.diff(np.append(sound, sound[:1] + len(faults))).max(initial=1)
         sinks = min(-float(faults.min()), longest**2 / (8.0 * radius))
         return math.sqrt(2.0 * radius * max(sinks, float(faults.max())))
@@ -260,23 +260,30 @@ class OnRaceway:
         """Roughness and faults (rows + window − 1, lines), m: row i is the window's first about row i."""
         return self._around(self.surface.heights + self.surface.faults, len(self.shape.body) // 2)
 
+    def _edges_in(self, rows: slice) -> Edges | None:
+        """Edges on some rows of `scanned`, if there are any."""
+        at = (np.arange(rows.start, rows.stop) - len(self.shape.body) // 2) % self.rows
+        edges = self.surface.edges
+        return None if edges is None else edges.rearranged(lambda field: field[at])
+
     @staticmethod
     def _around(values: NDArray[Any], beyond: int, axis: int = 0) -> NDArray[Any]:
         """Values with as many from the other end beyond either end of a turn."""
         return np.pad(values, [(beyond, beyond) if i == axis else (0, 0) for i in range(values.ndim)], "wrap")
 
-    def _over(self, at: int) -> Array:
-        """Gap (nx, ny), m, of the smooth ball over the faults at a position."""
-        body = self.shape.body
-        rows = np.arange(len(body)) - len(body) // 2 + self.stride * at
-        return np.asarray(body - self.surface.faults[rows % self.rows])
+    def _over(self, at: int) -> tuple[Array, Edges | None]:
+        """Gap (nx, ny), m, of the smooth ball over the faults at a position, and their edges."""
+        body, edges = self.shape.body, self.surface.edges
+        rows = (np.arange(len(body)) - len(body) // 2 + self.stride * at) % self.rows
+        under = None if edges is None else edges.rearranged(lambda field: field[rows])
+        return np.asarray(body - self.surface.faults[rows]), under
 
     @property
     def positions(self) -> NDArray[np.intp]:
         """Rows on which forces are solved."""
         return np.arange(0, self.rows, self.stride)
 
-    def _met(self, heights: Array) -> NDArray[np.bool_]:
+    def _met(self, heights: NDArray[Any]) -> NDArray[np.bool_]:
         """At which positions the window holds anything of heights (rows, lines)."""
         window = len(self.shape.body)
         rows = np.cumsum(self._around(np.any(heights, axis=1), window // 2))
@@ -286,7 +293,7 @@ class OnRaceway:
     @property
     def cells_over_faults(self) -> float:
         """How many cells the contacts have in all that `over_faults` solves."""
-        met = self._met(self.surface.faults).sum() if self.surface.faults.any() else 0
+        met = self._met(self.surface.damaged).sum() if self.surface.damaged.any() else 0
         return float(met) * self.shape.body.size
 
     @cached_property
@@ -297,9 +304,10 @@ class OnRaceway:
         """
         rtol, start = rtol_for(self.accuracy), None
         smooth = self.space.at_load(self.shape.body, self.load, None, rtol).approach
-        met, felt = self._met(self.surface.faults), np.zeros(len(self.positions))
+        met, felt = self._met(self.surface.damaged), np.zeros(len(self.positions))
         for at in np.flatnonzero(met).tolist():
-            found = self.space.at_load(self._over(at), self.load, start, rtol)
+            gap, edges = self._over(at)
+            found = self.space.at_load(gap, self.load, start, rtol, edges)
             felt[at], start = smooth - found.approach, found.pressure
         return np.interp(np.arange(self.rows), self.positions, felt, period=self.rows)
 
@@ -337,7 +345,7 @@ class OnRaceway:
     @cached_property
     def approaches(self) -> Array:
         """States, from the planes, m: up to eight times the load wherever the raceway is unlike."""
-        felt, sound = self.over_faults[self.positions], np.flatnonzero(~self._met(self.surface.faults))
+        felt, sound = self.over_faults[self.positions], np.flatnonzero(~self._met(self.surface.damaged))
         extreme = [each(values) for each in (np.argmin, np.argmax) for values in (self.touches, felt)]
         few = SAMPLES if self.surface.heights.any() else 1
         window, even = len(self.shape.body), sound[:: max(1, math.ceil(len(sound) / few))]
@@ -357,17 +365,20 @@ class OnRaceway:
         """
         (window, lines), stride = self.shape.body.shape, self.scanned_stride
         step = stride // self.stride
-        new, planes = self._met(self.surface.heights + self.surface.faults)[::step], self.planes[::step]
+        unlike = self.surface.heights.astype(bool) | self.surface.damaged
+        new, planes = self._met(unlike)[::step], self.planes[::step]
         alike = np.zeros((window, lines))
-        runs: list[tuple[Any, Array, Array]] = [] if new.all() else [(~new, alike, np.zeros(1))]
+        runs: list[tuple[Any, Array, Array, Edges | None]] = []
+        if not new.all():
+            runs.append((~new, alike, np.zeros(1), None))
         for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
-            under = self.scanned[first * stride : (stop - 1) * stride + window]
-            runs.append((slice(first, stop), under, planes[first:stop]))
+            rows = slice(first * stride, (stop - 1) * stride + window)
+            runs.append((slice(first, stop), self.scanned[rows], planes[first:stop], self._edges_in(rows)))
         approaches, counts, single = self.approaches[states], list[scan.Counts](), False
         forces = np.empty((len(approaches), len(new)))
-        for state, (at, rows, felt) in product(range(len(approaches)), runs):
+        for state, (at, heights, felt, edges) in product(range(len(approaches)), runs):
             solved = self.shape.body, approaches[state], stride, rtol_for(self.accuracy), felt
-            job = scan.ScanJob(self.space, Rows(rows), *solved)
+            job = scan.ScanJob(self.space, Rows(heights), *solved, edges=edges)
             found = scan.scan_forces(job, cache=self.cache, progress=self.progress)
             forces[state, at] = found.forces[0]
             counts.append(found.counts)
@@ -420,7 +431,8 @@ class OnRaceway:
         at = int(np.argmax(np.abs(felt)))
         for share in OTHER_LOADS:
             approach, followed = self.contact.approach(share * self.load) - felt[at], share * self.load
-            solved = self.space.solve(self._over(at), approach, rtol=rtol_for(self.accuracy))
+            gap, edges = self._over(at)
+            solved = self.space.solve(gap, approach, rtol=rtol_for(self.accuracy), edges=edges)
             worst = max(worst, abs(followed / solved.force - 1.0) if solved.force else 1.0)
             told.append(f"{in_newtons(followed)} where the solved contact has {in_newtons(solved.force)}")
         message = (
@@ -430,19 +442,20 @@ class OnRaceway:
         grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
         OutOfRangeWarning.warn(message, grade)
 
-    def _direct(self, heights: Array, faults: Array, dx: float) -> Direct:
-        """`direct` of closed heights and faults (rows, lines), m, dx apart along."""
+    def _direct(self, heights: Array, faults: Array, edges: Edges | None, dx: float) -> Direct:
+        """`direct` of closed heights and faults (rows, lines), m, with edges, dx apart along."""
         half, dy = len(self.shape.body) // 2, self.surface.spacing[1]
-        closed, edges = (self._around(each, half + 1) for each in (heights, faults))
+        closed, hollow = (self._around(each, half + 1) for each in (heights, faults))
         given = closed, self.shape.body, (dx, dy), self.contact.modulus, -(half + 1) * dx, self.hardness
         drop = float(self.contact.approach(self.load))
         whole = Direct(*given, rtol=rtol_for(self.accuracy), damping=self.damping, remedies=REMEDIES)
-        return replace(whole, faults=edges, drop=drop) if edges.any() else whole
+        sharp = edges and edges.rearranged(lambda field: self._around(field, half + 1))
+        return replace(whole, faults=hollow, edges=sharp, drop=drop) if hollow.any() or sharp else whole
 
     @cached_property
     def direct(self) -> Direct:
         """The law `direct`, once for all balls."""
-        return self._direct(self.wavy, self.surface.faults, self.surface.spacing[0])
+        return self._direct(self.wavy, self.surface.faults, self.surface.edges, self.surface.spacing[0])
 
     def with_ball(self, ball: Raceway, *, forwards: bool) -> Closed:
         """`direct` of it with a ball, whose spots come up as positions rise, or against them."""
@@ -458,8 +471,12 @@ class OnRaceway:
             found = np.asarray(map_coordinates(self._around(values, FRINGE), at, order=order, mode="nearest"))
             return found if forwards else np.roll(found[::-1], 1, axis=0)
 
-        waves, faults = on_cells(ball.heights + ball.line[:, None], 3), on_cells(ball.faults, 1)
-        on_ball = self._direct(waves, faults, ball.circumference / count)
+        waves, faults, edges = on_cells(ball.heights + ball.line[:, None], 3), on_cells(ball.faults, 1), None
+        if ball.edges is not None:
+            fields = (ball.edges.distance, ball.edges.normal, ball.edges.drop)
+            distance, normal, depth = (on_cells(each, 1) for each in fields)
+            edges = Edges(distance, normal, depth, self.surface.spacing)
+        on_ball = self._direct(waves, faults, edges, ball.circumference / count)
         radius = ball.circumference / (2.0 * math.pi) * (1.0 if forwards else -1.0)
         return replace(self.law("direct"), ball=on_ball, radius=radius)
 
@@ -552,7 +569,7 @@ def laws_on(
 ) -> dict[str, Any]:
     """Laws of a ball on a raceway by their names, as from `raceway_laws`; `table` is that of all states."""
     chosen = [one_of("law of a raceway", name, LAWS) for name in names]
-    if on.surface.faults.any() and set(chosen) & {"areal", "hertz"}:
+    if on.surface.damaged.any() and set(chosen) & {"areal", "hertz"}:
         on.warn_of_faults()
     laws: dict[str, Any] = {name: on.law(name) for name in chosen}
     on = replace(on, balls=balls)

@@ -1,20 +1,24 @@
 """Faults of raceways and balls as heights, positive out of the material: pits, spalls, dents, particles."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, ArrayLike, require
+from asperity.arguments import Array, ArrayLike, NDArray, require
 from asperity.errors import OutOfRangeWarning
 from asperity.parameters import Choice, File, Number, Quantity, checked_parameters, parameter
+from asperity.surfaces.edges import FAR, REACH, Edges
 from asperity.surfaces.heightmap import HeightMap
 
 HOLLOWS = ("pit", "spall")
-"""With a flat floor, and edges of their own."""
+"""With a flat floor, and sharp edges along their outline."""
 SHAPES = (*HOLLOWS, "dent", "particle", "mark", "map")
+PARTS = 6
+"""Parts of a cell along and across for the mean depth of one that an edge crosses."""
 LENGTH = Quantity("m", above=0)
 MAP = File(held=(HeightMap,), content="a height map")
 _SIZE = "1 um to 1 m: faults lie between"
@@ -164,6 +168,24 @@ class Fault:
         rim = self.rim * depth / (3.0 * wide * (1.0 + 0.5 * wide))
         return rim * np.sin(np.pi * np.clip((rho - 1.0) / wide, 0.0, 1.0)) ** 2 - depth * bowl**2
 
+    def outline(self, along: ArrayLike, across: ArrayLike) -> tuple[Array, Array]:
+        """Distance from the outline of a pit or spall, m, positive outside, and its normal's part along.
+
+        At places as in `heights`. The distance from an ellipse is right to the second order.
+        """
+        x, y = (abs(each) for each in np.broadcast_arrays(along, across))
+        a, b = 0.5 * self.length, 0.5 * self.width
+        if self.shape == "pit":
+            rho = np.maximum(np.hypot(x / a, y / b), 1e-9)
+            slopes = np.hypot(x / a**2, y / b**2) / rho
+            steepest = np.maximum(slopes, 1e-9 / max(a, b))
+            return (rho - 1.0) / steepest, np.minimum(x / (a**2 * rho * steepest), 1.0)
+        out_x, out_y = x - a, y - b
+        corner = np.hypot(np.maximum(out_x, 0.0), np.maximum(out_y, 0.0))
+        beside = (out_x > 0.0) & (out_y > 0.0)
+        normal = np.where(beside, out_x / np.where(beside, corner, 1.0), out_x >= out_y)
+        return corner + np.minimum(np.maximum(out_x, out_y), 0.0), normal
+
 
 def map_of(source: HeightMap | Path) -> HeightMap:
     """Take a height map, or read it, and fill its missing points."""
@@ -175,34 +197,73 @@ def map_of(source: HeightMap | Path) -> HeightMap:
     return found.filled()  # type: ignore[return-value]
 
 
-def lay(faults: tuple[Fault, ...], shape: tuple[int, int], spacing: tuple[float, float]) -> Array:
-    """Heights (rows, lines), m, of faults on a surface that is closed along its rows, zero elsewhere.
+def lay(
+    faults: tuple[Fault, ...], shape: tuple[int, int], spacing: tuple[float, float]
+) -> tuple[Array, Edges | None]:
+    """Heights (rows, lines), m, of faults on a surface that is closed along its rows, and their sharp edges.
 
-    Row 0 is at angle zero, the path along the middle of the lines. Where faults overlap, heights add up,
-    and a warning says so. Refused are those that no contact on so many lines meets, and those longer than the
-    circumference.
+    Row 0 is at angle zero, the path along the middle of the lines. Where there is no fault, and in cells that
+    an edge crosses, the height is zero. Where faults overlap, heights add up, and a warning says so. Refused
+    are those that no contact on so many lines meets, and those longer than the circumference.
     """
-    result, (rows, lines), (dx, dy), overlap = np.zeros(shape), shape, spacing, False
-    across, around = (np.arange(lines) - lines // 2) * dy, rows * dx
+    result, overlap, edges = np.zeros(shape), False, None
+    if any(fault.shape in HOLLOWS for fault in faults):
+        edges = Edges(np.full(shape, FAR), np.zeros(shape), np.zeros(shape), spacing)
     for fault in faults:
-        (length, width), name = fault.size, f"of the fault, a {fault.shape}"
-        received, most = f"{fault.offset * 1e3:.4g} mm", 0.5 * (lines * dy + width)
-        allowed = f"less than {most * 1e3:.4g} mm: contacts under these loads reach no farther"
-        met = abs(fault.offset) < most
-        require(met, f"offset {name}", received, allowed, "Move it towards the middle of the raceway.")
-        received = f"{length * 1e3:.4g} mm, {fault.count} times"
-        allowed = f"what fits on a circumference of {around * 1e3:.4g} mm"
-        fits = fault.count * length <= around
-        require(fits, f"length {name}", received, allowed, "Shorten it, or lay fewer.")
-        reach = math.ceil(0.5 * length / dx) + 1
-        for k in range(fault.count):
-            middle = (fault.angle / (2.0 * math.pi) + k / fault.count) * rows
-            at = np.arange(round(middle) - reach, round(middle) + reach + 1)
-            laid = fault.heights(((at - middle) * dx)[:, None], across - fault.offset)
-            overlap |= bool(np.any(result[np.mod(at, rows)] * laid))
-            np.add.at(result, np.mod(at, rows), laid)
+        _check_laid(fault, shape, spacing)
+        for rows, along, across in _places(fault, shape, spacing):
+            laid, under = fault.heights(along, across), np.mod(rows, shape[0])
+            if edges is not None and fault.shape in HOLLOWS:
+                sound = _lay_edge(edges, fault, under, (along, across))
+                laid = np.where(sound, np.maximum(laid, 0.0), laid)
+            overlap |= bool(np.any(result[under] * laid))
+            np.add.at(result, under, laid)
     if overlap:
         OutOfRangeWarning.warn(
             "Faults overlap: where they do, their heights add up. Lay them apart, or as one map."
         )
-    return result
+    return result, edges
+
+
+def _check_laid(fault: Fault, shape: tuple[int, int], spacing: tuple[float, float]) -> None:
+    """Refuse a fault that no contact on the surface meets, or that is longer than it."""
+    (rows, lines), (dx, dy), (length, width) = shape, spacing, fault.size
+    name, around = f"of the fault, a {fault.shape}", rows * dx
+    received, most = f"{fault.offset * 1e3:.4g} mm", 0.5 * (lines * dy + width)
+    allowed = f"less than {most * 1e3:.4g} mm: contacts under these loads reach no farther"
+    met = abs(fault.offset) < most
+    require(met, f"offset {name}", received, allowed, "Move it towards the middle of the raceway.")
+    received = f"{length * 1e3:.4g} mm, {fault.count} times"
+    allowed = f"what fits on a circumference of {around * 1e3:.4g} mm"
+    fits = fault.count * length <= around
+    require(fits, f"length {name}", received, allowed, "Shorten it, or lay fewer.")
+
+
+def _places(
+    fault: Fault, shape: tuple[int, int], spacing: tuple[float, float]
+) -> Iterator[tuple[NDArray[Any], Array, Array]]:
+    """Rows about each of the faults alike, and their places along (rows, 1) and across (lines,), m."""
+    (rows, lines), (dx, dy) = shape, spacing
+    across = np.asarray((np.arange(lines) - lines // 2) * dy - fault.offset)
+    margin = REACH * (dx + dy) if fault.shape in HOLLOWS else dx
+    reach = math.ceil(0.5 * fault.size[0] / dx) + math.ceil(margin / dx)
+    for k in range(fault.count):
+        middle = (fault.angle / (2.0 * math.pi) + k / fault.count) * rows
+        at = np.arange(round(middle) - reach, round(middle) + reach + 1)
+        yield at, np.asarray(at - middle)[:, None] * dx, across
+
+
+def _lay_edge(
+    edges: Edges, fault: Fault, under: NDArray[Any], places: tuple[Array, Array]
+) -> NDArray[np.bool_]:
+    """Write the edge of a fault where it is the next one; return which cells are sound at least in part."""
+    distance, normal = fault.outline(*places)
+    own, (dx, dy) = Edges(distance, normal, np.zeros(distance.shape), edges.spacing), edges.spacing
+    nearer = distance < edges.distance[under]
+    edges.distance[under] = np.where(nearer, distance, edges.distance[under])
+    edges.normal[under] = np.where(nearer, normal, edges.normal[under])
+    parts = (np.arange(PARTS) + 0.5) / PARTS - 0.5
+    heights = [fault.heights(places[0] + i * dx, places[1] + j * dy) for i in parts for j in parts]
+    depth = np.mean(np.maximum(np.negative(heights), 0.0), axis=0)
+    edges.drop[under] += np.where(own.crossed, depth, 0.0)
+    return own.sound

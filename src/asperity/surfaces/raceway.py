@@ -10,6 +10,7 @@ from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, NDArray, finite_array, require, two_lengths
 from asperity.parameters import File, ListOf, Number, Quantity, checked_parameters, parameter
+from asperity.surfaces.edges import Edges
 from asperity.surfaces.faults import LENGTH, MAP, Fault, lay, map_of
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import likeness
@@ -181,6 +182,8 @@ class Raceway:
         Long waves, m, the same all across, that contacts follow as a plane.
     faults : (rows, lines) array, optional
         Heights of faults, m, zero elsewhere.
+    edges : Edges, optional
+        Sharp edges of faults: in cells that they cross, heights are those of the sound surface.
 
     Raises
     ------
@@ -192,6 +195,7 @@ class Raceway:
     spacing: tuple[float, float]
     line: Array = None  # type: ignore[assignment]  # zeros, as the next
     faults: Array = None  # type: ignore[assignment]
+    edges: Edges | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "spacing", two_lengths("spacing of the raceway", self.spacing))
@@ -202,6 +206,12 @@ class Raceway:
             object.__setattr__(self, name, finite_array(what, values, "finite heights", shape=expected))
         allowed = "8 rows or more, and an odd number of lines, so that one is the middle"
         require(shape[0] >= 8 and shape[1] % 2, "heights of the raceway", f"shape {shape}", allowed)
+
+    @property
+    def damaged(self) -> NDArray[np.bool_]:
+        """Where faults or their edges are (rows, lines)."""
+        hollow = self.faults != 0.0
+        return hollow if self.edges is None else hollow | self.edges.crossed
 
     @property
     def circumference(self) -> float:
@@ -232,4 +242,5 @@ def raceway(
     heights = texture.rough(shape, spacing, seed) if texture.is_rough else np.zeros(shape)
     if (waves * ~long).any():
         heights = heights + fft.irfft(waves * ~long, rows)[:, None]
-    return Raceway(heights, spacing, fft.irfft(waves * long, rows), lay(tuple(faults), shape, spacing))
+    laid, edges = lay(tuple(faults), shape, spacing)
+    return Raceway(heights, spacing, fft.irfft(waves * long, rows), laid, edges)

@@ -1,0 +1,173 @@
+"""How much more a cell that a sharp edge crosses gives way: the curves of `contact.edges`.
+
+    python benchmarks/cell_edges.py            # the curves, as they stand in contact/edges.py
+    python benchmarks/cell_edges.py --check    # against flat punches and finer grids
+
+Near the straight edge of what carries, the pressure on an elastic half-space is A/√d at a distance d from
+it, whatever presses, and displaces all that carries alike: by U; beyond the edge by 4A/E* √|d| less. On
+cells, its means p̄ displace the middle of a cell by Σ K p̄. What is missing to U, over the mean pressure of
+the cell, is the compliance that makes the means of the true pressure solve the contact on cells:
+
+    γ/E* = (U − Σ K p̄)/p̄.
+
+Over the width w of the cell along the normal of the edge, γ is a function of the distance of the cell's
+middle from the edge over w, and of the slant, the smaller over the larger of the two parts |n_x| dx and
+|n_y| dy of w; how long the cells are for their width makes no difference that matters (`--check`). What is
+kept is κ = 1/(1 + γ/w), from 0 where nothing of the cell carries to 1. It is not let above: a cell that
+gave way by less than a whole one would take the proof that energy is convex away.
+
+Cells next to those that are crossed should give way by up to 0.2 w less or more. Where the edge is slanted
+this averages out along it. Along the grid it does not: whole cells up to an edge on their border act as if
+they ended 0.174 of a cell before it. There one row of cells is made as soft as makes the whole punch right:
+that of a flat strip in plane strain, whose approach under a load P per length is −(2/π) P/E* ln(a/2), gives
+its half-width a away. The row is that whose middles lie from 0.33 cells before the edge to 0.67 beyond it.
+"""
+
+import argparse
+import math
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from asperity import HalfSpace
+from asperity.contact.edges import KNOTS, PER_UNIT, SLANTS
+from asperity.kernels.influence import cell_displacement
+from asperity.surfaces.edges import FIRST, Edges
+
+AROUND, PARTS = 15, 21
+"""Cells about one, whose pressure is taken part by part, and parts of a cell; both odd."""
+STRIP = 40
+"""Rows of cells across a strip."""
+NEAR = 0.13
+"""Place of the edge up to which parts are too coarse: it is close to where displacements are taken."""
+
+
+def means(distance, normal, places, sides, power=-0.5):
+    """Means over cells at places (x, y), m, of (distance + n·r)₊ to a power."""
+    along = distance + normal[0] * places[0] + normal[1] * places[1]
+    wide, narrow = sorted((0.5 * abs(n) * side for n, side in zip(normal, sides, strict=True)), reverse=True)
+    one, two = power + 1.0, power + 2.0
+    if narrow < 1e-6 * wide:
+        ends = (np.maximum(along + s * wide, 0.0) ** one for s in (1, -1))
+        return np.subtract(*ends) / (2.0 * wide * one)
+    corners = [
+        s * t * np.maximum(along + s * wide + t * narrow, 0.0) ** two for s in (1, -1) for t in (1, -1)
+    ]
+    return sum(corners) / (4.0 * wide * narrow * one * two)
+
+
+def grid(number, sides):
+    """Middles (x, y) of so many cells each way, m."""
+    return np.meshgrid(*((np.arange(number) - 0.5 * (number - 1)) * side for side in sides), indexing="ij")
+
+
+def more_compliant(distance, normal, sides, parts=PARTS):
+    """Length γ of a cell of these sides, m, whose middle is at a distance, m, from an edge."""
+    fine = tuple(side / parts for side in sides)
+    coarse_places, fine_places = grid(AROUND, sides), grid(AROUND * parts, fine)
+    pressure = means(distance, normal, coarse_places, sides)
+    true = (cell_displacement(*fine_places, *fine) * means(distance, normal, fine_places, fine)).sum()
+    on_cells = (cell_displacement(*coarse_places, *sides) * pressure).sum()
+    beyond = 4.0 * math.sqrt(max(-distance, 0.0))
+    return ((true - on_cells) / math.pi + beyond) / pressure[AROUND // 2, AROUND // 2]
+
+
+def kept(ratio, slant, sides=(1.0, 1.0), swapped=False):
+    """κ of a cell at a distance over its width, and a slant."""
+    parts = np.array([slant, 1.0] if swapped else [1.0, slant]) / sides
+    normal = parts / np.hypot(*parts)
+    width = float(normal @ sides)
+    return 1.0 / (1.0 + max(more_compliant(ratio * width, normal, sides) / width, 0.0))
+
+
+def half_width(softness):
+    """Half-width as which `STRIP` rows of cells act, with one more on either side of a softness γ/w."""
+    ends = np.arange(STRIP + 3) - 0.5
+    logs = np.sign(ends) * np.abs(ends) * (np.log(np.abs(ends)) - 1.0)
+    apart = np.abs(np.subtract.outer(np.arange(STRIP + 2), np.arange(STRIP + 2)))
+    matrix = -2.0 / math.pi * np.diff(logs)[apart]
+    matrix[[0, -1], [0, -1]] += softness
+    force = np.linalg.solve(matrix, np.ones(STRIP + 2)).sum()
+    return 2.0 * math.exp(-0.5 * math.pi / force)
+
+
+def kept_along(ratio):
+    """κ of cells along an edge of the grid."""
+    wanted = 0.5 * STRIP + 0.5 + ratio
+    if half_width(1e9) >= wanted:
+        return 0.0
+    return 1.0 if half_width(0.0) <= wanted else brentq(lambda k: half_width(1.0 / k - 1.0) - wanted, 1e-9, 1)
+
+
+def kept_across(ratios, slant):
+    """κ of cells at places over their widths, of a slanted edge."""
+    apart = (ratios > -0.499) & (np.abs(ratios) > NEAR)  # between, what is smooth there is interpolated
+    values = np.array([kept(ratio, slant) for ratio in ratios[apart]])
+    return np.where(ratios > -0.499, CubicSpline(ratios[apart], values)(ratios), 0.0)
+
+
+def print_curves():
+    """Print the curves."""
+    ratios = FIRST + np.arange(KNOTS) / PER_UNIT
+    slants = np.linspace(0.0, 1.0, SLANTS)[1:] ** 2
+    curves = [[kept_along(ratio) for ratio in ratios], *(kept_across(ratios, slant) for slant in slants)]
+    found = np.clip(curves, 0.0, 1.0)
+    text = np.array2string(
+        found.round(4), separator=", ", max_line_width=100, formatter={"float": "{:.4f}".format}
+    )
+    print(f"KEPT = np.array({text})")
+
+
+def punch(shape, spacing, middle, distance_and_normal, sharp=True):
+    """Stiffness of a flat punch on a half-space of unit modulus: E* times a length."""
+    x, y = ((np.arange(n) - n // 2 - o) * h for n, o, h in zip(shape, middle, spacing, strict=True))
+    distance, normal = distance_and_normal(*np.meshgrid(x, y, indexing="ij"))
+    edges = Edges(distance, normal, np.ones(shape) * 1e3, spacing)
+    carries = edges.sound if sharp else distance > 0.0
+    half_space = HalfSpace(shape, spacing, 1.0)
+    return half_space.solve(
+        np.where(carries, 0.0, 1e3), approach=1.0, rtol=1e-8, edges=edges if sharp else None
+    ).force
+
+
+def check():
+    """Tell what cells of other sides would ask for, and how punches are met."""
+    for ratio, slant in ((-0.3, 0.0), (-0.3, 0.3), (0.0, 0.1), (0.0, 1.0), (0.2, 0.3)):
+        values = [
+            kept(ratio, slant, (1.0, long), swapped) for long in (1.0, 3.0, 8.0) for swapped in (False, True)
+        ]
+        print(
+            f"distance {ratio:4.1f}, slant {slant:.1f}: kept {min(values):.3f} to {max(values):.3f} "
+            "on cells to 1 : 8"
+        )
+    rng = np.random.default_rng(0)
+    for spacing in ((1.0, 1.0), (1.0, 3.0)):
+        for cells in (4.0, 8.0, 16.0):
+            errors = {True: [], False: []}
+            for _ in range(20):
+                radius = cells * spacing[1] * (1.0 + 0.25 * rng.random())
+                shape = tuple(2 * math.ceil(radius / h + 2) + 1 for h in spacing)
+
+                def disc(x, y, radius=radius):
+                    r = np.hypot(x, y) + 1e-12
+                    return radius - r, np.abs(x) / r
+
+                middle = rng.random(2) - 0.5
+                for sharp, found in errors.items():
+                    found.append(punch(shape, spacing, middle, disc, sharp) / (2.0 * radius) - 1.0)
+            words = [
+                f"{100 * np.mean(each):.2f} ± {100 * np.std(each):.2f}, "
+                f"at most {100 * np.abs(each).max():.2f} %"
+                for each in errors.values()
+            ]
+            print(
+                f"disc of {cells:.0f} to {1.25 * cells:.0f} cells {spacing}: with edges {words[0]}, "
+                f"whole cells {words[1]}"
+            )
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true")
+    check() if parser.parse_args().check else print_curves()

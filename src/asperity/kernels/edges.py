@@ -1,0 +1,137 @@
+"""Cells that a sharp edge of a surface crosses: they give way by more than a pressure all over them would.
+
+Beyond a deep edge nothing carries, and towards it the pressure rises as one over the root of the distance.
+A cell then sinks by its softness times its pressure more than a cell among others, at most by its drop, the
+mean depth below the sound surface: on that, all of it carries. Where surfaces flow at a hardness, the sound
+part of the cell does so at its share of that: from there on the cell yields some tens of times as much as
+others. What such cells sink grows with their pressure, so that the energy stays convex, and its least stays
+the solution.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from asperity.kernels.box import FAR, Box
+from asperity.kernels.options import CALLED, INNER, compiled
+
+
+class SoftCells(NamedTuple):
+    """Softness of the cells of a block, and those of a box that have any, one after the other."""
+
+    softness: NDArray  # (rows, ny), m/Pa, zero far from edges; (0, 0) where there is no edge at all
+    drop: NDArray  # likewise, the most by which a cell sinks, m
+    flow: NDArray  # likewise, pressure at which its sound part flows, Pa
+    yielding: float  # by how much more a cell sinks beyond that, m/Pa
+    row: NDArray  # (1,), row of these at which the window begins
+    number: NDArray  # (1,), number of cells listed
+    cell: NDArray  # their places in the box
+    soft: NDArray  # m/Pa
+    most: NDArray  # m
+    flows: NDArray  # Pa
+    sunk: NDArray  # by how much a cell has sunk, m, which is on the residual
+    step: NDArray  # and what the last step added, m
+    weight: NDArray  # of the cell where steps are preconditioned
+
+
+def soft_cells(
+    soft: tuple[NDArray, NDArray, NDArray, float] | None, count: int, dtype: DTypeLike
+) -> SoftCells:
+    """Make room for the edges of a block in a window of so many cells."""
+    room = 0 if soft is None else count
+    none = np.zeros((0, 0))
+    softness, drop, flow, yielding = (none, none, none, 0.0) if soft is None else soft
+    row, number = np.zeros((2, 1), dtype=np.int64)
+    places: NDArray = np.zeros(room, dtype=np.int64)
+    fields: NDArray = np.zeros((6, room), dtype=dtype)
+    return SoftCells(softness, drop, flow, yielding, row, number, places, *fields)
+
+
+@compiled(**INNER)
+def sunk_by(edges: SoftCells, k: int, pressure: float) -> float:
+    """By how much a cell at an edge sinks under a pressure, Pa; m."""
+    flowing = edges.yielding * max(pressure - edges.flows[k], 0.0)
+    return min(edges.soft[k] * pressure + flowing, edges.most[k])
+
+
+@compiled(**CALLED)
+def find_edges(b: Box, edges: SoftCells, first: int, left: int) -> float:
+    """List the cells of a box at edges, with what they have sunk; return the largest softness, m/Pa.
+
+    The box begins at a row and column of the window.
+    """
+    found, softest = 0, 0.0
+    if len(edges.softness):
+        for i in range(b.nx):
+            row = edges.row[0] + first + i
+            for j in range(b.ny):
+                soft = edges.softness[row, left + j]
+                if soft > 0.0:
+                    edges.cell[found] = i * b.pitch + j
+                    edges.soft[found], edges.most[found] = soft, edges.drop[row, left + j]
+                    edges.flows[found] = min(edges.flow[row, left + j], FAR)
+                    edges.sunk[found] = sunk_by(edges, found, b.pressure[i * b.pitch + j])
+                    found += 1
+                    softest = max(softest, soft + edges.yielding)
+    edges.number[0] = found
+    return softest
+
+
+@compiled(**INNER)
+def sink(b: Box, edges: SoftCells) -> None:
+    """Add what cells at edges sink under the pressure to a residual that lacks it."""
+    for k in range(edges.number[0]):
+        q = edges.cell[k]
+        edges.sunk[k] = sunk_by(edges, k, b.pressure[q])
+        b.residual[q] += edges.sunk[k]
+
+
+@compiled(**INNER)
+def sink_by_step(b: Box, edges: SoftCells) -> None:
+    """Add what the whole step lets cells at edges sink to its response."""
+    for k in range(edges.number[0]):
+        q = edges.cell[k]
+        edges.step[k] = sunk_by(edges, k, b.pressure[q] + b.step[q]) - edges.sunk[k]
+        b.response[q] += edges.step[k]
+
+
+@compiled(**INNER)
+def sink_by_share(b: Box, edges: SoftCells, share: float) -> None:
+    """Correct the residual after a share of a step: what cells sink is no straight line of the pressure."""
+    for k in range(edges.number[0]):
+        q = edges.cell[k]
+        now = sunk_by(edges, k, b.pressure[q])
+        b.residual[q] += now - edges.sunk[k] - share * edges.step[k]
+        edges.sunk[k] = now
+
+
+@compiled(**INNER)
+def weigh_edges(b: Box, edges: SoftCells, stiffness: float) -> None:
+    """Find how much less than others, of a stiffness in Pa/m, cells at edges that give way shall be moved."""
+    for k in range(edges.number[0]):
+        softer = edges.soft[k] if edges.sunk[k] < edges.most[k] else 0.0
+        if softer > 0.0 and b.pressure[edges.cell[k]] > edges.flows[k]:
+            softer += edges.yielding
+        edges.weight[k] = 1.0 / np.sqrt(1.0 + softer * stiffness)
+
+
+@compiled(**INNER)
+def weigh_masked(b: Box, edges: SoftCells) -> None:
+    """Weigh what is masked."""
+    margin = (len(b.masked) - len(b.residual)) // 2
+    for k in range(edges.number[0]):
+        b.masked[margin + edges.cell[k]] *= edges.weight[k]
+
+
+@compiled(**INNER)
+def weigh_target(b: Box, edges: SoftCells, target: NDArray) -> tuple[float, float]:
+    """Weigh a preconditioned residual likewise; return what previous·target and its sum lose."""
+    moved, total = 0.0, 0.0
+    for k in range(edges.number[0]):
+        q = edges.cell[k]
+        lost = target[q] * (1.0 - edges.weight[k])
+        target[q] -= lost
+        moved += b.previous[q] * lost
+        total += lost
+    return moved, total

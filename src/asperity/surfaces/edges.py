@@ -1,0 +1,101 @@
+"""Sharp edges of a surface on a grid: how far cells are from them, and which they cross."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.arguments import Array, NDArray, finite_array, require, two_lengths
+
+REACH = 1.5
+"""Distance from an edge, over the sides of a cell together, up to which it has to be known."""
+FIRST = -0.7
+"""Place, in widths of a cell, of the first beyond an edge that takes a part of what those before it carry."""
+FAR = 1.0
+"""Distance, m, where there is no edge."""
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """Sharp edges on a grid of heights, as the outline of a pit has.
+
+    In a cell that an edge crosses only the part before the edge carries, so that where the edge lies within
+    the cell matters. The heights there are those of the sound surface, as in cells just beyond it.
+
+    Parameters
+    ----------
+    distance : (rows, lines) array
+        Of the middles of cells from the next edge, m: positive where the surface is sound. What is farther
+        than `REACH` sides of a cell may as well be `FAR`.
+    normal : (rows, lines) array
+        Part along the rows of a unit vector across that edge, from 0 to 1.
+    drop : (rows, lines) array
+        Mean depth of the cells that are crossed below the sound surface, m.
+    spacing : (float, float)
+        Distances (dx, dy), m, of rows and lines.
+
+    Raises
+    ------
+    InputError
+        If shapes do not fit or values are not finite.
+    """
+
+    distance: Array
+    normal: Array
+    drop: Array
+    spacing: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "spacing", two_lengths("spacing of edges", self.spacing))
+        distance = finite_array("distance from edges", self.distance, "finite lengths, m", shape=(None, None))
+        object.__setattr__(self, "distance", distance)
+        for name, allowed, most in (("normal", "numbers from 0 to 1", 1.0), ("drop", "depths, m", np.inf)):
+            what = f"{name} of edges"
+            values = finite_array(what, getattr(self, name), allowed, shape=distance.shape)
+            least, largest = float(values.min(initial=0.0)), float(values.max(initial=0.0))
+            require(least >= 0.0 and largest <= most, what, f"{least:.4g} to {largest:.4g}", allowed)
+            object.__setattr__(self, name, values)
+
+    @property
+    def sides(self) -> Array:
+        """What the two sides of a cell are along the normal (2, rows, lines), m: its width, added up."""
+        along, across = self.spacing
+        return np.stack([self.normal * along, np.sqrt(np.maximum(1.0 - self.normal**2, 0.0)) * across])
+
+    @property
+    def places(self) -> Array:
+        """Distances of the middles of cells from the edge over their width along its normal (rows, lines)."""
+        return np.asarray(self.distance / self.sides.sum(axis=0))
+
+    @property
+    def sound(self) -> NDArray[np.bool_]:
+        """Cells with the heights of the sound surface, though they may lie beyond the edge in part."""
+        return np.asarray(self.places > FIRST)
+
+    @property
+    def crossed(self) -> NDArray[np.bool_]:
+        """Those of them that give way more than others, because an edge crosses them or is close."""
+        return np.asarray(self.sound & (self.places < 0.5))
+
+    @property
+    def shares(self) -> Array:
+        """Shares of cells (rows, lines) that lie before the edge, as if that were straight."""
+        near, far = 0.5 * np.sort(self.sides, axis=0)
+        near, share = np.maximum(near, 1e-6 * far), np.zeros(far.shape)
+        for sign, end in ((1, far + near), (-1, far - near), (-1, near - far), (1, -far - near)):
+            share += sign * np.maximum(self.distance + end, 0.0) ** 2
+        found = share / (8.0 * near * far)
+        return np.where(np.abs(self.places) < 0.5, found, (self.distance > 0.0).astype(float))
+
+    def rearranged(self, rearrange: Callable[[Array], Array]) -> "Edges":
+        """Edges with all fields rearranged alike, as some rows of them are."""
+        distance, normal, drop = (rearrange(each) for each in (self.distance, self.normal, self.drop))
+        return Edges(distance, normal, drop, self.spacing)
+
+    def with_others(self, others: "Edges") -> "Edges":
+        """Edges of two surfaces that meet: in each cell the next one; what is lost adds up."""
+        own = self.distance < others.distance
+        distance, normal = (
+            np.where(own, *each) for each in ((self.distance, others.distance), (self.normal, others.normal))
+        )
+        return Edges(distance, normal, self.drop + others.drop, self.spacing)
