@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import runpy
 import sys
 from pathlib import Path
@@ -37,11 +38,39 @@ def rail(file: Path) -> None:
     plt.gcf().savefig(file, dpi=200)
 
 
+def measured(file: Path) -> None:
+    """Draw the sections with rail dampers less the one without: measured, predicted, and kept back."""
+    with (HERE.parent / "docs/evidence/railway_sections.csv").open(encoding="utf-8") as lines:
+        rows = list(csv.DictReader(lines))
+    titles = list(dict.fromkeys(row["section"] for row in rows))
+    figure, panels = plt.subplots(1, len(titles), figsize=(8.4, 2.8), sharey=True, layout="constrained")
+    for axes, title in zip(panels, titles, strict=True):
+        own = [row for row in rows if row["section"] == title]
+        band, middle, low, high = (
+            [float(row[name]) for row in own]
+            for name in ("band (Hz)", "predicted (dB)", "low (dB)", "high (dB)")
+        )
+        axes.fill_between(band, low, high, alpha=0.25, lw=0)
+        axes.semilogx(band, middle)
+        told = [
+            (b, float(row["measured (dB)"])) for b, row in zip(band, own, strict=True) if row["measured (dB)"]
+        ]
+        if told:
+            axes.semilogx(*zip(*told, strict=True), "ko", ms=3)
+        axes.axhline(0.0, color="0.5", lw=0.6)
+        axes.set(title=title, xlabel="band / Hz")
+        axes.set_xticks([250.0, 1000.0, 4000.0], ["250", "1000", "4000"])
+        axes.minorticks_off()
+    panels[0].set_ylabel("less reference / dB")
+    figure.savefig(file, dpi=200)
+
+
 def main(folder: Path = HERE) -> None:
     """Draw all figures into a folder."""
     mpl.use("agg")
     laws(folder / "laws.png")
     rail(folder / "rail.png")
+    measured(folder / "measured.png")
 
 
 if __name__ == "__main__":

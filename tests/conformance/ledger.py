@@ -5,6 +5,7 @@
 Expected values come from outside: closed forms evaluated by mpmath, printed values, other programs.
 """
 
+import csv
 import importlib
 import inspect
 import math
@@ -21,7 +22,10 @@ from asperity.errors import PhysicsWarning
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
 
-PAGE = Path(__file__).parents[2] / "CONFORMANCE.md"
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "CONFORMANCE.md"
+MEASURED = sorted((ROOT / "docs" / "evidence").glob("measured_*.csv"))
+"""What pages of measurements found: columns what, source, measured, computed and deviation, as text."""
 ROOMS = {
     "contacts": "Contact",
     "frictions": "Friction",
@@ -118,6 +122,23 @@ def row(check: Check) -> str:
     return f"| {check.what} | {check.source} | {expected}{unit} | {obtained}{unit} | {tolerance} |"
 
 
+def measured() -> str:
+    """What was measured beside what was computed, as the pages of evidence wrote it; it may miss."""
+    rows = []
+    for file in MEASURED:
+        with file.open(encoding="utf-8") as lines:
+            rows += [f"| {' | '.join(each.values())} |" for each in csv.DictReader(lines)]
+    head = """
+## Measured
+
+Deviations as they are, misses with the rest: nothing here has a tolerance. Written by the commands of the
+pages of evidence.
+
+| what | measured by | measured | computed | deviation |
+|---|---|---:|---:|---:|"""
+    return "\n".join([head, *rows])
+
+
 def page() -> str:
     """The ledger as it is computed now."""
     parts, count = [], 0
@@ -134,7 +155,7 @@ Written by `python tests/conformance/ledger.py`, checked by every run of the tes
 are relative; where one is above rounding, the row says why: the grid, the digits printed, or the limits of
 the closed form.
 """
-    return head + "\n".join(parts) + "\n"
+    return head + "\n".join([*parts, measured()]) + "\n"
 
 
 if __name__ == "__main__":
