@@ -227,3 +227,14 @@ def test_of_samples_and_path_it_is_the_first_touch_of_the_path(chain):
     ensemble = chain.reduction.ensemble
     assert ensemble.datum == chain.reduction.datums["samples"]
     assert not ensemble.forces[:, ensemble.states <= 0.0].any()
+
+
+def test_where_no_law_filters_a_line_every_third_state_has_the_filter_of_all(tree, runs):
+    whole, few = (each["contact"]["filter"].values for each in (tree, runs(case_of(laws=["hertz"]))))
+    there = np.isfinite(few).all(axis=1)
+    states = np.flatnonzero(np.isfinite(whole).all(axis=1))
+    assert np.array_equal(np.diff(np.flatnonzero(there)), np.full(there.sum() - 1, 3))
+    assert there.sum() in (len(states) // 3, len(states) // 3 + 1)
+    passed = whole[there] > 0.1
+    off = 20.0 * np.log10(few[there][passed] / whole[there][passed])
+    assert np.abs(off).max() < 0.02

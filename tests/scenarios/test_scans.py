@@ -49,11 +49,11 @@ def prepared_of(case=CASE, spacing="10 um", **keys):
 @pytest.mark.parametrize("spacing", ["10 um", pytest.param("6 um", marks=pytest.mark.long)])
 def test_sizes_and_states_are_those_of_the_run(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
-    prepared = prepared_of(spacing=spacing, duration="2 ms")
+    prepared = prepared_of(spacing=spacing, duration="2 ms", laws=["table", "shifted"])
     sizes = scan_sizes(prepared)
     expected = sizes["path"]
     tried = try_contacts(prepared, quiet)
-    compute(prepared_of(spacing=spacing, duration="2 ms", laws=["areal"]), quiet)
+    compute(prepared_of(spacing=spacing, duration="2 ms", laws=["shifted"]), quiet)
     of_filters = Store().size()
     computed = compute(prepared, quiet)
     scanned, reduction = computed.scan, computed.reduction

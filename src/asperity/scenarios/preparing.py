@@ -135,7 +135,9 @@ def scans_of(prepared: PreparedCase, states: Array) -> dict[str, list[ScanJob]]:
 
     found = {}
     if strips := [strip for strip in textures.strips if strip.heights.any()]:
-        found["filters"] = scans(strips, slice(None), reducing.filter_stride(shape), FILTER_SHARE)
+        every = 1 if Need.FILTER in needs_of(case.laws) else reducing.SHOWN
+        shown = slice((len(states) - 1) % every, None, every)
+        found["filters"] = scans(strips, shown, reducing.filter_stride(shape), FILTER_SHARE)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
         visited = slice(None)
         if case.contact.approaches is None:

@@ -267,6 +267,8 @@ LEAST_LONG_WAVES = 0.5
 """Least share of the lines' power at such wavenumbers for which the printed asymptote is one."""
 LARGEST_MISS = 1.0
 """Largest distance of an applied filter from its fit that passes without a warning, dB."""
+SHOWN = 3
+"""States to one with a filter, counted from the highest, where no law filters a line."""
 SMOOTH_WAVENUMBERS = 120
 """Wavenumbers of the closed-form filter where a case has no texture."""
 
@@ -288,18 +290,21 @@ def line_filters(
 ) -> tuple[LineFilters, scan.Counts]:
     """Scan the strips, and design a filter for every normalisation that a law needs, or that is shown.
 
-    That of the tangent stiffness is shown in any case, unless the case names another. States whose mean force
-    is out of `filtered_loads` have no filter. Filters of bodies without texture are sin q/q in closed form.
+    That of the tangent stiffness is shown in any case, unless the case names another: in one of `SHOWN`
+    states, if no law needs one. States whose mean force is out of `filtered_loads` have no filter. Filters of
+    bodies without texture are sin q/q in closed form.
     """
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     contact, dx, force = case.contact, shape.spacing[0], ensemble.mean_force
+    needing = [spec for spec in map(spec_of, case.laws) if Need.FILTER in spec.needs]
     least, largest = filtered_loads(contact, shape)
     loaded = (force >= least) & (force <= largest)
+    if not needing:
+        loaded = np.isin(np.arange(len(force)), np.flatnonzero(loaded)[::-SHOWN])
     approaches, tangent = ensemble.approaches[loaded], ensemble.curve.stiffness(ensemble.approaches[loaded])
     axes = np.array([shape.axes(f) for f in force[loaded]])
-    filtered = (spec for spec in map(spec_of, case.laws) if Need.FILTER in spec.needs)
     shown: filter.Normalise = contact.normalise or "tangent"  # type: ignore[assignment]
-    needed = dict.fromkeys([shown, *(normalisation(contact, spec) for spec in filtered)])
+    needed = dict.fromkeys([shown, *(normalisation(contact, spec) for spec in needing)])
     if not any(np.ptp(strip.heights) for strip in textures.strips):
         wavenumber = np.geomspace(0.01, 2.0, SMOOTH_WAVENUMBERS) / axes[:, 0].max()
         smooth = filter.closed_form(approaches, wavenumber, axes[:, 0], tangent)
