@@ -1,6 +1,7 @@
 """A time step that the case leaves to the program is never doubted by the program."""
 
 import json
+import math
 import warnings
 
 import pytest
@@ -86,3 +87,14 @@ def test_the_default_step_of_a_bearing_follows_light_rings_and_their_modes(rings
     with PhysicsWarning.caught() as caught:
         rolled(prepare_bearing(case), lambda *done: None)
     assert not [each for each in caught if any(words in str(each.message) for words in DOUBT)]
+
+
+def test_the_default_step_of_a_bearing_has_four_to_a_period_of_the_highest_lobe():
+    """A thin ring: n (n² − 1)/√(n² + 1) √(EI/(ρA R⁴))/2π, R to the middle of its section."""
+    keys = {"kind": "ball-bearing", "speed": "18000 1/min", "radial": "300 N", "bearing": {"name": "6205"}}
+    case = as_case(keys | {"housing": {"lobes": 20, "thickness": "3 mm", "mass": "1 kg"}})
+    bearing, n = case.bearing.bearing, 20
+    radius = bearing.raceway_radii[1] + 1.5e-3
+    bending = math.sqrt(bearing.material.youngs_modulus / bearing.material.density / 12.0) * 3e-3 / radius**2
+    highest = n * (n**2 - 1) / math.sqrt(n**2 + 1) * bending / (2.0 * math.pi)
+    assert 0.5 < 4.0 * highest * case.step <= 1.0

@@ -181,3 +181,11 @@ test_messages_about_signals = refusals(
     (lambda: find_lines(envelope_spectrum(noise(), RATE), 50.0, slip=0.5), "slip"),
     (lambda: band_velocities(noise(), RATE, quantity="force"), "one of velocity, acceleration"),
 )  # fmt: skip
+
+
+def test_harmonics_tell_the_deviation_the_more_closely():
+    """Bins of 1 Hz next to 100.4 Hz and its multiples: their sum over that of the orders is exact."""
+    frequency, amplitude = np.arange(1000.0), np.full(1000, 1e-3)
+    amplitude[[100, 201, 301, 402, 502]] = 1.0
+    found = find_lines((frequency, amplitude), 100.0, slip=0.02, harmonics=5)
+    assert 100.0 * (1.0 + found.deviation) == pytest.approx(100.4, rel=1e-9)

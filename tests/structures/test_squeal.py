@@ -1,6 +1,7 @@
 """Squeal: roots of a wheel that creeps, by closed forms and eigenvalues of states."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -173,3 +174,14 @@ def test_waves_of_one_mode_are_told_apart_from_modes():
     wheel = WheelModes(np.linspace(200.0, 900.0, 5), none + 1e-3, np.array([1, 0, 2, 2, 0]), np.zeros(1),
                        none[:, None] + 0.1, none[:, None] + 0.1, none, none)  # fmt: skip
     assert standing_modes(wheel.turning(10.0)).tolist() == [1, 1, 2, 3, 3, 4, 4, 5]
+
+
+@pytest.mark.parametrize(("force", "rings"), [(1.0, 0), (-1.0, 1), (1.0j, 2)])
+def test_the_mode_that_rings_is_the_one_that_both_forces_push_together(force, rings):
+    """Three modes as far off: pushed by f + 1, f − 1 and 1.9 f times the lateral force."""
+    radial, axial = np.array([[1.0, 1.0, 1.9], [1.0, -1.0, 0.0]])
+    modes = SimpleNamespace(
+        natural_frequencies=np.full(3, 1e3), damping_ratios=np.full(3, 1e-4), at=lambda _: (radial, axial)
+    )
+    omega = np.array([2.0 * np.pi * 1.1e3 + 0.0j])
+    assert ringing_modes(modes, 0.0, omega, np.array([force])).tolist() == [rings]
