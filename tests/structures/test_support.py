@@ -85,6 +85,26 @@ def test_a_sleeper_with_losses_is_one_whose_stiffness_is_complex():
     assert chain.static == Chain((PAD, soft, BALLAST)).static
 
 
+def test_an_opposed_sleeper_turns_and_bends_in_its_odd_modes():
+    """Free: at low frequency by its moment of inertia, m (L/2)²/3, and loudest at kL = 7.8532 and on."""
+    odd = BendingSleeper(**SLEEPER, losses=ConstantLoss(1e-4), opposed=True)
+    omega, length, seat = 2.0 * np.pi * 2.0, SLEEPER["length"], 0.5 * SLEEPER["seat_distance"]
+    turning = SLEEPER["mass"] * (0.5 * length) ** 2 / 3.0
+    slow = 1.0 / odd.on(np.array([omega]), np.zeros(1, complex))[0]
+    assert slow == pytest.approx(-(seat**2) / (turning * omega**2), rel=1e-3)
+    wave = np.array([7.853205, 14.137165]) / length
+    natural = wave**2 * np.sqrt(SLEEPER["bending_stiffness"] * 0.5 * length / SLEEPER["mass"])
+    for resonance in natural:
+        near = resonance * (1.0 + 1e-3 * np.arange(-5, 6))
+        answer = np.abs(1.0 / odd.on(near, np.zeros(11, complex)))
+        assert int(np.argmax(answer)) == 5
+    below = BALLAST.stiffness(OMEGA)
+    stiff = BendingSleeper(**(SLEEPER | {"bending_stiffness": 1e16}), opposed=True)
+    held = turning / seat**2 / SLEEPER["mass"]  # both mass and bed, spread alike
+    expected = held * (below - SLEEPER["mass"] * OMEGA**2)
+    np.testing.assert_allclose(stiff.on(OMEGA, below), expected, rtol=1e-5)
+
+
 def test_a_sleeper_keeps_its_loss_factor_in_time():
     lossy = {"sleeper_bending_stiffness": 6e6, "sleeper_loss_factor": 0.03}
     track = causal_track(Track.named("nordborg", **lossy, rail_loss_factor=0.0))

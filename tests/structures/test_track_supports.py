@@ -21,6 +21,7 @@ from asperity.structures.support import (
     stiffness_at_preload,
     tuned_damper,
 )
+from asperity.structures.track import EN_15461_BAYS, decay_rate_en15461, decay_rate_of_responses
 from asperity.structures.track_parameters import Bays
 from refusals import refusals
 from superposed import free_rail, superposed
@@ -213,6 +214,26 @@ test_bad_supports_are_refused = refusals(
     ),
     (lambda: StiffnessTable((1.0, 2.0, 3.0), (1e8, 1e8, 0.0), (0.0,) * 3), "real part of zero or less at 3"),
 )
+
+
+def test_a_hammer_strikes_one_rail():
+    """Rigid sleepers leave each rail by itself; bending ones join them, and fill the dip of even modes."""
+    rigid, bends = timoshenko(), timoshenko(sleeper_bending_stiffness=7e6, sleeper_loss_factor=0.05)
+    assert rigid.under_one_rail == (rigid,)
+    alike, against = bends.under_one_rail
+    assert (alike, against.opposed) == (bends, True)
+    dip = np.array([690.0, 700.0, 710.0])
+    waves = [each.waves(2.0 * np.pi * dip) for each in (alike, against)]
+    x = 0.6 * np.array(EN_15461_BAYS)
+    one, both = (
+        decay_rate_of_responses(
+            x, np.abs(np.mean([[w.receptance(0.3 + d, 0.3) for d in x] for w in them], axis=0))
+        )
+        for them in (waves, waves[:1])
+    )
+    np.testing.assert_allclose(decay_rate_en15461(bends, dip), one, rtol=1e-9)
+    assert (one > both).all()
+    assert (one / both).max() > 1.2
 
 
 # --- power that goes into a track is dissipated by its parts, each integrated by itself

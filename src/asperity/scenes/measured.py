@@ -59,7 +59,8 @@ class HammerTest:
         """
         frequency = _lines_in(band, count)
         half, lines = float(track.mid_spans[0]), frequency.ravel()
-        mobility = 2j * np.pi * frequency * track.receptance(lines, half, half).reshape(frequency.shape)
+        struck = np.mean([each.receptance(lines, half, half) for each in track.under_one_rail], axis=0)
+        mobility = 2j * np.pi * frequency * struck.reshape(frequency.shape)
         rate = _rate_in_bands(decay_rate_en15461(track, lines), mobility)
         return cls(frequency, rate, mobility)
 

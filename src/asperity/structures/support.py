@@ -243,7 +243,8 @@ class RigidMass(Element):
 class BendingSleeper(Element):
     """Half of a free Euler-Bernoulli beam that lies, all along, on what is below; both rails press alike.
 
-    B w'''' + (s − μω²) w = F δ(x − a) and its mirror image, with mass μ and stiffness s below per length, and
+    Or, `opposed`, the other rail presses upwards by as much. B w'''' + (s − μω²) w = F δ(x − a) and its
+    mirror image, with mass μ and stiffness s below per length, and
     seats a from the middle. Solved in closed form: the waves of the seats on an endless beam, and those that
     the free ends throw back. Without shear and rotary inertia, which lower the higher natural frequencies.
     Its bending stiffness may have losses.
@@ -254,6 +255,7 @@ class BendingSleeper(Element):
     bending_stiffness: float  # B, N m²
     seat_distance: float  # 2 a, m
     losses: Losses = ConstantLoss(None)
+    opposed: bool = False
 
     @property
     def at_rest(self) -> "BendingSleeper":
@@ -303,24 +305,27 @@ class BendingSleeper(Element):
     def _waves(self, omega: ArrayLike, below: Complex) -> "_SleeperWaves":
         half = 0.5 * self.length
         stiffness = (below - self.mass * np.asarray(omega, dtype=complex) ** 2) / half
-        return _SleeperWaves(stiffness, self._bending(omega), half, 0.5 * self.seat_distance)
+        mirror = -1.0 if self.opposed else 1.0
+        return _SleeperWaves(stiffness, self._bending(omega), half, 0.5 * self.seat_distance, mirror)
 
 
 class _SleeperWaves:
-    """Displacement of a half beam under a unit force at its seat, and at the mirror image of that.
+    """Displacement of a half beam under a unit force at its seat, and `mirror` times it at its mirror image.
 
     Stiffness per length less inertia, s − μω², N/m², in the upper half-plane: all exponentials decay. The
     amplitudes of what the end throws back follow from w'' = w''' = 0 there.
     """
 
-    def __init__(self, stiffness: Complex, bending: Complex | float, half: float, seat: float) -> None:
+    def __init__(
+        self, stiffness: Complex, bending: Complex | float, half: float, seat: float, mirror: float
+    ) -> None:
         k = np.exp(-0.25j * np.pi) * (stiffness / bending) ** 0.25
-        self.wavenumber, self.half, self.seat = k, half, seat
+        self.wavenumber, self.half, self.seat, self.mirror = k, half, seat, mirror
         self.scale = 1.0 / (4.0 * bending * k**3)
         near, far = half - seat, half + seat
-        running, fading = (np.exp(-each * k * near) + np.exp(-each * k * far) for each in (1j, 1.0))
+        running, fading = (np.exp(-each * k * near) + mirror * np.exp(-each * k * far) for each in (1j, 1.0))
         moment, shear = self.scale * (1j * running - fading), self.scale * (running + fading)
-        turn, fall = np.exp(-2j * k * half), np.exp(-2.0 * k * half)
+        turn, fall = mirror * np.exp(-2j * k * half), mirror * np.exp(-2.0 * k * half)
         both = 1j * (1.0 - turn) * (1.0 + fall) - (1.0 + turn) * (1.0 - fall)
         self.running = ((1.0 + fall) * shear - (1.0 - fall) * moment) / both
         self.fading = ((1.0 + turn) * shear - 1j * (1.0 - turn) * moment) / both
@@ -336,11 +341,11 @@ class _SleeperWaves:
     def _sum(self, x: float, of_running: Complex | float, of_fading: Complex | float) -> Complex:
         """Sum of the waves that run, and of those that fade, each with a factor."""
         found = np.zeros_like(self.scale)
-        for distance in (abs(x - self.seat), x + self.seat):
-            running, fading = (np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
+        for distance, side in ((abs(x - self.seat), 1.0), (x + self.seat, self.mirror)):
+            running, fading = (side * np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
             found = found - self.scale * (1j * running * of_running + fading * of_fading)
-        for distance in (self.half - x, self.half + x):
-            running, fading = (np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
+        for distance, side in ((self.half - x, 1.0), (self.half + x, self.mirror)):
+            running, fading = (side * np.exp(-each * self.wavenumber * distance) for each in (1j, 1.0))
             found = found + self.running * running * of_running + self.fading * fading * of_fading
         return found
 

@@ -76,6 +76,8 @@ class Track(track_parameters.TrackParameters):
         Causal stiffnesses that stand for the loss factors, as `asperity.structures.causal_track` finds them.
     bays : Bays, optional
         How the bays of a cell differ, after which the track repeats; of equal bays by default.
+    opposed : bool
+        Whether the other rail is pressed upwards by as much, which a sleeper that bends feels.
 
     Raises
     ------
@@ -171,7 +173,7 @@ class Track(track_parameters.TrackParameters):
         sleeper: chains.Element = self.measured_sleeper or chains.RigidMass(self.sleeper_mass)
         if self.sleeper_bending_stiffness is not None:
             beam = self.sleeper_length, self.sleeper_bending_stiffness, self.seat_distance
-            sleeper = chains.BendingSleeper(self.sleeper_mass, *beam, self._losses("sleeper"))
+            sleeper = chains.BendingSleeper(self.sleeper_mass, *beam, self._losses("sleeper"), self.opposed)
         bed = {} if self.ballast_mass is None else {"ballast mass": chains.RigidMass(self.ballast_mass)}
         found = {"pad": springs.pop("pad"), "sleeper": sleeper} | springs
         subgrade = {"subgrade": found.pop("subgrade")} if "subgrade" in found else {}
@@ -191,6 +193,16 @@ class Track(track_parameters.TrackParameters):
         assert self.rail_damper_loss_factor is not None
         tuning = self.rail_damper_frequency, self.rail_damper_loss_factor
         return chains.tuned_damper(self.rail_damper_mass, *tuning)
+
+    @property
+    def under_one_rail(self) -> tuple[Track, ...]:
+        """Tracks whose mean receptance is that of a force on one rail alone, as of a hammer.
+
+        Half of it presses both rails alike, and half of it one against the other, where sleepers bend in
+        their odd modes, too. Of rigid sleepers each half moves with its own rail.
+        """
+        bends = self.sleeper_bending_stiffness is not None
+        return (self, replace(self, opposed=True)) if bends else (self,)
 
     @property
     def lossy(self) -> dict[str, chains.Losses]:
@@ -453,7 +465,9 @@ class Track(track_parameters.TrackParameters):
 
 
 _PARAMETERS = tuple(
-    each.name for each in fields(Track) if each.name not in ("name", "sources", "relaxations", "bays")
+    each.name
+    for each in fields(Track)
+    if each.name not in ("name", "sources", "relaxations", "bays", "opposed")
 )
 
 EN_15461_BAYS = (
@@ -478,14 +492,15 @@ def decay_rate_en15461(track: Track, frequency: ArrayLike) -> Array:
 
     It differs from `decay_rate` as measurements do: the near field at the force raises it, up to twofold for
     an Euler-Bernoulli rail, and 66 bays bound it from below. Where bays differ, it is the mean of forces in
-    the middle of each, at distances in bays of the mean length.
+    the middle of each, at distances in bays of the mean length. The hammer strikes one rail alone.
     """
     frequency = finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0)
-    waves = track.waves(2.0 * np.pi * frequency.ravel())
+    struck = [each.waves(2.0 * np.pi * frequency.ravel()) for each in track.under_one_rail]
     distances = track.sleeper_spacing * np.array(EN_15461_BAYS)
     rates = []
     for force in track.mid_spans:
-        responses = np.array([waves.receptance(force + distance, force) for distance in distances])
+        each = [[waves.receptance(force + distance, force) for distance in distances] for waves in struck]
+        responses = np.mean(each, axis=0)
         rates.append(decay_rate_of_responses(distances, np.abs(responses)))
     return np.mean(rates, axis=0).reshape(frequency.shape)
 

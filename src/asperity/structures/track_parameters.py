@@ -245,6 +245,7 @@ class TrackParameters:
     sources: tuple[str, ...] = ()
     relaxations: Relaxations | None = None
     bays: Bays | None = None
+    opposed: bool = False
 
     def __post_init__(self) -> None:
         checked_parameters(self)
