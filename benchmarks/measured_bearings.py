@@ -12,6 +12,7 @@ what could explain records that were missed, those of a 6205 with pits (CWRU) am
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import math
 import warnings
@@ -529,10 +530,50 @@ def nice_reason_rows(held: dict[str, Any]) -> Iterator[list[str]]:
         ]  # fmt: skip
 
 
+def ledger_rows(
+    nice: Any, seen: list[dict[str, Any]], held: dict[str, Any], data: Any
+) -> Iterator[tuple[str, str, str, str, str]]:
+    """What CONFORMANCE.md says of it: what, whose records, measured, computed, and the deviation."""
+    for each in (each for each in seen if math.isfinite(each["lag"])):
+        free = max(1.0 - let_go(each["on"], RIG_LOAD) / each["length"], 0.5) * each["whole"]
+        name = f"6205, {each['angle']:g}° of the {each['on']} raceway, {each['speed']:g} 1/min"
+        yield (
+            f"{name}, rig {each['rig']}: from entry to landing", "HIT-SM", f"{1e3 * each['lag']:.3f} ms",
+            f"{1e3 * free:.3f} ms, let go by 49 N", f"{100 * (free / each['lag'] - 1):+.0f} %",
+        )  # fmt: skip
+    outer, beside = nice["outer"], nice["inner"][100.0]["sides"]
+    lines = predicted_range(held["mfpt"], "outer", 300, "line", 100)
+    sides = predicted_range(held["mfpt"], "inner", 100, "sides", 0)
+    growth = outer[300.0]["line"] / outer[100.0]["line"]
+    yield (
+        "NICE bearing: outer line at 300 lb over that at 100 lb", "MFPT", f"{growth:.2f}",
+        f"{lines.min():.2f} to {lines.max():.2f}, blind", f"a factor of {growth / lines.max():.1f} or more",
+    )  # fmt: skip
+    yield (
+        "NICE bearing, 100 lb: side bands of the inner line over it", "MFPT", f"{beside:.2f}",
+        f"{sides.min():.2f} to {sides.max():.2f}, blind", f"{sides.min() - beside:+.2f} or more",
+    )  # fmt: skip
+    for load in (25.0, 100.0, 300.0):
+        slip = outer[load]["slip"]
+        yield (
+            f"NICE bearing, {load:g} lb: line of the outer raceway over pure rolling", "MFPT",
+            f"{1.0 - slip:.4f}", f"1 less 0 to {25.0 / load:.2f} %, blind", f"{100 * slip:+.2f} % of slip",
+        )  # fmt: skip
+    rows = {row[0]: row for row in reason_rows(held, data)}
+    measured = rows["measured"]
+    chosen = "sharp, load still, 3 kHz", "worn by 2 µm around", "85 N turn with the shaft"
+    for name in chosen:
+        after = "" if name == chosen[0] else ", chosen afterwards"
+        for column, what in ((3, "outer line of 0.53 mm over that of 0.18 mm"), (5, "side bands of 0.53 mm")):
+            off = float(rows[name][column]) - float(measured[column])
+            yield f"6205, {what}: {name}", "CWRU", measured[column], rows[name][column] + after, f"{off:+.2f}"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("data", type=Path, nargs="?", help="folder of the records")
     parser.add_argument("--predict", action="store_true", help="compute what is predicted anew")
+    parser.add_argument("--ledger", type=Path, help="file of rows for CONFORMANCE.md")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     chosen = parser.parse_args()
     if chosen.predict:
@@ -541,7 +582,7 @@ def main() -> None:
         return
     held = json.loads(PREDICTED.read_text())
     nice = nice_seen(np.load(chosen.data / NICE_FILE))
-    seen = hit_seen(np.load(chosen.data / HIT_FILE))
+    seen, pits = hit_seen(np.load(chosen.data / HIT_FILE)), np.load(chosen.data / PIT_FILE)
     table(
         "record | speed, 1/s | line, Hz | slip, % | line, g | over 100 lb | stated | side bands | stated "
         "| kurtosis",
@@ -559,12 +600,16 @@ def main() -> None:
     table(
         "CWRU, outer | 0.18 mm, g | 0.53 mm, g | ratio | side bands | of 0.53 mm | ranks | of 0.53 mm "
         "| kurtosis | of 0.53 mm",
-        reason_rows(held, np.load(chosen.data / PIT_FILE)),
+        reason_rows(held, pits),
     )
     table(
         "CWRU, record | power in lines | of all frequencies | with side bands | of all frequencies",
-        periodic_rows(np.load(chosen.data / PIT_FILE)),
+        periodic_rows(pits),
     )
+    if chosen.ledger:
+        rows = [("what", "source", "measured", "computed", "deviation"), *ledger_rows(nice, seen, held, pits)]
+        with chosen.ledger.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
 
 
 if __name__ == "__main__":
