@@ -191,7 +191,8 @@ def roll_bearing(
         progress=progress,
         checkpoint=checkpoint,
     )
-    steps, reached = run.contact_force.shape[1], run.reached[:contacts]
+    steps = run.contact_force.shape[1]
+    reached = run.reached[:contacts]
     return RolledBearing(
         np.asarray(time_step * np.arange(steps)),
         turning.cage(turning.total + 1 - steps, turning.total + 1),

@@ -363,10 +363,11 @@ class OnRaceway:
 
         Where nothing is in the window they are solved once.
         """
-        (window, lines), stride = self.shape.body.shape, self.scanned_stride
+        window, lines = self.shape.body.shape
+        stride = self.scanned_stride
         step = stride // self.stride
-        unlike = self.surface.heights.astype(bool) | self.surface.damaged
-        new, planes = self._met(unlike)[::step], self.planes[::step]
+        new = self._met(self.surface.heights.astype(bool) | self.surface.damaged)[::step]
+        planes = self.planes[::step]
         alike = np.zeros((window, lines))
         runs: list[tuple[Any, Array, Array, Edges | None]] = []
         if not new.all():
@@ -374,7 +375,9 @@ class OnRaceway:
         for first, stop in np.flatnonzero(np.diff(new, prepend=False, append=False)).reshape(-1, 2):
             rows = slice(first * stride, (stop - 1) * stride + window)
             runs.append((slice(first, stop), self.scanned[rows], planes[first:stop], self._edges_in(rows)))
-        approaches, counts, single = self.approaches[states], list[scan.Counts](), False
+        approaches = self.approaches[states]
+        counts = list[scan.Counts]()
+        single = False
         forces = np.empty((len(approaches), len(new)))
         for state, (at, heights, felt, edges) in product(range(len(approaches)), runs):
             solved = self.shape.body, approaches[state], stride, rtol_for(self.accuracy), felt
@@ -389,7 +392,8 @@ class OnRaceway:
     def table_in(self, states: slice) -> ForceTable:
         """The scan in some states, to look forces up in."""
         stride = self.scanned_stride
-        step, touches = stride * self.surface.spacing[0], self.touches[:: stride // self.stride]
+        step = stride * self.surface.spacing[0]
+        touches = self.touches[:: stride // self.stride]
         forces = self._around(self.scanned_in(states).forces, OVERLAP, axis=1)
         closed = self._around(touches, OVERLAP)
         return ForceTable(forces, self.approaches[states], -OVERLAP * step, step, closed)
@@ -403,9 +407,9 @@ class OnRaceway:
         """States for a motion with forces between two, N, anywhere, too, by the `table` of those scanned."""
         assert isinstance(law.law, Table)
         table = law.law.table
-        root, wanted = np.cbrt(table.forces) ** 2, np.cbrt([least, most]) ** 2
-        both = zip(wanted.tolist(), (root.max(axis=1), root.min(axis=1)), strict=True)
-        low, high = (_straight(value, known, table.approaches) for value, known in both)
+        root = np.cbrt(table.forces) ** 2
+        low = _straight(float(np.cbrt(least)) ** 2, root.max(axis=1), table.approaches)
+        high = _straight(float(np.cbrt(most)) ** 2, root.min(axis=1), table.approaches)
         needed = states_around(self.approaches, (low, high))
         return slice(min(scanned.start, needed.start), max(scanned.stop, needed.stop))
 
