@@ -119,7 +119,7 @@ def check_edges(edges: Edges, half_space: "HalfSpace", shape: tuple[int, int]) -
 def softness_at(edges: Edges, modulus: float, hardness: float | None) -> Softness:
     """Find how cells at edges give way on a half-space of a contact modulus E* and a hardness, Pa."""
     softness, flow, at = *np.zeros((2, *edges.distance.shape)), edges.crossed
-    along, across = (each[at] for each in edges.sides)
+    along, across = edges.sides(at)
     width = along + across
     kept = _kept(edges.places[at], np.minimum(along, across) / np.maximum(along, across))
     softness[at] = width / modulus * (1.0 / kept - 1.0)

@@ -138,6 +138,7 @@ class DirectOnPath:
         self.counts, self.overlap = self.block.counts, 0.0
         self._step, self._heights = -1, np.zeros(0)
         self._edges: Edges | None = None
+        self._laid: tuple[float, Edges | None] = (math.nan, None)  # own edges at an offset
         self._tried = False  # whether there is a solution of this step
         self._last: Accepted | None = None
         self._before: Accepted | None = None
@@ -225,7 +226,13 @@ class DirectOnPath:
         return own if other is None else other if own is None else own.with_others(other)
 
     def _own_edges(self, offset: float) -> Edges | None:
-        """Edges in the window from an offset on, if any: distances are straight between rows."""
+        """Edges in the window from an offset on, if any."""
+        if self._laid[0] != offset:
+            self._laid = offset, self._edges_between(offset)
+        return self._laid[1]
+
+    def _edges_between(self, offset: float) -> Edges | None:
+        """Edges in the window from an offset on: distances are straight between rows."""
         first, count, edges = round(offset), self.law.body.shape[0], self.law.edges
         if edges is None or (edges.distance[first - 1 : first + count + 1] == FAR).all():
             return None

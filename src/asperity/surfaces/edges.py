@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -56,16 +58,15 @@ class Edges:
             require(least >= 0.0 and largest <= most, what, f"{least:.4g} to {largest:.4g}", allowed)
             object.__setattr__(self, name, values)
 
-    @property
-    def sides(self) -> Array:
-        """What the two sides of a cell are along the normal (2, rows, lines), m: its width, added up."""
-        along, across = self.spacing
-        return np.stack([self.normal * along, np.sqrt(np.maximum(1.0 - self.normal**2, 0.0)) * across])
+    def sides(self, cells: Any = ...) -> Array:
+        """What the two sides of some cells are along the normal (2, ...), m: their width, added up."""
+        (along, across), normal = self.spacing, self.normal[cells]
+        return np.stack([normal * along, np.sqrt(np.maximum(1.0 - normal**2, 0.0)) * across])
 
-    @property
+    @cached_property
     def places(self) -> Array:
         """Distances of the middles of cells from the edge over their width along its normal (rows, lines)."""
-        return np.asarray(self.distance / self.sides.sum(axis=0))
+        return np.asarray(self.distance / self.sides().sum(axis=0))
 
     @property
     def sound(self) -> NDArray[np.bool_]:
@@ -80,7 +81,7 @@ class Edges:
     @property
     def shares(self) -> Array:
         """Shares of cells (rows, lines) that lie before the edge, as if that were straight."""
-        near, far = 0.5 * np.sort(self.sides, axis=0)
+        near, far = 0.5 * np.sort(self.sides(), axis=0)
         near, share = np.maximum(near, 1e-6 * far), np.zeros(far.shape)
         for sign, end in ((1, far + near), (-1, far - near), (-1, near - far), (1, -far - near)):
             share += sign * np.maximum(self.distance + end, 0.0) ** 2
