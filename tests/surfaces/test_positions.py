@@ -202,15 +202,3 @@ def test_times_that_give_no_rate(tmp_path, text, rate, column, message):
     file.write_text(text)
     with pytest.raises(InputError, match=message):
         read_signal(file, rate, column=column)
-
-
-@pytest.mark.parametrize(("moved", "even"), [(0.0, True), (1.0, False)])
-def test_a_whole_digit_is_no_rounding(moved, even):
-    """Steps of 2.7 digits are even as printed; every fifth one digit further, they are not."""
-    printed = np.rint(2.7 * np.arange(60))
-    printed[2::5] += moved
-    if even:
-        assert positions.places(printed, "x")[1] == pytest.approx(2.7, rel=0.01)
-    else:
-        with pytest.raises(InputError, match="not uniform"):
-            positions.places(printed, "x")
