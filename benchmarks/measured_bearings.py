@@ -165,32 +165,43 @@ PIT_BAND = (2000.0, 4000.0)
 
 
 def pit_case(
-    size: int, *, rotating: float = 0.0, burr: float = 0.0, worn: float = 0.0, path: float = 3e3
+    size: int, part: str, *, rotating: float = 0.0, burr: float = 0.0, worn: float = 0.0, path: float = 3e3
 ) -> Any:
-    """The 6205 with a pit, thousandths of an inch, on its outer raceway, and one thing that is not sharp."""
+    """The 6205 with a pit, thousandths of an inch, on a raceway, and one thing that is not sharp."""
     case = measured_6205.CASE
     housing = {"mass": case.housing.mass, "damping_ratio": case.housing.damping_ratio}
     stiffness = case.housing.mass * (2.0 * math.pi * path) ** 2
     housing |= {"radial_stiffness": stiffness, "axial_stiffness": stiffness}
     length = size * 1e-3 * measured_6205.INCH
-    faults: list[dict[str, Any]] = [{"on": "outer", "length": length, "depth": 0.28e-3, "burr": burr}]
+    faults: list[dict[str, Any]] = [{"on": part, "length": length, "depth": 0.28e-3, "burr": burr}]
     if worn:
-        faults.append({"on": "outer", "shape": "mark", "length": length + 2.0 * WORN, "depth": worn})
+        faults.append({"on": part, "shape": "mark", "length": length + 2.0 * WORN, "depth": worn})
     return case.with_(
         speed=1797 / 60, radial=100.0, rotating=rotating, duration=0.3, housing=housing, sensors=[0.0],
         fault=faults,
     )  # fmt: skip
 
 
-def pit_run(job: tuple[int, dict[str, float]]) -> dict[str, Any]:
-    """The outer line of a pit at 1797 1/min, and what is beside it."""
-    size, reason = job
+def pit_run(job: tuple[int, str, dict[str, float]]) -> dict[str, Any]:
+    """The line of a pit at 1797 1/min, and what is beside it."""
+    size, part, reason = job
     warnings.simplefilter("ignore")
-    case = pit_case(size, **reason)
+    case = pit_case(size, part, **reason)
     (signal,) = asperity.run(case, brief=True)["rolling/ring_acceleration"].values[0]
     turning = case.kinematics
-    found = lines_of(signal / 9.81, 12e3, turning.tone("outer"), turning.inner, slip=0.002, band=PIT_BAND)
-    return {"pit": size} | reason | rounded(found)
+    found = lines_of(signal / 9.81, 12e3, turning.tone(part), turning.inner, slip=0.002, band=PIT_BAND)
+    return {"pit": size, "on": part} | reason | rounded(found)
+
+
+def pit_jobs() -> Iterator[tuple[int, str, dict[str, float]]]:
+    """Both outer pits with each reason, and all pits sharp and worn."""
+    yield from ((size, "outer", reason) for reason in REASONS for size in (7, 21))
+    for reason in WEAR:
+        yield 14, "outer", reason
+        yield from ((size, "inner", reason) for size in (7, 14, 21))
+
+
+WEAR: tuple[dict[str, float], ...] = ({}, {"worn": 1e-6}, {"worn": 2e-6})
 
 
 # --- HIT: a ball that crosses a fault of a known angle
@@ -234,7 +245,7 @@ def told(found: Iterator[dict[str, Any]]) -> list[dict[str, Any]]:
 def predict(jobs: int) -> dict[str, Any]:
     """All that is said without any record."""
     with ProcessPoolExecutor(jobs) as pool:
-        pits = told(pool.map(pit_run, [(size, reason) for reason in REASONS for size in (7, 21)]))
+        pits = told(pool.map(pit_run, pit_jobs()))
         reasons = told(pool.map(nice_run, nice_reasons()))
         runs = told(pool.map(nice_run, nice_jobs()))
     times = [
@@ -484,7 +495,7 @@ def reason_rows(held: dict[str, Any], data: Any) -> Iterator[list[str]]:
         pits.setdefault("measured", []).append(lines_of(*given))
     for reason in REASONS:
         name = ", ".join(WRITTEN[key](value) for key, value in reason.items()) or "sharp, load still, 3 kHz"
-        pits[name] = [r for r in held["cwru_reasons"] if {n: r[n] for n in WRITTEN if n in r} == reason]
+        pits[name] = [pit_of(held, size, "outer", reason) for size in (7, 21)]
     for name, (small, large) in pits.items():
         yield [
             name, f"{small['line']:.2f}", f"{large['line']:.2f}", f"{large['line'] / small['line']:.2f}",
@@ -499,6 +510,32 @@ WRITTEN = {
     "worn": lambda depth: f"worn by {depth * 1e6:g} µm around",
     "path": lambda frequency: f"path of {frequency / 1e3:g} kHz",
 }
+
+
+def pit_of(held: dict[str, Any], size: int, part: str, reason: dict[str, float]) -> dict[str, Any]:
+    """The run of a pit with a reason."""
+    same = (r for r in held["cwru_reasons"] if (r["pit"], r["on"]) == (size, part))
+    return next(r for r in same if {name: r[name] for name in WRITTEN if name in r} == reason)
+
+
+def wear_rows(held: dict[str, Any], data: Any) -> Iterator[list[str]]:
+    """Lines of larger pits over that of the smallest at the same place, sharp and worn, and measured."""
+    turning = HIT.kinematics(1797 / 60, contact_angle=0.0)
+    for part, place in (("outer", "OR_at_6"), ("inner", "IR")):
+
+        def measured(size: int, part: str = part, place: str = place) -> float:
+            signal = data[f"1797_{place}_{size}"].astype(float)
+            return float(lines_of(signal, 12e3, turning.tone(part), turning.inner, 0.02, PIT_BAND)["line"])
+
+        for size in (14, 21):
+            found = [
+                pit_of(held, size, part, reason)["line"] / pit_of(held, 7, part, reason)["line"]
+                for reason in WEAR
+            ]
+            known = f"1797_{place}_{size}" in data
+            told = f"{measured(size) / measured(7):.2f}" if known else "not in the folder"
+            name = f"{part}, {size * 1e-3 * measured_6205.INCH * 1e3:.2f} mm over 0.18 mm"
+            yield [name, told, *(f"{each:.2f}" for each in found)]
 
 
 def periodic_rows(data: Any) -> Iterator[list[str]]:
@@ -602,6 +639,7 @@ def main() -> None:
         "| kurtosis | of 0.53 mm",
         reason_rows(held, pits),
     )
+    table("CWRU, first line | measured | sharp | worn by 1 µm | worn by 2 µm", wear_rows(held, pits))
     table(
         "CWRU, record | power in lines | of all frequencies | with side bands | of all frequencies",
         periodic_rows(pits),
