@@ -15,6 +15,8 @@ from asperity.contact.batched import choose_device, find_device, gpu, processor
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import ComputationError, InputError
 from asperity.store import Store
+from asperity.surfaces.edges import Edges
+from asperity.surfaces.faults import Fault
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
@@ -128,6 +130,23 @@ def test_a_scan_on_a_device_agrees_and_keeps_its_own_blocks(
         assert len(cache.files()) == 1 + 3
     assert bool(alone.counts.truncated) == (share > 1.0)
     assert 0 < np.count_nonzero(alone.forces[:3]) < 3 * POSITIONS
+
+
+@pytest.mark.parametrize("hardness", [None, 0.5e9])
+def test_sharp_edges_on_a_device_agree(device, hardness):
+    """A deep pit, and a shallow one whose floor carries, too."""
+    job = rolling(24, hardness, stride=4)
+    (n, m), (dx, _) = job.surface.shape, job.half_space.spacing
+    x, y = (np.arange(n) - 0.45 * n)[:, None] * dx, (np.arange(m) - 0.48 * m) * dx
+    for depth in (1e-3, 0.1 * APPROACH):
+        distance, normal = Fault("pit", length=5.3 * dx, depth=depth).outline(x, y)
+        edges = Edges(distance, normal, np.full((n, m), 0.5 * depth), job.half_space.spacing)
+        heights = job.surface.heights - np.where(edges.sound, 0.0, depth)
+        sharp = replace(job, surface=Rows(heights), edges=edges)
+        alone, found = (scan_forces(replace(sharp, device=each)) for each in (None, device))
+        np.testing.assert_allclose(found.forces, alone.forces, rtol=1e-9)
+        assert found.counts.unconverged == 0
+        assert np.abs(scan_forces(job).forces[-1] / alone.forces[-1] - 1.0).max() > 1e-3
 
 
 def test_batches_follow_the_memory_and_do_not_change_the_forces():

@@ -123,10 +123,11 @@ def softness_at(edges: Edges, modulus: float, hardness: float | None) -> Softnes
     width = along + across
     kept = _kept(edges.places[at], np.minimum(along, across) / np.maximum(along, across))
     softness[at] = width / modulus * (1.0 / kept - 1.0)
+    drop = np.where(softness > 0.0, edges.drop, 0.0)  # other cells do not sink
     if hardness is None:
-        return Softness(softness, edges.drop, np.full(flow.shape, np.inf), 0.0)
+        return Softness(softness, drop, np.full(flow.shape, np.inf), 0.0)
     flow[at] = hardness * np.maximum(edges.shares[at], CARRYING * kept)
-    return Softness(softness, edges.drop, flow, YIELDING * min(edges.spacing) / modulus)
+    return Softness(softness, drop, flow, YIELDING * min(edges.spacing) / modulus)
 
 
 def _kept(place: Array, slant: Array) -> Array:
