@@ -243,6 +243,10 @@ class ShortRecordWarning(PhysicsWarning):
     """A record is short for the wavelengths or statistics taken from it."""
 
 
+class BandsWarning(PhysicsWarning):
+    """Something that was measured lies where a case computes nothing."""
+
+
 class LossFactorWarning(PhysicsWarning):
     """Constant loss factors are not causal; what stands for them in time changes the contact force."""
 

@@ -14,7 +14,12 @@ from asperity.radiation.track import squared_mobility
 from asperity.reporting.data import unless_missing
 from asperity.running import prepare_case
 from asperity.scenes import schema
-from asperity.scenes.figures.measured import MEASURED, measured_table, pass_by_bands
+from asperity.scenes.figures.measured import (
+    MEASURED,
+    measured_sound_table,
+    measured_table,
+    pass_by_bands,
+)
 from asperity.scenes.figures.noise import (
     noise_answers,
     pass_by_answers,
@@ -26,7 +31,7 @@ from asperity.scenes.figures.track import decay_rate, receptance
 from asperity.scenes.measured import HammerTest
 from asperity.scenes.noise import pass_by_group
 from asperity.scenes.track import planned_track
-from asperity.schema import group
+from asperity.schema import group, spectra
 from asperity.spectra import a_weighting
 from small_cases import HEARD
 
@@ -95,6 +100,7 @@ def test_a_contradiction_is_warned_of_with_its_bands(damped):
     (message,) = warned(damped)
     assert "measured decay rate over that of the computed track, farthest from 1: 4 (" in message
     assert "see 500 Hz, 630 Hz, 800 Hz, 1 kHz. Fit pads, ballast and losses of [track]" in message
+    assert "(asperity fit CASE)" in message
 
 
 def test_a_plan_warns_of_it_too():
@@ -297,6 +303,26 @@ def test_the_report_compares_them():
     assert whole == pytest.approx(exposure - 10.0 * np.log10(3 * 26.4 / 50.0), abs=1e-6)
     assert len(pass_by_table(result()).rows) == len(pass_by_table(tree).rows) - 2
     assert unless_missing(pass_by_bands.drawn, result()) is None
+
+
+def test_it_says_how_far_they_are_apart_and_what_is_next():
+    """What 95 % of measuring (1 dB) and chance (0.5 dB) explain stands in brackets."""
+    tree = result(measured_bands=TABLE)
+    bands = {line.label: line.values for line in pass_by_bands.collect(tree).lines}
+    near = bands["total"] - a_weighting(PASSED) + np.where(np.arange(len(PASSED)) == 5, 3.0, 2.0)
+    tree = result(measured_bands=np.column_stack([PASSED, near])[3:])
+    tree["spectra"] = xarray.DataTree(
+        group({spectra.BAND: PASSED, spectra.LEVEL_DEVIATION: 0.5 + 0.0 * PASSED})
+    )
+    told = measured_sound_table(tree)
+    apart = [row[3].text for row in told.rows]
+    assert apart[2] == "+3.0"
+    assert set(apart[:2] + apart[3:]) == {"(+2.0)"}
+    assert {row[4].text for row in told.rows} == {"± 2.2"}  # 1.96 √(1² + 0.5²)
+    rms = np.sqrt((9.0 + 4.0 * (len(apart) - 1)) / len(apart))
+    assert f"{rms:.1f} dB rms in {len(apart)} bands, 1 of them beyond 95 %" in told.note
+    assert told.note.endswith("Next: asperity fit CASE, which fits keys of the case to it.")
+    assert unless_missing(measured_sound_table, result()) is None
 
 
 @pytest.mark.parametrize("key", ["measured_bands", "measured_equivalent_level", "measured_exposure_level"])

@@ -5,12 +5,16 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from asperity.arguments import require, shown
+from asperity.arguments import Array, require, shown
 from asperity.case.any_case import AnyCase, CaseKey, entry_of, in_words
+from asperity.case.tables import TableFile, read_levels
 from asperity.errors import InputError
-from asperity.parameters import FROM_PYTHON, Bounded, Key, Quantity, limits_in, outside
+from asperity.parameters import FROM_PYTHON, Bounded, Either, Key, Quantity, limits_in, outside
+from asperity.scenarios.records import spectrum_levels
+from asperity.spectra import HALF_BAND
 from asperity.studies.axes import Unfit, value_of
 from asperity.units import quantity, unit_in
+from asperity.written_numbers import rounded
 
 NEPER = 20.0 / math.log(10.0)
 """dB that an e-fold of an amplitude is."""
@@ -33,10 +37,14 @@ class Free:
         Change that counts as much as an e-fold does of what is fitted by its logarithm.
     range_source : str
         Where the limits come from.
-    entry : CaseKey, optional
-        The key; None of what is no key of the case.
+    entry : CaseKey
+        The key.
+    units : str
+        SI units of the value.
     given : bool
         Whether the case has a value of its own, or its named set.
+    band : float, optional
+        Wavelength of the one-third octave, m, of a spectrum in whose bands levels are fitted.
     """
 
     name: str
@@ -44,11 +52,12 @@ class Free:
     low: float
     high: float
     logarithmic: bool
-    size: float = 1.0
-    range_source: str = ""
-    entry: CaseKey | None = None
-    units: str = "1"
+    size: float
+    range_source: str
+    entry: CaseKey
+    units: str
     given: bool = True
+    band: float | None = None
 
     def inward(self, value: float) -> float:
         """The value on the scale of the search."""
@@ -64,10 +73,9 @@ class Free:
 
     def words(self, value: float) -> str:
         """A value for people, in three digits."""
-        short = float(f"{value:.3g}")
-        if self.entry is not None:
-            return in_words(short, self.entry.key)
-        return f"{short:g} {self.units}".removesuffix(" 1")
+        if self.band is not None:
+            return f"{value:.1f} dB re 1 µm"
+        return in_words(float(f"{value:.3g}"), self.entry.key)
 
 
 # --- limits that fits keep where nobody gives others
@@ -117,7 +125,43 @@ def free_key(case: AnyCase, dotted: str, within: Range | None = None) -> Free:
     if not math.isfinite(start) or not low <= start <= high:
         start = math.sqrt(low * high) if logarithmic else 0.5 * (low + high)
     size = 1.0 if logarithmic else NEPER if entry.unit == "dB" else 0.25 * (high - low)
-    return Free(dotted, start, low, high, logarithmic, size, why, entry, entry.unit or "1", given)
+    return Free(dotted, start, low, high, logarithmic, size, why, entry, str(entry.unit), given)
+
+
+# --- spectra, band by band
+
+WITHIN = 25.0
+"""By how much a level may be changed, dB, where nobody gives limits."""
+
+
+def levels_of(case: AnyCase, entry: CaseKey) -> tuple[Array, Array]:
+    """Wavelengths, m, and levels, dB re 1 µm, of a key that names a spectrum, or has it as a table."""
+    spectrum = getattr(getattr(case, entry.section), entry.name)
+    require(spectrum is not None, entry.dotted, "no spectrum in the case", "a spectrum to begin with")
+    wavelength, levels, _ = spectrum_levels(spectrum)
+    return wavelength, levels
+
+
+def is_spectrum(entry: CaseKey) -> bool:
+    """Whether a key holds levels over wavelength."""
+    kind = entry.key.kind
+    table = kind.other if isinstance(kind, Either) else kind
+    return isinstance(table, TableFile) and table.read is read_levels
+
+
+def free_bands(case: AnyCase, entry: CaseKey, heard: Range, within: Range | None) -> list[Free]:
+    """Levels of a spectrum in the bands whose wavelengths are heard, m, each within limits, dB re 1 µm."""
+    wavelengths, levels = levels_of(case, entry)
+    found = []
+    for wavelength, level in zip(wavelengths.tolist(), levels.tolist(), strict=True):
+        if heard[0] / HALF_BAND < wavelength < heard[1] * HALF_BAND:
+            low, high = within or (level - WITHIN, level + WITHIN)
+            name = f"{entry.dotted} at {rounded(1e3 * wavelength)} mm"
+            start = min(max(level, low), high)
+            why = "given here" if within else f"{WITHIN:g} dB about the case's"
+            found.append(Free(name, start, low, high, False, NEPER, why, entry, "dB", band=wavelength))
+    require(found, entry.dotted, "no band that is heard in what was measured", "one band or more")
+    return found
 
 
 def _read(text: str, kind: object) -> str | float:

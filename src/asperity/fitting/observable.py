@@ -2,18 +2,29 @@
 
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from xarray import DataTree
 
 from asperity.arguments import Array, NDArray, require, shown
 from asperity.case.any_case import AnyCase
-from asperity.case.form import Section
+from asperity.case.form import Section, case_key
+from asperity.errors import PhysicsWarning
+from asperity.progress import Progress
+from asperity.running import run
+from asperity.store import Store, made
+
+RUN_FORMAT = 1
+"""Raise it when what is kept of a run no longer means what it meant."""
 
 Values = NDArray[np.inexact]
+Collected = dict[str, Array]
+"""What is kept of a run, by name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,11 +100,14 @@ class TriedCase:
         Dotted keys with their values, in SI; None takes a key out.
     fine : bool
         Whether bands are resolved as in a report, or enough to search.
+    progress : callable
+        Called while it is run.
     """
 
     base: AnyCase
     changes: Mapping[str, Any]
     fine: bool = True
+    progress: Progress = lambda *_: None
 
     @cached_property
     def case(self) -> AnyCase:
@@ -110,8 +124,23 @@ class TriedCase:
 
     @cached_property
     def whole(self) -> AnyCase:
-        """The case, read as a whole: what follows from other keys is chosen anew."""
-        return self.base.with_(**self.changes)
+        """The case, read as a whole: what follows from other keys is chosen anew. Its main law alone runs."""
+        return self.base.with_(**{"laws": self.base.laws[:1], **self.changes})
+
+    @cached_property
+    def collected(self) -> Collected:
+        """What a run of it gives of all that is measured, kept by all that it depends on."""
+        from asperity.fitting.observables import BUILT_IN
+
+        def ran() -> Collected:
+            tree, found = run(self.whole, self.progress, brief=True), Collected()
+            for each in BUILT_IN.values():
+                with suppress(KeyError):  # of another kind of case
+                    found |= each.collect(tree) if each.collect is not None else {}
+            return found
+
+        with PhysicsWarning.ignored():
+            return made(Store(), case_key("run-of-a-fit", RUN_FORMAT, self.whole), ran)
 
 
 def _section(case: AnyCase, title: str) -> Section:
@@ -145,8 +174,8 @@ class Observable:
         Pattern of words in a heading, or in the name of a file, that tell it.
     read : callable, optional
         Reads it from a file with a line for each place of its axis.
-    by_run : bool
-        Whether the case is run for it.
+    collect : callable, optional
+        What is kept for it of the result of a run; without one the case is not run.
     """
 
     name: str
@@ -159,7 +188,12 @@ class Observable:
     free: Callable[[AnyCase], tuple[str, ...]]
     words: str
     read: Callable[[Path], list[Measured]] | None = None
-    by_run: bool = False
+    collect: Callable[[DataTree], Collected] | None = None
+
+    @property
+    def by_run(self) -> bool:
+        """Whether the case is run for it."""
+        return self.collect is not None
 
     def differs(self, values: Values, predicted: Values) -> Array:
         """Level of measured values (n,) over predicted ones, dB; of complex ones the phase, in dB, behind it.

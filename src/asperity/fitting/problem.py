@@ -7,15 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 from asperity.case.any_case import AnyCase
 from asperity.case.form import content, digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
-from asperity.fitting.free import Free
+from asperity.fitting.free import Free, levels_of
 from asperity.fitting.observable import Measured, Observable, TriedCase, Values
 from asperity.fitting.observables import observable
-from asperity.fitting.search import FAR, central_slopes
+from asperity.fitting.search import FAR, central_slopes, forward_slopes, grouped_slopes
+from asperity.progress import Progress
 from asperity.store import content_key
+
+APART = 4
+"""Bands by which those are apart that are moved at once: a level follows few bands of roughness."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +40,8 @@ class Problem:
         Standard deviation of what the case leaves out, dB, beside the uncertainty of the data.
     of_case : str
         Digest of the case and its files.
+    progress : callable
+        Called while the case is run.
     """
 
     case: AnyCase
@@ -44,6 +50,7 @@ class Problem:
     fine: bool = True
     beyond: float = 0.0
     of_case: str = ""
+    progress: Progress = lambda *_: None
 
     @cached_property
     def low(self) -> Array:
@@ -96,14 +103,14 @@ class Problem:
 
     def changes(self, place: Array) -> dict[str, Any]:
         """Keys of the case at a place, by their dotted names; those that they replace as None."""
-        return {**self._replaced, **changes_of(self.free, self.values(place))}
+        return {**self._replaced, **changes_of(self.case, self.free, self.values(place))}
 
     @cached_property
     def _replaced(self) -> dict[str, None]:
         """Keys that the case gives, and of which another one that is free takes the place."""
         found: dict[str, None] = {}
         for each in self.free:
-            if each.entry is not None and each.entry.section:
+            if each.entry.section:
                 section = getattr(self.case, each.entry.section)
                 for pair in section.ALTERNATIVES:
                     if each.entry.name in pair:
@@ -119,7 +126,8 @@ class Problem:
         for each, of in zip(self.measured, self.observables, strict=True):
             here = repr(sorted(content(each.conditions).items()))
             if here not in trials:
-                trials[here] = TriedCase(self.case, {**changes, **each.conditions}, self.fine)
+                tried = {**changes, **each.conditions}
+                trials[here] = TriedCase(self.case, tried, self.fine, self.progress)
             found.append(of.predict(trials[here], each))
         return found
 
@@ -138,9 +146,50 @@ class Problem:
         found = left / self.uncertainty
         return np.where(np.isfinite(found), np.clip(found, -FAR, FAR), FAR)
 
+    @cached_property
+    def by_run(self) -> bool:
+        """Whether the case is run for it."""
+        return any(of.by_run for of in self.observables)
+
     def slopes(self, place: Array) -> Array:
         """Slopes of the residuals (n, p) at a place."""
+        if self.by_run:
+            return self.quick_slopes(place)
         return central_slopes(self.residuals, self.low, self.high)(place)
+
+    def quick_slopes(self, place: Array) -> Array:
+        """The same for half of the work."""
+        if not self.by_run:
+            return forward_slopes(self.residuals, self.low, self.high)(place)
+        return grouped_slopes(self.residuals, place, self.high, self._groups)
+
+    @cached_property
+    def _groups(self) -> list[tuple[NDArray[np.int_], NDArray[np.bool_]]]:
+        """What is moved at once, as numbers of what is free, and which data (n, k) each of them moves.
+
+        A band of roughness moves the levels that are heard while it is passed, and those beside it.
+        """
+        alone = [n for n, each in enumerate(self.free) if each.band is None]
+        groups = [(np.array([n]), np.ones((self.count, 1), dtype=bool)) for n in alone]
+        bands = {n: each.band for n, each in enumerate(self.free) if each.band is not None}
+        if not bands:
+            return groups
+        passed = np.concatenate([self._passed(each) for each in self.measured])
+        numbers = {n: round(10.0 * np.log10(band)) for n, band in bands.items()}
+        for rest in range(APART):
+            together = np.array([n for n, number in numbers.items() if number % APART == rest], dtype=int)
+            if len(together):
+                centres = np.array([bands[n] for n in together.tolist()])
+                away = np.abs(10.0 * np.log10(passed[:, None] / centres))
+                nearest = away == away.min(axis=1, keepdims=True)
+                groups.append((together, nearest & (away <= 0.5 * APART + 0.5)))
+        return groups
+
+    def _passed(self, measured: Measured) -> Array:
+        """Wavelengths that are heard in the bands of a measurement (n,), m."""
+        speed = measured.conditions.get("speed", getattr(self.case, "speed", np.nan))
+        times = 2 if np.iscomplexobj(measured.values) else 1
+        return np.tile(speed / measured.at, times)
 
     def key(self, *more: object) -> str:
         """Name of what is kept of it: all that it depends on, and more."""
@@ -156,9 +205,18 @@ class Problem:
         return replace(self, free=tuple(each for n, each in enumerate(self.free) if n != number))
 
 
-def changes_of(free: Sequence[Free], values: Mapping[str, float]) -> dict[str, Any]:
-    """Keys of a case, by their dotted names, with values of what is free."""
-    return {each.name: values[each.name] for each in free if each.entry is not None}
+def changes_of(case: AnyCase, free: Sequence[Free], values: Mapping[str, float]) -> dict[str, Any]:
+    """Keys of a case, by their dotted names, with values of what is free: of a spectrum its table."""
+    found: dict[str, Any] = {}
+    for each in free:
+        if each.band is None:
+            found[each.name] = values[each.name]
+            continue
+        if each.entry.dotted not in found:
+            found[each.entry.dotted] = np.column_stack(levels_of(case, each.entry))
+        table = found[each.entry.dotted]
+        table[np.argmin(np.abs(np.log(table[:, 0] / each.band))), 1] = values[each.name]
+    return found
 
 
 def _uncertainty(measured: Measured, of: Observable) -> Array:

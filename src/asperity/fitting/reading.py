@@ -16,7 +16,7 @@ from asperity.case.table_headings import WIDE, are_words
 from asperity.case.tables import LARGEST_TABLE
 from asperity.errors import InputError
 from asperity.fitting.observable import Measured, Observable
-from asperity.fitting.observables import BUILT_IN, decay_rates, observable
+from asperity.fitting.observables import BUILT_IN, decay_rates, levels, mobilities, observable
 from asperity.parameters import FROM_PYTHON
 from asperity.spectra import a_weighting
 from asperity.text_files import lines_of_cells, number_in, read_text
@@ -276,9 +276,8 @@ def _with_neighbours(values: Array) -> Array:
 
 def beside(case: AnyCase) -> list[Measured]:
     """What the case itself says was measured."""
-    from asperity.fitting.observables import mobilities
-
-    return [*decay_rates.rates_beside(case), *mobilities.mobility_beside(case)]
+    beside_track = [*decay_rates.rates_beside(case), *mobilities.mobility_beside(case)]
+    return [*beside_track, *levels.sound_beside(case)]
 
 
 def read_where(words: Iterable[str]) -> dict[str, str]:

@@ -1,6 +1,7 @@
 """Fitting a case: from measurements and free keys to values, what is known of them, and the new case."""
 
 import os
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,13 +12,30 @@ from asperity.arguments import Array, NDArray, file_path, require, shown, whole
 from asperity.case import cases
 from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key
-from asperity.errors import InputError
+from asperity.errors import BandsWarning, InputError
 from asperity.fitting import determined, reading
-from asperity.fitting.free import Free, free_key, read_free, read_range
+from asperity.fitting.free import (
+    Free,
+    Range,
+    free_bands,
+    free_key,
+    is_spectrum,
+    read_free,
+    read_range,
+)
 from asperity.fitting.observable import Measured, Values
 from asperity.fitting.observables import observable
 from asperity.fitting.problem import Problem
-from asperity.fitting.search import FINE, ROUGH, Optimum, descend, on_limits, starts_within
+from asperity.fitting.search import (
+    FINE,
+    ROUGH,
+    TOLERANCE,
+    Optimum,
+    descend,
+    on_limits,
+    starts_within,
+    updated_slopes,
+)
 from asperity.progress import Progress, shown_progress
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
@@ -27,6 +45,10 @@ FORMAT = 1
 """Raise it when what is kept of a search no longer means what it meant."""
 USUALLY_LEFT_OUT = 1.0
 """By a case, dB, while nothing is known of it."""
+RUNS = 15
+"""Most steps of a search in which each takes a run."""
+OF_RUNS = 1e-3
+"""Part by which a sum of squares still changes where each of its values takes a run."""
 ROUNDS, SAME = 6, 0.05
 """In which it is found, and the part by which it may still change."""
 STARTS = 8
@@ -328,12 +350,24 @@ def chosen_free(case: AnyCase, measured: Sequence[Measured], free: FreeKeys) -> 
         require(name not in asked, name, "free more than once", "each key once")
         asked[name] = within
     require(asked, "free", "no key", "one key or more")
-    return tuple(_free(case, name, within) for name, within in asked.items())
+    heard = _heard(case, measured)
+    return tuple(each for name, within in asked.items() for each in _free(case, name, within, heard))
 
 
-def _free(case: AnyCase, name: str, within: object) -> Free:
-    unit = entry_of(type(case), name).unit or "1"
-    return free_key(case, name, None if within is None else read_range(name, within, unit))
+def _free(case: AnyCase, name: str, within: object, heard: Range) -> list[Free]:
+    """A key, or, of one that holds a spectrum, its bands whose wavelengths are heard, m."""
+    entry = entry_of(type(case), name)
+    bands = is_spectrum(entry)
+    unit = "dB" if bands else entry.unit or "1"
+    ends = None if within is None else read_range(name, within, unit)
+    return free_bands(case, entry, heard, ends) if bands else [free_key(case, name, ends)]
+
+
+def _heard(case: AnyCase, measured: Sequence[Measured]) -> Range:
+    """Shortest and longest wavelength that is heard in what was measured in bands, m."""
+    own = float(getattr(case, "speed", np.nan))
+    speeds = np.concatenate([float(each.conditions.get("speed", own)) / each.at for each in measured])
+    return float(speeds.min()), float(speeds.max())
 
 
 def fitted(
@@ -344,13 +378,12 @@ def fitted(
     starts: int | None = None,
 ) -> Fitted:
     """Fit a case to measurements by what may change, as `fit` does."""
-    problem = Problem(case, measured, chosen, of_case=case_key("fit", FORMAT, case))
+    known, before = _known(case, measured, progress)
+    problem = Problem(case, known, chosen, of_case=case_key("fit", FORMAT, case), progress=progress)
     received = f"{count_of(len(chosen), 'free key')} and {count_of(problem.count, 'value')}"
     require(len(chosen) < problem.count, "fit", received, "more values than free keys", "Free fewer keys.")
-    quick = not any(of.by_run for of in problem.observables)
-    count = whole("starts", starts or (STARTS if quick else 1), "1 to 100", at_least=1, at_most=100)
-    nothing = np.zeros(0)
-    before = Problem(case, measured, ()).predicted(nothing)
+    usual = 1 if problem.by_run else STARTS
+    count = whole("starts", starts or usual, "1 to 100", at_least=1, at_most=100)
     left_open = list[Undetermined]()
     rough = replace(problem, fine=False)
     places = starts_within(problem.low, problem.high, problem.start, count, rough.residuals)
@@ -369,6 +402,32 @@ def fitted(
             received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
             raise InputError("fit", received, "data that tell one of them")
         places = [np.delete(best.place, inside[least.number]), problem.start]
+
+
+def _known(
+    case: AnyCase, measured: Sequence[Measured], progress: Progress
+) -> tuple[tuple[Measured, ...], list[Values]]:
+    """Measurements where the case predicts anything at all, and what it predicts there as it is.
+
+    A warning tells what is left out; an `InputError` says that nothing is left of a measurement.
+    """
+    nothing = np.zeros(0)
+    predicted = Problem(case, tuple(measured), (), progress=progress).predicted(nothing)
+    known, before = list[Measured](), list[Values]()
+    for each, values in zip(measured, predicted, strict=True):
+        inside = np.isfinite(values)
+        out = ", ".join(rounded(at, 4) for at in each.at[~inside])
+        where = f"{each.what} in {each.source}, {observable(each.what).axis}"
+        if not inside.any():
+            remedy = "Does numerics.highest_frequency reach them?" if "Hz" in where else ""
+            raise InputError(where, out, "where the case predicts something", remedy)
+        if out:
+            told = f"{where}: {out} left out, as the case predicts nothing there"
+            warnings.warn(told, BandsWarning, stacklevel=4)
+        uncertainty = None if each.uncertainty is None else np.asarray(each.uncertainty)[inside]
+        known.append(replace(each, at=each.at[inside], values=each.values[inside], uncertainty=uncertainty))
+        before.append(values[inside])
+    return tuple(known), before
 
 
 @dataclass(frozen=True, eq=False)
@@ -415,7 +474,11 @@ def _descent(problem: Problem, start: Array, most: int) -> Optimum:
     """Go down from a start; where that ended is kept, so that an interrupted fit goes on from there."""
 
     def descended() -> dict[str, Array]:
-        end = descend(problem.residuals, start, problem.low, problem.high, most)
+        tolerance = OF_RUNS if problem.by_run else TOLERANCE
+        limits, slopes = (problem.low, problem.high), problem.quick_slopes
+        follow = updated_slopes(problem.residuals, slopes) if problem.by_run else slopes
+        count = RUNS if problem.by_run else most
+        end = descend(problem.residuals, follow, start, *limits, count, tolerance)
         return {"place": end.place, "residuals": end.residuals}
 
     kept = made(Store(), problem.key("descent", start.tolist(), most), descended)

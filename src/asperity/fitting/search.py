@@ -1,11 +1,11 @@
 """Least squares from several starts: the free values that leave the smallest sum of squares."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, NDArray
 
 FAR = 1e3
 """Residual, in uncertainties, of what cannot be computed at some values."""
@@ -14,8 +14,8 @@ SCREENED = 6
 ROUGH, FINE = 12, 60
 """Most evaluations of residuals of a search from one start, and of the best one's end."""
 TOLERANCE = 1e-8
-STEP = 1e-4
-"""Of differences, on the scale of the search."""
+STEP, RUN_STEP = 1e-4, 0.02
+"""Of differences, on the scale of the search, and of those of runs, whose grids may follow a value."""
 ON_LIMIT = 2e-3
 """Share of its range by which a value may be off a limit that it lies on."""
 
@@ -49,7 +49,15 @@ def starts_within(low: Array, high: Array, start: Array, count: int, residuals: 
     return [start, *places[best]]
 
 
-def descend(residuals: Residuals, start: Array, low: Array, high: Array, most: int) -> Optimum:
+def descend(
+    residuals: Residuals,
+    slopes: Jacobian,
+    start: Array,
+    low: Array,
+    high: Array,
+    most: int,
+    tolerance: float = TOLERANCE,
+) -> Optimum:
     """Go down from one place to the nearest smallest sum of squares between limits (p,)."""
     from scipy.optimize import least_squares
 
@@ -60,12 +68,12 @@ def descend(residuals: Residuals, start: Array, low: Array, high: Array, most: i
     found = least_squares(
         residuals,
         inside,
-        jac=forward_slopes(residuals, low, high),
+        jac=slopes,
         bounds=(low, high),
         x_scale=1.0,
-        ftol=TOLERANCE,
-        xtol=TOLERANCE,
-        gtol=TOLERANCE,
+        ftol=tolerance,
+        xtol=tolerance,
+        gtol=tolerance,
         max_nfev=most,
     )
     return Optimum(np.asarray(found.x), np.asarray(found.fun))
@@ -96,6 +104,46 @@ def central_slopes(residuals: Residuals, low: Array, high: Array) -> Jacobian:
         return np.stack(columns, axis=1)
 
     return slopes
+
+
+def grouped_slopes(
+    residuals: Residuals,
+    place: Array,
+    high: Array,
+    groups: Sequence[tuple[NDArray[np.int_], NDArray[np.bool_]]],
+) -> Array:
+    """Slopes of residuals (n, p) by differences of runs, some values moved at once.
+
+    Each group has the numbers of these values (k,), and which data each of them moves (n, k).
+    """
+    here = residuals(place)
+    found = np.zeros((len(here), len(place)))
+    for numbers, moves in groups:
+        steps = np.where(place[numbers] + RUN_STEP <= high[numbers], RUN_STEP, -RUN_STEP)
+        moved = place.copy()
+        moved[numbers] += steps
+        change = residuals(moved) - here
+        found[:, numbers] = np.where(moves, change[:, None] / steps, 0.0)
+    return found
+
+
+def updated_slopes(residuals: Residuals, slopes: Jacobian) -> Jacobian:
+    """Slopes that are found once, and then follow what residuals do from place to place (Broyden)."""
+    held: list[tuple[Array, Array, Array]] = []  # place, residuals and slopes there
+
+    def followed(place: Array) -> Array:
+        left = residuals(place)
+        if not held:
+            found = slopes(place)
+        else:
+            before, left_before, found = held.pop()
+            step = place - before
+            missed = left - left_before - found @ step
+            found = found + np.outer(missed, step) / max(float(step @ step), np.finfo(float).tiny)
+        held.append((place.copy(), left, found))
+        return found
+
+    return followed
 
 
 def _moved(place: Array, number: int, by: float) -> Array:

@@ -245,7 +245,7 @@ def findings_of_measured(keys: TrackKeys, track: Track, band: Array) -> list[Fin
                 f"{rounded(1.0 / FACTOR, 2)} to {FACTOR:g}",
                 Grade.WARNING if off else None,
                 f"The contact force is that of another track than the one measured: see {off}.",
-                f"Fit pads, ballast and losses of [track] to it, or check track.{key}.",
+                f"Fit pads, ballast and losses of [track] to it (asperity fit CASE), or check track.{key}.",
                 category=MeasuredTrackWarning,
             )
         )

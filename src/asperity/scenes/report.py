@@ -60,7 +60,7 @@ CHAPTERS = (
         "pass_by",
         "Pass-by",
         (noise.pass_by_level, measured.pass_by_bands),
-        (measured.limits_table, noise.pass_by_table),
+        (measured.limits_table, noise.pass_by_table, measured.measured_sound_table),
         noise.pass_by_answers,
     ),
     Chapter("effects", "What helps?", (), (effects.what_helps_table,), effects.what_helps_answers),

@@ -2,11 +2,11 @@
 
 from asperity.arguments import one_of
 from asperity.fitting.observable import Observable
-from asperity.fitting.observables import decay_rates, mobilities
+from asperity.fitting.observables import bearings, decay_rates, levels, mobilities, stiffness
 
-BUILT_IN: dict[str, Observable] = {
-    each.name: each for each in (*decay_rates.OBSERVABLES, *mobilities.OBSERVABLES)
-}
+_MODULES = (decay_rates, mobilities, stiffness, bearings, levels)
+BUILT_IN: dict[str, Observable] = {each.name: each for module in _MODULES for each in module.OBSERVABLES}
+"""By name; the first whose words are in a heading is what the table holds."""
 
 
 def quantities() -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from asperity.scenes import schema
 from asperity.scenes.figures.sources import WHOLE, Sources, decides, main_sources
 from asperity.schema import Entry, spectra
 from asperity.spectra import a_weighting
-from asperity.written_numbers import capital
+from asperity.written_numbers import capital, count_of
 
 MEASURED = "measured, in one-third octaves"
 _LOOK: tuple[Any, ...] = (chart.INK, (), 2.0)
@@ -80,10 +80,71 @@ def measured_table(tree: DataTree) -> tables.ReportTable:
         "its lateral rate. Bands that were not measured stay as computed, and so does the "
         "contact force of this run in all its figures."
     )
-    return tables.table("measured_track", "Track: measured against computed", columns, note)
+    apart = [
+        factor * np.log10(data.values(tree, own) / data.values(tree, expected))
+        for factor, own, expected in _COMPARED
+        if data.present(tree, own)
+    ]
+    told = _deviation(np.concatenate(apart), np.full(sum(map(len, apart)), MEASURING)) if apart else ""
+    return tables.table(
+        "measured_track", "Track: measured against computed", columns, f"{note} {told}".strip()
+    )
+
+
+_COMPARED = (
+    (10.0, schema.MEASURED_DECAY_RATE, schema.EXPECTED_DECAY_RATE),
+    (20.0, schema.MEASURED_MOBILITY, schema.EXPECTED_MOBILITY),
+)
+"""dB of a factor of ten, and what is compared."""
+MEASURING = 1.0
+"""Standard deviation of what is measured in a band, dB, where nobody tells it: as fits take it."""
+TWICE = 1.96
+"""Standard deviations in half a 95 % interval."""
+
+
+def _deviation(apart: chart.Numbers, deviation: chart.Numbers) -> str:
+    """Say how far measured bands are from computed ones (n,), dB, and what to do where that is too far.
+
+    With the standard deviation of each difference, dB.
+    """
+    known = np.isfinite(apart)
+    if not known.any():
+        return ""
+    outside = int(np.sum(np.abs(apart[known]) > TWICE * deviation[known]))
+    rms = float(np.sqrt(np.mean(apart[known] ** 2)))
+    told = (
+        f"Measured over computed: {rms:.1f} dB rms in {count_of(int(known.sum()), 'band')}, "
+        f"{outside} of them beyond 95 % of what measuring and chance explain"
+    )
+    return f"{told}. Next: asperity fit CASE, which fits keys of the case to it." if outside else f"{told}."
 
 
 # --- beside the track
+
+
+def measured_sound_table(tree: DataTree) -> ReportTable | None:
+    """Levels in one-third octaves, measured and computed by the main law, and how far chance explains that."""
+    lines = pass_by_bands.collect(tree)
+    named = {line.label: line.values for line in lines.lines}
+    shown = np.isfinite(named["measured"]) & np.isfinite(named[WHOLE])
+    if not shown.any():
+        return None
+    apart = (named["measured"] - named[WHOLE])[shown]
+    deviation = np.hypot(data.values(tree, spectra.LEVEL_DEVIATION)[shown], MEASURING)
+    doubtful = np.abs(apart) <= TWICE * deviation
+    columns = {
+        "band": tables.band_cells(lines.at[shown], np.zeros(len(apart), dtype=bool)),
+        "measured / dB(A)": tables.number_cells(named["measured"][shown], "{:.1f}"),
+        "computed / dB(A)": tables.number_cells(named[WHOLE][shown], "{:.1f}"),
+        "measured over computed / dB": tables.change_cells(apart, doubtful),
+        "95 % / dB": tables.number_cells(TWICE * deviation, "± {:.1f}"),
+    }
+    note = (
+        f"Uncertainty: {MEASURING:g} dB of measuring, and the chance of the record that was computed. In "
+        "brackets: differences that these explain."
+    )
+    told = _deviation(apart, deviation)
+    return table("measured_sound", "Sound: measured against computed", columns, f"{note} {told}".strip())
 
 
 def _over_pass_by(tree: DataTree) -> Iterator[figure.Series]:

@@ -1,0 +1,110 @@
+"""What is measured at a ball bearing: tones of its parts, velocities in bands, lines of the envelope."""
+
+from pathlib import Path
+
+import numpy as np
+from xarray import DataTree
+
+from asperity.arguments import Array
+from asperity.case.any_case import AnyCase
+from asperity.case.ball_bearing import BallBearingCase
+from asperity.case.table_headings import Column
+from asperity.case.tables import read_table
+from asperity.diagnostics import ISO_BANDS
+from asperity.fitting.observable import Collected, Measured, Observable, TriedCase, Values
+from asperity.schema import bearing
+from asperity.structures.ball_bearing import PARTS
+
+TONE, VELOCITY, LINE = "bearing tone", "bearing band velocity", "envelope line"
+NEAR = 0.02
+"""By which part a line may lie beside the frequency that was measured: cages slip."""
+_FREQUENCY = Column("frequency", "Hz")
+
+
+def _no_bearing(case: AnyCase) -> str:
+    return "" if isinstance(case, BallBearingCase) else f"no bearing: it is of kind {case.kind}"
+
+
+# --- tones: the ring that turns, and the cage and the parts it is met by
+
+
+def _tones(case: BallBearingCase) -> Array:
+    """Tones of outer raceway, inner raceway, balls, and turns of the cage, Hz."""
+    turning = case.kinematics
+    return np.array([*(turning.tone(part) for part in PARTS), turning.cage])
+
+
+def _tone(trial: TriedCase, measured: Measured) -> Values:
+    """The tones nearest to those that were measured."""
+    case = trial.case
+    assert isinstance(case, BallBearingCase)
+    tones = _tones(case)
+    apart = np.abs(np.log(measured.at[:, None] / tones))
+    return np.asarray(tones[apart.argmin(axis=1)])
+
+
+def _read_tones(path: Path) -> list[Measured]:
+    frequency = read_table(path, (Column("tone", "Hz"),))[:, 0]
+    return [Measured(TONE, frequency, frequency, source=path.name)]
+
+
+def _of_angle(case: AnyCase) -> tuple[str, ...]:
+    assert isinstance(case, BallBearingCase)
+    return ("axial",) if case.axial else ("speed",)
+
+
+# --- what vibrates
+
+
+def _collect_velocity(tree: DataTree) -> Collected:
+    velocity = tree[bearing.BAND_VELOCITY.path].isel(law=0, ring_sensor=0)
+    return {"band_velocity": np.asarray(velocity.values)}
+
+
+def _velocity(trial: TriedCase, measured: Measured) -> Values:
+    """Of the band of ISO 15242-2 that holds each frequency; NaN outside of all."""
+    found = np.full(measured.at.shape, np.nan)
+    for value, (low, high) in zip(trial.collected["band_velocity"], ISO_BANDS, strict=True):
+        found[(measured.at >= low) & (measured.at < high)] = value
+    return found
+
+
+def _read_velocity(path: Path) -> list[Measured]:
+    frequency, velocity = read_table(path, (_FREQUENCY, Column("velocity", "m/s"))).T
+    return [Measured(VELOCITY, frequency, velocity, source=path.name)]
+
+
+def _collect_line(tree: DataTree) -> Collected:
+    envelope = tree[bearing.ENVELOPE.path].isel(law=0)
+    frequency = np.asarray(envelope["envelope_frequency"].values)
+    return {"envelope": np.asarray(envelope.values), "envelope_frequency": frequency}
+
+
+def _line(trial: TriedCase, measured: Measured) -> Values:
+    """The largest amplitude near each frequency; NaN beyond the envelope that was computed."""
+    lines, amplitude = trial.collected["envelope_frequency"], trial.collected["envelope"]
+    found = []
+    for at in measured.at:
+        near = np.abs(lines - at) <= NEAR * at
+        found.append(amplitude[near].max() if near.any() else np.nan)
+    return np.array(found)
+
+
+def _read_line(path: Path) -> list[Measured]:
+    frequency, amplitude = read_table(path, (_FREQUENCY, Column("amplitude", "m/s^2"))).T
+    return [Measured(LINE, frequency, amplitude, source=path.name)]
+
+
+def _of_load(case: AnyCase) -> tuple[str, ...]:
+    assert isinstance(case, BallBearingCase)
+    return tuple(name for name in ("radial", "axial") if getattr(case, name)) or ("radial",)
+
+
+OBSERVABLES = (
+    Observable(TONE, "Hz", "frequency (Hz)", 20.0, 0.01, _no_bearing, _tone, _of_angle,
+               r"\btones? ?\(", _read_tones),
+    Observable(VELOCITY, "m/s", "frequency (Hz)", 20.0, 1.0, _no_bearing, _velocity, _of_load,
+               r"velocity", _read_velocity, _collect_velocity),
+    Observable(LINE, "m/s²", "frequency (Hz)", 20.0, 1.0, _no_bearing, _line, _of_load,
+               r"envelope|amplitude.*m/s(\^?2|²)", _read_line, _collect_line),
+)  # fmt: skip

@@ -1,0 +1,144 @@
+"""Levels in one-third octaves of a run: sound beside a track, contact force, acceleration."""
+
+from pathlib import Path
+
+import numpy as np
+from xarray import DataTree
+
+from asperity.arguments import Array
+from asperity.case.any_case import AnyCase
+from asperity.case.form import name_of
+from asperity.case.measured import band_numbers, read_band_levels
+from asperity.case.scene import Case
+from asperity.case.table_headings import Column
+from asperity.case.tables import read_table
+from asperity.fitting.observable import Collected, Measured, Observable, TriedCase, Values
+from asperity.fitting.observables.decay_rates import keys_of_track, no_track
+from asperity.scenes import schema
+from asperity.schema import Entry, spectra
+
+SOUND, FORCE, ACCELERATION = "sound pressure level", "contact force level", "acceleration level"
+_FREQUENCY = Column("frequency", "Hz")
+_BY_CHANCE = 1.0
+"""Standard deviation of a level that one record gives, dB, where nothing tells it."""
+
+
+def in_bands(collected: Collected, name: str, at: Array) -> Array:
+    """Levels of a run (..., n) in bands by their centres (n,), Hz; NaN in those that it has not."""
+    bands, held = collected[f"{name}_band"], collected[name]
+    apart = np.abs(np.log10(at[:, None] / bands))
+    nearest = apart.argmin(axis=1)
+    return np.where(apart.min(axis=1) < 0.03, held[..., nearest], np.nan)
+
+
+def _collect(entry: Entry, tree: DataTree) -> Collected:
+    """Levels of the main law, with their bands."""
+    levels = tree[entry.path].isel(law=0)
+    if "radiator" in levels.dims:
+        levels = levels.sel(radiator="total")
+    if "contact" in levels.dims:
+        levels = levels.isel(contact=0)
+    return {entry.name: np.asarray(levels.values), f"{entry.name}_band": np.asarray(levels["band"].values)}
+
+
+# --- sound
+
+
+def _no_passage(case: AnyCase) -> str:
+    if lacks := no_track(case):
+        return lacks
+    assert isinstance(case, Case)
+    return "" if case.passage.passed is not None else "no pass-by time: noise.vehicle_length is not given"
+
+
+def _sound(trial: TriedCase, measured: Measured) -> Values:
+    """Equivalent levels over the pass-by time."""
+    case = trial.whole
+    assert isinstance(case, Case)
+    passed = case.passage.passed
+    assert passed is not None
+    exposure = in_bands(trial.collected, schema.SOUND_EXPOSURE_LEVEL.name, measured.at)
+    return np.asarray(exposure - 10.0 * np.log10(passed[1] - passed[0]))
+
+
+def _read_sound(path: Path) -> list[Measured]:
+    centres, level = read_band_levels(path)
+    return [Measured(SOUND, centres, level, source=path.name)]
+
+
+def sound_beside(case: AnyCase) -> list[Measured]:
+    """What the case says was measured as a train passed."""
+    noise = getattr(case, "noise", None)
+    table = getattr(noise, "measured_bands", None)
+    if table is None or keys_of_track(case) is None:
+        return []
+    return [Measured(SOUND, *read_band_levels(table), source=name_of(table))]
+
+
+# --- force and acceleration
+
+
+def _no_rolling(case: AnyCase) -> str:
+    return "" if isinstance(case, Case) else f"no bodies that roll: it is of kind {case.kind}"
+
+
+def _no_sensors(case: AnyCase) -> str:
+    if lacks := _no_rolling(case):
+        return lacks
+    assert isinstance(case, Case)
+    sensed = case.rolled_over.sensor_positions and keys_of_track(case) is None
+    return "" if sensed else "no accelerometers on what is rolled over"
+
+
+def _force(trial: TriedCase, measured: Measured) -> Values:
+    return in_bands(trial.collected, spectra.FORCE_LEVEL.name, measured.at)
+
+
+def _acceleration(trial: TriedCase, measured: Measured) -> Values:
+    """Of the sensor nearest to the place of the response; without one the energy mean of all."""
+    held = in_bands(trial.collected, schema.ACCELERATION_LEVEL.name, measured.at)
+    if measured.places is not None:
+        case = trial.case
+        assert isinstance(case, Case)
+        apart = np.abs(np.array(case.rolled_over.sensor_positions) - measured.places[0])
+        return np.asarray(held[apart.argmin()])
+    return np.asarray(10.0 * np.log10(np.mean(10.0 ** (0.1 * held), axis=0)))
+
+
+def _read_levels(what: str, reference: str, path: Path) -> list[Measured]:
+    rows = read_table(path, (_FREQUENCY, Column("level", "dB", reference)))
+    centres = 10.0 ** (0.1 * band_numbers(path, rows[:, 0]))
+    return [Measured(what, centres, rows[:, 1], source=path.name)]
+
+
+def _of_texture(case: AnyCase) -> tuple[str, ...]:
+    """Keys that raise or lower all levels."""
+    assert isinstance(case, Case)
+    surface = case.surface
+    if surface.rms is not None:
+        return ("surface.rms",)
+    return ("surface.level",) if surface.spectrum is not None else ("speed",)
+
+
+def _of_sound(case: AnyCase) -> tuple[str, ...]:
+    return ("noise.receiver_offset",)
+
+
+def _of_beam(case: AnyCase) -> tuple[str, ...]:
+    assert isinstance(case, Case)
+    losses = (f"{case.OVER}.loss_factor",) if "loss_factor" in case.rolled_over.keys else ()
+    return (*_of_texture(case), *losses)
+
+
+OBSERVABLES = (
+    Observable(FORCE, "dB re 1 N", "frequency (Hz)", 0.0, _BY_CHANCE, _no_rolling, _force, _of_texture,
+               r"dB re\.? ?1? ?N\b|force level", lambda path: _read_levels(FORCE, "1 N", path),
+               lambda tree: _collect(spectra.FORCE_LEVEL, tree)),
+    Observable(ACCELERATION, "dB re 1e-6 m/s²", "frequency (Hz)", 0.0, _BY_CHANCE, _no_sensors, _acceleration,
+               _of_beam, r"acceleration level|dB re\.? ?[^,;]*m/s(\^?2|²)",
+               lambda path: _read_levels(ACCELERATION, "1e-6 m/s^2", path),
+               lambda tree: _collect(schema.ACCELERATION_LEVEL, tree)),
+    Observable(SOUND, "dB re 20 µPa", "frequency (Hz)", 0.0, _BY_CHANCE, _no_passage, _sound, _of_sound,
+               r"dB ?\(A\)|sound|pass.?by|L_?p|\bdB\b", _read_sound,
+               lambda tree: _collect(schema.SOUND_EXPOSURE_LEVEL, tree)),
+)  # fmt: skip

@@ -1,0 +1,52 @@
+"""The stiffness of a rough contact over its load."""
+
+from pathlib import Path
+
+import numpy as np
+from xarray import DataTree
+
+from asperity.case.any_case import AnyCase
+from asperity.case.scene import Case
+from asperity.case.table_headings import Column
+from asperity.case.tables import read_table
+from asperity.fitting.observable import Collected, Measured, Observable, TriedCase, Values
+from asperity.schema import contact
+
+STIFFNESS = "contact stiffness"
+_COLUMNS = (Column("load", "N"), Column("stiffness", "N/m"))
+
+
+def _no_contact(case: AnyCase) -> str:
+    return "" if isinstance(case, Case) else f"no single contact: it is of kind {case.kind}"
+
+
+def _collect(tree: DataTree) -> Collected:
+    """Force and tangent stiffness over the approach, mean of the samples."""
+    return {
+        "contact_load": np.asarray(tree[contact.FORCE.path].values),
+        "contact_stiffness": np.asarray(tree[contact.TANGENT_STIFFNESS.path].values),
+    }
+
+
+def _predict(trial: TriedCase, measured: Measured) -> Values:
+    """Tangent stiffness dF/dr at each load; NaN beyond the loads that were computed."""
+    load, stiffness = trial.collected["contact_load"], trial.collected["contact_stiffness"]
+    known = (load > 0.0) & (stiffness > 0.0)
+    place, over = np.log(load[known]), np.log(stiffness[known])
+    return np.exp(np.interp(np.log(measured.at), place, over, left=np.nan, right=np.nan))
+
+
+def _read(path: Path) -> list[Measured]:
+    load, stiffness = read_table(path, _COLUMNS).T
+    return [Measured(STIFFNESS, load, stiffness, source=path.name)]
+
+
+def _free(case: AnyCase) -> tuple[str, ...]:
+    assert isinstance(case, Case)
+    return ("surface.rms",) if case.surface.rms is not None else ("surface.level",)
+
+
+OBSERVABLES = (
+    Observable(STIFFNESS, "N/m", "load (N)", 20.0, 0.5, _no_contact, _predict, _free,
+               r"load.*stiffness|stiffness.*load", _read, _collect),
+)  # fmt: skip
