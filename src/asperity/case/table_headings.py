@@ -168,7 +168,7 @@ def _offset(title: str, column: Column, source: str) -> float:
         return 0.0
     number, unit = column.reference.split()
     stated = level[3] if _NUMBER.match(level[3]) else f"1 {level[3]}"
-    dimension = unit[1:]
+    dimension = unit[1:] or unit
     try:
         ratio = quantity(stated, dimension) / quantity(column.reference, dimension)
     except InputError:

@@ -136,7 +136,7 @@ OBSERVABLES = (
                lambda tree: _collect(spectra.FORCE_LEVEL, tree)),
     Observable(ACCELERATION, "dB re 1e-6 m/s²", "frequency (Hz)", 0.0, _BY_CHANCE, _no_sensors, _acceleration,
                _of_beam, r"acceleration level|dB re\.? ?[^,;]*m/s(\^?2|²)",
-               lambda path: _read_levels(ACCELERATION, "1e-6 m/s^2", path),
+               lambda path: _read_levels(ACCELERATION, "1 um/s^2", path),
                lambda tree: _collect(schema.ACCELERATION_LEVEL, tree)),
     Observable(SOUND, "dB re 20 µPa", "frequency (Hz)", 0.0, _BY_CHANCE, _no_passage, _sound, _of_sound,
                r"dB ?\(A\)|sound|pass.?by|L_?p|\bdB\b", _read_sound,

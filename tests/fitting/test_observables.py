@@ -1,0 +1,250 @@
+"""What a run, or a bearing, gives of what is measured: read where it stands, and keys fitted to it."""
+
+import numpy as np
+import pytest
+import xarray
+
+import asperity
+from asperity.case.cases import as_case
+from asperity.fitting import observable as fitted_to
+from asperity.fitting import observables
+from asperity.fitting.observable import Measured, TriedCase
+from asperity.fitting.running import measured_for
+from asperity.scenes import schema
+from asperity.schema import bearing, contact, group, spectra
+from refusals import refusals
+from small_cases import BALL, BEARING, HEARD
+
+BAND = 10.0 ** (0.1 * np.arange(20, 33))
+HEIGHTS = 20.0 * np.log10(BAND)
+"""Some level in each band, dB."""
+
+
+def predicted(what, case, at, places=None):
+    data = Measured(what, at, np.ones(len(at)), places=places)
+    return observables.observable(what).predict(TriedCase(case, {}), data)
+
+
+@pytest.fixture
+def ran(monkeypatch):
+    """Lets a case be run by a function that lays out its result; says how often that was called."""
+    calls = []
+
+    def by(values):
+        def run(case, progress, *, brief):
+            assert brief
+            calls.append(case)
+            laid = values(case)
+            names = {entry.group: {} for entry in laid}
+            for entry, held in laid.items():
+                names[entry.group][entry] = held
+            return xarray.DataTree.from_dict({f"/{name}": group(held) for name, held in names.items()})
+
+        monkeypatch.setattr(fitted_to, "run", run)
+        return calls
+
+    return by
+
+
+def of_beam(case):
+    """Force and acceleration of a linear contact: both in proportion to the roughness."""
+    level = HEIGHTS + 20.0 * np.log10(case.surface.rms / 1e-7)
+    sensors = case.rolled_over.sensor_positions
+    return {
+        spectra.LAW: ["linear"],
+        spectra.BAND: BAND,
+        spectra.FORCE_LEVEL: level[None],
+        schema.SPECTRA_SENSOR: list(sensors),
+        schema.ACCELERATION_LEVEL: np.stack([level + 10.0 * n for n in range(len(sensors))])[None],
+        contact.APPROACH: np.array([0.0, 1e-7, 1e-6, 1e-5]),
+        contact.FORCE: np.array([0.0, 1.0, 10.0, 100.0]),
+        contact.TANGENT_STIFFNESS: np.array([0.0, 1e7, 1e8, 1e9]),
+    }
+
+
+@pytest.fixture
+def beam(ran):
+    return as_case(BALL | {"laws": ["linear"]}), ran(of_beam)
+
+
+def test_levels_are_those_of_the_run(beam):
+    case, calls = beam
+    own = HEIGHTS + 20.0 * np.log10(0.4)  # 0.04 um
+    at = np.array([BAND[3], 1e5])
+    np.testing.assert_allclose(predicted("contact force level", case, at), [own[3], np.nan])
+    third = predicted("acceleration level", case, at, places=(case.rolled_over.sensor_positions[2], 0.0))
+    np.testing.assert_allclose(third, [own[3] + 20.0, np.nan])
+    mean = 10.0 * np.log10(np.mean(10.0 ** np.arange(5)))
+    np.testing.assert_allclose(predicted("acceleration level", case, at)[0], own[3] + mean)
+    np.testing.assert_allclose(predicted("contact stiffness", case, [3.0, 1e4]), [3e7, np.nan])
+    assert len(calls) == 1  # kept
+
+
+def test_roughness_is_fitted_to_forces_with_few_runs(beam):
+    case, calls = beam
+    data = Measured("contact force level", BAND, HEIGHTS + 20.0 * np.log10(0.8))
+    found = asperity.fit(case, data)
+    assert found.values == {"surface.rms": pytest.approx(0.08e-6, rel=1e-4)}
+    assert len(calls) < 12
+    assert found.case.surface.rms == found.values["surface.rms"]
+
+
+def test_bands_that_the_case_has_not_are_left_out_and_told(beam):
+    case, _ = beam
+    data = Measured("contact force level", [BAND[2], BAND[4], 1e5], [HEIGHTS[2], HEIGHTS[4], 0.0])
+    with pytest.warns(UserWarning, match="contact force level in measured, frequency .Hz.: 100000 left out"):
+        found = asperity.fit(case, data)
+    assert found.measured[0].at.tolist() == [BAND[2], BAND[4]]
+
+
+test_data_beyond_the_case_are_refused = refusals(
+    (
+        "contact force level",
+        [2e4, 3e4],
+        "frequency (Hz): received 20000, 30000; allowed: where the case",
+    ),
+    ("contact stiffness", [1e5, 2e5], "contact stiffness in measured, load (N): received"),
+    of=lambda what, at, beam: asperity.fit(beam[0], Measured(what, at, [1.0, 2.0]), ["surface.rms"]),
+)
+
+
+# --- a train that passes
+
+
+def of_train(case):
+    """Levels of wheel and rail roughness where they are passed, by energy, and what the receiver adds."""
+    wavelength = case.speed / BAND
+    table = case.wheel.roughness
+    near = np.abs(np.log(wavelength[:, None] / table[:, 0])).argmin(axis=1)
+    energy = 1e-9 + 10.0 ** (0.1 * table[near, 1])
+    level = 60.0 + 10.0 * np.log10(energy) + case.noise.receiver_offset
+    return {
+        schema.PASS_BY_LAW: ["linear"],
+        schema.PASS_BY_RADIATOR: ["rail", "total"],
+        schema.PASS_BY_BAND: BAND,
+        schema.SOUND_EXPOSURE_LEVEL: np.stack([level - 3.0, level])[None],
+    }
+
+
+START = np.column_stack([10.0 ** (-0.1 * np.arange(6, 25)), np.linspace(10.0, -10.0, 19)])
+TRAIN = HEARD | {"noise": {"vehicle_length": "26 m"}, "speed": "40 m/s", "wheel": {"section": "rigid"}}
+
+
+@pytest.fixture
+def train(ran):
+    case = as_case({"kind": "wheel-on-rail"} | TRAIN)
+    return case.with_(**{"wheel.roughness": START}), ran(of_train)
+
+
+def test_sound_is_the_level_over_the_pass_by_time(train):
+    case, _ = train
+    passed = case.passage.passed
+    expected = of_train(case)[schema.SOUND_EXPOSURE_LEVEL][0, 1] - 10.0 * np.log10(passed[1] - passed[0])
+    np.testing.assert_allclose(predicted("sound pressure level", case, BAND), expected)
+    data = Measured("sound pressure level", BAND, expected + 5.5)
+    found = asperity.fit(case, data)
+    assert found.values == {"noise.receiver_offset": pytest.approx(5.5, abs=1e-3)}
+
+
+def test_roughness_in_bands_is_common_to_pass_bys_at_several_speeds(train):
+    """Each band is heard at another frequency at each speed; few runs find all of them."""
+    case, calls = train
+    true = START + np.column_stack([np.zeros(19), 4.0 + 2.0 * np.sin(np.arange(19))])
+    data = []
+    for speed in (40.0, 50.0):
+        conditions = {"speed": speed}
+        known = TriedCase(case, {"wheel.roughness": true, **conditions})
+        level = observables.observable("sound pressure level").predict(
+            known, Measured("sound pressure level", BAND, BAND)
+        )
+        data.append(Measured("sound pressure level", BAND, level, conditions=conditions))
+    calls.clear()
+    found = asperity.fit(case, data, ["wheel.roughness"])
+    heard = {each.free.band: each.value for each in found.estimates}
+    levels = {band: level for band, level in true if band * 1.06 > 0.02}  # 40 m/s over 2 kHz, and longer
+    assert heard == pytest.approx(levels, abs=0.05)
+    assert len(calls) < 40  # with one run for each band and speed two tables of slopes alone took 44
+    assert isinstance(found.case.wheel.roughness, np.ndarray)
+
+
+# --- a bearing
+
+
+@pytest.fixture(scope="module")
+def ball_bearing():
+    keys = {key: each for key, each in BEARING.items() if key not in ("fault", "radial")}
+    return as_case(keys | {"bearing": {"name": "6205"}, "axial": "200 N"})
+
+
+def test_tones_tell_the_axial_load_by_the_contact_angle(ball_bearing):
+    """Of a bearing without a run: the tones follow the contact angle of its load."""
+    case = ball_bearing.with_(axial="900 N")
+    turning = case.kinematics
+    tones = np.array([turning.tone("outer"), turning.tone("inner"), turning.tone("ball"), turning.cage])
+    found = asperity.fit(ball_bearing, Measured("bearing tone", tones, tones), ["axial"], starts=1)
+    assert found.values == {"axial": pytest.approx(900.0, rel=1e-3)}
+    assert found.predicted[0] == pytest.approx(tones, rel=1e-6)
+
+
+def test_velocities_and_lines_are_those_of_the_run(ball_bearing, ran):
+    lines = np.arange(1.0, 200.0)
+    ran(
+        lambda case: {
+            bearing.LAW: ["hertz"],
+            bearing.SENSOR: [0.0],
+            bearing.JUDGED_BAND: ["low", "medium", "high"],
+            bearing.BAND_VELOCITY: np.array([[[1e-6, 2e-6, 3e-6]]]),
+            bearing.ENVELOPE_FREQUENCY: lines,
+            bearing.ENVELOPE: np.where(lines == 101.0, 0.5, 0.01)[None],
+        }
+    )
+    velocity = predicted("bearing band velocity", ball_bearing, np.array([100.0, 4000.0, 2e4]))
+    np.testing.assert_allclose(velocity, [1e-6, 3e-6, np.nan])
+    line = predicted("envelope line", ball_bearing, np.array([100.0, 50.0, 900.0]))
+    np.testing.assert_allclose(line, [0.5, 0.01, np.nan])
+
+
+# --- files of them
+
+ROWS = "100, 1\n125, 2\n160, 3\n"
+READ = (
+    ("frequency (Hz), force level (dB re 1 N)\n" + ROWS, "contact force level", "beam", 2.0),
+    ("frequency (Hz), force level (dB re 1 kN)\n" + ROWS, "contact force level", "beam", 62.0),
+    ("frequency (Hz), level (dB re 1e-6 m/s^2)\n" + ROWS, "acceleration level", "beam", 2.0),
+    ("load (N), stiffness (MN/m)\n" + ROWS, "contact stiffness", "beam", 2e6),
+    ("frequency (Hz), level (dB)\n" + ROWS, "sound pressure level", "train", 2.0),
+    ("tone (Hz)\n100\n125\n", "bearing tone", "ball_bearing", 125.0),
+    ("frequency (Hz), velocity (um/s)\n" + ROWS, "bearing band velocity", "ball_bearing", 2e-6),
+    ("frequency (Hz), envelope amplitude (mm/s^2)\n" + ROWS, "envelope line", "ball_bearing", 2e-3),
+)
+
+
+@pytest.mark.parametrize(("text", "what", "of", "second"), READ, ids=[row[1] for row in READ])
+def test_headings_tell_what_was_measured(text, what, of, second, tmp_path, request):
+    (tmp_path / "a.csv").write_text(text)
+    case = request.getfixturevalue(of)
+    (found,) = measured_for(case if of == "ball_bearing" else case[0], tmp_path / "a.csv", {}, None)
+    assert found.what == what
+    assert found.values[1] == pytest.approx(second)
+
+
+test_what_a_case_lacks_is_said = refusals(
+    ("bearing tone", "beam", "a case with no bearing: it is of kind ball-on-beam"),
+    ("sound pressure level", "beam", "a case with no track: it is of kind ball-on-beam"),
+    ("acceleration level", "train", "a case with no accelerometers on what is rolled over"),
+    ("contact force level", "bearing", "a case with no bodies that roll: it is of kind ball-bearing"),
+    ("contact stiffness", "bearing", "a case with no single contact: it is of kind ball-bearing"),
+    ("mobility", "bearing", "a case with nothing that is rolled over: it is of kind ball-bearing"),
+    ("sound pressure level", "alone", "no pass-by time: noise.vehicle_length is not given"),
+    of=lambda what, of, beam, train, ball_bearing: measured_for(
+        {
+            "beam": beam[0],
+            "train": train[0],
+            "alone": train[0].with_(**{"noise.vehicle_length": None}),
+            "bearing": ball_bearing,
+        }[of],
+        Measured(what, [100.0, 125.0], [1.0, 2.0]),
+        {},
+        None,
+    ),
+)
