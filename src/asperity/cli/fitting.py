@@ -9,7 +9,7 @@ import numpy as np
 
 from asperity import __version__, files
 from asperity.arguments import Array
-from asperity.case.any_case import in_toml, refused
+from asperity.case.any_case import in_toml
 from asperity.case.cases import load_case
 from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
@@ -71,7 +71,9 @@ def fit_case(
             [[each.name, each.low, each.high] for each in chosen],
         ]
     )
-    written = {name: folder / file for name, file in FILES.items()}
+    spectra = dict.fromkeys(each.entry.dotted for each in chosen if each.band is not None)
+    tables = {dotted: f"fitted_{dotted.replace('.', '_')}.csv" for dotted in spectra}
+    written = {name: folder / file for name, file in {**FILES, **tables}.items()}
     if not overwrite:
         _refuse_other(asked, written)
     with files.alone_in(folder), progress_bar() as progress, one_thread_in_linear_algebra():
@@ -79,9 +81,17 @@ def fit_case(
         with files.together(folder, last=CASE) as new:
             files.write_bytes(new / FILES["table"], csv_text(HEADING, _rows(found)).encode())
             files.write_bytes(new / FILES["page"], _page(found).encode())
-            text = _origin(found, path) + toml_text({"kind": case.kind, **in_toml(found.case, refused)})
+
+            def put_beside(dotted: str, levels: Array) -> str:
+                text = csv_text(["wavelength (m)", "level (dB re 1 um)"], levels.tolist())
+                files.write_bytes(new / tables[dotted], text.encode())
+                return tables[dotted]
+
+            keys = in_toml(found.case, in_memory=put_beside)
+            text = _origin(found, path) + toml_text({"kind": case.kind, **keys})
             files.write_bytes(new / CASE, f"{mark_of('fitted', asked, text)}{text}".encode())
     _say(found)
+    written = {what: file for what, file in written.items() if file.exists()}
     say_files(written)
     return {"case": path.resolve(), **_document(found), "files": written}
 

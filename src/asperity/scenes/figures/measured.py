@@ -123,7 +123,7 @@ def _deviation(apart: chart.Numbers, deviation: chart.Numbers) -> str:
 
 
 def measured_sound_table(tree: DataTree) -> ReportTable | None:
-    """Levels in one-third octaves, measured and computed by the main law, and how far chance explains that."""
+    """Levels in one-third octaves, measured and by the main law, and how far chance explains what differs."""
     lines = pass_by_bands.collect(tree)
     named = {line.label: line.values for line in lines.lines}
     shown = np.isfinite(named["measured"]) & np.isfinite(named[WHOLE])
