@@ -350,17 +350,18 @@ def chosen_free(case: AnyCase, measured: Sequence[Measured], free: FreeKeys) -> 
         require(name not in asked, name, "free more than once", "each key once")
         asked[name] = within
     require(asked, "free", "no key", "one key or more")
-    heard = _heard(case, measured)
-    return tuple(each for name, within in asked.items() for each in _free(case, name, within, heard))
+    return tuple(each for name, within in asked.items() for each in _free(case, name, within, measured))
 
 
-def _free(case: AnyCase, name: str, within: object, heard: Range) -> list[Free]:
-    """A key, or, of one that holds a spectrum, its bands whose wavelengths are heard, m."""
+def _free(case: AnyCase, name: str, within: object, measured: Sequence[Measured]) -> list[Free]:
+    """A key, or, of one that holds a spectrum, its bands whose wavelengths are heard in what was measured."""
     entry = entry_of(type(case), name)
     bands = is_spectrum(entry)
     unit = "dB" if bands else entry.unit or "1"
     ends = None if within is None else read_range(name, within, unit)
-    return free_bands(case, entry, heard, ends) if bands else [free_key(case, name, ends)]
+    if not bands:
+        return [free_key(case, name, ends)]
+    return free_bands(case, entry, _heard(case, measured), ends)
 
 
 def _heard(case: AnyCase, measured: Sequence[Measured]) -> Range:
