@@ -26,6 +26,7 @@ from scipy.optimize import least_squares
 
 import asperity
 from asperity.case.bodies import WheelOnRail
+from asperity.fitting.observable import Measured
 from asperity.reference import cnossos
 from asperity.scenes import schema
 from asperity.scenes.noise import pass_by_group
@@ -166,6 +167,8 @@ HALF_SLEEPER, LENGTH, SEAT = 150.0, 2.6, 0.75
 """Of a B91: kg, m of the whole, and m from its middle to a seat."""
 BENT = (125.0, 363.0, 724.0)
 """Hz, its free vertical bending modes as measured; the first and the third are even."""
+BENDING = 7.0e6
+"""Bending stiffness of an even beam with modes near these, N m²."""
 KINDS = "rigid", "both rails pressed alike", "one rail hammered"
 
 
@@ -613,6 +616,36 @@ def decay_fits(found):
     return table(head, rows), drawn
 
 
+def determined(found):
+    """What `asperity.fit` says of the reference in 2012: values with intervals, and what is open."""
+    rates = found.railway.rates(REFERENCE, "vertical", "2012", "none")
+    keys = {name: first for name, (*_, first) in FREE.items()}
+    bends = {"sleeper_bending_stiffness": BENDING, "sleeper_loss_factor": 0.03}
+    case = WheelOnRail(surface={"smooth": True}, track={"name": "uic60"} | keys | bends)
+    measured = [Measured("vertical decay rate", CENTRES, each) for each in rates]
+    fit = asperity.fit(case, measured, {f"track.{name}": each[:2] for name, each in FREE.items()}, starts=4)
+    told = [f"- `{each.name}`: {each.words}" for each in fit.estimates]
+    return "\n".join([*told, *(f"- {each.words}" for each in fit.undetermined)])
+
+
+def over_temperature(found):
+    """Stiffness of the pads of the reference by date, all else as of their mean."""
+    rows = []
+    records = [row for row in found.railway.decay if row["section"] == REFERENCE]
+    years = ("2012", "2013-01", "2013-07", "2015")
+    levels = {year: level(found.railway.rates(REFERENCE, "vertical", year)).mean(axis=0) for year in years}
+    mean = np.mean(list(levels.values()), axis=0)
+    keys, _ = fitted(lambda each: hammered(tracks_of(each)), FREE, mean)
+    pads = {name: FREE[name] for name in ("pad_stiffness", "pad_loss_factor")}
+    for year, aim in levels.items():
+        own, off = fitted(lambda each: hammered(tracks_of(keys | each)), pads, aim)
+        warm = [float(row["temperature (C)"]) for row in records if row["date"].startswith(year)]
+        stiffness = f"{1e-6 * own['pad_stiffness']:.0f}"
+        loss = f"{own['pad_loss_factor']:.2f}"
+        rows.append([year, f"{np.mean(warm):.0f}", stiffness, loss, f"{rms(off):.1f}"])
+    return table(["B5", "°C", "pad / (MN/m)", "loss of pad", "rms / dB"], rows)
+
+
 def lateral_at(found):
     """Decay rates sideways at 1.25 kHz, dB/m: what each assumption makes of it."""
     at = int(np.argmin(np.abs(CENTRES - 1250.0)))
@@ -928,6 +961,8 @@ def page(found, folder):
             strail=strail(found),
             fits=fits,
             lateral=lateral_at(found),
+            determined=determined(found),
+            temperature=over_temperature(found),
             dampers=damper_fits(found),
             spectrum=spectrum_table(found, spectra),
             candidates=assumed,
