@@ -1,7 +1,7 @@
 """What is left between what was measured and what a case predicts, at values of what is free."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -42,6 +42,8 @@ class Problem:
         Digest of the case and its files.
     progress : callable
         Called while the case is run.
+    held : dict
+        Of runs the slopes of all levels (n,), dB, by the name of what is free: many runs tell them.
     """
 
     case: AnyCase
@@ -51,6 +53,7 @@ class Problem:
     beyond: float = 0.0
     of_case: str = ""
     progress: Progress = lambda *_: None
+    held: dict[str, Array] = field(default_factory=dict)
 
     @cached_property
     def low(self) -> Array:
@@ -158,10 +161,14 @@ class Problem:
         return central_slopes(self.residuals, self.low, self.high)(place)
 
     def quick_slopes(self, place: Array) -> Array:
-        """The same for half of the work."""
+        """The same for half of the work; of runs those that are held, wherever they were found."""
         if not self.by_run:
             return forward_slopes(self.residuals, self.low, self.high)(place)
-        return grouped_slopes(self.residuals, place, self.high, self._groups)
+        names = [each.name for each in self.free]
+        if not self.held.keys() >= set(names):
+            found = grouped_slopes(self.residuals, place, self.high, self._groups)
+            self.held.update(zip(names, found.T * self.uncertainty, strict=True))
+        return np.stack([self.held[name] for name in names], axis=1) / self.uncertainty[:, None]
 
     @cached_property
     def _groups(self) -> list[tuple[NDArray[np.int_], NDArray[np.bool_]]]:

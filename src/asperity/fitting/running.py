@@ -388,8 +388,9 @@ def fitted(
     left_open = list[Undetermined]()
     rough = replace(problem, fine=False)
     places = starts_within(problem.low, problem.high, problem.start, count, rough.residuals)
+    problem, minima = _searched(problem, places, progress)
+    problem.held.clear()  # those of runs are found once more, where the search has ended
     while True:
-        problem, minima = _searched(problem, places, progress)
         best, slopes = minima.best, problem.slopes(minima.best.place)
         ends = _pushed(problem, best, slopes)
         inside = np.flatnonzero(ends == 0)
@@ -402,7 +403,9 @@ def fitted(
         if not problem.free:
             received = f"data that leave every free key open ({'; '.join(each.words for each in left_open)})"
             raise InputError("fit", received, "data that tell one of them")
-        places = [np.delete(best.place, inside[least.number]), problem.start]
+        places = [np.delete(best.place, inside[least.number])]
+        places += [] if problem.by_run else [problem.start]
+        problem, minima = _searched(problem, places, progress)
 
 
 def _known(
