@@ -54,6 +54,13 @@ class Measured:
     ------
     InputError
         If its arrays are not of one length, or not finite.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> rates = asperity.Measured("vertical decay rate", [500.0, 630.0, 800.0], [16.0, 14.0, 11.0])
+    >>> rates.count
+    3
     """
 
     what: str

@@ -288,12 +288,13 @@ def fit(
     Examples
     --------
     >>> import asperity
-    >>> from asperity.fitting.observable import Measured
+    >>> import numpy as np
     >>> track = asperity.WheelOnRail(surface={"smooth": True})
     >>> stiff = track.with_(**{"track.pad_stiffness": "400 MN/m"}).track.model()
-    >>> frequency = [100.0, 160.0, 250.0, 400.0, 630.0, 1000.0]
-    >>> mobility = abs(6.283 * np.array(frequency) * stiff.receptance(frequency, 0.3, 0.3))
-    >>> found = asperity.fit(track, Measured("mobility", frequency, mobility), ["track.pad_stiffness"])
+    >>> frequency = np.array([100.0, 160.0, 250.0, 400.0, 630.0, 1000.0])
+    >>> mobility = 2.0 * np.pi * frequency * abs(stiff.receptance(frequency, 0.3, 0.3))
+    >>> data = asperity.Measured("mobility", frequency, mobility)
+    >>> found = asperity.fit(track, data, ["track.pad_stiffness"], starts=1)
     >>> round(found.values["track.pad_stiffness"] / 1e6)
     400
     """
