@@ -142,7 +142,8 @@ class RangeOfBands:
         found[first:] = np.exp(2j * np.pi * turns)[:, None]
         if np.isfinite(lateral) and across.any():
             scale = 2.0 * np.pi * first / (self.along.length * lateral)
-            found[first:] = self._beside(found[first:, :1], tile, (scale * across).tobytes())
+            beside = self._beside(found[first:, :1], tile, (scale * across).tobytes())
+            found[first:] = np.where(across == 0.0, found[first:], beside)
         return size[:, None] * found
 
     def _beside(self, middle: Waves, tile: int, z: bytes) -> Waves:
