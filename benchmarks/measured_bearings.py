@@ -1,7 +1,7 @@
 """Bearings with faults, predicted and measured: load, size of the fault, and what the rig adds.
 
-    python benchmarks/measured_bearings.py --predict             # writes measured_bearings.json
-    python benchmarks/measured_bearings.py DATA                  # compares it with the records in a folder
+    python benchmarks/measured_bearings.py DATA                  # compares the records with it
+    python benchmarks/measured_bearings.py --predict anew.json   # predicts anew, beside what was stated
 
 DATA is a folder with `mfpt_nice_48k.npz`, `hit_6205_51k.npz` and `cwru_6205_12k.npz`. Predicted without any
 record, in `measured_bearings.json`: of a NICE bearing whose load grows (MFPT fault data) the growth of the
@@ -609,15 +609,16 @@ def ledger_rows(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("data", type=Path, nargs="?", help="folder of the records")
-    parser.add_argument("--predict", action="store_true", help="compute what is predicted anew")
+    parser.add_argument("--predict", type=Path, help="file that takes what is predicted, computed anew")
+    parser.add_argument("--held", type=Path, default=PREDICTED, help="file of what was predicted")
     parser.add_argument("--ledger", type=Path, help="file of rows for CONFORMANCE.md")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     chosen = parser.parse_args()
     if chosen.predict:
-        PREDICTED.write_text(json.dumps(predict(chosen.jobs), indent=1) + "\n")
+        chosen.predict.write_text(json.dumps(predict(chosen.jobs), indent=1) + "\n")
     if not chosen.data:
         return
-    held = json.loads(PREDICTED.read_text())
+    held = json.loads(chosen.held.read_text())
     nice = nice_seen(np.load(chosen.data / NICE_FILE))
     seen, pits = hit_seen(np.load(chosen.data / HIT_FILE)), np.load(chosen.data / PIT_FILE)
     table(
