@@ -131,9 +131,6 @@ def measured() -> str:
     head = """
 ## Measured
 
-Deviations as they are, misses with the rest: nothing here has a tolerance. Written by the commands of the
-pages of evidence.
-
 | what | measured by | measured | computed | deviation |
 |---|---|---:|---:|---:|"""
     return "\n".join([head, *rows])
@@ -153,7 +150,8 @@ def page() -> str:
 {count} numbers of this program beside those of closed forms, standards, publications and other programs.
 Written by `python tests/conformance/ledger.py`, checked by every run of the tests. Tolerances without a unit
 are relative; where one is above rounding, the row says why: the grid, the digits printed, or the limits of
-the closed form.
+the closed form. What was measured has none: deviations stand there as they are, misses with the rest, as the
+commands of the pages of evidence wrote them.
 """
     return head + "\n".join([*parts, measured()]) + "\n"
 
