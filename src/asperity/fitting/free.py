@@ -134,7 +134,7 @@ WITHIN = 25.0
 """By how much a level may be changed, dB, where nobody gives limits."""
 
 
-def levels_of(case: AnyCase, entry: CaseKey) -> tuple[Array, Array]:
+def spectrum_of(case: AnyCase, entry: CaseKey) -> tuple[Array, Array]:
     """Wavelengths, m, and levels, dB re 1 µm, of a key that names a spectrum, or has it as a table."""
     spectrum = getattr(getattr(case, entry.section), entry.name)
     require(spectrum is not None, entry.dotted, "no spectrum in the case", "a spectrum to begin with")
@@ -151,7 +151,7 @@ def is_spectrum(entry: CaseKey) -> bool:
 
 def free_bands(case: AnyCase, entry: CaseKey, heard: Range, within: Range | None) -> list[Free]:
     """Levels of a spectrum in the bands whose wavelengths are heard, m, each within limits, dB re 1 µm."""
-    wavelengths, levels = levels_of(case, entry)
+    wavelengths, levels = spectrum_of(case, entry)
     found = []
     for wavelength, level in zip(wavelengths.tolist(), levels.tolist(), strict=True):
         if heard[0] / HALF_BAND < wavelength < heard[1] * HALF_BAND:

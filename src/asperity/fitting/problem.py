@@ -11,7 +11,7 @@ from asperity.arguments import Array, NDArray
 from asperity.case.any_case import AnyCase
 from asperity.case.form import content, digest
 from asperity.errors import ComputationError, InputError, PhysicsWarning
-from asperity.fitting.free import Free, levels_of
+from asperity.fitting.free import Free, spectrum_of
 from asperity.fitting.observable import Measured, Observable, TriedCase, Values
 from asperity.fitting.observables import observable
 from asperity.fitting.search import FAR, central_slopes, forward_slopes, grouped_slopes
@@ -220,7 +220,7 @@ def changes_of(case: AnyCase, free: Sequence[Free], values: Mapping[str, float])
             found[each.name] = values[each.name]
             continue
         if each.entry.dotted not in found:
-            found[each.entry.dotted] = np.column_stack(levels_of(case, each.entry))
+            found[each.entry.dotted] = np.column_stack(spectrum_of(case, each.entry))
         table = found[each.entry.dotted]
         table[np.argmin(np.abs(np.log(table[:, 0] / each.band))), 1] = values[each.name]
     return found

@@ -23,7 +23,7 @@ _BY_CHANCE = 1.0
 """Standard deviation of a level that one record gives, dB, where nothing tells it."""
 
 
-def in_bands(collected: Collected, name: str, at: Array) -> Array:
+def levels_in_bands(collected: Collected, name: str, at: Array) -> Array:
     """Levels of a run (..., n) in bands by their centres (n,), Hz; NaN in those that it has not."""
     bands, held = collected[f"{name}_band"], collected[name]
     apart = np.abs(np.log10(at[:, None] / bands))
@@ -57,7 +57,7 @@ def _sound(trial: TriedCase, measured: Measured) -> Values:
     assert isinstance(case, Case)
     passed = case.passage.passed
     assert passed is not None
-    exposure = in_bands(trial.collected, schema.SOUND_EXPOSURE_LEVEL.name, measured.at)
+    exposure = levels_in_bands(trial.collected, schema.SOUND_EXPOSURE_LEVEL.name, measured.at)
     return np.asarray(exposure - 10.0 * np.log10(passed[1] - passed[0]))
 
 
@@ -91,12 +91,12 @@ def _no_sensors(case: AnyCase) -> str:
 
 
 def _force(trial: TriedCase, measured: Measured) -> Values:
-    return in_bands(trial.collected, spectra.FORCE_LEVEL.name, measured.at)
+    return levels_in_bands(trial.collected, spectra.FORCE_LEVEL.name, measured.at)
 
 
 def _acceleration(trial: TriedCase, measured: Measured) -> Values:
     """Of the sensor nearest to the place of the response; without one the energy mean of all."""
-    held = in_bands(trial.collected, schema.ACCELERATION_LEVEL.name, measured.at)
+    held = levels_in_bands(trial.collected, schema.ACCELERATION_LEVEL.name, measured.at)
     if measured.places is not None:
         case = trial.case
         assert isinstance(case, Case)
