@@ -45,8 +45,8 @@ FORMAT = 1
 """Raise it when what is kept of a search no longer means what it meant."""
 USUALLY_LEFT_OUT = 1.0
 """By a case, dB, while nothing is known of it."""
-RUNS = 15
-"""Most steps of a search in which each takes a run."""
+RUNS, RUNS_AGAIN = 15, 5
+"""Most steps of a search in which each takes a run, and of one that goes on from another's end."""
 OF_RUNS = 1e-3
 """Part by which a sum of squares still changes where each of its values takes a run."""
 ROUNDS, SAME = 6, 0.05
@@ -482,7 +482,8 @@ def _descent(problem: Problem, start: Array, most: int) -> Optimum:
         tolerance = OF_RUNS if problem.by_run else TOLERANCE
         limits, slopes = (problem.low, problem.high), problem.quick_slopes
         follow = updated_slopes(problem.residuals, slopes) if problem.by_run else slopes
-        count = RUNS if problem.by_run else most
+        steps = RUNS_AGAIN if problem.held else RUNS
+        count = steps if problem.by_run else most
         end = descend(problem.residuals, follow, start, *limits, count, tolerance)
         return {"place": end.place, "residuals": end.residuals}
 
