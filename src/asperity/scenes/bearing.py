@@ -16,7 +16,7 @@ from asperity import diagnostics
 from asperity.arguments import Array
 from asperity.case.ball_bearing import AroundKeys, BallBearingCase
 from asperity.diagnostics import ISO_BANDS, LineFamily, Spectrum, band_velocities
-from asperity.errors import Finding, Grade, InputError, PhysicsWarning, percent, warn_of_findings
+from asperity.errors import InputError, PhysicsWarning, percent, warn_of_findings
 from asperity.laws import Need, spec_of
 from asperity.progress import Progress
 from asperity.rolling.bearing import BearingRings, RolledBearing, Sensor, roll_bearing, steady_where_still
@@ -26,8 +26,8 @@ from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
+from asperity.scenes.bearing_validity import bearing_findings
 from asperity.scenes.result import root_attributes, scenario_group
-from asperity.scenes.validity import beyond, contacts_softened, energy_left, load_missed
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.store import Store
 from asperity.structures.ball_bearing import PARTS, Kinematics
@@ -63,8 +63,6 @@ RESOLVED = 0.003
 """Share by which a line may lie beside the tone of pure rolling, beyond the slip of the cage."""
 SILENT = 1e-5
 """Amplitude of a line, m/s², that no accelerometer feels: what is left of rounding and of the start."""
-OFF = (0.1, 0.5)
-"""Shares of the diameter of a ball by which a ring may be off its place: warned of, and out of range."""
 BY_PARTS = "areal"
 """The law by which parts are run alone: it sees whole contacts, and asks for no scan."""
 SOURCES = (
@@ -329,7 +327,7 @@ def bearing_result(
     runs = rolled(prepared, progress)
     heard, apart = heard_group(case, runs), Values() if brief else alone(prepared, progress)
     runs = {name: steady_where_still(run) for name, run in runs.items()}
-    found = list(_findings(case, runs))
+    found = list(bearing_findings(case, runs))
     warn_of_findings(found)
     scenario = scenario_group(case, _numerics(case, time.monotonic() - began))
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
@@ -559,60 +557,7 @@ def _deciding(apart: Values) -> list[str]:
     return found
 
 
-# --- how sure it is
-
-
-def _findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> Iterator[Finding]:
-    """Numbers of the runs that must be in range."""
-    steps = (case.settling + case.duration) / case.step
-    for name, run in runs.items():
-        share, left = run.unconverged_steps / steps, run.energy.residual
-        yield Finding(
-            f"share of the time steps that missed their tolerance, {name}", percent(share), "below 1 %",
-            Grade.of_share(share) if share else None, "Their contact forces are too coarse.",
-            "Take a smaller time_step.", warned=True
-        )  # fmt: skip
-        yield energy_left(name, left, "time_step")
-        stiffness = [each.tangent_stiffness(each.approach(load)) for each, load in case.contacts]
-        yield from contacts_softened(name, float((run.softening.T * stiffness).max()), "time_step")
-        yield from _out_of_place(case, name, run)
-    yield from _missed(runs)
-
-
-def _out_of_place(case: BallBearingCase, law: str, run: RolledBearing) -> Iterator[Finding]:
-    """Rings that are farther off than balls let them, and balls that do not carry the load in the mean."""
-    of, angle = case.bearing.bearing, case.static.contact_angle
-    moved = max(float(np.abs(each).max()) for each in (run.inner_motion, run.outer_motion))
-    yield from beyond(
-        "displacement of a ring over the diameter of a ball",
-        moved / of.ball_diameter,
-        OFF,
-        "A ring is not held, or by springs too soft for what drives it.",
-        "Check the stiffnesses of shaft and housing, loads and clearance.",
-        "a ring displaced by {} of a ball",
-        law,
-    )
-    azimuth = run.cage + 2.0 * np.pi * np.arange(of.balls)[:, None] / of.balls
-    radial, axial = np.cos(angle) * np.cos(azimuth), np.full(azimuth.shape, np.sin(angle))
-    for way, along, load in (("radial", radial, case.radial), ("axial", axial, case.axial + of.preload)):
-        if load > 0.0 and along.any():
-            mean = float(np.mean(np.sum(run.inner_force * along, axis=0))) / load
-            yield from load_missed(f"mean {way} force", "of the balls on the inner ring", mean, law)
-
-
-def _missed(runs: dict[str, RolledBearing]) -> Iterator[Finding]:
-    """How far every law is from one that solves each contact in each step, where that was rolled."""
-    for exact in (name for name in runs if spec_of(name).solved_every_step):
-        for name in (name for name in runs if name != exact):
-            off = []
-            for what in ("inner_force", "outer_force", "acceleration"):
-                found, solved = getattr(runs[name], what), getattr(runs[exact], what)
-                varied = np.mean(solved.var(axis=1))
-                off.append(percent(float(np.sqrt(np.mean((found - solved) ** 2) / varied))))
-            yield Finding(
-                f"{name} from {exact}: forces on the inner and the outer ring, acceleration", ", ".join(off),
-                f"rms, of how those of {exact} vary", None, "How far the law is from solved contacts.", ""
-            )  # fmt: skip
+# --- how it was computed
 
 
 def _numerics(case: BallBearingCase, wall: float) -> Iterator[tuple[str, str]]:
