@@ -11,8 +11,13 @@ if TYPE_CHECKING:
     import h5py
     import xarray
 
-NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable. {:10d}"
-"""Name of a scale that is a dimension alone, as the format words it."""
+NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
+"""How the name of a scale that is a dimension alone begins, as the format words it; its size follows."""
+LAYOUT = frozenset(
+    {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
+    | {"_Netcdf4Dimid", "_Netcdf4Coordinates", "_NCProperties", "_nc3_strict"}
+)
+"""Attributes by which the format is laid out in HDF5, which say nothing of what is in a file."""
 WHOLE_CHUNK = 2**20
 """Bytes up to which a variable is one chunk."""
 PACKED = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
@@ -55,7 +60,7 @@ def _write_group(group: h5py.Group, dataset: xarray.Dataset, numbers: dict[str, 
         scale = written.get(name)
         if scale is None:
             scale = group.create_dataset(name, (size,), ">f4", track_order=True)
-            scale.make_scale(NO_VARIABLE.format(size))
+            scale.make_scale(f"{NO_VARIABLE} {size:10d}")
         else:
             scale.make_scale(name)
         scale.attrs["_Netcdf4Dimid"] = np.int32(numbers[f"{group.name}/{name}"])
@@ -88,3 +93,63 @@ def _write_variable(group: h5py.Group, name: str, variable: xarray.Variable) -> 
 def _describe(of: h5py.Group | h5py.Dataset, attributes: Mapping[Any, Any]) -> None:
     for name, value in attributes.items():
         of.attrs[str(name)] = value if isinstance(value, str) else np.atleast_1d(value)
+
+
+def variables_in(group: h5py.Group) -> dict[str, h5py.Dataset]:
+    """The variables of a group by name: all of its datasets but dimensions alone."""
+    import h5py
+
+    held = {name: each for name, each in group.items() if isinstance(each, h5py.Dataset)}
+    return {name: each for name, each in held.items() if not _is_dimension_alone(each)}
+
+
+def groups_in(group: h5py.Group) -> list[h5py.Group]:
+    """The groups of a group."""
+    import h5py
+
+    return [each for each in group.values() if isinstance(each, h5py.Group)]
+
+
+def _is_dimension_alone(dataset: h5py.Dataset) -> bool:
+    return bytes(dataset.attrs.get("NAME", b"")).startswith(NO_VARIABLE.encode())
+
+
+def dimensions_of(variable: h5py.Dataset) -> tuple[str, ...]:
+    """Names of the dimensions of a variable: those of the scales attached to its axes, or its own."""
+    if not variable.ndim:
+        return ()
+    if variable.attrs.get("CLASS") == b"DIMENSION_SCALE" and variable.ndim == 1:
+        return (_name_of(variable),)
+    if not all(variable.dims):
+        raise ValueError(f"a variable without dimensions, {_name_of(variable)}")
+    return tuple(_name_of(axis[-1]) for axis in variable.dims)
+
+
+def _name_of(dataset: h5py.Dataset) -> str:
+    return str(dataset.name).rpartition("/")[2]
+
+
+def attributes_in(of: h5py.Group | h5py.Dataset) -> dict[str, Any]:
+    """What a group or a variable says of itself: text, numbers, and arrays of more than one."""
+    import h5py
+
+    found = {}
+    for name, value in of.attrs.items():
+        if name in LAYOUT:
+            continue
+        if isinstance(value, h5py.Empty):
+            value = "" if value.dtype.kind in "SO" else np.zeros(0, value.dtype)
+        elif isinstance(value, bytes):
+            value = value.decode()
+        elif isinstance(value, np.ndarray) and value.shape == (1,):
+            value = value[0]
+        found[name] = value
+    return found
+
+
+def values_in(variable: h5py.Dataset) -> np.ndarray[Any, Any]:
+    """Values of a variable, words as such."""
+    import h5py
+
+    words = h5py.check_string_dtype(variable.dtype) is not None
+    return np.asarray(variable.asstr()[...] if words else variable[...])

@@ -9,13 +9,18 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from asperity.arguments import ArrayLike, NDArray, file_path, no_file, shown
 from asperity.errors import InputError, reason
 from asperity.files import is_sealed, write_bytes
-from asperity.hdf5 import MOST_UNPACKED, SIGNATURE, most_unpacked, opened_netcdf, size_unpacked
-from asperity.netcdf import write_netcdf
+from asperity.hdf5 import MOST_UNPACKED, SIGNATURE, most_unpacked, opened_hdf5, size_unpacked
+from asperity.netcdf import (
+    attributes_in,
+    dimensions_of,
+    groups_in,
+    values_in,
+    variables_in,
+    write_netcdf,
+)
 from asperity.sandbox import Answer, sandboxed
 from asperity.schema import VERSION, provenance
 
@@ -111,7 +116,7 @@ def _opened_apart(path: Path, *, whole: bool = True) -> xarray.DataTree:
         received = "a damaged file: its digest does not fit its contents"
         raise InputError(str(path), received, _ALLOWED, _AGAIN)
     groups, arrays = sandboxed(
-        groups_of_netcdf, path, [whole], source=str(path), kind="netCDF-4", packages=["h5netcdf"]
+        groups_of_netcdf, path, [whole], source=str(path), kind="netCDF-4", packages=["h5py"]
     )
     numbers, found = iter(arrays), {}
     for name, attributes, variables in groups:
@@ -151,18 +156,18 @@ def groups_of_netcdf(path: str, whole: bool) -> Answer:
 
     def take(group: Any) -> None:
         nonlocal left
-        variables = group.variables if whole else {}
+        variables = variables_in(group) if whole else {}
         for each in variables.values():
-            left -= size_unpacked(each.shape, np.dtype(each.dtype).itemsize)
+            left -= size_unpacked(each.shape, each.dtype.itemsize)
             require_left()
-            values = each[...]
+            values = values_in(each)
             if values.dtype == object:  # words, which are sent at the length of the longest
                 left -= 4 * values.size * max(map(len, values.flat), default=0)
                 require_left()
             arrays.append(values)
-        told = [(name, each.dimensions, dict(each.attrs)) for name, each in variables.items()]
-        groups.append((group.name, dict(group.attrs), told))
-        for inner in group.groups.values() if whole else ():
+        told = [(name, dimensions_of(each), attributes_in(each)) for name, each in variables.items()]
+        groups.append((group.name, attributes_in(group), told))
+        for inner in groups_in(group) if whole else ():
             take(inner)
 
     def require_left() -> None:
@@ -170,7 +175,7 @@ def groups_of_netcdf(path: str, whole: bool) -> Answer:
             raise ValueError(f"more than {MOST_UNPACKED} times its size in numbers")
 
     try:
-        with opened_netcdf(path, path, decode_vlen_strings=True) as file:
+        with opened_hdf5(path, path) as file:
             take(file)
     except InputError:
         raise

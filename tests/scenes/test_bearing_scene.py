@@ -15,7 +15,6 @@ from asperity.running import prepare_case
 from asperity.scenarios import raceway_laws, run_time, scanned_states
 from asperity.scenes.bearing import (
     CELL_TIME,
-    _out_of_place,
     bearing_rings,
     cage_slip,
     expected,
@@ -24,6 +23,7 @@ from asperity.scenes.bearing import (
     rolled,
     thinned,
 )
+from asperity.scenes.bearing_validity import out_of_place
 from asperity.scenes.figures.bearing import load_zone
 from asperity.schema import bearing as schema
 from asperity.schema import spectra
@@ -336,6 +336,6 @@ def test_a_bearing_whose_rings_or_forces_cannot_be_is_doubted(share, moved, word
         inner_motion=np.full((3, 50), moved),
         outer_motion=np.zeros((3, 50)),
     )
-    told = [finding.brief for finding in _out_of_place(case, "hertz", run)]
+    told = [finding.brief for finding in out_of_place(case, "hertz", run)]
     assert len(told) == len(words)
     assert all(words[n] in each for n, each in enumerate(told)), told

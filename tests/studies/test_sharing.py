@@ -105,11 +105,11 @@ def test_processes_share_the_work_of_a_scan(tmp_path, monkeypatch):
     job = ScanJob(HalfSpace((n, n), dx, 115e9), Rows(heights), body, np.array([0.0, 0.05e-6]), device=None)
     solved, solve, together = [], ScanJob.solve, threading.Barrier(2, timeout=30)
 
-    def counted(self, rows, planes):
+    def counted(self, rows, *more):
         solved.append(threading.get_ident())
         if len(solved) <= 2:  # both are at work
             together.wait()
-        return solve(self, rows, planes)
+        return solve(self, rows, *more)
 
     monkeypatch.setattr(ScanJob, "solve", counted)
     with ThreadPoolExecutor(2) as pool:

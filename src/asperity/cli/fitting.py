@@ -26,7 +26,7 @@ from asperity.reporting.tables import ReportTable, number_cells, table, text_cel
 from asperity.terminal import say, say_files, say_table
 from asperity.text_files import csv_text
 from asperity.threads import one_thread_in_linear_algebra
-from asperity.written_numbers import capital, count_of
+from asperity.written_numbers import capital, count_of, rounded
 
 CASE = "fitted.toml"
 FILES = {"case": CASE, "table": "fitted.csv", "page": "fitted.html"}
@@ -113,7 +113,7 @@ def _origin(found: Fitted, path: Path) -> str:
         lines.append(f"  {each.what} in {each.source}{records}: {count_of(each.count, 'value')}")
     lines += [f"{each.name} = {each.words}, 95 %" for each in found.estimates]
     lines += [each.words for each in found.undetermined]
-    lines.append(f"Left: {found.rms():.2g} dB rms; before {found.rms(before=True):.2g} dB.")
+    lines.append(f"Left: {rounded(found.rms(), 2)} dB rms; before {rounded(found.rms(before=True), 2)} dB.")
     return "".join(f"# {line}\n" for line in lines) + "\n"
 
 

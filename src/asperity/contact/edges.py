@@ -20,6 +20,7 @@ import numpy as np
 
 from asperity.arguments import Array, require
 from asperity.surfaces.edges import FIRST, Edges
+from asperity.written_numbers import rounded
 
 if TYPE_CHECKING:
     from asperity.contact.halfspace import HalfSpace
@@ -108,7 +109,9 @@ def check_edges(edges: Edges, half_space: "HalfSpace", shape: tuple[int, int]) -
     what, remedy = "edges of a contact", "Lay them on the cells of the contact."
     own, given = edges.distance.shape, half_space.spacing
     require(own == shape, what, f"shape {own}", f"shape {shape}", remedy)
-    received, allowed = (f"cells of {1e6 * x:.6g} × {1e6 * y:.6g} um" for x, y in (edges.spacing, given))
+    received, allowed = (
+        f"cells of {rounded(1e6 * x, 6)} × {rounded(1e6 * y, 6)} µm" for x, y in (edges.spacing, given)
+    )
     require(np.allclose(edges.spacing, given, rtol=1e-9, atol=0.0), what, received, allowed, remedy)
     remedy = "How much cells at edges give way is known for whole cells and a free boundary."
     fit = (("cells", half_space.cells, "whole"), ("boundary", half_space.boundary, "free"))

@@ -203,7 +203,8 @@ class Fitted:
         told = f"{count_of(fitted_keys, 'key')} fitted to {count_of(values, 'value')}"
         names = [each.free.name for each in self.undetermined]
         left_open = f"; not determined: {in_a_row(names)}" if names else ""
-        return f"{told}: {self.rms():.2g} dB rms left, {self.rms(before=True):.2g} dB before{left_open}."
+        left, before = (rounded(self.rms(before=each), 2) for each in (False, True))
+        return f"{told}: {left} dB rms left, {before} dB before{left_open}."
 
     @property
     def open_sentences(self) -> list[str]:
@@ -215,7 +216,7 @@ class Fitted:
         """What is left, and what is doubtful of it, one sentence each."""
         values = count_of(sum(each.count for each in self.measured), "value")
         left, before = self.rms(), self.rms(before=True)
-        told = [f"Left: {left:.2g} dB rms of {values}, before {before:.2g} dB."]
+        told = [f"Left: {rounded(left, 2)} dB rms of {values}, before {rounded(before, 2)} dB."]
         if limited := [each for each in self.estimates if each.limit]:
             names = in_a_row([each.name for each in limited])
             told.append(

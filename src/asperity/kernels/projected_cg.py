@@ -266,6 +266,22 @@ def survey(
     return (worst, level, first, end, left, right) if end else (worst, level, 0, 0, 0, 0)
 
 
+@compiled(**INNER)
+def _to_gradient(
+    b: Box, taps: NDArray, task: Task, level: float, rims: Rims | None, edges: SoftCells
+) -> tuple[float, float]:
+    """Precondition the residual of free cells, of a load with as much added as taken; its two products."""
+    weigh_edges(b, edges, taps[0])
+    rho, change, added = _precondition(b, taps, b.z, rims, edges)
+    if task.total < 0.0:
+        return rho, change
+    mark_free(b, task.hardness, level)
+    units = _precondition(b, taps, b.unit, rims, edges)[2]
+    if rims is not None or edges.number[0]:
+        mark_free(b, task.hardness, level)
+    return balance_load(b, added / units, level)
+
+
 @compiled(**CALLED)
 def solve(
     c: Convolution, taps: NDArray, b: Box, task: Task, done: int, rims: Rims | None, edges: SoftCells
@@ -298,14 +314,7 @@ def solve(
             break
         iteration += 1
         before = rho
-        weigh_edges(b, edges, taps[0])
-        rho, change, added = _precondition(b, taps, b.z, rims, edges)
-        if at_load:
-            mark_free(b, cap, level)
-            units = _precondition(b, taps, b.unit, rims, edges)[2]
-            if rims is not None or edges.number[0]:
-                mark_free(b, cap, level)
-            rho, change = balance_load(b, added / units, level)
+        rho, change = _to_gradient(b, taps, task, level, rims, edges)
         beta = max(0.0, change / before) if before > 0.0 else 0.0
         aim = CONJUGATE if beta > 0.0 else PRECONDITIONED
         if iteration > PATIENCE and iteration % OFTEN == 0:

@@ -27,11 +27,11 @@ def bearing_findings(case: BallBearingCase, runs: dict[str, RolledBearing]) -> I
         yield energy_left(name, left, "time_step")
         stiffness = [each.tangent_stiffness(each.approach(load)) for each, load in case.contacts]
         yield from contacts_softened(name, float((run.softening.T * stiffness).max()), "time_step")
-        yield from _out_of_place(case, name, run)
+        yield from out_of_place(case, name, run)
     yield from _missed(runs)
 
 
-def _out_of_place(case: BallBearingCase, law: str, run: RolledBearing) -> Iterator[Finding]:
+def out_of_place(case: BallBearingCase, law: str, run: RolledBearing) -> Iterator[Finding]:
     """Rings that are farther off than balls let them, and balls that do not carry the load in the mean."""
     of, angle = case.bearing.bearing, case.static.contact_angle
     moved = max(float(np.abs(each).max()) for each in (run.inner_motion, run.outer_motion))
