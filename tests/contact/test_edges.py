@@ -211,10 +211,7 @@ def on(shape=(9, 9), spacing=(1.0, 1.0), **more):
 
 test_what_is_refused = refusals(
     (on(shape=(9, 8)), r"edges of a contact: received shape \(9, 9\); .* shape \(9, 8\)"),
-    (
-        on(spacing=(1.0, 2.0)),
-        r"edges of a contact: received cells of 1000000 × 1000000 µm; .* 1000000 × 2000000",
-    ),
+    (on(spacing=(1e-3, 2e-3)), "received cells of 1·10⁶ × 1·10⁶ µm; allowed: cells of 1000 × 2000 µm"),
     (on(cells="covered"), "cells of a contact with edges: received 'covered'; .* 'whole'"),
     (on(boundary="periodic"), "boundary of a contact with edges: received 'periodic'; .* 'free'"),
     (
