@@ -121,7 +121,8 @@ def check_edges(edges: Edges, half_space: "HalfSpace", shape: tuple[int, int]) -
 
 def softness_at(edges: Edges, modulus: float, hardness: float | None) -> Softness:
     """Find how cells at edges give way on a half-space of a contact modulus E* and a hardness, Pa."""
-    softness, flow, at = *np.zeros((2, *edges.distance.shape)), edges.crossed
+    softness, flow = np.zeros((2, *edges.distance.shape))
+    at = edges.crossed
     along, across = edges.sides(at)
     width = along + across
     kept = _kept(edges.places[at], np.minimum(along, across) / np.maximum(along, across))
