@@ -60,6 +60,8 @@ def test_dimensions_are_scales_that_every_variable_names(tree):
             held[each].attrs["_Netcdf4Dimid"] for each in ("rolling/time", "contact/time", "contact/law")
         ]
         assert len(set(scales)) == 3
+        assert np.isnan(force.fillvalue)
+        assert force.chunks == force.shape
         assert again.attrs["_Netcdf4Coordinates"].tolist() == scales[1:]
 
 

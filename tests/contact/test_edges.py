@@ -183,6 +183,16 @@ def test_softness_only_adds_and_falls_as_a_cell_becomes_sound():
     assert (np.diff(soft / width, axis=0) < 0.06).all()
 
 
+def test_cells_sink_no_deeper_than_the_step_and_steps_of_two_surfaces_add_up():
+    distance, normal = np.zeros((3, 3)), np.ones((3, 3))
+    one, other = (Edges(distance, normal, np.full((3, 3), depth), (CELL, CELL)) for depth in (UM, 2 * UM))
+    both = one.with_others(other)
+    assert_allclose(both.drop, 3 * UM)
+    soft = softness_at(both, 115e9, None)
+    assert_allclose(soft.sunk(np.full((3, 3), 1e9)), np.minimum(1e9 * soft.softness, 3 * UM))
+    assert_allclose(soft.sunk(np.full((3, 3), 1e12)), 3 * UM)
+
+
 def test_shares_are_those_of_straight_edges():
     distance, normal = np.array([[0.0, 0.3, -0.3, 0.6]]), np.array([[0.6, 1.0, 0.6, 1.0]])
     shares = Edges(distance, normal, 0.0 * distance, (1.0, 2.0)).shares

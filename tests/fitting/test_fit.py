@@ -1,5 +1,6 @@
 """Keys come back from data that they made, within intervals that hold; what data leave open is said."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import asperity
 from asperity.fitting import determined, running
+from asperity.fitting.determined import open_direction, spread_of
 from asperity.fitting.observable import Measured
 from known_keys import RUBBER, mobility
 from refusals import refusals
@@ -89,6 +91,14 @@ def test_the_open_direction_is_the_one_that_changes_nothing():
     found = determined.open_direction(slopes, determined.Spread(1.0, 2.0))
     assert (found.number, found.others) == (0, {1: pytest.approx(-0.5)})
     assert found.half_width == np.inf
+
+
+def test_a_value_known_to_a_factor_of_three_is_determined():
+    """By 95 %: half its interval, of logarithms, is 1.96 over the slope of the residuals."""
+    spread = spread_of(1.0, 1, believed=True)
+    for factor, is_open in ((2.9, False), (3.1, True)):
+        slopes = np.array([[1.959964 / math.log(factor)], [0.0]])
+        assert (open_direction(slopes, spread) is not None) == is_open
 
 
 def test_what_data_never_feel_is_left_alone(track):

@@ -339,3 +339,18 @@ def test_a_bearing_whose_rings_or_forces_cannot_be_is_doubted(share, moved, word
     told = [finding.brief for finding in out_of_place(case, "hertz", run)]
     assert len(told) == len(words)
     assert all(words[n] in each for n, each in enumerate(told)), told
+
+
+def test_balls_carry_the_preload_along_the_axis():
+    case = as_case(SMOOTH | {"radial": "0 N", "bearing": SMOOTH["bearing"] | {"preload": "60 N"}})
+    carried = 60.0 / (BALLS * math.sin(case.static.contact_angle))
+    for share, words in ((1.0, []), (0.5, ["a mean axial force of 0.5 loads"])):
+        run = SimpleNamespace(
+            cage=np.linspace(0.0, 1.0, 9),
+            inner_force=np.full((BALLS, 9), share * carried),
+            inner_motion=np.zeros((3, 9)),
+            outer_motion=np.zeros((3, 9)),
+        )
+        told = [finding.brief for finding in out_of_place(case, "hertz", run)]
+        assert len(told) == len(words)
+        assert all(word in each for word, each in zip(words, told, strict=True))

@@ -2,6 +2,7 @@
 
 import gc
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from unittest.mock import Mock
 
 import numpy as np
@@ -235,6 +236,22 @@ def test_strips_of_one_texture_share_pieces(monkeypatch):
     for before in (500, 600):
         bands(3000, before=before, seed=77).rows(0, 3000)
     assert len(made) == len(set(made)) > 2
+
+
+def test_pieces_belong_to_places_on_the_grid(monkeypatch):
+    """Whatever is before place zero; other spacings across have their own."""
+    monkeypatch.setattr(module, "pieces", Fields())
+    made, make = [], module.heights_at
+    monkeypatch.setattr(module, "heights_at", lambda *each: made.append(len(each[1])) or make(*each))
+    first = bands(5000, before=500, seed=78).rows(0, 5000)
+    assert made == [500, module.PIECE, module.PIECE, 4500 - 2 * module.PIECE]
+    second = bands(5000, before=600, seed=78).rows(0, 5000)
+    assert made[4:] == [600, 4400 - 2 * module.PIECE]  # those between are there
+    assert np.array_equal(second[100:], first[:4900])
+    drawn = bands(5000, before=500, seed=78)
+    closer = replace(drawn, spacing=(drawn.spacing[0], 0.5 * drawn.spacing[1])).rows(0, 5000)
+    assert np.array_equal(closer[:, 2], first[:, 2])  # the middle
+    assert not np.array_equal(closer, first)
 
 
 def test_heights_are_added_all_across_or_turn_by_turn():
