@@ -23,8 +23,9 @@ extensions = [
     "myst_nb",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
-    "written_pages",  # these two stand in extensions/
+    "written_pages",  # these three stand in extensions/
     "mathml",
+    "reading_order",
 ]
 exclude_patterns = ["_build", "generated/gallery/*.ipynb", "generated/gallery/*.py", "generated/parts/*"]
 default_role = "literal"
