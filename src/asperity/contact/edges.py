@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from asperity.arguments import Array, require
+from asperity.kernels.batched import sunk
 from asperity.surfaces.edges import FIRST, Edges
 from asperity.written_numbers import rounded
 
@@ -90,8 +91,7 @@ class Softness(NamedTuple):
 
     def sunk(self, pressure: Array) -> Array:
         """By how much cells sink more than others under a pressure, Pa; m."""
-        flowing = self.yielding * np.maximum(pressure - self.flow, 0.0)
-        return np.minimum(self.softness * pressure + flowing, self.drop)
+        return np.asarray(sunk(self.softness, self.drop, self.flow, self.yielding, pressure, np))
 
     def compliance(self, pressure: Array) -> Array:
         """Derivative of what cells sink by the pressure, m/Pa."""

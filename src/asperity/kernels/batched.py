@@ -146,7 +146,7 @@ def solve_batch(
     while True:
         residual = convolve_padded(pressure, task.spectrum, xp) - overlap
         if softness is not None:
-            residual += _sunk(softness, drop, flow, task.yielding, pressure, xp)
+            residual += sunk(softness, drop, flow, task.yielding, pressure, xp)
         before, worst = worst, _complementarity(pressure, residual, task.hardness, xp)
         active = (worst > tolerance) & (worst <= STUCK * before) & (iterations < task.max_iterations)
         if not bool(active.any()):
@@ -166,7 +166,7 @@ def solve_batch(
         _record(members, pressure, iterations)
 
 
-def _sunk(softness: Array, drop: Array, flow: Array, yielding: float, pressure: Array, xp: Any) -> Array:
+def sunk(softness: Array, drop: Array, flow: Array, yielding: float, pressure: Array, xp: Any) -> Array:
     """By how much cells at edges sink under a pressure, Pa; m."""
     return xp.minimum(softness * pressure + yielding * xp.maximum(pressure - flow, 0.0), drop)
 
@@ -191,9 +191,9 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
     free = ((m.pressure > 0.0) | (m.residual < 0.0)) & ((m.pressure < hardness) | (m.residual > 0.0))
     at_edges = m.softness, m.drop, m.flow, task.yielding
     if m.softness is not None:
-        sunk = _sunk(*at_edges, m.pressure, xp)
+        before = sunk(*at_edges, m.pressure, xp)
         giving = m.softness + task.yielding * (m.pressure > m.flow)
-        free = free / xp.sqrt(1.0 + task.taps[0] * giving * (sunk < m.drop))
+        free = free / xp.sqrt(1.0 + task.taps[0] * giving * (before < m.drop))
     z = apply_stencil(m.residual * free, task.taps, xp) * free
     rho, known = _dot(m.residual, z), m.rho > 0.0
     beta = xp.maximum((rho - _dot(m.previous, z)) / xp.where(known, m.rho, 1.0), 0.0) * known
@@ -210,7 +210,7 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
         step, work, clipped = project(direction, xp.where(steepest, 1.0 / task.softest, m.length))
     response = convolve_padded(step, task.spectrum, xp)
     if m.softness is not None:
-        sinks = _sunk(*at_edges, m.pressure + step, xp) - sunk
+        sinks = sunk(*at_edges, m.pressure + step, xp) - before
         response += sinks
     curvature = _dot(step, response)
     moving = m.active & (work < 0.0) & (curvature > 0.0)
@@ -223,7 +223,7 @@ def _iterate(m: _Members, task: BatchTask, xp: Any) -> _Members:
     pressure = xp.clip(m.pressure + share * step, 0.0, hardness)
     residual = m.residual + share * response
     if m.softness is not None:  # no straight line once what lies deeper carries, too
-        residual += _sunk(*at_edges, pressure, xp) - sunk - share * sinks
+        residual += sunk(*at_edges, pressure, xp) - before - share * sinks
     unmet = _complementarity(pressure, residual, hardness, xp) > m.tolerance
     return m._replace(
         pressure=pressure, residual=residual, previous=m.residual, direction=direction,

@@ -30,7 +30,8 @@ class Fields:
 
     def __init__(self, fewest: int | None = None) -> None:
         self._lock = threading.Lock()
-        self._in_memory, self._fewest = fewest is not None, FEWEST if fewest is None else fewest
+        self._in_memory = fewest is not None
+        self._fewest = FEWEST if fewest is None else fewest
         self._held: dict[Hashable, Array | tuple[int, tuple[int, ...]]] = {}  # or offset in bytes, and shape
         self._file: IO[bytes] | None = None
         self._close: Callable[[], object] = lambda: None
@@ -174,7 +175,8 @@ class LongStrip:
 
     def _made(self, first: int, stop: int) -> Array:
         """Heights of rows of one piece, m, before they are translated."""
-        lines, (dx, dy) = self.shape[1], self.spacing
+        lines = self.shape[1]
+        dx, dy = self.spacing
         rows = np.arange(first, stop) - self.before
         name = self.drawn.name, dx, dy, lines, int(rows[0]), len(rows)
         return pieces.rows(
