@@ -156,8 +156,10 @@ def level_deviation(values: ArrayLike) -> Array:
     return np.asarray(10.0 / np.log(10.0) * np.sqrt(polygamma(1, np.maximum(values, 1.0))), dtype=np.float64)
 
 
-LINES = 4096
-"""Frequencies in a band at which a force is looked at: they resolve loss factors down to 10⁻⁴."""
+LINES = (512, 4096)
+"""Frequencies in a band at which a force is looked at: few, or as many as resolve loss factors of 10⁻⁴."""
+RUNG_OUT = 1e-3
+"""Share of the energy of a pulse that is left in the middle of its record if few frequencies resolve it."""
 
 
 def values_seen(signal: Array, step: float, centres: Array) -> Array:
@@ -194,16 +196,26 @@ def chance_and_start(
     numbers, shares = np.empty((2, len(centres)))
     for band, centre in enumerate(centres):
         low, width = centre / HALF_BAND, centre * (HALF_BAND - 1.0 / HALF_BAND)
-        force = transfer(low + width * (np.arange(LINES) + 0.5) / LINES)
-        after = np.arange(LINES) / width
-        pulse = np.sum(np.abs(np.fft.ifft(force)) ** 2, axis=0)
-        coming = np.where(np.arange(LINES) < LINES // 2, np.clip((after - settled) / record, 0.0, 1.0), 0.0)
+        force, pulse = _pulse(transfer, low, width)
+        lines = pulse.size
+        after = np.arange(lines) / width
+        coming = np.where(np.arange(lines) < lines // 2, np.clip((after - settled) / record, 0.0, 1.0), 0.0)
         shares[band] = coming @ pulse / pulse.sum()
         power = np.abs(force) ** 2
-        lag = np.minimum(after, LINES / width - after)
+        lag = np.minimum(after, lines / width - after)
         alike = np.mean(np.abs(np.fft.ifft(power)) ** 2, axis=0) @ np.maximum(1.0 - lag / record, 0.0)
         numbers[band] = max(np.mean(power) ** 2 * width * record / alike, 1.0)
     return numbers, shares
+
+
+def _pulse(transfer: Callable[[Array], Complex], low: float, width: float) -> tuple[Complex, Array]:
+    """Force per height (p, f) at the frequencies of a band, Hz, and the energy of its pulse over time (f,)."""
+    for lines in LINES:
+        force = transfer(low + width * (np.arange(lines) + 0.5) / lines)
+        pulse = np.sum(np.abs(np.fft.ifft(force)) ** 2, axis=0)
+        if pulse[lines // 4 : 3 * lines // 4].sum() < RUNG_OUT * pulse.sum():
+            break
+    return force, pulse
 
 
 def nominal(centre: float) -> float:
