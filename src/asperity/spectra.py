@@ -209,7 +209,7 @@ def chance_and_start(
 
 
 def _pulse(transfer: Callable[[Array], Complex], low: float, width: float) -> tuple[Complex, Array]:
-    """Force per height (p, f) at the frequencies of a band, Hz, and the energy of its pulse over time (f,)."""
+    """Force per height (p, f) at frequencies of a band, Hz, and the energy of its pulse over time (f,)."""
     for lines in LINES:
         force = transfer(low + width * (np.arange(lines) + 0.5) / lines)
         pulse = np.sum(np.abs(np.fft.ifft(force)) ** 2, axis=0)

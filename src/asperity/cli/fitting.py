@@ -14,9 +14,10 @@ from asperity.case.cases import load_case
 from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
 from asperity.cli.commands import mark_of, refuse_other_case, taken_folder
+from asperity.fitting.fitted import Fitted
 from asperity.fitting.observables import observable
 from asperity.fitting.reading import read_where
-from asperity.fitting.running import Fitted, chosen_free, fitted, measured_for
+from asperity.fitting.running import chosen_free, fitted, measured_for
 from asperity.progress import progress_bar
 from asperity.reporting import data
 from asperity.reporting.figure import PageFigure

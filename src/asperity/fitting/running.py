@@ -14,6 +14,7 @@ from asperity.case.any_case import AnyCase, entry_of
 from asperity.case.form import case_key
 from asperity.errors import BandsWarning, InputError
 from asperity.fitting import determined, reading
+from asperity.fitting.fitted import Estimate, Fitted, Undetermined
 from asperity.fitting.free import (
     Free,
     Range,
@@ -39,18 +40,22 @@ from asperity.fitting.search import (
 from asperity.progress import Progress, shown_progress
 from asperity.store import Store, made
 from asperity.threads import one_thread_in_linear_algebra
-from asperity.written_numbers import count_of, in_a_row, rounded
+from asperity.written_numbers import count_of, rounded
 
 FORMAT = 1
 """Raise it when what is kept of a search no longer means what it meant."""
 USUALLY_LEFT_OUT = 1.0
 """By a case, dB, while nothing is known of it."""
-RUNS, RUNS_AGAIN = 15, 5
-"""Most steps of a search in which each takes a run, and of one that goes on from another's end."""
+RUNS = 15
+"""Most steps of a search in which each takes a run."""
+RUNS_AGAIN = 5
+"""Most steps of such a search that goes on from another's end."""
 OF_RUNS = 1e-3
 """Part by which a sum of squares still changes where each of its values takes a run."""
-ROUNDS, SAME = 6, 0.05
-"""In which it is found, and the part by which it may still change."""
+ROUNDS = 6
+"""Rounds at most in which what the case leaves out is found."""
+SAME = 0.05
+"""Part by which it may still change in the last of them."""
 STARTS = 8
 """From which a smallest sum of squares is sought, where predictions are quick."""
 RIVAL = 1.05
@@ -58,179 +63,6 @@ RIVAL = 1.05
 NEAR = 0.1
 """On the scale of the search, by which minima are apart at least."""
 FreeKeys = Sequence[str] | Mapping[str, object] | None
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A value that was fitted.
-
-    Attributes
-    ----------
-    free : Free
-        What it is.
-    value : float
-        In SI.
-    interval : tuple of two floats, optional
-        95 % interval, in SI; None of a value on a limit beyond which the data want it.
-    limit : str
-        ``"least"`` or ``"largest"`` of a value on its limit; else empty.
-    """
-
-    free: Free
-    value: float
-    interval: tuple[float, float] | None
-    limit: str
-
-    @property
-    def name(self) -> str:
-        """The dotted key, or what else it is called."""
-        return self.free.name
-
-    @property
-    def words(self) -> str:
-        """The value with its interval, for people."""
-        told = self.free.words(self.value)
-        if self.interval is not None:
-            low, high = map(self.free.words, self.interval)
-            told = f"{told} ({low} to {high})"
-        return told + f", on its limit ({self.free.range_source})" * bool(self.limit)
-
-
-@dataclass(frozen=True)
-class Undetermined:
-    """A key that the data leave open, and that was left as the case has it.
-
-    Attributes
-    ----------
-    free : Free
-        What it is.
-    others : tuple of (str, float)
-        Keys with which alone the data determine a combination: how many times its own change, in parts of
-        each, another has to change so that the data are met alike.
-    """
-
-    free: Free
-    others: tuple[tuple[str, float], ...]
-
-    @property
-    def words(self) -> str:
-        """What is not known, and what it was left at."""
-        name = self.free.name
-        left = f"left at {self.free.words(self.free.start)}" if self.free.given else "left as the case has it"
-        if not self.others:
-            return f"{name} is not determined by these data; {left}"
-        names = in_a_row([other for other, _ in self.others])
-        met = in_a_row(
-            [
-                f"{rounded(abs(by), 2)} % {'more' if by > 0.0 else 'less'} of {other}"
-                for other, by in self.others
-            ]
-        )
-        return f"{name} is not determined apart from {names}: 1 % more of it is made up for by {met}; {left}"
-
-
-@dataclass(frozen=True, eq=False)
-class Fitted:
-    """A case that was fitted.
-
-    Attributes
-    ----------
-    case : Case
-        With the values found.
-    before : Case
-        As it was.
-    measured : tuple of Measured
-        What it was fitted to, repeated measurements as their means.
-    estimates : tuple of Estimate
-        Values found, in the order in which they were named.
-    undetermined : tuple of Undetermined
-        Keys that the data leave open, the worst first.
-    correlations : ndarray (k, k)
-        Of the estimates that do not lie on a limit, on the scale of the search (logarithms).
-    predicted_before, predicted : list of ndarray
-        Of each measurement what the case predicts as it was, and as it is.
-    stated : bool
-        Whether the uncertainties of the data are known.
-    left_out : float
-        Standard deviation of what the case leaves out, dB, beside uncertainties that are known; zero where it
-        meets the data within them.
-    rivals : tuple of dict
-        Values of other minima that meet the data as well.
-    """
-
-    case: AnyCase
-    before: AnyCase
-    measured: tuple[Measured, ...]
-    estimates: tuple[Estimate, ...]
-    undetermined: tuple[Undetermined, ...]
-    correlations: Array
-    predicted_before: list[Values]
-    predicted: list[Values]
-    stated: bool
-    left_out: float
-    rivals: tuple[dict[str, float], ...]
-
-    @property
-    def values(self) -> dict[str, float]:
-        """Values found, by name, in SI."""
-        return {each.name: each.value for each in self.estimates}
-
-    @property
-    def intervals(self) -> dict[str, tuple[float, float] | None]:
-        """95 % intervals by name; None of a value on its limit."""
-        return {each.name: each.interval for each in self.estimates}
-
-    def residuals(self, *, before: bool = False) -> list[Array]:
-        """Level of what was measured over what is predicted, dB, of each measurement."""
-        predicted = self.predicted_before if before else self.predicted
-        both = zip(self.measured, predicted, strict=True)
-        return [observable(each.what).differs(each.values, found) for each, found in both]
-
-    def rms(self, *, before: bool = False) -> float:
-        """Root mean square of these of all data, dB."""
-        return float(np.sqrt(np.mean(np.concatenate(self.residuals(before=before)) ** 2)))
-
-    @property
-    def sentence(self) -> str:
-        """What came of it, for people: what is not known first."""
-        found = "; ".join(f"{each.name} = {each.words}" for each in self.estimates)
-        return " ".join([*self.open_sentences, f"Fitted: {found}.", *self.remarks])
-
-    @property
-    def headline(self) -> str:
-        """What came of it in one sentence."""
-        values, fitted_keys = sum(each.count for each in self.measured), len(self.estimates)
-        told = f"{count_of(fitted_keys, 'key')} fitted to {count_of(values, 'value')}"
-        names = [each.free.name for each in self.undetermined]
-        left_open = f"; not determined: {in_a_row(names)}" if names else ""
-        left, before = (rounded(self.rms(before=each), 2) for each in (False, True))
-        return f"{told}: {left} dB rms left, {before} dB before{left_open}."
-
-    @property
-    def open_sentences(self) -> list[str]:
-        """What the data leave open, one sentence each."""
-        return [f"{each.words}." for each in self.undetermined]
-
-    @property
-    def remarks(self) -> list[str]:
-        """What is left, and what is doubtful of it, one sentence each."""
-        values = count_of(sum(each.count for each in self.measured), "value")
-        left, before = self.rms(), self.rms(before=True)
-        told = [f"Left: {rounded(left, 2)} dB rms of {values}, before {rounded(before, 2)} dB."]
-        if limited := [each for each in self.estimates if each.limit]:
-            names = in_a_row([each.name for each in limited])
-            told.append(
-                f"On a limit: {names}. What the case leaves out may be why; a range of one's own is given as "
-                f'"{limited[0].name} = least..largest".'
-            )
-        if self.left_out:
-            told.append(
-                "The case does not meet the data within their uncertainty: it leaves out "
-                f"{self.left_out:.1f} dB, which the intervals have in them."
-            )
-        if self.rivals:
-            told.append(f"{count_of(len(self.rivals), 'other set')} of values meet the data as well.")
-        return told
 
 
 def fit(
