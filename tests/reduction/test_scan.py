@@ -54,6 +54,13 @@ def test_each_position_is_a_contact_of_its_own(stride):
     assert of_map.equals(forces)
 
 
+def test_a_contact_that_stays_as_it_is_takes_no_iteration():
+    """A ball on a plane: the patch stays in the window, where asperities would move with the surface."""
+    few, many = (half_space().scan(np.zeros((n, 41)), ball(), [0.2e-6, 0.3e-6]) for n in (42, 60))
+    assert few.sizes["position"] == 2
+    assert many.attrs["iterations"] == few.attrs["iterations"]
+
+
 def test_planes_shift_the_approach_of_each_position():
     heights, planes = rough(44), np.array([0.0, 0.1e-6, -0.05e-6, 0.2e-6])
     shifted = scan_forces(job(heights, [0.1e-6], rtol=1e-9, planes=planes)).forces[0]

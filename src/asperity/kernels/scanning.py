@@ -162,16 +162,17 @@ def _set_start(b: Block, m: int, i: int, touch: float) -> None:
     # two approaches make a line, a third tells how far off the line was
     while below < min(i, 3) and b.approaches[i - 1 - below] > touch:
         below += 1
-    along = b.solved[i] > 0 and b.stride < b.start.shape[0]  # pressures move with the asperities
+    along = b.solved[i] > 0 and b.stride < b.start.shape[0]
     corrected = along and below > 0 and b.solved[i - 1] > 1
     across = below > 0 and not along
     expected, now = b.expected[(i + 1) % 2], b.expected[i % 2]
     if corrected and below == 3:
         by_position, by_approach = misfits(here[i - 1], expected, here[i - 2], here[i - 3], _share(b, i - 1))
         across = by_approach < by_position
-    if along:
-        share = 1.0 if b.solved[i] > 1 else 0.0
-        continue_pressure(before[i], here[i], b.stride, share, b.hardness, now)
+    if along and b.solved[i] > 1:
+        continue_rolling(before[i], here[i], b.stride, b.stride, b.hardness, now)
+    elif along:
+        continue_pressure(before[i], here[i], b.stride, 0.0, b.hardness, now)
     if across:
         share = _share(b, i) if below > 1 else 0.0
         other = here[i - 2] if below > 1 else here[i - 1]
