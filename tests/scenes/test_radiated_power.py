@@ -303,13 +303,14 @@ def test_ground_directivity_and_rails_are_those_of_the_case():
     grass, same = heard(ground="grass"), heard(flow_resistivity="80 kPa s/m^2")
     assert (grass.attrs["ground"], same.attrs["ground"]) == ("grass", "ground of 80 kPa s/m^2")
     assert_allclose(grass["pass_by_level"], same["pass_by_level"])
-    for depth, found in ((0.5, grass), (2.0, heard(ground="grass", ground_depth="2 m"))):
+    for depth, found in ((0.5, grass), (0.1, heard(ground="grass", ground_depth="0.1 m"))):
         path = sound_path.SoundPath(
             np.array([1000.0]), pass_by.Receiver(), sound_path.PorousGround(80e3), depth
         )
-        expected = 10.0 * np.log10(path.integral(0.0)[0] * np.hypot(7.5, 1.2) / np.pi)
+        heights = -0.09, -min(0.18, depth)  # of the middle of the rail and the sleepers' tops
+        expected = [10.0 * np.log10(path.integral(h)[0] * np.hypot(7.5, 1.2) / np.pi) for h in heights]
         change = found["sound_exposure_level_a"] - heard()["sound_exposure_level_a"]
-        assert_allclose(change.sel(radiator="rail"), expected, atol=1e-6)
+        assert_allclose(change.sel(radiator=["rail", "sleepers"]), expected, atol=1e-6)
     across = heard(directivity="cnossos", decay=30.0)  # opposite 10 lg(1/0.505) and what goes sideways
     louder = (across["pass_by_maximum_level"] - heard(decay=30.0)["pass_by_maximum_level"]).sel(
         radiator="rail"
@@ -337,6 +338,7 @@ test_trains_that_cannot_be = refusals(
     ({"flow_resistivity": "10 Pa s/m^2"}, "allowed: 1 kPa s/m.2 to 1 GPa s/m.2"),
     ({"flow_resistivity": "200 kPa"}, 'with its unit, as "200 kPa s/m.2"'),
     ({"ground_depth": "1 m"}, "only together with ground or flow_resistivity"),
+    ({"ground": "grass", "sleeper_depth": "0.6 m"}, "sleeper_depth: .*0.1 m to 0.5 m"),
     ({"directivity": "monopole"}, 'allowed: "even", "cnossos", "dipole"'),
     ({"far_rail_screening": "10 dB"}, "only together with rail_distance"),
     ({"rail_distance": "1.5 m", "far_rail_screening": "-1 dB"}, "far_rail_screening: .*0 dB to 40 dB"),

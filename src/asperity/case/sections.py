@@ -267,6 +267,14 @@ class NoiseKeys(form.Section):
         "1 mm to 20 m: embankments lie between",
         goes_with="ground or flow_resistivity",
     )
+    sleeper_depth: float = key(
+        LENGTH,
+        "0.18 m",
+        "depth of the tops of sleepers, which radiate there over that ground, below the rail head; the rail "
+        "radiates at half of it",
+        "0.1 m to 0.5 m: rails and pads lie between",
+        goes_with="ground or flow_resistivity",
+    )
     directivity: str = key(
         Choice(cnossos.DIRECTIVITIES),
         cnossos.EVEN,
@@ -326,6 +334,18 @@ class NoiseKeys(form.Section):
         from asperity.radiation.pass_by import Receiver
 
         return Receiver(self.receiver_distance, self.receiver_height)
+
+    @property
+    def source_heights(self) -> dict[str, float]:
+        """Of rail and sleepers above the rail head, m: where they are, but not below the ground.
+
+        Over hard ground, whose reflection adds as energy, all radiate at the rail head.
+        """
+        if self.ground in (None, railways.HARD) and self.flow_resistivity is None:
+            return {"rail": 0.0, "sleepers": 0.0}
+        deepest = -self.ground_depth
+        depths = {"rail": 0.5 * self.sleeper_depth, "sleepers": self.sleeper_depth}
+        return {name: max(-depth, deepest) for name, depth in depths.items()}
 
     @property
     def ground_words(self) -> str:

@@ -544,6 +544,7 @@ def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[
     """
     power = over_frequency[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
     band, decay = power["band"].values, over_frequency[schema.BAND_DECAY_RATE.name].values
+    height = case.noise.source_heights
     up = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
     found = []
     for name, level in zip(power["radiator"].values.tolist(), np.moveaxis(power.values, 1, 0), strict=True):
@@ -558,8 +559,8 @@ def _sources(case: Any, over_frequency: xarray.Dataset, beside: Values) -> list[
             if (change := schema.MEASURED_LATERAL_POWER_CHANGE.name) in over_frequency:
                 own = lateral * 10.0 ** (0.1 * over_frequency[change].values)
                 lateral = np.where(np.isfinite(own), np.minimum(own, LONGEST), lateral)
-            found.append(pass_by.AxleSource(sent, lateral, motion="lateral"))
+            found.append(pass_by.AxleSource(sent, lateral, height["rail"], "lateral"))
         elif name != "total":
             motion = "vertical" if name == "rail" else "all"
-            found.append(pass_by.AxleSource(sent, up, motion=motion))
+            found.append(pass_by.AxleSource(sent, up, height[name], motion))
     return found
