@@ -29,10 +29,10 @@ import numpy as np
 
 import asperity
 from asperity import BallBearing
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.diagnostics import amplitude_spectrum, envelope_spectrum, find_lines
 
-CASE = load_case(Path(__file__).with_suffix(".toml"))
+CASE = read_case(Path(__file__).with_suffix(".toml"))
 BEARING, RATE, BAND = BallBearing.named("6205"), 12_000.0, (2000.0, 4000.0)
 INCH = 25.4e-3
 PLACES = {"IR": ("inner", 0), "B": ("ball", 0), "OR_at_6": ("outer", 0), "OR_at_3": ("outer", 90),

@@ -25,7 +25,7 @@ import measured_6205
 import numpy as np
 
 import asperity
-from asperity import BallBearing, BallBearingCase
+from asperity import BallBearing, BearingUnderLoad
 from asperity.diagnostics.envelopes import analytic_signal
 
 NICE_FILE, HIT_FILE, PIT_FILE = "mfpt_nice_48k.npz", "hit_6205_51k.npz", "cwru_6205_12k.npz"
@@ -63,7 +63,7 @@ def nice_case(
     """A NICE bearing with a pit at an angle, deg, from a radial load, N, and a sensor there."""
     mass, frequency = path
     stiffness = mass * (2.0 * math.pi * frequency) ** 2
-    return BallBearingCase(
+    return BearingUnderLoad(
         speed=NICE_SPEED, radial=max(load, WEIGHT), axial=axial, laws=["table"], time_step=4.1e-6,
         settling=0.08, duration=0.25 if part == "outer" else 0.4, sampling_rate=NICE_RATE, envelope_band=BAND,
         sensors=[math.radians(angle)], contact_damping=50.0, bearing=NICE | {"clearance": clearance},

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from asperity import text_files
 from asperity.arguments import listed, shown
 from asperity.case.any_case import entries
-from asperity.case.cases import as_case, case_class, load_case, parse_case
+from asperity.case.cases import as_case, case_class, parse_case, read_case
 from asperity.case.tables import LEVELS, read_levels, read_table
 from asperity.case.toml import read_toml
 from asperity.errors import CaseError, InputError
@@ -195,7 +195,7 @@ def test_any_value_of_any_key_is_right_or_a_clear_error(kind):
 
 # --- paths
 
-READERS = [load_case, load_study, read_surface, read_result, lambda path: read_table(path, LEVELS)]
+READERS = [read_case, load_study, read_surface, read_result, lambda path: read_table(path, LEVELS)]
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from types import GenericAlias, ModuleType
 
 import click
 
@@ -128,7 +129,11 @@ def laws() -> str:
 MODULES = {
     "asperity": "Cases, runs, surfaces, contacts and structures",
     "asperity.laws": "Contact laws",
+    "asperity.rolling": "Rolling",
+    "asperity.surfaces.synthesis": "Surfaces that are drawn",
     "asperity.spectra": "Spectra and levels",
+    "asperity.diagnostics": "Faults of bearings",
+    "asperity.errors": "Errors and warnings",
 }
 """Modules whose public names are told of, and their headings."""
 
@@ -155,7 +160,8 @@ def api() -> str:
             each for each, value in vars(module).items()
             if inspect.isfunction(value) and value.__module__ == name and not each.startswith("_")
         )  # fmt: skip
-        shown = [each for each in offered if callable(getattr(module, each))]
+        shown = [each for each in offered if not each.startswith("__")]
+        shown = [each for each in shown if not isinstance(getattr(module, each), ModuleType | GenericAlias)]
         parts += [heading, "-" * len(heading), "", ".. autosummary::", "   :toctree: api", ""]
         parts += [*(f"   {name}.{each}" for each in shown), ""]
     further = [name for name in imported() if name.rpartition(".")[0] not in MODULES]

@@ -29,12 +29,12 @@ _HOME = {
     "compare": "scenes.report",
     "effects": "studies.effects",
     "fit": "fitting.running",
-    "laws": "laws",
     "listen": "reporting.sound",
     "material": "reference.materials",
     "open_result": "running",
     "optimise": "optimising.running",
     "prediction_band": "studies.ensemble",
+    "read_case": "case.cases",
     "read_modal_structure": "structures.modal_files",
     "read_surface": "surfaces.readers",
     "report": "scenes.report",
@@ -48,6 +48,19 @@ _HOME = {
 }
 """Module of each public name; the cases of each kind come beside them."""
 
+_MODULES = {
+    "diagnostics": "diagnostics",
+    "errors": "errors",
+    "laws": "laws",
+    "rolling": "rolling",
+    "synthesis": "surfaces.synthesis",
+}
+"""Public modules, by the names that they have here."""
+
+
+_RENAMED = {"BallBearingCase": "BearingUnderLoad"}
+"""Names that scripts may still use, and what they are now."""
+
 
 def _cases() -> dict[str, str]:
     """Kinds of case by the classes of their cases."""
@@ -57,15 +70,17 @@ def _cases() -> dict[str, str]:
 
 def __getattr__(name: str) -> Any:
     """Import a public name on first use, so that ``import asperity`` stays fast."""
+    name = _RENAMED.get(name, name)
     if name == "__all__":
-        return ["__version__", *_HOME, *_cases()]
+        return ["__version__", *_HOME, *_MODULES, *_cases()]
+    if name in _MODULES:
+        return importlib.import_module(f"asperity.{_MODULES[name]}")
     if name in _HOME:
-        module = importlib.import_module(f"asperity.{_HOME[name]}")
-        return module if _HOME[name] == name else getattr(module, name)
+        return getattr(importlib.import_module(f"asperity.{_HOME[name]}"), name)
     if name.startswith("_") or name not in (cases := _cases()):
         raise AttributeError(f"module 'asperity' has no attribute {name!r}")
     return importlib.import_module("asperity.case.cases").case_class(cases[name])
 
 
 def __dir__() -> list[str]:
-    return sorted(["__version__", *_HOME, *_cases()])
+    return sorted(["__version__", *_HOME, *_MODULES, *_cases()])

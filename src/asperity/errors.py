@@ -9,6 +9,33 @@ from enum import Enum
 
 from asperity.written_numbers import rounded
 
+__all__ = [
+    "AsperityError",
+    "BandsWarning",
+    "CaseError",
+    "CoarseSamplingWarning",
+    "ComputationError",
+    "ContactFilterWarning",
+    "EnergyWarning",
+    "ExtrapolationWarning",
+    "Finding",
+    "Grade",
+    "HalfSpaceWarning",
+    "InhomogeneousWarning",
+    "InputError",
+    "LargeDeflectionWarning",
+    "LossFactorWarning",
+    "MeasuredTrackWarning",
+    "MissingPointsWarning",
+    "MissingSourceWarning",
+    "OutOfRangeWarning",
+    "Outcome",
+    "PhysicsWarning",
+    "ShortRecordWarning",
+    "TruncatedContactWarning",
+    "UnconvergedWarning",
+]
+
 LONGEST = 1000
 """Characters of a name or value that a message repeats: more than the paths that people use."""
 TOO_MUCH_MEMORY = (

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import asperity
 from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail, laws
 from asperity.case.any_case import entries
-from asperity.case.cases import as_case, load_case, parse_case
+from asperity.case.cases import as_case, parse_case, read_case
 from asperity.errors import CaseError, InputError
 from asperity.parameters import Choice, Flag, MaterialOrName, Number, Quantity, key
 from asperity.reference.materials import MATERIALS
@@ -135,7 +135,7 @@ class TestInMemory:
         maps = [HeightMap(sign * MAP.heights, 1e-5 * step) for sign in (1.0, -1.0)]
         for surface in ({"file": maps[0]}, {"file": maps}, {"file": maps[0], "line": line}):
             case = BallOnBeam(surface=surface)
-            saved = load_case(case.save(tmp_path / "new" / "case.toml"))
+            saved = read_case(case.save(tmp_path / "new" / "case.toml"))
             assert saved.in_memory == {}
             for found, held in zip(read_maps(saved.surface), read_maps(case.surface), strict=True):
                 np.testing.assert_array_equal(found.heights, held.heights)

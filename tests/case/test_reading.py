@@ -8,7 +8,7 @@ import pytest
 from case_texts import case_text
 
 from asperity import BallOnBeam, Bodies
-from asperity.case.cases import load_case, parse_case, template
+from asperity.case.cases import parse_case, read_case, template
 from asperity.errors import InputError
 from asperity.laws import names
 
@@ -190,7 +190,7 @@ def test_a_flat_is_given_by_depth_length_or_both():
 
 def test_a_case_is_read_from_its_file_whatever_its_editor_puts_before_it(source):
     source.write_text(case_text("ball-on-beam", '[surface] file = "map.npy"'), encoding="utf-8-sig")
-    assert load_case(source).surface.file == source.parent / "map.npy"
+    assert read_case(source).surface.file == source.parent / "map.npy"
 
 
 # --- the template, the demonstration and the list of parameters

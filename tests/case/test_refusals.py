@@ -6,7 +6,7 @@ import pytest
 from case_texts import case_text
 
 from asperity.case.any_case import entries
-from asperity.case.cases import load_case, parse_case
+from asperity.case.cases import parse_case, read_case
 from asperity.case.toml import toml_value
 from asperity.errors import CaseError, InputError
 
@@ -188,4 +188,4 @@ def test_text_that_is_no_toml_is_named_with_its_line():
 def test_a_file_that_is_too_large_for_a_case_is_named(tmp_path):
     (tmp_path / "case.toml").write_bytes(b"#" * 2**21)
     with pytest.raises(InputError, match=r"case\.toml: .*more than 1 MiB"):
-        load_case(tmp_path / "case.toml")
+        read_case(tmp_path / "case.toml")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.case.bodies import WheelOnRail
-from asperity.case.cases import as_case, load_case
+from asperity.case.cases import as_case, read_case
 from asperity.errors import CaseError, OutOfRangeWarning
 from asperity.reference.railways import SECTIONS
 from asperity.scenarios.geometry import geometry_of
@@ -35,7 +35,7 @@ def test_a_named_section_and_its_outline_in_millimetres_have_the_same_modes(tmp_
     path = outline_file(tmp_path, named.outline)
     surface = 'kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'
     (tmp_path / "case.toml").write_text(f'{surface}[wheel]\nsection = "outline.csv"\n')
-    drawn = load_case(tmp_path / "case.toml").rolling
+    drawn = read_case(tmp_path / "case.toml").rolling
     assert drawn.section == path
     assert drawn.outline == pytest.approx(named.outline, rel=1e-12)
     expected = named.standing_modes(400.0).table()

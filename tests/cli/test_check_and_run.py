@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.case.cases import load_case, parse_case
+from asperity.case.cases import parse_case, read_case
 from asperity.cli.running import earlier_result, name_of_run, plan
 from asperity.results import read_result
 from asperity.running import prepare_case
@@ -79,14 +79,14 @@ INCOMPLETE = {
 
 @pytest.mark.parametrize("what", INCOMPLETE)
 def test_a_run_that_is_not_whole_is_none(out, what):
-    case = load_case("small.toml")
+    case = read_case("small.toml")
     assert earlier_result(case, out, report=True, more=()) is not None
     INCOMPLETE[what](out)
     assert earlier_result(case, out, report=True, more=()) is None
 
 
 def test_a_run_of_another_program_or_without_convergence_is_computed(out, monkeypatch):
-    case = load_case("small.toml")
+    case = read_case("small.toml")
     assert earlier_result(case, out, report=False, more=["convergence"]) is None
     monkeypatch.setattr("asperity.__version__", "9")
     assert earlier_result(case, out, report=False, more=()) is None
@@ -97,13 +97,13 @@ def test_a_run_is_another_where_a_file_that_it_names_holds_something_else():
     heights = np.arange(4000.0)
     np.savez("line.npz", b=heights)
     Path("case.toml").write_text(LINE)
-    case, status = load_case("case.toml"), Path("line.npz").stat()
+    case, status = read_case("case.toml"), Path("line.npz").stat()
     name = name_of_run(case)
     np.savez("line.npz", b=heights + np.eye(1, 4000, 77)[0])
     os.utime("line.npz", ns=(status.st_atime_ns, status.st_mtime_ns))
     assert name_of_run(case) != name
     np.savez("line.npz", b=heights)
-    assert name_of_run(load_case("case.toml")) == name
+    assert name_of_run(read_case("case.toml")) == name
     Path("line.npz").unlink()
     assert name_of_run(case) == ""
 

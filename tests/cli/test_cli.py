@@ -11,7 +11,7 @@ import pytest
 from click.shell_completion import BashComplete
 
 from asperity.case import PRESETS
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.cli import main
 from asperity.errors import ComputationError
 from asperity.studies.definition import load_study
@@ -168,9 +168,9 @@ def test_what_is_new_is_valid_and_survives_any_encoding_of_a_redirection(name):
         if name == "study":
             assert load_study("new.toml").shape == (2, 3)
         else:
-            assert load_case("new.toml").kind == name
+            assert read_case("new.toml").kind == name
 
 
 def test_laws_of_a_new_case_can_be_chosen():
     Path("chosen.toml").write_text(call("new", "ball-on-beam", "--law", "table", "--law", "hertz").stdout)
-    assert load_case("chosen.toml").laws == ("table", "hertz")
+    assert read_case("chosen.toml").laws == ("table", "hertz")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.scenes.measured import HammerTest
 from asperity.structures.track import Track
 from command_line import call
@@ -40,7 +40,7 @@ def test_it_writes_the_case_a_table_and_a_page(rates):
     values = {each["key"]: each["value"] for each in told["fitted"]}
     assert values == {f"track.{key}": pytest.approx(value, rel=1e-3) for key, value in TRUE.items()}
     assert set(told["files"]) == {"case", "table", "page"}
-    case = load_case("fitted.toml")
+    case = read_case("fitted.toml")
     assert case.track.pad_stiffness == values["track.pad_stiffness"]
     text = Path("fitted.toml").read_text()
     assert "# Fitted by asperity" in text

@@ -8,7 +8,7 @@ import pytest
 import xarray
 
 import asperity
-from asperity.case.cases import as_case, load_case
+from asperity.case.cases import as_case, read_case
 from asperity.case.tables import read_levels
 from asperity.fitting import observable as fitted_to
 from asperity.fitting import observables
@@ -194,7 +194,7 @@ def test_a_spectrum_that_was_fitted_lies_beside_the_case(train, tmp_path, monkey
     _, levels = read_levels(Path(told["files"]["wheel.roughness"]))
     assert levels[:11] == pytest.approx(START[:11, 1] + 2.0, abs=0.05)
     np.testing.assert_allclose(levels[11:], START[11:, 1])
-    assert load_case("fitted.toml").wheel.roughness == Path("fitted_wheel_roughness.csv").resolve()
+    assert read_case("fitted.toml").wheel.roughness == Path("fitted_wheel_roughness.csv").resolve()
 
 
 # --- a bearing

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from scipy.fft import rfft, rfftfreq
 
 import asperity
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.cli import main, optimising
 from asperity.optimising import running
 from asperity.optimising.allocation import rms_of
@@ -66,7 +66,7 @@ def test_it_beats_the_start_by_table_with_its_limit_active(folder):
     for law in ("table", "areal"):
         rms = [run["rolling/acceleration"].sel(law=law).values.std() for run in runs]
         assert rms[1] < 0.5 * rms[0]
-    again = asperity.run(load_case(out / "case.toml").with_(laws=("areal",)))
+    again = asperity.run(read_case(out / "case.toml").with_(laws=("areal",)))
     found, same = (run["rolling/contact_force"].sel(law="areal") for run in (again, runs[1]))
     np.testing.assert_allclose(found, same, rtol=1e-6, atol=1e-3)
 

@@ -9,7 +9,8 @@ import pytest
 
 import asperity
 
-NAMES = sorted(set(asperity.__all__) - {"__version__", "laws"})
+MODULES = ("laws", "rolling", "synthesis", "diagnostics", "errors")
+NAMES = sorted(set(asperity.__all__) - {"__version__", *MODULES})
 SHORT = {"laws": ["hertz", "linear"], "duration": 5e-3, "surface": {"spectrum": "iso3095"}}
 
 
@@ -27,6 +28,17 @@ def test_the_examples_of_a_public_name_hold(name, tmp_path, monkeypatch):
         example.globs |= {} if example is found[0] else vars(inspect.getmodule(thing))  # of methods
         doctest.DocTestRunner().run(example, out=said.append)
     assert not said, "".join(said)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_public_modules_tell_of_all_that_they_offer(name):
+    module = getattr(asperity, name)
+    things = [getattr(module, each) for each in module.__all__]
+    described = [each for each in things if callable(each)]
+    assert len(described) >= 4
+    for each in described:
+        assert len(inspect.getdoc(each)) > 20, each
+    assert set(module.__all__) <= set(dir(module))
 
 
 def callables_of(module):

@@ -7,7 +7,7 @@ import pytest
 
 import asperity
 from asperity.case.bodies import WheelOnRail
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.errors import CaseError
 from asperity.reporting import chart, data
 from asperity.running import prepare_case
@@ -75,7 +75,7 @@ def test_a_table_of_bays_is_read_in_its_units(tmp_path):
     text = 'kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'
     text += '[track]\nname = "uic60"\nbay_table = "bays.csv"\n'
     (tmp_path / "case.toml").write_text(text)
-    case = load_case(tmp_path / "case.toml")
+    case = read_case(tmp_path / "case.toml")
     track, same = case.track.model(), over(bay_table=BAYS).track.model()
     assert track.bays.ballast == pytest.approx(same.bays.ballast)
     assert (track.period, track.cell_bays) == pytest.approx((1.77, 3))

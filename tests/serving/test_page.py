@@ -19,7 +19,7 @@ pytest.importorskip("starlette", reason="the extra app is not installed")
 pytest.importorskip("uvicorn", reason="the extra app is not installed")
 
 import asperity
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.case.toml import toml_text
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the server is ended by signals")
@@ -236,7 +236,7 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     with tab.expect_download() as taken:
         tab.click("text=Download the case")
     (tmp_path / "taken.toml").write_bytes(taken.value.path().read_bytes())
-    assert load_case(tmp_path / "taken.toml").beam.loss_factor == 0.02
+    assert read_case(tmp_path / "taken.toml").beam.loss_factor == 0.02
     shown = float(number(tab, "largest pressure").split()[0]) * 1e6  # of the sample that the run shows
     assert shown == pytest.approx(float(result["contact/pressure"].max()), rel=5e-3)
     for box in tab.locator("#run-list input[type=checkbox]").all()[:2]:

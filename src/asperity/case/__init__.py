@@ -4,6 +4,6 @@ PRESETS: dict[str, str] = {
     "ball-on-beam": "asperity.case.beam.BallOnBeam",
     "wheel-on-rail": "asperity.case.bodies.WheelOnRail",
     "bodies": "asperity.case.bodies.Bodies",
-    "ball-bearing": "asperity.case.ball_bearing.BallBearingCase",
+    "ball-bearing": "asperity.case.ball_bearing.BearingUnderLoad",
 }
 """Kinds of case by name, each with its module and class."""

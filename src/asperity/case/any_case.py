@@ -4,11 +4,13 @@ import os
 import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
 
 from asperity import files
 from asperity.arguments import file_path, nearest, require, shown
+from asperity.case.documented import allowed_in
 from asperity.case.form import Section, content, described_value, holds_memory
 from asperity.case.toml import toml_text, toml_value
 from asperity.errors import InputError
@@ -182,11 +184,6 @@ def _commented_line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
     return f"{code:{_COLUMN - 2}}  # {key.meaning} ({allowed_in(key)}; {default})"
 
 
-def allowed_in(key: Key) -> str:
-    """What may stand behind a key, in words, without an example."""
-    return key.kind.allowed.split(", with its unit")[0]
-
-
 class AnyCase(Section):
     """A case of any kind: a frozen section with a kind and other sections inside.
 
@@ -205,12 +202,18 @@ class AnyCase(Section):
     """Values, in TOML, of keys that have no default and shall stand in a commented case."""
     SHOWN: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     """Keys of some sections that a commented case shows; the others are for scenes of other kinds."""
+    OFFERED: ClassVar[tuple[str, ...]] = ("parameters", "save", "text", "title", "to_toml", "with_")
 
     kind: str = key(Text(), "", "what rolls")
 
     if TYPE_CHECKING:  # each kind declares these
         laws: tuple[str, ...]
         seed: int
+
+    @property
+    def title(self) -> str:
+        """Say what runs, or rolls over what."""
+        raise NotImplementedError
 
     @property
     def numbers_written(self) -> float:
@@ -338,6 +341,17 @@ class AnyCase(Section):
                     told = {"key": f"{title}.{name}".lstrip("."), "value": text, "default": default}
                     listed.append(told | {"is_default": same, "note": own.meaning})
         return listed
+
+    def _repr_html_(self) -> str:
+        """What is set, as a table for notebooks."""
+        rows = [
+            f"<tr><td>{escape(each['key'])}</td><td>{escape(each['value'])}</td><td>{escape(each['note'])}</td></tr>"
+            for each in self.parameters()
+            if not each["is_default"]
+        ]
+        heading = "<tr><th>key</th><th>value</th><th>meaning</th></tr>"
+        table = f"<table>{heading}{''.join(rows)}</table>" if rows else "<p>Every key is at its default.</p>"
+        return f"<div><p><strong>{escape(self.title)}.</strong></p>{table}</div>"
 
 
 @runtime_checkable

@@ -238,16 +238,15 @@ class FaultKeys(Section, parameters=_keys_of(Fault)):
         yield from _refused(lambda: self.fault)
 
 
-class BallBearingCase(AnyCase):
+class BearingUnderLoad(AnyCase):
     """A ball bearing runs under a constant load.
 
-    Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
-    default and allowed values are printed by ``asperity new ball-bearing``.
+    Numbers are in SI, or text with its unit. ``asperity new ball-bearing`` writes these keys as a case file.
 
     Examples
     --------
-    >>> from asperity import BallBearingCase
-    >>> case = BallBearingCase(speed="1797 1/min", radial=100, bearing={"name": "6205"})
+    >>> from asperity import BearingUnderLoad
+    >>> case = BearingUnderLoad(speed="1797 1/min", radial=100, bearing={"name": "6205"})
     >>> f"{case.kinematics.ball_pass_outer:.1f} Hz"
     '107.4 Hz'
     """
@@ -486,3 +485,7 @@ class BallBearingCase(AnyCase):
             received = f"{rounded(steps, 2)} time steps of balls"
             allowed = f"at most {rounded(MOST_STEPS)}"
             yield InputError("duration", received, allowed, "Record several shorter times.")
+
+
+BallBearingCase = BearingUnderLoad
+"""What it was called."""

@@ -140,9 +140,8 @@ class BeamKeys(RolledOver):
 class BallOnBeam(Case):
     """A ball rolls over a rough beam.
 
-    Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
-    default and allowed values are printed by ``asperity new ball-on-beam``; all keys of the body of
-    ``asperity new bodies`` may stand in the section of the ball.
+    Numbers are in SI, or text with its unit. ``asperity new ball-on-beam`` writes these keys as a case file;
+    all keys of the body of `Bodies` may stand in the section of the ball.
 
     Examples
     --------

@@ -37,8 +37,7 @@ class OverTrack(Case):
 class Bodies(OverTrack):
     """Bodies roll, one or many, over a plane, a beam, a track, or any structure that is known by its modes.
 
-    Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
-    default and allowed values are printed by ``asperity new bodies``.
+    Numbers are in SI, or text with its unit. ``asperity new bodies`` writes these keys as a case file.
 
     Examples
     --------
@@ -116,8 +115,9 @@ DEFAULTS = {
 class WheelOnRail(OverTrack, defaults=DEFAULTS):
     """A wheel rolls on a rail of infinite length on discrete supports.
 
-    Each key's meaning, default and allowed values are printed by ``asperity new wheel-on-rail``. Positions
-    count along the rail, in m from a sleeper. Every law is allowed: textures are laid out as strips.
+    Numbers are in SI, or text with its unit. ``asperity new wheel-on-rail`` writes these keys as a case file.
+    Positions count along the rail, in m from a sleeper. Every law is allowed: textures are laid out in
+    strips.
 
     Examples
     --------

@@ -22,8 +22,33 @@ _HEAD = """\
 """
 
 
-def load_case(path: str | os.PathLike[str]) -> AnyCase:
-    """Read a case from a TOML file; all errors in its keys are reported at once."""
+def read_case(path: str | os.PathLike[str]) -> AnyCase:
+    """Read a case file, as an object whose keys are in SI.
+
+    Parameters
+    ----------
+    path : path
+        A TOML file, as ``asperity new`` writes it. Relative paths in it start at its folder.
+
+    Returns
+    -------
+    case
+        An object of the class of its kind, as `asperity.WheelOnRail`.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    CaseError
+        With all errors at once, if its keys are wrong.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> path = case.save("case.toml")
+    >>> asperity.read_case(path) == case
+    True
+    """
     return case_of(*keys_and_origin(path))
 
 

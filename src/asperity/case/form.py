@@ -4,6 +4,7 @@ And what values of a case say, whatever objects they are: to compare cases, to n
 """
 
 import hashlib
+import inspect
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -16,6 +17,7 @@ import numpy as np
 
 from asperity import __version__
 from asperity.arguments import nearest, shown
+from asperity.case import documented
 from asperity.errors import CaseError, InputError
 from asperity.parameters import FROM_PYTHON, Key, Origin, Problems, outside
 from asperity.reference.materials import Material
@@ -57,6 +59,23 @@ def numbered(given: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
+class _Signature:
+    """The signature of a section, which `inspect` and `help` ask for."""
+
+    def __get__(self, _: object, model: "type[Section]") -> inspect.Signature:
+        return documented.signature_of(model)
+
+
+class _Documentation:
+    """The docstring of a section: a summary, and all keys that the section declares."""
+
+    def __init__(self, summary: str) -> None:
+        self.summary = summary
+
+    def __get__(self, _: object, model: "type[Section]") -> str:
+        return documented.documentation_of(model, self.summary)
+
+
 class Section:
     """A frozen section of a case: unknown keys are errors, and all errors are reported together.
 
@@ -68,8 +87,11 @@ class Section:
     inner: ClassVar[dict[str, Inner]] = {}
     ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
     """Pairs of keys of which one may be given."""
+    OFFERED: ClassVar[tuple[str, ...]] = ()
+    """What `dir` lists beside the keys: what a section does for people."""
     given_names: frozenset[str]
     """Keys that were given, not left out."""
+    __signature__ = _Signature()
 
     def __init_subclass__(
         cls, parameters: Mapping[str, Key] | None = None, defaults: Mapping[str, Any] | None = None
@@ -86,6 +108,7 @@ class Section:
         cls.keys = {name: each for name, each in declared.items() if isinstance(each, Key)}
         inner = [(name, each) for name, each in declared.items() if isinstance(each, Inner)]
         cls.inner = dict(sorted(inner, key=lambda named: named[1].last))
+        type.__setattr__(cls, "__doc__", _Documentation(vars(cls)["__doc__"] or ""))
 
     @classmethod
     def sections(cls) -> Mapping[str, Inner]:
@@ -118,7 +141,7 @@ class Section:
     @classmethod
     def with_defaults(cls, **defaults: Any) -> type[Self]:
         """The same section with other defaults, as in TOML."""
-        own = {"__doc__": cls.__doc__, "__module__": cls.__module__}
+        own = {"__doc__": vars(cls)["__doc__"].summary, "__module__": cls.__module__}
         return type(cls.__name__, (cls,), own, defaults=defaults)
 
     def _fill(
@@ -246,6 +269,11 @@ class Section:
         return {
             name: each._state() if isinstance(each, Section) else each for name, each in self.__dict__.items()
         }
+
+    def __dir__(self) -> list[str]:
+        """List keys and sections, and what a person does with them."""
+        offered = {name for model in type(self).__mro__ for name in vars(model).get("OFFERED", ())}
+        return sorted({*self.keys, *self.section_names, *offered})
 
     def __repr__(self) -> str:
         from asperity.case.any_case import in_toml

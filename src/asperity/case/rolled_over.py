@@ -68,6 +68,7 @@ class RolledOver(Section):
 
     LONGEST_WAVE: ClassVar[float] = 1.6e-3
     """Longest wave of a texture of a stated rms, m: as long as an instrument's field of view."""
+    OFFERED: ClassVar[tuple[str, ...]] = ("extent", "model", "sensor_positions")
 
     material: Material
     sensors: tuple[float, ...] | None = None

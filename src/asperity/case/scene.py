@@ -65,6 +65,13 @@ class Case(AnyCase):
     """Section of what is rolled over; empty where the key `over` names it."""
     DISPLACEMENTS: ClassVar[tuple[str, str]] = ("over_displacement", "rolling_displacement")
     """What displacements at a contact are called in a result: of what is rolled over, and of what rolls."""
+    OFFERED: ClassVar[tuple[str, ...]] = (
+        "contact_resonance",
+        "record_start",
+        "rolled_time",
+        "smooth_contact",
+        "time_step",
+    )
 
     speed: float = key(
         Quantity("m/s", above=0),

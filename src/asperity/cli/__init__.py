@@ -261,10 +261,10 @@ def check(case: Path, directory: Path | None, keys: bool, overwrite: bool) -> Do
     # the expected seconds, for a script
     asperity check case.toml --json | jq .work.seconds
     """
-    from asperity.case.cases import load_case
+    from asperity.case.cases import read_case
     from asperity.cli.running import refuse_full, refuse_other, show_plan
 
-    loaded, target = load_case(case), directory or Path("runs") / case.stem
+    loaded, target = read_case(case), directory or Path("runs") / case.stem
     refuse_full(loaded, target)
     if not overwrite:
         refuse_other(loaded, target)
@@ -297,10 +297,10 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     # what it found, for a script
     asperity run case.toml --json | jq .verdict
     """
-    from asperity.case.cases import load_case
+    from asperity.case.cases import read_case
     from asperity.cli.running import run_case
 
-    return run_case(load_case(case), directory or Path("runs") / case.stem, source=str(case), **choices)
+    return run_case(read_case(case), directory or Path("runs") / case.stem, source=str(case), **choices)
 
 
 @_compute(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, real, require, whole
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.cli.running import prepared_case
 from asperity.contact.creep import CreepCurve, creep_curve
 from asperity.contact.friction import Friction
@@ -61,7 +61,7 @@ def show_creep(
     allowed = f"a whole number from 2 to {MOST_POINTS}"
     count = (6 if states else 16) if points is None else points
     whole("--points", count, allowed, at_least=2, at_most=MOST_POINTS)
-    case = load_case(source)
+    case = read_case(source)
     prepared = prepared_case(case, str(source))
     if not isinstance(prepared, PreparedCase):
         raise InputError("case", f"one of kind {case.kind}", "a kind whose bodies roll over a surface")

@@ -10,7 +10,7 @@ import numpy as np
 from asperity import __version__, files
 from asperity.arguments import Array
 from asperity.case.any_case import in_toml
-from asperity.case.cases import load_case
+from asperity.case.cases import read_case
 from asperity.case.form import content, file_digest
 from asperity.case.toml import toml_text
 from asperity.cli.commands import mark_of, refuse_other_case, taken_folder
@@ -58,7 +58,7 @@ def fit_case(
 ) -> dict[str, Any]:
     """Fit a case to files of what was measured, and write the case found, into a folder, else beside it."""
     folder = path.parent if directory is None else directory
-    case = load_case(path)
+    case = read_case(path)
     data_of_case = measured_for(case, list(measured) or None, read_where(where), what)
     chosen = chosen_free(case, data_of_case, list(free) or None)
     files.refuse_unwritable(folder, "folder of the results", "Choose another folder with -o.")

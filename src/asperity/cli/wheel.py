@@ -62,7 +62,7 @@ def show_wheel(section: str, highest: str | None, table: Path | None, picture: P
 def _case_of(section: str) -> Any:
     """A wheel on a rail with a section, or a case that has one."""
     if section.endswith(".toml"):
-        return cases.of_bodies(cases.load_case(Path(section)), "wheel")
+        return cases.of_bodies(cases.read_case(Path(section)), "wheel")
     smooth = {"smooth": True}
     if section in SECTIONS:
         return WheelOnRail(surface=smooth, wheel={"section": section})

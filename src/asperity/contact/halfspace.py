@@ -11,8 +11,8 @@ from asperity import arguments
 from asperity.arguments import Array, ArrayLike, NDArray, real, require, shown
 from asperity.contact import periodic
 from asperity.contact.edges import Softness, check_edges, softness_at
-from asperity.contact.solved import Contact
-from asperity.errors import Outcome, UnconvergedWarning
+from asperity.contact.solved import Contact, warn_unconverged
+from asperity.errors import Outcome
 from asperity.kernels import fourier, projected_cg, rims, scanning
 from asperity.kernels.batched import apply_stencil, convolve_padded, padded_spectrum, unit_indentation
 from asperity.kernels.box import foundation_approach
@@ -23,6 +23,7 @@ from asperity.surfaces.edges import Edges
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows
 from asperity.threads import refuse_to_go_on
+from asperity.units import written
 from asperity.written_numbers import count_of, in_newtons, rounded
 
 if TYPE_CHECKING:
@@ -124,6 +125,13 @@ class HalfSpace:
         self._sides = (dx / self.modulus, dy / self.modulus) if cells == "covered" else None
         self._known = {dtype: influence(table, taps, dtype) for dtype in (np.float64, np.float32)}
 
+    def __repr__(self) -> str:
+        cells = f"{self.shape[0]} × {self.shape[1]} {self.cells} cells"
+        spacing = " × ".join(written(each, "m", "um") for each in self.spacing)
+        yields = "elastic" if self.hardness is None else f"hardness {written(self.hardness, 'Pa', 'GPa')}"
+        modulus = written(self.modulus, "Pa", "GPa")
+        return f"<HalfSpace: {cells} of {spacing}, E* {modulus}, {yields}, {self.boundary} boundary>"
+
     @property
     def influence(self) -> Influence:
         """Influence of pressure on displacement, in double precision."""
@@ -184,7 +192,7 @@ class HalfSpace:
             soft = giving[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         rise, converged = unit_indentation(self.influence.table, taps, inside, rtol, MAX_ITERATIONS, soft)
         if not converged:
-            _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
+            warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         stiffness = float(rise.sum()) * self.cell_area
         return periodic.stiffness_of_lifted(stiffness, self) if self.lift else stiffness
 
@@ -223,7 +231,7 @@ class HalfSpace:
             operator, np.ones(len(inside)), rtol=rtol, atol=0.0, restart=60, maxiter=20, M=inverse
         )
         if missed:
-            _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
+            warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         return float(rise.sum()) * self.cell_area
 
     def solve(
@@ -279,7 +287,7 @@ class HalfSpace:
         else:
             contact = solver.at_load(self, g, self.checked_load(load), p, rtol, **known)
         if not contact.converged:
-            _warn_unconverged(f"contact at approach {rounded(contact.approach, 4)} m", contact.outcome)
+            warn_unconverged(f"contact at approach {rounded(contact.approach, 4)} m", contact.outcome)
         return contact
 
     def scan(
@@ -590,7 +598,3 @@ def _tolerance(rtol: float) -> float:
 def _array(values: ArrayLike) -> Array:
     """Array of the one kind that kernels are compiled for: contiguous and writable."""
     return np.require(values, np.float64, ["C", "W"])
-
-
-def _warn_unconverged(what: str, outcome: Outcome) -> None:
-    UnconvergedWarning.warn(f"{what} did not converge: {outcome.value}")

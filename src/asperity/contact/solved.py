@@ -1,13 +1,14 @@
 """A contact of a half-space, solved: pressure and force, and what follows from them."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.errors import Outcome
+from asperity.errors import Outcome, UnconvergedWarning
+from asperity.units import written
 
 if TYPE_CHECKING:
     from asperity.contact.halfspace import HalfSpace
@@ -55,9 +56,25 @@ class Contact:
     iterations: int
     residual: float
     outcome: Outcome
-    half_space: "HalfSpace" = field(repr=False)
-    undeformed_gap: Array = field(repr=False)
-    edges: "Edges | None" = field(repr=False, default=None)
+    half_space: "HalfSpace"
+    undeformed_gap: Array
+    edges: "Edges | None" = None
+
+    def __repr__(self) -> str:
+        force, pressure, approach = (
+            written(float(f"{value:.4g}"), unit, usual)
+            for value, unit, usual in (
+                (self.force, "N", "N"),
+                (np.max(self.pressure, initial=0.0), "Pa", "GPa"),
+                (self.approach, "m", "um"),
+            )
+        )
+        cells = f"{np.count_nonzero(self.pressure)} of {self.pressure.size} cells"
+        solved = f"converged in {self.iterations} iterations" if self.converged else f"{self.outcome.name}"
+        return (
+            f"<Contact: {force} at an approach of {approach}, pressure up to {pressure} "
+            f"on {cells} ({self.area * 1e6:.4g} mm²), {solved}>"
+        )
 
     @property
     def converged(self) -> bool:
@@ -110,3 +127,8 @@ def edge_share(pressure: Any) -> Any:
     edge += pressure[..., 1:-1, :: max(1, ny - 1)].sum(axis=(-2, -1))
     total = pressure.sum(axis=(-2, -1))
     return edge / (total + (total == 0.0))
+
+
+def warn_unconverged(what: str, outcome: Outcome) -> None:
+    """Warn of a solution that did not converge, with advice."""
+    UnconvergedWarning.warn(f"{what} did not converge: {outcome.value}")

@@ -10,6 +10,7 @@ from typing import Any
 from asperity import __version__
 from asperity.arguments import shown
 from asperity.case import PRESETS, any_case, cases, scene, toml
+from asperity.case.documented import allowed_in
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.parameters import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
@@ -66,7 +67,7 @@ def _field(entry: any_case.CaseKey, written: str | None) -> dict[str, Any]:
         "key": entry.dotted,
         "name": entry.name,
         "meaning": entry.key.meaning,
-        "allowed": any_case.allowed_in(entry.key).removesuffix(" in quotes"),
+        "allowed": allowed_in(entry.key).removesuffix(" in quotes"),
         "otherwise": entry.key.otherwise if usual is None else typed(usual),  # where nothing is typed
         "value": "" if written is None else typed(tomllib.loads(f"v = {written}")["v"]),
         # keys, with " or " between them, or "key=value", without which it has no meaning

@@ -206,7 +206,7 @@ def _roll(folder: Path, progress: Progress) -> None:
     # those on the physics stand in the result
     with alone_in(folder), warnings.catch_warnings(action="ignore"):
         progress(0, 1, "preparing")
-        tree = run(prepare_case(cases.load_case(folder / stored_runs.CASE), "the case"), progress=progress)
+        tree = run(prepare_case(cases.read_case(folder / stored_runs.CASE), "the case"), progress=progress)
         progress(0, 1, "writing")
         with suppress(errors.InputError):  # nothing to listen to
             listen(tree, folder / stored_runs.SOUNDS)

@@ -13,6 +13,7 @@ from asperity.reference.railways import named_track
 from asperity.structures import periodic_rail, track_parameters
 from asperity.structures import support as chains
 from asperity.structures.cell_waves import CellWaves, cell_waves, static_receptance_of_cell
+from asperity.units import written
 
 _LOSSES = [(f"{layer}_damping", f"{layer}_loss_factor") for layer in track_parameters.LAYERS]
 _INSTEAD = [*_LOSSES, *((b, a) for a, b in _LOSSES), *(("pad_table", each) for each in _LOSSES[0])]
@@ -138,6 +139,19 @@ class Track(track_parameters.TrackParameters):
         values: dict[str, Any] = {"name": name} | {key: value for key, (value, _) in parameters.items()}
         values["sources"] = tuple(f"{key}: {source}" for key, source in sources.items())
         return cls(**(values | overrides))
+
+    def __repr__(self) -> str:
+        rail = f"{written(self.bending_stiffness, 'N m^2', 'MN m^2')}, {self.mass_per_length:g} kg/m"
+        pads, ballast = (
+            written(stiffness, "N/m", "MN/m") for stiffness in (self.pad_stiffness, self.ballast_stiffness)
+        )
+        sleepers = "spread evenly" if self.continuous else f"every {self.sleeper_spacing:g} m"
+        name = f"Track {self.name}" if self.name else "Track"
+        differ = f", {len(self.bays.spacing)} bays that differ" if self.bays else ""
+        return (
+            f"<{name}: rail {rail}; pads {pads}; half sleepers {self.sleeper_mass:g} kg {sleepers}{differ}; "
+            f"ballast {ballast}>"
+        )
 
     @property
     def parameters(self) -> dict[str, Any]:

@@ -98,21 +98,34 @@ class Heights:
         """
         return levelling.band_limit(self, longest=longest, shortest=shortest)
 
-    def _repr_html_(self) -> str:
-        """Describe and draw the heights, in µm over lengths in mm, as HTML without anything active."""
+    @property
+    def described(self) -> str:
+        """How many points they are, how far apart, and how rough."""
 
         def lengths(values: ArrayLike, unit: str) -> str:
             return " × ".join(written(float(f"{each:.4g}"), "m", unit) for each in np.atleast_1d(values))
 
         points = " × ".join(map(str, self.heights.shape))
-        sizes = np.atleast_1d(self.spacing) * self.heights.shape
         missing = f", {percent(self.missing_share)} without a height" if self.missing_share else ""
+        size, spacing = lengths(self._sides, "mm"), lengths(self.spacing, "um")
+        rms = lengths(np.nanstd(self.heights), "um")
+        return f"{points} points, {size}, {spacing} apart, rms height {rms}{missing}"
+
+    @property
+    def _sides(self) -> Array:
+        """Lengths along, and of a map across, m."""
+        return np.atleast_1d(self.spacing) * self.heights.shape
+
+    def __repr__(self) -> str:
+        source = f", {printable(self.source)}" if self.source else ""
+        return f"<{type(self).__name__}: {self.described}{source}>"
+
+    def _repr_html_(self) -> str:
+        """Describe and draw the heights, in µm over lengths in mm, as HTML without anything active."""
         what = "Height map" if self.heights.ndim == 2 else "Profile"
-        text = f"{points} points, {lengths(sizes, 'mm')}, {lengths(self.spacing, 'um')} apart"
-        text += f", rms height {lengths(np.nanstd(self.heights), 'um')}{missing}."
         source = f"<br>{escape(printable(self.source))}" if self.source else ""
-        picture = f'<img alt="{what.lower()}" src="data:image/png;base64,{self._picture(sizes)}">'
-        said = escape(text.replace(" um", " µm"))
+        picture = f'<img alt="{what.lower()}" src="data:image/png;base64,{self._picture(self._sides)}">'
+        said = escape(f"{self.described}.".replace(" um", " µm"))
         return f"<div><p><strong>{what}.</strong> {said}{source}</p>{picture}</div>"
 
     def _picture(self, sizes: Array) -> str:
@@ -137,7 +150,7 @@ class Heights:
         return base64.b64encode(png.getvalue()).decode()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class HeightMap(Heights):
     """Heights of a surface on a uniform rectangular grid.
 
@@ -272,7 +285,7 @@ class HeightMap(Heights):
         return replace(self, heights=self.heights.T, spacing=self.spacing[::-1])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Profile(Heights):
     """Heights along one line at uniform spacing.
 

@@ -17,6 +17,8 @@ from asperity.surfaces.strip import LongStrip, places_across
 from asperity.surfaces.tiles import RANGE, Tiling, Waves, deviates, fine, heights_at, range_of, start_of
 from asperity.written_numbers import rounded
 
+__all__ = ["close", "extend", "from_map", "self_affine"]
+
 Continuation = Literal["refuse", "mirror", "repeat"]
 
 TILE = np.array([40.0, 24.0])
