@@ -300,6 +300,11 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
             carried = track.support.static * track.static_deflection(load)
         return self.with_chosen(pad_preload=carried)
 
+    @cached_property
+    def _named(self) -> Track:
+        """The named set with the keys of the case in it, its bays equal."""
+        return Track.named(self.name, **self.overrides)
+
     def model(self, highest_frequency: float = math.inf) -> Track:
         """Build the track: the named set with the keys of the case in it."""
         if self.sleeper_table is not None:
@@ -307,12 +312,13 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
 
             what = f"receptance of the sleeper in {name_of(self.sleeper_table)}"
             judge_fit(what, self._sleeper.fit_error, self._sleeper.fitted)
-        return replace(Track.named(self.name, **self.overrides), bays=self._drawn_or_listed())
+        bays = self._drawn_or_listed()
+        return replace(self._named, bays=bays) if bays else self._named
 
     def default_of(self, name: str) -> float | str | None:
         """Value of a key that is left out: that of the named set."""
         if name in keys_of(Track, "") and name not in self.given_names:
-            value: float | None = getattr(Track.named(self.name, **self.overrides), name)
+            value: float | None = getattr(self._named, name)
             return value
         return super().default_of(name)
 

@@ -1,6 +1,7 @@
 """The rail sideways: lateral bending and torsion on periodic supports, solved exactly."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -207,18 +208,30 @@ class LateralTrack:
 
         That of the chain of springs and masses below, on the foot, and the pad's stiffness against roll.
         """
-        track, even = self.track, self.foot_width**2 / 12.0
-        pad = _share(self.pad_stiffness, track.pad_stiffness, THIRD)
-        ballast = _share(self.ballast_stiffness, track.ballast_stiffness, 1.0)
-        bends = "measured_sleeper", "sleeper_bending_stiffness", "sleeper_loss_factor"
-        rigid: dict[str, Any] = dict.fromkeys(bends)
-        rigid |= {name: getattr(Track, name) for name in ("sleeper_length", "seat_distance")}
-        moved = replace(track.scaled(pad, ballast), **rigid)
+        track = self.track
         foot = np.array([1.0, -self.foot_depth])
-        found = np.multiply.outer(np.outer(foot, foot), moved.support.stiffness(omega))
+        found = np.multiply.outer(np.outer(foot, foot), self._moved_sideways.support.stiffness(omega))
+        even = self.foot_width**2 / 12.0
         roll = _share(self.pad_roll_stiffness, track.pad_stiffness, even)
         found[1, 1] += roll * track.springs["pad"].stiffness(omega)
         return np.asarray(found)
+
+    @cached_property
+    def _moved_sideways(self) -> Track:
+        """The track whose vertical supports are the lateral ones of this: sleepers do not bend sideways."""
+        pad = _share(self.pad_stiffness, self.track.pad_stiffness, THIRD)
+        ballast = _share(self.ballast_stiffness, self.track.ballast_stiffness, 1.0)
+        bends = "measured_sleeper", "sleeper_bending_stiffness", "sleeper_loss_factor"
+        rigid: dict[str, Any] = dict.fromkeys(bends)
+        rigid |= {name: getattr(Track, name) for name in ("sleeper_length", "seat_distance")}
+        return replace(self.track.scaled(pad, ballast), **rigid)
+
+    @cached_property
+    def _is_damped(self) -> bool:
+        """Whether its waves die away without rail dampers."""
+        dampers = "rail_damper_mass", "rail_damper_frequency", "rail_damper_loss_factor"
+        without: dict[str, Any] = dict.fromkeys(dampers)
+        return replace(self.track, **without).is_damped
 
     def free_waves(self, omega: Complex, foundation: Complex | float = 0.0) -> FreeWaves:
         """Waves of the rail without supports at angular frequencies (f,), rad/s, as of `Track.waves`.
@@ -261,8 +274,7 @@ class LateralTrack:
     def waves(self, omega: ArrayLike) -> LateralWaves:
         """The three waves of the supported rail at angular frequencies (f,), rad/s, as of `Track.waves`."""
         omega, track = np.atleast_1d(np.asarray(omega, dtype=complex)), self.track
-        bare = replace(track, rail_damper_mass=None, rail_damper_frequency=None, rail_damper_loss_factor=None)
-        if not bare.is_damped:
+        if not self._is_damped:
             omega = omega * (1.0 - VANISHING_DAMPING * 1j)
         support, spacing = self.support(omega), track.sleeper_spacing
         if track.continuous:

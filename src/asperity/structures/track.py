@@ -259,13 +259,15 @@ class Track(track_parameters.TrackParameters):
     @property
     def regular(self) -> Track:
         """The track whose bays are all nominal."""
-        return replace(self, bays=None)
+        return replace(self, bays=None) if self.bays else self
 
     @property
     def bay_tracks(self) -> list[Track]:
         """Tracks of equal bays, one for each bay of the cell, on such supports as it begins with."""
-        bays = self.bays or track_parameters.Bays.equal()
-        return [self.regular.scaled(*each) for each in zip(bays.pad, bays.ballast, strict=True)]
+        if not self.bays:
+            return [self]
+        regular = self.regular
+        return [regular.scaled(*each) for each in zip(self.bays.pad, self.bays.ballast, strict=True)]
 
     def scaled(self, pad: float, ballast: float) -> Track:
         """The track with pads and ballast scaled, their damping with them."""
