@@ -72,6 +72,12 @@ def test_names_in_tables_are_text(capsys, name):
     assert "\x1b" not in printed
 
 
+def test_tables_stand_on_standard_output_in_a_notebook(capsys, monkeypatch):
+    monkeypatch.setattr("rich.console._is_jupyter", lambda: True)
+    say_table("work", ["law"], [["areal"]], width=60)
+    assert "│ areal │" in capsys.readouterr().out
+
+
 # --- the program, whoever reads what it says
 
 

@@ -133,7 +133,7 @@ def say_table(
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(file=sys.stdout, markup=False, emoji=False, highlight=False)
+    console = Console(file=sys.stdout, markup=False, emoji=False, highlight=False, force_jupyter=False)
     if not console.is_terminal:
         console.width = width
     table = Table(title=printable(title), title_justify="left", show_header=bool(headings))
