@@ -126,6 +126,12 @@ def test_times_are_those_of_this_machine(monkeypatch):
     assert found[1.0].clock == pytest.approx(found[1.0].processor - 0.75 * shared)
 
 
+def test_a_clock_that_ticks_too_seldom_says_nothing_of_the_pace(monkeypatch):
+    """As that of Windows, once in 16 ms: the piece of work has ended before."""
+    monkeypatch.setattr(run_time.time, "process_time", lambda: 3.0)
+    assert run_time.pace.__wrapped__() == 1.0
+
+
 def test_the_time_is_told_of_the_processor_and_on_the_clock(monkeypatch):
     monkeypatch.setenv("ASPERITY_THREADS", "2")
     time_of = run_time.RunTime({"start": 4.0, "the scan": 36.4}, frozenset({"the scan"}))
