@@ -87,8 +87,10 @@ def read_csv(path):
     return dict(zip(head, table.T, strict=True))
 
 
-def without(tree, group, *names):
-    """The result without some variables of a group."""
+def without(tree, *variables):
+    """The result without some variables, each by its group and name."""
     tree = tree.copy()
-    tree[group] = tree[group].to_dataset().drop_vars(names)
+    for group in {group for group, _ in variables}:
+        names = [name for of, name in variables if of == group]
+        tree[group] = tree[group].to_dataset().drop_vars(names)
     return tree

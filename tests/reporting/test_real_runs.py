@@ -9,7 +9,9 @@ import re
 import numpy as np
 import pytest
 from report_reading import Reader, computers_exponents, own_scripts, without
+from report_tree import PARTS
 
+from asperity.reporting import data
 from asperity.reporting.figure import columns_text
 from asperity.reporting.page import answers_of
 from asperity.results import read_result, save
@@ -17,7 +19,7 @@ from asperity.scenes.report import CHAPTERS, compare, figures_of, page_of, repor
 from asperity.written_numbers import engineering
 from browser import assert_accessible, pages_of
 from command_line import call
-from small_cases import BEARING, CASES, changed
+from small_cases import BEARING, CASES, Made, changed
 
 TABLES = {
     "ball-on-beam": {"statistics", "contact_loss", "energy_balance"},
@@ -87,33 +89,36 @@ def test_what_lacks_all_attributes_has_all_figures(real_run):
     assert [part.name for part in figures_of(bare)] == [part.name for part in figures_of(real_run)]
 
 
-def needing(tree):
-    """Names of the figures of a result, and of those that need a variable, by its group and name."""
-    drawn = {part.name for part in figures_of(tree)}
-    found = {(group, str(name)): set() for group, of in tree.children.items() for name in of.data_vars}
-    for part in (part for chapter in CHAPTERS for part in chapter.figures if part.name in drawn):
-        for entry in part.needs:
-            found.setdefault((entry.group, entry.name), set()).add(part.name)
-    return drawn, found
+def read_by(part, tree):
+    """A figure of a result, if it has it, and the variables that it asks for, by group and name."""
+    read, stored = set(), data._is_stored
+
+    def asked(tree, entry):
+        read.add((entry.group, entry.name))
+        return stored(tree, entry)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(data, "_is_stored", asked)
+        return data.unless_missing(part.drawn, tree), read
 
 
-@pytest.fixture(scope="module")
-def taken_from(real_runs):
-    """The kind whose result lacks a variable: kinds that have it take turns."""
-    having = {}
-    for kind in CASES:
-        for variable in needing(real_runs[kind])[1]:
-            having.setdefault(variable, []).append(kind)
-    return {each: kinds[n % len(kinds)] for n, (each, kinds) in enumerate(sorted(having.items()))}
+def shown(figure):
+    """What is drawn, said and written of a figure, if there is one."""
+    return figure and (repr(figure.chart), figure.caption, columns_text(figure.columns))
 
 
-def test_what_lacks_a_variable_is_left_out_and_all_others_stay(real_run, taken_from):
-    """Pages of results that lack one variable are made, without the figures that need it."""
-    drawn, needs = needing(real_run)
-    for (group, name), parts in needs.items():
-        if taken_from[group, name] == kind_of(real_run):
-            left = {part.name for part in figures_of(without(real_run, group, name))}
-            assert left <= drawn - parts, name
+def test_what_lacks_a_variable_is_left_out_and_all_others_stay(real_run):
+    """A figure is the same without what it never asks for, and made or left out without each of the rest."""
+    held = {(group, str(name)) for group, of in real_run.children.items() for name in of.data_vars}
+    lacking = Made(lambda variable: without(real_run, variable))
+    for part in PARTS.values():
+        drawn, read = read_by(part, real_run)
+        alone = data.unless_missing(part.drawn, without(real_run, *(held - read)))
+        assert shown(alone) == shown(drawn), part.name
+        needed = {(entry.group, entry.name) for entry in part.needs}
+        for variable in held & read:
+            left = data.unless_missing(part.drawn, lacking[variable])
+            assert left is None or (drawn and variable not in needed), (part.name, variable)
 
 
 @pytest.mark.parametrize("group", ["scenario", "surface", "track", "contact", "rolling", "spectra"])
