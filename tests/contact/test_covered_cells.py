@@ -5,10 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from asperity import HalfSpace
+from asperity import HalfSpace, Hertz, run
 from asperity.contact.batched import processor, solve_batched
 from asperity.kernels import rims
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.rim_cells import stiffness_missed
 from refusals import refusals
+from small_cases import changed
 
 OFFSETS = [(0.0, 0.0), (0.5, 0.5), (0.3, 0.1), (0.5, 0.0)]
 """Of the ball's middle from a cell's, in cells."""
@@ -45,6 +48,14 @@ def test_the_stiffness_of_a_ball_follows_hertz_without_steps(offset):
     assert whole.std() > 5.0 * error.std()
 
 
+@pytest.mark.parametrize("across", [6, 9])
+def test_what_is_told_of_whole_cells_is_about_the_most_that_they_miss(across):
+    half_space, gap = ball_on_cells(across, cells="whole")
+    error, _ = stiffness_error(half_space, gap)
+    ball = Geometry(gap, half_space.spacing, 1.0, Hertz(1.0, 1.0, 1.0), 4.0 / 3.0, 4.0)
+    assert 0.5 < np.abs(error).max() / stiffness_missed(ball) < 1.2
+
+
 @pytest.mark.parametrize("ratio", [0.5, 2.0, 0.25])
 def test_cells_that_are_not_square_follow_hertz_too(ratio):
     error, force = stiffness_error(*ball_on_cells(8 if ratio > 1.0 else 4, (0.3, 0.1), ratio))
@@ -73,6 +84,16 @@ def test_a_load_and_its_approach_belong_together():
     found = half_space.solve(gap, load=given.force, rtol=1e-9)
     assert found.approach == pytest.approx(1.0, rel=1e-8)
     np.testing.assert_allclose(found.pressure, given.pressure, atol=1e-6 * given.pressure.max())
+
+
+def test_a_case_of_covered_cells_rolls_by_table_as_by_direct():
+    """On a texture of a hundredth of the approach, where both see the slope of a ball on a plane."""
+    surface = {"rms": "2 nm", "longest": "0.4 mm", "shortest": "80 um"}
+    contact = {"spacing": "20 um", "window": "0.5 mm", "samples": 1, "rim_cells": "covered"}
+    of = {"laws": ["table", "direct"], "duration": "4 ms", "surface": surface, "contact": contact}
+    force = run(changed("ball-on-beam", **of))["rolling/contact_force"]
+    table, direct = (force.sel(law=law).values for law in ("table", "direct"))
+    assert np.sqrt(np.mean((table - direct) ** 2)) < 0.03 * direct.std()
 
 
 def test_starts_do_not_matter():

@@ -40,6 +40,12 @@ class ContactKeys(form.Section):
         "that of the smooth contact under three times the load, wider by roughness and by a flat",
         "10 nm to 1 m: contacts lie between atoms and bodies",
     )
+    rim_cells: str = key(
+        Choice(("whole", "covered")),
+        "whole",
+        "cells of the grid at the rim of a contact: in contact or not, as in CONTACT, or as far as they are "
+        "covered, so that forces grow evenly; slower, and for textures that are smooth within the contact",
+    )
     samples: int = key(
         Number(at_least=1, at_most=10_000, whole=True),
         8,

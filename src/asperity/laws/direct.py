@@ -51,6 +51,8 @@ class Direct:
         That.
     edges : Edges, optional
         Sharp edges of these, which lie between rows as they do.
+    cells : str
+        How cells at the rim of a contact count, as in `HalfSpace`; covered ones have means as heights.
     remedies : tuple of str
         What is made smaller if solutions miss their tolerance, and what to do if the window cuts them off.
     """
@@ -67,6 +69,7 @@ class Direct:
     faults: Array | None = None
     drop: float = 0.0
     edges: Edges | None = None
+    cells: str = "whole"
     remedies: tuple[str, str] = "numerics.rtol", 'contact.window = "{:.3g} mm" holds them.'
 
     @cached_property
@@ -91,7 +94,7 @@ class Direct:
         rows = len(self.heights) - 2 * half
         grid_index("texture under the contact window", rows, self.start + half * dx, dx, positions)
         index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / dx
-        half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness)
+        half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness, self.cells)
         return DirectOnPath(self, half_space, index - half, other)
 
 

@@ -258,6 +258,7 @@ class Materials:
     rtol: float  # tolerance of a contact solution, as in `HalfSpace.solve`
     parameters: Mapping[str, Any]  # values of the law's own keys in the case, by name
     made_by: Mapping[str, Callable[[], Any]]  # what makes all others, by name
+    cells: str = "whole"  # how cells at the rim of a contact count, as in `HalfSpace`
     _made: dict[str, Any] = field(default_factory=dict)
 
     def _take(self, material: str, *needs: Need) -> Any:

@@ -33,8 +33,11 @@ ROLLING_TIME, CONTACT_TIME = 14.0, 21.0
 """Processor times of compiling what rolls, and the contact, s, at a pace of one."""
 
 
-def compile_kernels(progress: Progress) -> None:
-    """Call every kernel once on next to nothing: it is compiled now, or loaded from disk."""
+def compile_kernels(progress: Progress, cells: str = "whole") -> None:
+    """Call every kernel once on next to nothing: it is compiled now, or loaded from disk.
+
+    The contact of such cells, too, as in `HalfSpace`.
+    """
     with PhysicsWarning.ignored(), _contact_compiled_beside() as other:
         progress(0, 2, COMPILED)
         roll_once()
@@ -42,7 +45,8 @@ def compile_kernels(progress: Progress) -> None:
         if other is not None:
             with suppress(subprocess.TimeoutExpired):
                 other.wait(PATIENCE)
-        press_once()
+        for kind in dict.fromkeys(("whole", cells)):
+            press_once(kind)
         progress(2, 2, COMPILED)
 
 
@@ -80,9 +84,9 @@ def roll_once() -> None:
     pointforce.evaluate_all(law.prepare(np.zeros(2)), np.zeros(2), 0)
 
 
-def press_once() -> None:
+def press_once(cells: str = "whole") -> None:
     """Press a body, to an approach and under a load, and estimate an approach."""
-    half_space, x = HalfSpace((9, 9), (1.0, 1.0), 1.0), np.arange(-4.0, 5.0) ** 2
+    half_space, x = HalfSpace((9, 9), (1.0, 1.0), 1.0, cells=cells), np.arange(-4.0, 5.0) ** 2
     half_space.solve(np.add.outer(x, x), approach=5.0)
     half_space.solve(np.add.outer(x, x), load=5.0)
     box.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, np.inf)

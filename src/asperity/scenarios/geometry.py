@@ -13,6 +13,7 @@ from asperity.contact.hertz import Hertz, check_half_space, groove_gap
 from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning, Grade, OutOfRangeWarning
 from asperity.structures.outline import LARGEST_WHEEL, checked_outline, doubts_of
+from asperity.surfaces.cell_means import cell_means
 from asperity.written_numbers import in_newtons, rounded
 
 HIGHEST_FORCE = 8.0
@@ -29,13 +30,15 @@ WIDEST = 0.75
 class Geometry:
     """The gap of two smooth bodies on the contact grid, and their closed-form contact."""
 
-    # (nx, ny), gap of the smooth bodies at zero approach, m; zero at its lowest point, the middle cell
+    # (nx, ny), gap of the smooth bodies at zero approach, m; zero at its lowest point, the middle cell; of
+    # covered cells the mean
     body: Array
     spacing: tuple[float, float]  # (dx, dy), m
     modulus: float  # E*, Pa
     hertz: Hertz  # smooth contact; of the osculating paraboloids where the gap is none
     load: float  # working load, N
     largest_force: float  # that chosen states cover, N
+    cells: str = "whole"  # how cells at the rim of a contact count: as in `HalfSpace`
 
     @property
     def semi_axes(self) -> tuple[float, float]:
@@ -71,7 +74,11 @@ class Geometry:
     def half_space(self, hardness: float | None) -> HalfSpace:
         """Make the half-space of the window, whose asperities flow at a pressure, Pa, or not at all."""
         nx, ny = self.body.shape
-        return HalfSpace((nx, ny), self.spacing, self.modulus, hardness)
+        return HalfSpace((nx, ny), self.spacing, self.modulus, hardness, self.cells)
+
+    def whole_half_space(self, hardness: float | None) -> HalfSpace:
+        """Make one whose cells stick or slip, and so are in contact as a whole or not at all."""
+        return replace(self, cells="whole").half_space(hardness)
 
     def remedy_for_cut_off(self, highest: float, datum: float) -> str:
         """Name a window that holds the contacts of all states, also of those that this one keeps out.
@@ -126,7 +133,9 @@ def geometry_of(case: scene.Case) -> Geometry:
     elif body.profile is not None or over.profile is not None or case.meeting is not None:
         section, hertz = _measured_gap(case, hertz, load)
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
-    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
+    if contact.rim_cells == "covered":
+        gap = cell_means(gap)
+    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load, contact.rim_cells)
     carried = math.inf if contact.hardness is None else contact.hardness * h**2 * gap.size
     of_class = HIGHEST_FORCE * shape.class_load
     shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)

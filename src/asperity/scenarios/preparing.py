@@ -299,7 +299,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     doubt_deflection(prepared)
     with one_thread_in_linear_algebra():
         if prepared.textures.maps:
-            compiling.compile_kernels(progress)
+            compiling.compile_kernels(progress, case.contact.rim_cells)
             trial = try_contacts(prepared, progress)
     scans = scan_sizes(prepared)
     steps = round((case.settled_time + case.rolled_time) / case.time_step)

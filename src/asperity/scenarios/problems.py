@@ -7,6 +7,7 @@ import numpy as np
 
 from asperity.case.any_case import entries
 from asperity.case.scene import Case
+from asperity.contact.batched import find_device
 from asperity.errors import CaseError, InputError
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios import reducing
@@ -128,6 +129,9 @@ def problems(prepared: PreparedCase) -> Iterator[InputError]:
     yield from _problems_of_record(prepared)
     if isinstance(prepared.scene.over, Track):
         yield from _problems_of_kernel(prepared.case, prepared.scene.over)
+    if contact.rim_cells == "covered" and find_device() is not None:
+        remedy = "Take whole cells, or compute on the device cpu."
+        yield InputError("contact.rim_cells", '"covered"', '"whole" on the device gpu', remedy)
     nx, ny = shape.body.shape
     if (steep := _problem_of_heights(prepared)) is not None:
         yield steep

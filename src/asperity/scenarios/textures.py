@@ -18,6 +18,7 @@ from asperity.scenarios import records
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import Grid, Record
 from asperity.surfaces import levelling, measured_lines, statistics, synthesis
+from asperity.surfaces.cell_means import MeansOverCells, cell_means
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
@@ -151,7 +152,19 @@ def textures_of(case: Case) -> Textures:
         lines=lines,
         drawn={name: draw for name, draw in drawn.items() if draw},
     )
+    if contact.rim_cells == "covered":
+        textures = _over_cells(textures)
     return replace(textures, **_defects(case, 0, textures))
+
+
+def _over_cells(textures: Textures) -> Textures:
+    """Textures whose heights that are pressed are means over cells; what is followed as a line is not."""
+    over = [
+        tuple(replace(each, heights=cell_means(each.heights)) for each in maps)
+        for maps in (textures.maps, textures.strips)
+    ]
+    path = None if textures.path is None else MeansOverCells(textures.path)
+    return replace(textures, maps=over[0], strips=over[1], path=path)
 
 
 def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[tuple[int, float]]]:
@@ -180,6 +193,8 @@ def textures_under(case: Case, contact: int, first: Textures) -> Textures:
     seed = int(np.random.SeedSequence(case.seed).generate_state(2)[1])
     turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
     change, middle = turns[1] - turns[0], turns[0].shape[1] // 2
+    if case.contact.rim_cells == "covered":
+        change = cell_means(np.pad(change, ((1, 1), (0, 0)), mode="wrap"))[1:-1]
     along = np.arange(rows) - before
     added = (turns[1][:, middle] - turns[0][:, middle])[along % len(change)]
     path = None if first.path is None else turning(first.path, change, -before)

@@ -139,7 +139,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         now = time.perf_counter()
         seconds[part], last = now - last, now
 
-    compiling.compile_kernels(progress)  # not before the files are known to be right
+    compiling.compile_kernels(progress, case.contact.rim_cells)  # not before the files are known to be right
     book("compiled functions")
     over = _in_time(scene, case, store, progress)
     book("what is rolled over")

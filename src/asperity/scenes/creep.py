@@ -45,7 +45,7 @@ def friction_of(case: Case) -> Friction:
 def smooth_with_friction(of: PreparedCase, friction: Friction) -> tuple[FrictionalHalfSpace, Contact]:
     """What rolls, as the first body, on what it rolls over; and their smooth contact under the load."""
     case, shape = of.case, of.shape
-    space = shape.half_space(case.contact.hardness)
+    space = shape.whole_half_space(case.contact.hardness)
     bodies = case.rolling.material, case.rolled_over.material
     smooth = space.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
     return FrictionalHalfSpace(space, bodies, friction), smooth
@@ -68,7 +68,7 @@ def states_of(prepared: PreparedCase, count: int, progress: Progress | None = No
     if not samples:
         remedy = "Give it a file or rms, of a rail a spectrum."
         raise InputError("surface", "none, or as a line alone", "a rough surface with samples", remedy)
-    space = shape.half_space(case.contact.hardness)
+    space = shape.whole_half_space(case.contact.hardness)
     resolved = (LEAST_CELLS * max(shape.spacing) / min(shape.axes(1.0))) ** 3
     loads = max(LIGHTEST_STATE * shape.class_load, resolved), shape.largest_force
     gaps = [shape.body - middle_of(sample, len(shape.body)) for sample in samples]

@@ -12,8 +12,10 @@ from asperity.laws import baselines, names, spec_of
 from asperity.reporting import data
 from asperity.rolling.ground import LARGEST_DEFLECTION, share_bent, small_motion
 from asperity.rolling.roll import RolledBodies
+from asperity.scenarios import rim_cells
 from asperity.scenarios.law_choice import UNMAPPED, WANTED, LawChoice, law_choice
 from asperity.scenarios.preparing import ContactTrial
+from asperity.scenarios.reducing import PressedSamples
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes.compute import Computed
 from asperity.schema import Entry, spectra
@@ -36,6 +38,8 @@ PRESSED, THROWN = (0.05, 0.2), (0.5, 2.0)
 """Shares of its radius by which what rolls may approach a surface, and be off it, likewise."""
 SOFTENED = (0.1, 0.5)
 """Share by which the time step may soften a contact: warned of, and out of range."""
+MISSED_STIFFNESS = 0.01
+"""Share by which the stiffness on whole cells may be off: 0.1 dB of a force that follows it."""
 CELLS_PER_WAVE = 4
 """Cells that the shortest wave must have, so that no more than `ISOLATED` touches alone."""
 
@@ -66,6 +70,7 @@ def findings(
         _area(case, reduction.pressed.area_ratio, choice),
         _slope(computed),
         _isolated(case, reduction.pressed.isolated_share),
+        *_whole_cells(computed, reduction.pressed),
         *_cut_off(computed),
         *(answer for answer in population if answer.laws),
         *motion,
@@ -196,6 +201,7 @@ def foreseen(prepared: PreparedCase, tried: ContactTrial, choice: LawChoice | No
         _area(case, tried.pressed.area_ratio, choice),
         _slope(prepared),
         _isolated(case, tried.pressed.isolated_share),
+        *_whole_cells(prepared, tried.pressed),
         _rare(f"{_CUT_OFF}, the loading curve of a sample", tried.cut_off, _TOO_SMALL, remedy),
     )
     return [finding for finding in found if finding.grade is not None]
@@ -272,6 +278,30 @@ def _isolated(case: Case, share: float) -> Finding:
         f"{percent(share)} of the load on single cells",
         tuple(case.laws),
     )
+
+
+def _whole_cells(prepared: PreparedCase, pressed: PressedSamples) -> Iterator[Finding]:
+    """Laws that solve the contact at each step on cells that are in contact or not: their stiffness jumps."""
+    case, shape = prepared.case, prepared.shape
+    solving = tuple(law for law in case.laws if spec_of(law).solved_every_step)
+    if not solving or case.contact.rim_cells != "whole":
+        return
+    missed, within = rim_cells.stiffness_missed(shape), rim_cells.roughness_within(pressed, shape)
+    if within < rim_cells.SMOOTH:
+        cells = rounded(min(shape.semi_axes) / case.contact.spacing, 2)
+        level = 20.0 * math.log10(1.0 + missed)
+        yield Finding(
+            f"error of the stiffness on whole cells, {' and '.join(solving)}",
+            f"up to {percent(missed)}, about {rounded(level, 2)} dB in one-third octaves",
+            f"up to {percent(MISSED_STIFFNESS)}",
+            Grade.WARNING if missed > MISSED_STIFFNESS else None,
+            f"The texture is smooth within the contact ({rounded(within, 2)} approaches rms): few of its "
+            f"cells, {cells} in the half-width, enter as the force varies, and each lets the stiffness jump. "
+            "Bands of what is damped little move by more.",
+            'Set contact.rim_cells = "covered".',
+            f"stiffness on whole cells up to {percent(missed)} off, some {rounded(level, 2)} dB",
+            solving,
+        )
 
 
 _CUT_OFF = "share of contacts that the window cuts off"

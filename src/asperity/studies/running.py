@@ -207,6 +207,7 @@ def study(
     plan = _planned(definition, sweep)
     if workers is not None:
         workers = whole("workers", workers, "a whole number greater than 0, or None", at_least=1)
+    from asperity.case.scene import Case
     from asperity.scenarios.compiling import compile_kernels
     from asperity.studies.table import tabulated
 
@@ -222,8 +223,8 @@ def study(
         laws = {law for member in waiting if member.case is not None for law in member.case.laws}
         if not all(map(comes_with_the_program, laws)):
             return _in_this_process(waiting)
-        if waiting and waiting[0].case is not None:  # once here, and not in every process
-            compile_kernels(told)
+        if waiting and (case := waiting[0].case) is not None:  # once here, and not in every process
+            compile_kernels(told, case.contact.rim_cells if isinstance(case, Case) else "whole")
         return locally(waiting, workers)
 
     with shown_progress(progress) as told:

@@ -1,0 +1,121 @@
+"""Cells at the rim of a case's contact: what `contact.rim_cells` reaches, and when a case needs it."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from asperity.errors import Grade, InputError
+from asperity.running import prepare_case
+from asperity.scenarios import problems, rim_cells
+from asperity.scenarios.laws import ReducedCase
+from asperity.scenarios.reducing import samples_of
+from asperity.scenarios.textures import textures_under
+from asperity.scenes.validity import _whole_cells
+from asperity.surfaces.cell_means import MeansOverCells, cell_means
+from asperity.surfaces.strip import Rows
+from small_cases import changed
+
+
+def prepared(kind="ball-on-beam", cells="covered", **keys):
+    contact = keys.pop("contact", {}) | {"rim_cells": cells}
+    return prepare_case(changed(kind, contact=contact, **keys))
+
+
+def whole(strip):
+    return strip.rows(0, strip.shape[0])
+
+
+def test_means_over_cells_are_those_of_waves_and_of_a_paraboloid():
+    """Of a wave of n cells sin q/q with q = π/n is left on either axis; differences miss q⁴/15 of both."""
+    n, m = np.mgrid[:40, :40]
+    for cells in (8, 16):
+        wave, q = np.cos(2 * np.pi * n / cells) * np.cos(2 * np.pi * m / cells), np.pi / cells
+        left = cell_means(wave)[1:-1, 1:-1] / (np.sin(q) / q) ** 2
+        np.testing.assert_allclose(left, wave[1:-1, 1:-1], atol=1.1 * q**4 / 15)
+    np.testing.assert_allclose(
+        (cell_means(1.0 * (n**2 + 3 * m**2)) - n**2 - 3 * m**2)[1:-1, 1:-1], 4 / 12, atol=1e-12
+    )
+
+
+def test_pieces_of_means_are_those_of_the_whole():
+    heights = np.random.default_rng(1).standard_normal((30, 7))
+    strip = MeansOverCells(Rows(heights))
+    for first, stop in ((0, 30), (0, 4), (11, 12), (25, 30)):
+        np.testing.assert_array_equal(strip.rows(first, stop), cell_means(heights)[first:stop])
+
+
+def test_covered_cells_of_a_case_press_means_by_every_law_that_solves_the_contact():
+    point, mean = prepared(cells="whole"), prepared()
+    raised = mean.shape.body - point.shape.body
+    radius, (spacing, _) = point.case.ball.radius, point.shape.spacing
+    np.testing.assert_allclose(raised[1:-1, 1:-1], spacing**2 / (12.0 * radius), rtol=1e-6)
+    for one, other in zip(point.textures.maps, mean.textures.maps, strict=True):
+        np.testing.assert_array_equal(other.heights, cell_means(one.heights))
+    assert [s.heights.tolist() for s in mean.textures.strips] == [
+        m.heights.tolist() for m in mean.textures.maps
+    ]
+    np.testing.assert_array_equal(whole(mean.textures.path), cell_means(whole(point.textures.path)))
+    np.testing.assert_array_equal(mean.textures.line, point.textures.line)
+    for each, cells in ((point, "whole"), (mean, "covered")):
+        assert each.shape.half_space(1e9).cells == cells
+        assert each.shape.whole_half_space(None).cells == "whole"
+        of = ReducedCase(**vars(each), reduction=None, planes=None, progress=lambda *_: None)
+        law = of.build("direct")
+        np.testing.assert_array_equal(law.heights, whole(each.textures.path))
+        assert law.prepare(np.array([each.case.record_start])).half_space.cells == cells
+
+
+def test_other_wheels_are_pressed_as_means_too():
+    keys = {"kind": "wheel-on-rail", "wheel": {"roughness": "disc", "load": "50 kN"}, "duration": "5 ms"}
+    under = []
+    for cells in ("whole", "covered"):
+        made = prepared(**keys, cells=cells, surface={"spectrum": "iso3095", "lateral": 1.0})
+        under.append(whole(textures_under(made.case, 1, made.textures).path))
+    points, means = under
+    np.testing.assert_allclose(means[1:-1], cell_means(points)[1:-1], atol=1e-12 * np.ptp(points))
+    assert not np.allclose(means, points, atol=1e-6 * np.ptp(points))
+
+
+def test_a_device_takes_whole_cells_alone(monkeypatch):
+    monkeypatch.setattr(problems, "find_device", lambda: "a device")
+    with pytest.raises(
+        InputError, match=r'contact\.rim_cells: received "covered"; allowed: "whole" on the device gpu'
+    ):
+        prepared()
+    prepared(cells="whole")
+
+
+def doubts(rms, cells="whole", laws=("areal", "direct"), **keys):
+    """What is doubted of a grid of about nine cells in the half-width of a ball's contact."""
+    surface = {"rms": f"{rms} um", "longest": "0.4 mm", "shortest": "60 um"}
+    made = prepared(cells=cells, laws=list(laws), surface=surface, contact={"spacing": "15 um"}, **keys)
+    samples = samples_of(made.case, made.shape, made.textures.maps, made.shape.class_axes)
+    gaps = [SimpleNamespace(undeformed_gap=made.shape.body - sample) for sample in samples]
+    return made, list(_whole_cells(made, SimpleNamespace(contacts=gaps)))
+
+
+def test_whole_cells_under_a_smooth_texture_are_doubted_by_a_number():
+    made, (found,) = doubts(0.01)
+    assert (found.grade, found.laws) == (Grade.WARNING, ("direct",))
+    assert found.concerns("direct")
+    missed = rim_cells.stiffness_missed(made.shape)
+    level = 20.0 * math.log10(1.0 + missed)
+    assert f"up to {100 * missed:.2g} %, about {level:.2g} dB" in found.value
+    assert 'Set contact.rim_cells = "covered"' in found.message
+    assert doubts(0.01, cells="covered")[1] == []
+    assert doubts(0.01, laws=["areal", "table"])[1] == []
+    assert doubts(1.0)[1] == []  # so rough that many cells enter at once
+
+
+def test_the_texture_within_the_patch_is_that_about_a_plane():
+    """Of s x² + t x about its plane within a circle: x² has the mean a²/4, its square the mean a⁴/8."""
+    made = prepared(contact={"spacing": "8 um"})
+    (nx, _), (dx, _) = made.shape.body.shape, made.shape.spacing
+    a = made.shape.semi_axes[0]
+    x = dx * np.arange(-(nx // 2), nx // 2 + 1)[:, None] + 0.0 * made.shape.body
+    gap = made.shape.body - (2e-3 * x**2 / a + 0.3 * x)
+    pressed = SimpleNamespace(contacts=[SimpleNamespace(undeformed_gap=gap)])
+    expected = 2e-3 * a * math.sqrt(1 / 8 - 1 / 16) / made.shape.hertz.approach(made.shape.load)
+    assert rim_cells.roughness_within(pressed, made.shape) == pytest.approx(expected, rel=0.05)
