@@ -1,10 +1,11 @@
-"""Whether the working tree gives the answers of a commit: contact forces of small cases of all kinds.
+"""Whether the working tree gives the answers of a commit: small cases of all kinds, and a surface that wears.
 
     python benchmarks/same_answers.py ac0672f
 
-Both trees compute the same cases, each with kernels and kept work of its own. Printed is, for each case and
-law, the largest difference of the contact force relative to its rms. Where contact is lost a course is
-chaotic, and rounding alone grows by orders of magnitude within milliseconds.
+Both trees compute the same cases, each with kernels and kept work of its own. Printed is, for each case,
+record and law, the largest difference relative to the rms: of contact forces, of a bearing those of both
+rings and its acceleration, of friction, and of depths. Where contact is lost a course is chaotic, and
+rounding alone grows by orders of magnitude within milliseconds.
 """
 
 from __future__ import annotations
@@ -14,10 +15,16 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+
+Records = dict[str, tuple[np.ndarray, np.ndarray]]
+"""Names of rows, and rows, of each record of a case by its name."""
 
 ROOT = Path(__file__).parents[1]
 LAWS = ["areal", "shifted", "table", "printed", "hertz-filtered", "linear"]
@@ -52,6 +59,20 @@ GUIDE = {
     },
     "contact": {"spacing": "8 um", "window": "0.9 mm", "damping": "20 N s/m"},
 }  # fmt: skip
+BEARING = {
+    "kind": "ball-bearing", "laws": ["areal", "table", "hertz"], "speed": "3600 1/min", "axial": "100 N",
+    "duration": "40 ms", "settling": "5 ms", "bearing": {"name": "6205"},
+    "inner_raceway": {"waviness": "0.5 um"}, "outer_raceway": {"waviness": "0.5 um"},
+}  # fmt: skip
+FAULTS = BEARING | {
+    "radial": "100 N", "rotating": "5 N", "cage_slip": [0.0, 0.01],
+    "bearing": {"name": "6205", "preload": "20 N"},
+    "fault": [
+        {"on": "outer", "length": "0.18 mm", "depth": "0.1 mm"},
+        {"on": "inner", "length": "0.2 mm", "depth": "0.1 mm"},
+        {"on": "ball", "length": "0.2 mm", "depth": "5 um"},
+    ],
+}  # fmt: skip
 MODES = [[1000.0, 0.01, 300.0], [2500.0, 0.001, 150.0]]  # Hz, damping ratio, kg
 CASES = {
     "ball": BALL,
@@ -70,28 +91,87 @@ CASES = {
     "wheel with a flat": WHEEL | {"laws": ["linear", "direct"], "wheel": {"flat_depth": "0.1 mm"}},
     "bogie": BODIES | {"body": BOGIE},
     "guide": GUIDE,
+    "bearing": BEARING,
+    "bearing, rough": BEARING
+    | {"laws": ["areal"]}
+    | {"outer_raceway": {"roughness": "20 nm", "shortest": "60 um", "longest": "0.5 mm"}},
+    "bearing, faults": FAULTS,
+    "bearing, direct": {
+        "kind": "ball-bearing",
+        "laws": ["direct"],
+        "speed": "120000 1/min",
+        "radial": "5 N",
+        "axial": "60 N",
+        "duration": "2.1 ms",
+        "settling": "30 us",
+        "time_step": "5 us",
+        "centrifugal": False,
+        "bearing": {
+            "balls": 3,
+            "ball_diameter": "7.94 mm",
+            "pitch_diameter": "39.04 mm",
+            "contact_angle": "20 deg",
+        },
+        "balls": {"waviness": "50 nm"},
+        "fault": {"on": "outer", "length": "0.1 mm", "depth": "0.1 mm"},
+    },
+    "bearing, lobes and slip": BEARING
+    | {"laws": ["areal"], "cage_slip": [0.0, 0.01], "housing": {"lobes": 3}, "balls": {"waviness": "50 nm"}},
+    "creep": WHEEL | {"laws": ["shifted"], "creep": {"longitudinal": 0.002, "spin": "0.1 rad/m"}},
 }
+RECORDS = (
+    "contact_forces", "contact_force", "inner_force", "outer_force", "ring_acceleration", "friction_force"
+)  # fmt: skip
+"""Names of records in a result, that of earlier versions first."""
 
 
-def forces(folder: str, only: str) -> None:
-    """Compute all cases, and keep their forces (law, contact, time) in a folder."""
-    import warnings
-
+def records_of(case: dict[str, Any]) -> Records:
+    """Records of the run of a case that are compared, by law."""
     import asperity
+
+    rolling = asperity.run(case)["rolling"].to_dataset()
+    there = [name for name in RECORDS if name in rolling]
+    return {name: (rolling["law"].values, rolling[name].values) for name in there}
+
+
+def worn_depths() -> Records:
+    """Depths that friction takes from a rough strip under either law of wear."""
+    from asperity import ArchardWear, EnergyWear, FrictionalHalfSpace, HalfSpace, material, worn
+    from asperity.surfaces.synthesis import self_affine
+
+    x = 0.5e-3 * (np.arange(32) - 15.5)
+    wheel = np.add.outer(x**2 / (2 * 0.46), x**2 / (2 * 0.3))
+    steel = material("steel")
+    half_space = HalfSpace(wheel.shape, 0.5e-3, 0.5 * 210e9 / (1 - 0.3**2))
+    rolling = FrictionalHalfSpace(half_space, (steel, steel), 0.3)
+    waves = {"rms": 0.5e-6, "hurst": 0.8, "longest": 6e-3, "shortest": 1.5e-3, "seed": 1}
+    rail = self_affine((48, 32), (0.5e-3, 0.5e-3), **waves)
+    laws = {"energy": EnergyWear(), "archard": ArchardWear(3e9)}
+    depths = [
+        worn(rolling, rail, wheel, 65e3, law, (0.002, 0.0), passes=20, closed=True, speed=30.0).depth
+        for law in laws.values()
+    ]
+    return {"depth": (np.array(list(laws)), np.array(depths))}
+
+
+def keep_records(folder: str, only: str) -> None:
+    """Compute all cases, and keep their records in a folder."""
+    import warnings
 
     warnings.simplefilter("ignore")
     rings = find_spec("asperity.structures.outline") is not None  # earlier wheels are rigid
+    computed: dict[str, Callable[[], Records]] = {}
     for name, case in CASES.items():
-        if only in name:
-            if "modes" in case.get("wheel", {}):
-                case = case | {"wheel": {"modes": np.array(MODES)}}
-            elif rings and case["kind"] == "wheel-on-rail":
-                case = case | {"wheel": {"section": "rigid"} | case.get("wheel", {})}
-            rolling = asperity.run(case)["rolling"].to_dataset()
-            found = rolling["contact_forces" if "contact_forces" in rolling else "contact_force"]
-            force = found.values if "contact" in found.dims else found.values[:, None]
-            np.savez(Path(folder) / f"{name}.npz", force=force, law=found["law"].values)
-            print(name, file=sys.stderr, flush=True)
+        if "modes" in case.get("wheel", {}):
+            case = case | {"wheel": {"modes": np.array(MODES)}}
+        elif rings and case["kind"] == "wheel-on-rail":
+            case = case | {"wheel": {"section": "rigid"} | case.get("wheel", {})}
+        computed[name] = partial(records_of, case)
+    computed["wear"] = worn_depths
+    for name in (name for name in computed if only in name):
+        for record, (rows, values) in computed[name]().items():
+            np.savez(Path(folder) / f"{name}, {record}.npz", rows=rows, values=values)
+        print(name, file=sys.stderr, flush=True)
 
 
 def main() -> None:
@@ -108,17 +188,17 @@ def main() -> None:
         for name, source in (("old", Path(folder) / "src"), ("new", ROOT / "src")):
             (own := Path(folder) / name).mkdir()
             places = {"PYTHONPATH": source, "ASPERITY_CACHE": own / "kept"}
-            code = f"import same_answers; same_answers.forces({str(own)!r}, {arguments.only!r})"
+            code = f"import same_answers; same_answers.keep_records({str(own)!r}, {arguments.only!r})"
             places["PYTHONPATH"] = f"{source}{os.pathsep}{ROOT / 'benchmarks'}"
             environment = os.environ | {key: str(value) for key, value in places.items()}
             subprocess.run([sys.executable, "-c", code], env=environment, check=True)
         for file in sorted((Path(folder) / "old").glob("*.npz")):
             old, new = np.load(file), np.load(Path(folder) / "new" / file.name)
-            for law, before, after in zip(old["law"], old["force"], new["force"], strict=True):
+            for row, before, after in zip(old["rows"], old["values"], new["values"], strict=True):
                 first = np.s_[..., : min(before.shape[-1], after.shape[-1])]
                 change = np.abs(after[first] - before[first]).max() / np.std(before)
-                lost = 100.0 * np.mean(before <= 0.0)
-                print(f"{file.stem:28} {law:16} {change:9.1e}  out of contact {lost:.0f} %")
+                lost = 100.0 * np.mean(before == 0.0)
+                print(f"{file.stem:44} {row:16} {change:9.1e}  out of contact {lost:.0f} %")
 
 
 if __name__ == "__main__":
