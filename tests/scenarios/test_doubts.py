@@ -48,6 +48,7 @@ def doubts(case):
             BEARING | {"fault": BEARING["fault"] | {"width": "18 mm"}},
             "fault.width = 18 mm: balls are 7.9",
         ),
+        (BEARING | {"laws": ["linear"]}, "linear: up to 7 of 9 balls carry nothing, and there it pulls"),
         (BEARING | {"balls": {"roughness": "0.02 nm"}}, "balls.roughness = 0.02 nm"),
         (BEARING | {"time_step": "20 us"}, "the resonance of the most loaded ball .* time steps in a period"),
     ],

@@ -2,14 +2,17 @@
 
 import json
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import asperity
+from asperity import laws
 from asperity.case.cases import as_case
-from asperity.errors import OutOfRangeWarning, percent
+from asperity.errors import CaseError, OutOfRangeWarning, percent
+from asperity.parameters import Number, key
 from asperity.reference.materials import MATERIALS
 from asperity.running import prepare_case
 from asperity.scenarios import raceway_laws, run_time, scanned_states
@@ -280,8 +283,10 @@ def test_forces_that_leave_the_states_scanned_have_more_scanned_and_are_those_of
     ends, found = [], []
     monkeypatch.setattr(
         raceway_laws.OnRaceway,
-        "tabled",
-        lambda on, states, made=raceway_laws.OnRaceway.tabled: ends.append(states.stop) or made(on, states),
+        "build",
+        lambda on, law, states, made=raceway_laws.OnRaceway.build: (
+            ends.append(states.stop) or made(on, law, states)
+        ),
     )
     for shares in ((0.0, 1e9), (0.2, 0.3)):
         monkeypatch.setattr(scanned_states, "EXPECTED", shares)
@@ -354,3 +359,30 @@ def test_balls_carry_the_preload_along_the_axis():
         told = [finding.brief for finding in out_of_place(case, "hertz", run)]
         assert len(told) == len(words)
         assert all(word in each for word, each in zip(words, told, strict=True))
+
+
+def test_a_law_that_is_registered_rolls_in_a_bearing_with_keys_of_its_own(tmp_path):
+    """Of Hertz's force times a factor: once it is that of `hertz`, and twice it holds the ring nearer."""
+
+    def build(materials):
+        constant = materials.parameters["factor"] * materials.hertz_constant
+        law = laws.HertzLaw(constant, materials.line, materials.damping, materials.name)
+        return replace(law, plane=materials.line_at_load)
+
+    factor = key(Number(above=0), 1.0, "times Hertz")
+    laws.register(laws.LawSpec("stiffer", "Hertz, times a factor.", build, parameters={"factor": factor}))
+    try:
+        case = as_case(SMOOTH | {"laws": ["hertz", "stiffer"], "duration": "50 ms"})
+        tree = asperity.run(case)
+        hertz, alike = tree["rolling/inner_force"].values
+        np.testing.assert_array_equal(alike, hertz)
+        twice = asperity.run(case.with_(laws=["stiffer"], stiffer={"factor": 2.0}), brief=True)
+        sag, nearer = (each["rolling/ring_motion"].values[0, 0, 0].mean() for each in (tree, twice))
+        assert 0.0 < nearer < sag
+        assert "stiffer" in asperity.report(tree, tmp_path).read_text()
+        with pytest.raises(
+            CaseError, match=r'stiffer: received keys of a law that is not rolled; .*"stiffer"'
+        ):
+            case.with_(laws=["hertz"], stiffer={"factor": 2.0})
+    finally:
+        laws.unregister("stiffer")

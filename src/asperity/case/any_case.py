@@ -11,16 +11,32 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol,
 from asperity import files
 from asperity.arguments import file_path, nearest, require, shown
 from asperity.case.documented import allowed_in
-from asperity.case.form import Section, content, described_value, holds_memory
+from asperity.case.form import Inner, Section, content, described_value, holds_memory
 from asperity.case.toml import toml_text, toml_value
 from asperity.errors import InputError
-from asperity.parameters import GIVEN, Key, Number, Origin, Problems, Quantity, Text, key, name_of_numbers
+from asperity.laws import family_of, law_keys, names, spec_of
+from asperity.parameters import (
+    GIVEN,
+    Choice,
+    Key,
+    Number,
+    Origin,
+    Problems,
+    Quantity,
+    Text,
+    key,
+    name_of_numbers,
+)
 from asperity.reference.materials import MATERIALS, Material
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
 
 _UNIT = re.compile(r"\d\.? ([^\"',\]]+)")  # in an example, as "25 mm" or ["0.2 m", "0.4 m"]
 _COLUMN = 32  # where comments of a commented case start, if the value leaves room
+
+
+LAW = Choice(names)
+"""A law of the contact force, built in or registered."""
 
 
 class CaseKey(NamedTuple):
@@ -184,6 +200,18 @@ def _commented_line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
     return f"{code:{_COLUMN - 2}}  # {key.meaning} ({allowed_in(key)}; {default})"
 
 
+_law_sections: dict[str, tuple[Mapping[str, Key], Inner]] = {}
+
+
+def _sections_of_laws() -> dict[str, Inner]:
+    """Sections of laws that have keys of their own, by name; each is made once."""
+    for name, keys in law_keys().items():
+        if _law_sections.get(name, (None,))[0] is not keys:
+            model = type("LawKeys", (Section,), {"__doc__": f"Keys of the law {name}."}, parameters=keys)
+            _law_sections[name] = keys, Inner(model, f"keys of the law {name}")
+    return {name: _law_sections[name][1] for name in law_keys()}
+
+
 class AnyCase(Section):
     """A case of any kind: a frozen section with a kind and other sections inside.
 
@@ -209,6 +237,28 @@ class AnyCase(Section):
     if TYPE_CHECKING:  # each kind declares these
         laws: tuple[str, ...]
         seed: int
+
+    @classmethod
+    def sections(cls) -> Mapping[str, Inner]:
+        """Sections inside it, by name, those of laws that have keys of their own first."""
+        return {**_sections_of_laws(), **cls.inner}
+
+    @property
+    def section_names(self) -> tuple[str, ...]:
+        """Sections that matter: those of laws that are rolled among them."""
+        families = {family_of(law) for law in self.laws}
+        return (*super().section_names, *(name for name in _sections_of_laws() if name in families))
+
+    def law_parameters(self, law: str) -> dict[str, Any]:
+        """Values of the keys that a law has of its own, by name."""
+        return {name: getattr(getattr(self, family_of(law)), name) for name in spec_of(law).parameters}
+
+    def problems_of_law_keys(self) -> Iterator[InputError]:
+        """Keys of laws that are rolled alone."""
+        for name in _sections_of_laws():
+            if name not in self.section_names and getattr(self, name).given():
+                received = "keys of a law that is not rolled"
+                yield InputError(name, received, f'"{name}" in laws', "Remove them.")
 
     @property
     def title(self) -> str:

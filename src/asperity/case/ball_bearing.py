@@ -14,7 +14,7 @@ import numpy as np
 
 from asperity.arguments import Array, require
 from asperity.case import toml
-from asperity.case.any_case import AnyCase
+from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import DAMPING
 from asperity.case.form import Numbers, Section, name_of, section
 from asperity.case.sections import DURATION, DURATION_OR_ZERO
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from asperity.structures.modal import ModalStructure
     from asperity.structures.ring import Around, Ring
 
-LAWS = ("table", "areal", "hertz", "direct")
-"""Laws of a bearing; `direct` for a few turns at most."""
 SAMPLING = 2.56
 """Samples per period of the highest frequency that a record holds, as analysers have it."""
 STEPS_PER_PERIOD = 10
@@ -273,9 +271,9 @@ class BearingUnderLoad(AnyCase):
         LOADS,
     )
     laws: tuple[str, ...] = key(
-        ListOf(Choice(LAWS), least=1, once=True),
-        list(LAWS[:3]),
-        "laws of the contact force; the first is the main one",
+        ListOf(LAW, least=1, once=True),
+        ["table", "areal", "hertz"],
+        "laws of the contact force; the first is the main one, direct for a few turns at most",
     )
     seed: int = key(INDEX, 1, "seed of everything random")
     duration: float = key(DURATION, "1 s", "time that is recorded", "1 ms to 1 h: records lie between")
@@ -356,7 +354,8 @@ class BearingUnderLoad(AnyCase):
     @property
     def faults(self) -> dict[str, FaultKeys]:
         """All faults by the names of their sections, ``fault``, ``fault[2]`` …; none where there are none."""
-        sections = {name: getattr(self, name) for name in self.section_names if name.startswith("fault")}
+        numbers = (name for name in self.section_names if name.startswith("fault["))
+        sections = {name: getattr(self, name) for name in ("fault", *numbers)}
         return {name: each for name, each in sections.items() if each.on or len(sections) > 1}
 
     @property
@@ -442,6 +441,7 @@ class BearingUnderLoad(AnyCase):
 
     def problems(self) -> Iterator[InputError]:
         """A load that is carried, at a speed at which balls stay between the rings; and a record of it."""
+        yield from self.problems_of_law_keys()
         try:
             leaving = self.static.leaving_speed
         except InputError as error:

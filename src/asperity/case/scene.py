@@ -1,23 +1,23 @@
 """The case of any scene: what rolls over what, by which laws, for how long; and what must fit together."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from asperity.case.any_case import AnyCase
+from asperity.case.any_case import LAW, AnyCase
 from asperity.case.body import Rolling
 from asperity.case.chosen_lengths import chosen_lengths
-from asperity.case.form import Inner, Section, section
+from asperity.case.form import section
 from asperity.case.rolled_over import RolledOver, TrackKeys
 from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
 from asperity.case.surface import INDEX, POSITION, Surface
 from asperity.case.time_steps import on_grid, resolving
 from asperity.contact.hertz import Hertz, relative_radius
 from asperity.errors import InputError
-from asperity.laws import Need, family_of, law_keys, names, spec_of
-from asperity.parameters import Choice, Key, ListOf, Quantity, key, optional
+from asperity.laws import Need, Role, baselines, in_role, names, spec_of
+from asperity.parameters import ListOf, Quantity, key, optional
 from asperity.reference.materials import contact_modulus
 from asperity.units import written
 from asperity.written_numbers import rounded
@@ -41,13 +41,10 @@ STEPS_PER_RESONANCE = 12
 """Time steps in a period of the contact resonance, at least, where the case says nothing."""
 SAMPLING = 2.5  # points per period of the highest frequency, at least
 
-OVER_DEFECTS = ("direct", "linear-filtered", "linear")
-"""Laws that are rolled where a case names none, and where it rolls over a flat or a joint."""
 SMOOTH = "hertz-filtered"
 """Main law of those where there is no sample of the surface."""
 OF_A_TRACK = ("noise", "sideways", "creep", "numerics.kernel", "numerics.poles")
 """Sections and keys that mean nothing where no track is rolled over."""
-LAW = Choice(names)
 
 
 class Case(AnyCase):
@@ -118,17 +115,6 @@ class Case(AnyCase):
         sideways: "SidewaysKeys"
         creep: "CreepKeys"
 
-    @classmethod
-    def sections(cls) -> Mapping[str, Inner]:
-        """Sections inside it, by name, those of laws that have keys of their own first."""
-        return {**_sections_of_laws(), **cls.inner}
-
-    @property
-    def section_names(self) -> tuple[str, ...]:
-        """Sections that matter: those of laws that are rolled among them."""
-        families = {family_of(law) for law in self.laws}
-        return (*self.inner, *(name for name in self.sections() if name in families))
-
     # --- what rolls over what
 
     @property
@@ -153,10 +139,6 @@ class Case(AnyCase):
         """Say what rolls over what in this case."""
         described = self.rolling.described
         return f"{described[0].upper()}{described[1:]} over a {self.over_name}"
-
-    def law_parameters(self, law: str) -> dict[str, Any]:
-        """Values of the keys that a law has of its own, by name."""
-        return {name: getattr(getattr(self, family_of(law)), name) for name in spec_of(law).parameters}
 
     @cached_property
     def smooth_contact(self) -> Hertz:
@@ -335,7 +317,8 @@ class Case(AnyCase):
         """Laws of a case that names none."""
         usual: tuple[str, ...] = super().default_of("laws")
         if self.has_defect:
-            return tuple(law for law in OVER_DEFECTS if law == OVER_DEFECTS[0] or law in usual)
+            solved = in_role(Role.REFERENCE, names())
+            return (*([solved] if solved else []), *baselines(usual))
         if not self.surface.has_line:
             return usual
         allowed = _allowed(line=True, samples=self.surface.has_samples)
@@ -363,11 +346,7 @@ class Case(AnyCase):
     def _problems_of_laws(self) -> Iterator[InputError]:
         """Laws that need no more texture than there is."""
         smooth = self.surface.has_line and not self.surface.has_samples
-        for name in _sections_of_laws():
-            if name not in self.section_names and getattr(self, name).given():
-                yield InputError(
-                    name, "keys of a law that is not rolled", f'"{name}" in laws', "Remove them."
-                )
+        yield from self.problems_of_law_keys()
         for law in self.laws:
             if self.surface.has_line and spec_of(law).needs_areal_path:
                 allowed = "laws that need no texture beside the line: " + _listed(line=True)
@@ -487,18 +466,6 @@ class Case(AnyCase):
             allowed = f"at most {written(half, 'm', 'mm')} off the middle"
             remedy = "The rail head, track.rail_head_width, is no wider."
             yield InputError("sideways.contact_place", received, allowed, remedy)
-
-
-_law_sections: dict[str, tuple[Mapping[str, Key], Inner]] = {}
-
-
-def _sections_of_laws() -> dict[str, Inner]:
-    """Sections of laws that have keys of their own, by name; each is made once."""
-    for name, keys in law_keys().items():
-        if _law_sections.get(name, (None,))[0] is not keys:
-            model = type("LawKeys", (Section,), {"__doc__": f"Keys of the law {name}."}, parameters=keys)
-            _law_sections[name] = keys, Inner(model, f"keys of the law {name}")
-    return {name: _law_sections[name][1] for name in law_keys()}
 
 
 def _allowed(*, line: bool, samples: bool = True) -> list[str]:

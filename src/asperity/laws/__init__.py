@@ -17,14 +17,26 @@ from asperity.laws.hertz import HertzLaw
 from asperity.laws.linear import Linear
 from asperity.laws.printed import Printed
 from asperity.laws.shifted import Shifted
-from asperity.laws.spec import Law, LawSpec, Look, Materials, Need, Role, SteppedLaw, Variant, from_materials
+from asperity.laws.spec import (
+    Law,
+    LawSpec,
+    Look,
+    Materials,
+    Need,
+    PairedLaw,
+    Role,
+    SteppedLaw,
+    Variant,
+    from_materials,
+)
 from asperity.laws.table import Table
 from asperity.parameters import Key
 
 __all__ = [
-    "Areal", "Direct", "HertzLaw", "Law", "LawSpec", "Linear", "Look", "Materials", "Need", "Printed", "Role",
-    "Shifted", "SteppedLaw", "Table", "Variant", "baselines", "family_of", "from_materials", "in_role",
-    "law_keys", "names", "needs_of", "reference", "register", "spec_of", "unregister",
+    "Areal", "Direct", "HertzLaw", "Law", "LawSpec", "Linear", "Look", "Materials", "Need", "PairedLaw",
+    "Printed", "Role", "Shifted", "SteppedLaw", "Table", "Variant", "baselines", "built", "family_of",
+    "from_materials", "in_role", "law_keys", "names", "needs_of", "reference", "register", "spec_of",
+    "unregister",
 ]  # fmt: skip
 
 BUILT_IN = (
@@ -58,6 +70,22 @@ def spec_of(name: object) -> LawSpec:
 def family_of(name: str) -> str:
     """Name of the law that a law is a variant of, or is itself."""
     return next(family for family, members in _families.items() if name in members)
+
+
+def built(materials: Materials) -> Law:
+    """Build the law that some materials are for, and hold it to what a law is."""
+    spec = materials.law
+    law = spec.build(materials)
+    if not isinstance(law, Law):
+        allowed = "an object with name, damping and prepare(positions)"
+        raise InputError(f"law {spec.name}", shown(law), allowed)
+    if law.name != spec.name:
+        remedy = "Hand the name of the materials on to it."
+        raise InputError(f"law {spec.name}", f"one built as {shown(law.name)}", shown(spec.name), remedy)
+    if spec.both_surfaces and not isinstance(law, PairedLaw):
+        allowed = "an object with prepare_pair(positions, other, other_positions) as well"
+        raise InputError(f"law {spec.name}", shown(law), allowed)
+    return law
 
 
 def law_keys() -> dict[str, Mapping[str, Key]]:

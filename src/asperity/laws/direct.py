@@ -97,6 +97,10 @@ class Direct:
         half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness, self.cells)
         return DirectOnPath(self, half_space, index - half, other)
 
+    def prepare_pair(self, positions: ArrayLike, other: Direct, other_positions: ArrayLike) -> DirectOnPath:
+        """Lay the law out with another surface, on the same cells, that rolls on it."""
+        return self.prepare(positions, other.prepare(other_positions))
+
 
 class Accepted(NamedTuple):
     """A pressure (nx, ny), Pa, and the first row of its window."""
@@ -292,9 +296,10 @@ class DirectOnPath:
 LAW = spec.LawSpec(
     "direct",
     "The three-dimensional contact, solved in every time step: the reference.",
-    spec.from_materials(Direct),
+    spec.from_materials(Direct, heights="sound_heights", drop="working_approach"),
     {spec.Need.SURFACE},
     solved_every_step=True,
+    both_surfaces=True,
     role=spec.Role.REFERENCE,
     look=spec.Look("#1c2126", (0, (16, 2)), "v"),
 )

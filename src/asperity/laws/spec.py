@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from asperity.reduction.stiffness import ForceCurve as ForceCurve
     from asperity.reduction.stiffness import ForceTable as ForceTable
     from asperity.reduction.texture import StateTexture as StateTexture
+    from asperity.surfaces.edges import Edges as Edges
 
 Dashes = Literal["-"] | tuple[float, tuple[float, ...]]
 
@@ -138,6 +139,9 @@ class LawSpec:
     solved_every_step : bool
         Whether each time step solves the three-dimensional contact. `asperity check` then counts these
         solutions, and an interrupted run goes on where it was: it must depend on nothing but the case.
+    both_surfaces : bool
+        Whether what it is built as is a `PairedLaw`, which takes the surface of what rolls beside that of the
+        path. In a bearing each ball then has a law of its own; for other laws its heights are averaged.
     role : Role, optional
         What it is to the others.
     look : Look
@@ -161,6 +165,7 @@ class LawSpec:
     normalise: Literal["tangent", "low-wavenumber"] = "tangent"
     may_pull: bool = False
     solved_every_step: bool = False
+    both_surfaces: bool = False
     role: Role | None = None
     look: Look = Look()
     variants: tuple[Variant, ...] = ()
@@ -259,6 +264,9 @@ class Materials:
     parameters: Mapping[str, Any]  # values of the law's own keys in the case, by name
     made_by: Mapping[str, Callable[[], Any]]  # what makes all others, by name
     cells: str = "whole"  # how cells at the rim of a contact count, as in `HalfSpace`
+    # for contacts that are solved in every step: what tightens their solutions, and what holds those that
+    # are cut off, in which a window, mm, may be told
+    remedies: tuple[str, str] = ("numerics.rtol", 'contact.window = "{:.3g} mm" holds them.')
     _made: dict[str, Any] = field(default_factory=dict)
 
     def _take(self, material: str, *needs: Need) -> Any:
@@ -275,6 +283,11 @@ class Materials:
     def name(self) -> str:
         """Name of the law in the case, which the built law bears."""
         return self.law.name
+
+    @property
+    def working_approach(self) -> float:
+        """Approach of the linear contact under the load, m."""
+        return self.working_point[0]
 
     @property
     def line(self) -> StateTexture:
@@ -322,7 +335,23 @@ class Materials:
     @property
     def heights(self) -> Array:
         """Heights of the path with its defects, m, peaks positive, shape (rows, ny) (SURFACE)."""
+        sound, faults = self.sound_heights, self.faults
+        return sound if faults is None else sound + faults
+
+    @property
+    def sound_heights(self) -> Array:
+        """Heights of the path without the faults that `faults` has, m (SURFACE)."""
         return self._take("heights", Need.SURFACE)
+
+    @property
+    def faults(self) -> Array | None:
+        """Heights of faults that have edges, m, on the same rows (SURFACE); None where there are none."""
+        return self._take("faults", Need.SURFACE) if "faults" in self.made_by else None
+
+    @property
+    def edges(self) -> Edges | None:
+        """Edges of these faults (SURFACE); None where there are none."""
+        return self._take("edges", Need.SURFACE) if "edges" in self.made_by else None
 
 
 @runtime_checkable
@@ -371,6 +400,16 @@ class Law(Protocol):
 
     def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
         """Lay the law out on the positions (n,) of the contact, m."""
+
+
+@runtime_checkable
+class PairedLaw(Law, Protocol):
+    """A law of a path on which something rolls whose surface it takes as well, on the same cells."""
+
+    def prepare_pair(
+        self, positions: ArrayLike, other: PairedLaw, other_positions: ArrayLike
+    ) -> Prepared | SteppedLaw:
+        """Lay it out on its positions (n,), m, with the same law of the other surface on those of its own."""
 
 
 def from_materials(law: Callable[..., Law], **materials: str) -> Callable[[Materials], Law]:

@@ -225,8 +225,8 @@ class Aim(form.Section):
         "the quantity is made as small as the bounds allow",
         "-400 dB to 400 dB: levels lie between",
     )
-    law: str = key(scene.LAW, "areal", "law of the contact force that is rolled while searching")
-    verify: str = key(scene.LAW, "table", "law with which the texture is rolled before and after")
+    law: str = key(any_case.LAW, "areal", "law of the contact force that is rolled while searching")
+    verify: str = key(any_case.LAW, "table", "law with which the texture is rolled before and after")
     longest: float | None = optional(
         LENGTH, "10 mm", "longest wavelength that is changed", "the longest that is heard", _TEXTURES
     )

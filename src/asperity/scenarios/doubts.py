@@ -6,6 +6,7 @@ from asperity.case.ball_bearing import STEPS_PER_PERIOD, BallBearingCase
 from asperity.case.scene import Case
 from asperity.contact.hertz import Hertz
 from asperity.errors import OutOfRangeWarning
+from asperity.laws import spec_of
 from asperity.rolling.steps import warn_if_coarse
 from asperity.structures.body import GRAVITY
 from asperity.structures.track import Track
@@ -71,6 +72,12 @@ def doubt_bearing(case: BallBearingCase) -> None:
             _warn(f"{name}.mass", ring.mass, "kg", told)
     contact, heaviest = case.contacts[1]
     _doubt_damping("contact_damping", case.contact_damping, contact, heaviest, of.ball_mass)
+    idle = of.balls - float(case.static.touching.min())
+    for law in (law for law in case.laws if spec_of(law).may_pull and idle):
+        OutOfRangeWarning.warn(
+            f"{law}: up to {idle:.0f} of {of.balls} balls carry nothing, and there it pulls the rings "
+            "together. Take a law that lets go, or load the bearing along its axis."
+        )
     for name, keys in case.faults.items():
         if (fault := keys.fault) is not None and fault.width > of.ball_diameter:
             told = f"balls are {rounded(1e3 * of.ball_diameter)} mm wide"

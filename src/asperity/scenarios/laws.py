@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, shown
+from asperity.arguments import Array
 from asperity.case import sections
 from asperity.contact.scan import (
     ScanJob,
@@ -18,8 +18,7 @@ from asperity.contact.scan import (
     scan_forces,
     warn_of_flaws,
 )
-from asperity.errors import InputError
-from asperity.laws import Law, LawSpec, Materials, Need, spec_of
+from asperity.laws import Law, LawSpec, Materials, Need, built, spec_of
 from asperity.progress import Progress
 from asperity.reduction import filter
 from asperity.reduction.stiffness import ForceTable
@@ -53,15 +52,7 @@ class ReducedCase(PreparedCase):
 
     def build(self, name: str) -> Law:
         """Build a law of the case by its name, on positions along the path, m."""
-        spec = spec_of(name)
-        law = spec.build(self._of_law(spec))
-        if not isinstance(law, Law):
-            allowed = "an object with name, damping and prepare(positions)"
-            raise InputError(f"law {name}", shown(law), allowed)
-        if law.name != name:
-            remedy = "Hand the name of the materials on to it."
-            raise InputError(f"law {name}", f"one built as {shown(law.name)}", shown(name), remedy)
-        return law
+        return built(self._of_law(spec_of(name)))
 
     def _of_law(self, spec: LawSpec) -> Materials:
         case, contact, shape = self.case, self.case.contact, self.shape
@@ -95,7 +86,7 @@ class ReducedCase(PreparedCase):
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
             taps, states = filter.punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
         else:
-            line_filter = self.reduction.filters[reducing.normalisation(self.case.contact, law)]
+            line_filter = self.reduction.filters[reducing.normalisation(self.case.contact.normalise, law)]
             reducing.warn_of_filter(line_filter, law.name, self.reduction.pressed.approach)
             taps, states = line_filter.taps, line_filter.contact_filter.approaches
         return self._over_defects(filter.filtered_texture(self.textures.line, dx, taps, states, start))

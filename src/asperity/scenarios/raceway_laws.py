@@ -1,45 +1,53 @@
 """Contact laws on raceways that are closed around: grids for slender contacts, one scan of what is new."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
-from typing import Any, Literal
+from typing import Any, get_args
 
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import Array, ArrayLike, NDArray, one_of, positive
+from asperity.arguments import Array, ArrayLike, NDArray, positive
 from asperity.contact import scan
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.hertz import Hertz
 from asperity.contact.scan import FORCE_ACCURACY, ScannedForces, rtol_for
 from asperity.errors import Grade, OutOfRangeWarning
 from asperity.kernels.curves import OVERLAP
-from asperity.kernels.pointforce import Prepared
-from asperity.laws import Law, Need, spec_of
-from asperity.laws.areal import Areal
-from asperity.laws.direct import Direct
-from asperity.laws.hertz import HertzLaw
-from asperity.laws.spec import SteppedLaw
-from asperity.laws.table import Table
+from asperity.laws import LawSpec, Materials, Need, PairedLaw, built, spec_of
+from asperity.laws.periodic import Periodic
 from asperity.progress import Progress
-from asperity.reduction.stiffness import ForceCurve, ForceTable, patches, stiffness_ensemble
+from asperity.reduction.filter import LineFilter, Normalise, filtered_texture
+from asperity.reduction.stiffness import (
+    ForceCurve,
+    ForceTable,
+    StiffnessEnsemble,
+    patches,
+    stiffness_ensemble,
+)
 from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
-from asperity.scenarios.reducing import chosen_states
+from asperity.scenarios.reducing import (
+    LEAST_DATUM,
+    FilteredStates,
+    chosen_states,
+    filters_of,
+    normalisation,
+    warn_of_filter,
+)
 from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
 from asperity.surfaces.edges import Edges
 from asperity.surfaces.faults import Fault
+from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.raceway import AroundTexture, Raceway, raceway
 from asperity.surfaces.strip import Rows
 from asperity.written_numbers import in_newtons
 
-LAWS = ("table", "areal", "hertz", "direct")
-"""Laws that can be built on a raceway."""
 CELLS = (8, 16)
 """Cells along and across to a half axis of the contact under the load."""
 CELLS_OF_FAULT = 8
@@ -57,10 +65,10 @@ FAULT_OFF = 0.1
 """Share of the force from which that is more than a note."""
 REMEDIES = "accuracy", "A smaller time step, or a larger static load: windows hold eight times as much."
 """For contacts solved in every step on raceways."""
-FRINGE = 16
-"""Rows of a ball beyond either end of its circle, from which splines close it."""
 SAMPLES = 8
-"""Places of a rough raceway whose mean is the force curve of `areal`."""
+"""Places of a rough raceway whose mean is its force curve."""
+FILTER_STRIPS, FILTER_LENGTH = 4, 60.0
+"""Pieces of a rough raceway on which contact filters are found, and their length in half axes along."""
 
 
 def raceway_on(
@@ -118,52 +126,6 @@ def raceway_on(
 
 
 @dataclass(frozen=True, eq=False)
-class Closed:
-    """A law on a path that is closed: positions count modulo its circumference, m.
-
-    Parameters
-    ----------
-    law : Law
-        Known from zero to the circumference at least.
-    circumference : float
-        m.
-    ball : Direct, optional
-        The surface of the ball that rolls on it, on the same cells, from zero to its circumference at least;
-        for a law that is `direct` itself.
-    radius : float
-        Of the circle of that ball that rolls, m; negative where the contact runs against the positions on the
-        path, with the surface in the other order.
-    """
-
-    law: Law
-    circumference: float
-    ball: Direct | None = None
-    radius: float = 0.0
-
-    @property
-    def name(self) -> str:
-        """Name of the law."""
-        return self.law.name
-
-    @property
-    def damping(self) -> float:
-        """Contact damping, N s/m."""
-        return self.law.damping
-
-    def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
-        """Lay the law out on positions (n,), m, on as many turns as they are.
-
-        With a ball (n, 2): these, and the angle of its spot that touches, rad.
-        """
-        at = np.asarray(positions, dtype=float)
-        if self.ball is None:
-            return self.law.prepare(np.mod(at, self.circumference))
-        assert isinstance(self.law, Direct)
-        on_ball = self.ball.prepare(np.mod(self.radius * at[:, 1], 2.0 * math.pi * abs(self.radius)))
-        return self.law.prepare(np.mod(at[:, 0], self.circumference), on_ball)
-
-
-@dataclass(frozen=True, eq=False)
 class OnRaceway:
     """A ball on a raceway: what its contact feels, its forces all around, and laws made of them.
 
@@ -189,6 +151,9 @@ class OnRaceway:
         Surfaces over whose faults the window reaches, too.
     shortest : float
         Shortest wave along the raceway that is looked at, m; by default none is too short.
+    parameters : mapping, optional
+        Values of the keys that laws have of their own, by name of the law and of the key; by default those
+        that the laws give.
     """
 
     contact: Hertz
@@ -201,6 +166,7 @@ class OnRaceway:
     progress: Progress | None = None
     balls: Sequence[Raceway] = ()
     shortest: float = 0.0
+    parameters: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @cached_property
     def axes(self) -> tuple[float, float]:
@@ -403,10 +369,9 @@ class OnRaceway:
         forces = self.contact.stiffness_constant * np.maximum(self.approaches, 0.0) ** 1.5
         return states_expected(self.approaches, forces, np.array([least, most]))
 
-    def wider(self, scanned: slice, law: Closed, least: float, most: float) -> slice:
-        """States for a motion with forces between two, N, anywhere, too, by the `table` of those scanned."""
-        assert isinstance(law.law, Table)
-        table = law.law.table
+    def wider(self, scanned: slice, least: float, most: float) -> slice:
+        """States for a motion with forces between two, N, anywhere, too, by the table of those scanned."""
+        table = self.table_in(scanned)
         root = np.cbrt(table.forces) ** 2
         low = _straight(float(np.cbrt(least)) ** 2, root.max(axis=1), table.approaches)
         high = _straight(float(np.cbrt(most)) ** 2, root.min(axis=1), table.approaches)
@@ -419,17 +384,52 @@ class OnRaceway:
         return StateTexture(closed, np.zeros(1) if states is None else states, -OVERLAP * dx, dx)
 
     @cached_property
-    def curve(self) -> ForceCurve:
-        """Force over approach: Hertz, or the mean over places of a rough raceway."""
+    def ensemble(self) -> StiffnessEnsemble | None:
+        """Loading curves over places of a rough raceway; None of one that is smooth under the contact."""
         heights, shape = self.surface.heights, self.shape.body.shape
         if not heights.any():
-            return ForceCurve.hertz(self.contact.stiffness_constant)
+            return None
         weights, rtol = punch_weights(self.surface.spacing, self.axes), rtol_for(self.accuracy)
         samples = patches([heights], (shape[0], shape[1]), SAMPLES, weights)
         pressed = self.space, self.shape.body, self.approaches, 0.0
-        return stiffness_ensemble(samples, *pressed, rtol=rtol, tolerance="accuracy").curve
+        return stiffness_ensemble(samples, *pressed, rtol=rtol, tolerance="accuracy")
 
-    def warn_of_faults(self) -> None:
+    @cached_property
+    def curve(self) -> ForceCurve:
+        """Force over approach: Hertz, or the mean over places of a rough raceway."""
+        if self.ensemble is None:
+            return ForceCurve.hertz(self.contact.stiffness_constant)
+        return self.ensemble.curve
+
+    @property
+    def datum(self) -> float:
+        """d₀, m, with which all states are positive in contact: minus the first touch of any place."""
+        lowest = -LEAST_DATUM if self.ensemble is None else float(self.touches.min())
+        return -min(lowest, self.curve.first_touch, -LEAST_DATUM)
+
+    @cached_property
+    def loaded(self) -> FilteredStates:
+        """States that carry load, and their mean forces."""
+        forces = self.curve.force(self.approaches)
+        carries = forces > 0.0
+        approaches = self.approaches[carries]
+        return FilteredStates(approaches, forces[carries], self.curve.stiffness(approaches))
+
+    @cached_property
+    def filters(self) -> dict[Normalise, LineFilter]:
+        """Contact filters in all states that carry load, from pieces of the raceway, by normalisation."""
+        rows, beyond = len(self.shape.body), round(FILTER_LENGTH * self.axes[0] / self.surface.spacing[0])
+        around, rough = np.arange(min(rows + beyond, self.rows)), self.surface.heights
+        firsts = np.arange(FILTER_STRIPS) * self.rows // FILTER_STRIPS
+        strips = [HeightMap(rough[(first + around) % self.rows], self.surface.spacing) for first in firsts]
+        found, counts = filters_of(
+            strips, self.shape, self.loaded, get_args(Normalise), hardness=self.hardness,
+            accuracy=self.accuracy, most=self.rows - 1, progress=self.progress,
+        )  # fmt: skip
+        scan.warn_of_flaws(counts, "the filters", "accuracy")
+        return dict(found)
+
+    def warn_of_faults(self, laws: Sequence[str]) -> None:
         """Say how far laws that give a fault one height are off over it, under other loads than theirs."""
         felt, told, worst = self.over_faults[self.positions], list[str](), 0.0
         at = int(np.argmax(np.abs(felt)))
@@ -440,73 +440,71 @@ class OnRaceway:
             worst = max(worst, abs(followed / solved.force - 1.0) if solved.force else 1.0)
             told.append(f"{in_newtons(followed)} where the solved contact has {in_newtons(solved.force)}")
         message = (
-            f"At a fault areal and hertz hold for a contact under {in_newtons(self.load)}; else they have "
+            f"At a fault {' and '.join(laws)} hold for a contact under {in_newtons(self.load)}; else they "
+            f"have {', and '.join(told)}. The law table has no such limit."
         )
-        message += f"{', and '.join(told)}. The law table has no such limit."
         grade = Grade.WARNING if worst > FAULT_OFF else Grade.NOTE
         OutOfRangeWarning.warn(message, grade)
 
-    def _direct(self, heights: Array, faults: Array, edges: Edges | None, dx: float) -> Direct:
-        """`direct` of closed heights and faults (rows, lines), m, with edges, dx apart along."""
-        half, dy = len(self.shape.body) // 2, self.surface.spacing[1]
-        closed, hollow = (self._around(each, half + 1) for each in (heights, faults))
-        given = closed, self.shape.body, (dx, dy), self.contact.modulus, -(half + 1) * dx, self.hardness
-        drop = float(self.contact.approach(self.load))
-        whole = Direct(*given, rtol=rtol_for(self.accuracy), damping=self.damping, remedies=REMEDIES)
-        sharp = edges and edges.rearranged(lambda field: self._around(field, half + 1))
-        return replace(whole, faults=hollow, edges=sharp, drop=drop) if hollow.any() or sharp else whole
+    # --- laws
 
-    @cached_property
-    def direct(self) -> Direct:
-        """The law `direct`, once for all balls."""
-        return self._direct(self.wavy, self.surface.faults, self.surface.edges, self.surface.spacing[0])
+    def build(self, name: str, states: slice | None = None) -> Periodic:
+        """A law by its name, of materials of the raceway, once around; what is looked up of some states."""
+        return Periodic(
+            built(self._materials(spec_of(name), self.surface, states)), self.surface.circumference
+        )
 
-    def with_ball(self, ball: Raceway, *, forwards: bool) -> Closed:
-        """`direct` of it with a ball, whose spots come up as positions rise, or against them."""
-        from scipy.ndimage import map_coordinates
-
-        (dx, dy), lines, (rows, wide) = self.surface.spacing, self.shape.body.shape[1], ball.heights.shape
-        count = round(ball.circumference / dx)  # the same cells, but for what closes the circle
-        along = np.arange(count) * (rows / count) + FRINGE
-        across = (np.arange(lines) - lines // 2) * (dy / ball.spacing[1]) + wide // 2
-        at = np.meshgrid(along, across, indexing="ij")
-
-        def on_cells(values: Array, order: Literal[1, 3]) -> Array:
-            found = np.asarray(map_coordinates(self._around(values, FRINGE), at, order=order, mode="nearest"))
-            return found if forwards else np.roll(found[::-1], 1, axis=0)
-
-        waves, faults, edges = on_cells(ball.heights + ball.line[:, None], 3), on_cells(ball.faults, 1), None
-        if ball.edges is not None:
-            fields = (ball.edges.distance, ball.edges.normal, ball.edges.drop)
-            distance, normal, depth = (on_cells(each, 1) for each in fields)
-            edges = Edges(distance, normal, depth, self.surface.spacing)
-        on_ball = self._direct(waves, faults, edges, ball.circumference / count)
+    def with_ball(self, law: Periodic, ball: Raceway, *, forwards: bool) -> Periodic:
+        """A law of both surfaces with a ball, whose spots come up as positions rise, or against them."""
+        surface = ball.on_cells(self.surface.spacing, self.shape.body.shape[1], forwards=forwards)
+        on_ball = built(self._materials(spec_of(law.name), surface))
+        assert isinstance(on_ball, PairedLaw)
         radius = ball.circumference / (2.0 * math.pi) * (1.0 if forwards else -1.0)
-        return replace(self.law("direct"), ball=on_ball, radius=radius)
+        return replace(law, ball=on_ball, radius=radius)
 
-    def law(self, name: str) -> Closed:
-        """A law of `LAWS` by its name; `table` of all states."""
-        if Need.SCAN in spec_of(name).needs:
-            return self.tabled(slice(0, len(self.approaches)))
-        return Closed(self._open(name), self.surface.circumference)
+    def _materials(self, law: LawSpec, surface: Raceway, states: slice | None = None) -> Materials:
+        """Materials of a law over a surface on the cells of the raceway: its heights; all else is its own."""
+        approach, half = self.contact.approach(self.load), len(self.shape.body) // 2 + 1
+        made_by: dict[str, Callable[[], Any]] = {
+            "line": lambda: self._line(law),
+            "curve": lambda: self.curve,
+            "datum": lambda: self.datum,
+            "areal": self._areal,
+            "plane": lambda: self._texture(self.felt),
+            "table": lambda: self.table_in(states or slice(0, len(self.approaches))),
+            "heights": lambda: self._around(surface.heights + surface.line[:, None], half),
+        }
+        edges = surface.edges
+        if surface.faults.any() or edges:
+            made_by["faults"] = lambda: self._around(surface.faults, half)
+        if edges:
+            made_by["edges"] = lambda: edges.rearranged(lambda field: self._around(field, half))
+        own = self.parameters.get(law.name) or {n: each.default for n, each in law.parameters.items()}
+        return Materials(
+            law, self.damping, self.load, self.contact.stiffness_constant, self.contact.modulus,
+            (approach, self.contact.tangent_stiffness(approach)), -half * surface.spacing[0], self.shape.body,
+            surface.spacing, self.hardness, rtol_for(self.accuracy), own, made_by,
+            remedies=REMEDIES,
+        )  # fmt: skip
 
-    def tabled(self, states: slice) -> Closed:
-        """The law `table` of some states."""
-        table = Table(self.table_in(states), self.damping, self._texture(self.felt))
-        return Closed(table, self.surface.circumference)
+    def _line(self, law: LawSpec) -> StateTexture:
+        """The middle line with the heights of faults, through the contact filter of a law that needs it."""
+        line = self.wavy[:, self.wavy.shape[1] // 2]
+        if Need.FILTER not in law.needs:
+            return self._texture(line + self.over_faults)
+        found = self.filters[normalisation(None, law)]
+        if self.ensemble is not None:  # of a smooth raceway they are exact
+            warn_of_filter(found, law.name, float(self.curve.inverse(self.load)), has_keys=False)
+        reach = found.taps.shape[1]
+        filtered = filtered_texture(
+            self._around(line, reach), found.spacing, found.taps, found.contact_filter.approaches
+        )
+        return self._texture(self.over_faults - filtered.heights[:, reach:-reach], filtered.approaches)
 
-    def _open(self, name: str) -> Law:
-        if spec_of(name).solved_every_step:
-            return self.direct
-        plane = self._texture(self.felt)
-        if name == "hertz":
-            texture = self._texture(self.wavy[:, self.wavy.shape[1] // 2] + self.over_faults)
-            return HertzLaw(self.contact.stiffness_constant, texture, self.damping)
-        forces = self.curve.force(self.approaches)
-        axes = np.array([self.contact.semi_axes(self.contact.approach(each)) for each in forces])
-        loaded = forces > 0.0
-        heights = self.averaged(self.wavy, axes[loaded])
-        return Areal(self.curve, self._texture(heights, self.approaches[loaded]), self.damping, plane=plane)
+    def _areal(self) -> StateTexture:
+        """Heights averaged under the patch of each state that carries load."""
+        axes = [self.contact.semi_axes(self.contact.approach(each)) for each in self.loaded.forces]
+        return self._texture(self.averaged(self.wavy, np.array(axes)), self.loaded.approaches)
 
 
 def _straight(value: float, rising: Array, places: Array) -> float:
@@ -532,7 +530,7 @@ def raceway_laws(
     Parameters
     ----------
     names : iterable of str
-        Of `LAWS`.
+        Of `asperity.laws`, built in or registered.
     contact : Hertz
         Smooth contact of ball and raceway, x along the path.
     surface : Raceway
@@ -550,15 +548,17 @@ def raceway_laws(
     Returns
     -------
     dict of str to Law
-        By name. An approach δ of ring and ball sees a surface that is higher by h as δ + h. With balls
-        `direct` is a list of laws, one for each, as `asperity.rolling.bearing.roll_bearing` takes it: on
-        positions (n, 2), on the raceway, m, and the angle of the spot of the ball that touches, rad.
+        By name. An approach δ of ring and ball sees a surface that is higher by h as δ + h. With balls a law
+        of both surfaces, as `direct`, is a list of laws, one for each, as
+        `asperity.rolling.bearing.roll_bearing` takes it: on positions (n, 2), on the raceway, m, and the
+        angle of the spot of the ball that touches, rad.
 
     Notes
     -----
     `table` holds the solved contact with roughness and faults; long waves move it up and down. `areal`
-    follows the average under the patch, `hertz` the middle line. Both take a fault as the height that it has
-    for the contact under the load (`OnRaceway.over_faults`): exact there, and off under other loads.
+    follows the average under the patch, `hertz` the middle line. These, and all others that do not see the
+    rough contact itself, take a fault as the height that it has for the contact under the load
+    (`OnRaceway.over_faults`): exact there, and off under other loads.
     """
     return laws_on(
         OnRaceway(contact, surface, positive("load of a ball (N)", load), **of_contact),
@@ -572,13 +572,18 @@ def laws_on(
     on: OnRaceway, names: Iterable[str], *, balls: Sequence[Raceway] = (), forwards: bool = True
 ) -> dict[str, Any]:
     """Laws of a ball on a raceway by their names, as from `raceway_laws`; `table` is that of all states."""
-    chosen = [one_of("law of a raceway", name, LAWS) for name in names]
-    if on.surface.damaged.any() and set(chosen) & {"areal", "hertz"}:
-        on.warn_of_faults()
-    laws: dict[str, Any] = {name: on.law(name) for name in chosen}
-    on = replace(on, balls=balls)
-    for name in (name for name in chosen if balls and spec_of(name).solved_every_step):
-        laws[name] = [on.with_ball(ball, forwards=forwards) for ball in balls]
+    chosen = [spec_of(name) for name in names]
+    blind = [law.name for law in chosen if not law.sees_heights]
+    if on.surface.damaged.any() and blind:
+        on.warn_of_faults(blind)
+    beside_balls = replace(on, balls=balls)
+    laws: dict[str, Any] = {}
+    for law in chosen:
+        if balls and law.both_surfaces:
+            alone = beside_balls.build(law.name)
+            laws[law.name] = [beside_balls.with_ball(alone, ball, forwards=forwards) for ball in balls]
+        else:
+            laws[law.name] = on.build(law.name)
     return laws
 
 

@@ -275,9 +275,9 @@ SMOOTH_WAVENUMBERS = 120
 LineFilters = Mapping[filter.Normalise, filter.LineFilter]
 
 
-def normalisation(contact: sections.ContactKeys, law: LawSpec) -> filter.Normalise:
-    """How the filter of a law is normalised: as the case says, else as the law wants it."""
-    return law.normalise if contact.normalise is None else contact.normalise  # type: ignore[return-value]
+def normalisation(asked: str | None, law: LawSpec) -> filter.Normalise:
+    """How the filter of a law is normalised: as is asked for, else as the law wants it."""
+    return law.normalise if asked is None else asked  # type: ignore[return-value]
 
 
 def filter_stride(shape: Geometry) -> int:
@@ -295,45 +295,80 @@ def line_filters(
     bodies without texture are sin q/q in closed form.
     """
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
-    contact, dx, force = case.contact, shape.spacing[0], ensemble.mean_force
+    contact, force = case.contact, ensemble.mean_force
     needing = [spec for spec in map(spec_of, case.laws) if Need.FILTER in spec.needs]
     least, largest = filtered_loads(contact, shape)
     loaded = (force >= least) & (force <= largest)
     if not needing:
         loaded = np.isin(np.arange(len(force)), np.flatnonzero(loaded)[::-SHOWN])
-    approaches, tangent = ensemble.approaches[loaded], ensemble.curve.stiffness(ensemble.approaches[loaded])
-    axes = np.array([shape.axes(f) for f in force[loaded]])
     shown: filter.Normalise = contact.normalise or "tangent"  # type: ignore[assignment]
-    needed = dict.fromkeys([shown, *(normalisation(contact, spec) for spec in needing)])
-    if not any(np.ptp(strip.heights) for strip in textures.strips):
+    needed = dict.fromkeys([shown, *(normalisation(contact.normalise, spec) for spec in needing)])
+    approaches = ensemble.approaches[loaded]
+    loads = FilteredStates(approaches, force[loaded], ensemble.curve.stiffness(approaches))
+    return filters_of(
+        textures.strips, shape, loads, tuple(needed), hardness=contact.hardness,
+        accuracy=case.numerics.force_accuracy, degree=contact.filter_degree, order=contact.filter_taps,
+        most=len(textures.line) - 1, progress=progress,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class FilteredStates:
+    """States (s,) that have a filter."""
+
+    approaches: Array  # m
+    forces: Array  # mean of the samples, N
+    tangents: Array  # its slopes, N/m
+
+
+def filters_of(
+    strips: Sequence[HeightMap],
+    shape: Geometry,
+    states: FilteredStates,
+    needed: Sequence[filter.Normalise],
+    *,
+    hardness: float | None,
+    accuracy: float,
+    most: int,
+    degree: int | None = None,
+    order: int | None = None,
+    progress: Progress | None = None,
+) -> tuple[LineFilters, scan.Counts]:
+    """Scan strips in some states, and design the filter of each normalisation, of so many taps at most.
+
+    Of strips without texture it is sin q/q in closed form.
+    """
+    dx, approaches, tangent = shape.spacing[0], states.approaches, states.tangents
+    axes = np.array([shape.axes(f) for f in states.forces])
+    if not any(np.ptp(strip.heights) for strip in strips):
         wavenumber = np.geomspace(0.01, 2.0, SMOOTH_WAVENUMBERS) / axes[:, 0].max()
         smooth = filter.closed_form(approaches, wavenumber, axes[:, 0], tangent)
         taps = filter.punch_taps(axes[:, 0], dx)
         return dict.fromkeys(needed, filter.LineFilter(smooth, taps, dx)), scan.total([])
-    half_space, device, stride = shape.half_space(contact.hardness), find_device(), filter_stride(shape)
-    rtol = scan.rtol_for(scan.FILTER_SHARE * case.numerics.force_accuracy)
+    half_space, device, stride = shape.half_space(hardness), find_device(), filter_stride(shape)
+    rtol = scan.rtol_for(scan.FILTER_SHARE * accuracy)
     jobs = [
         scan.ScanJob(half_space, strip, shape.body, approaches, stride, rtol, device=device)
-        for strip in textures.strips
+        for strip in strips
     ]
     scans = _scanned_strips(jobs, progress)
     half, beside, spectra = shape.body.shape[0] // 2, (axes[:, 1] / shape.spacing[1]).astype(int), []
-    for strip, scanned in zip(textures.strips, scans, strict=True):
+    for strip, scanned in zip(strips, scans, strict=True):
         rows = scanned.forces.shape[1] * stride
         # the lines under the patch of each state, at every row of the grid
         spectra.append(filter.filter_spectra(scanned.forces, strip.heights[half : half + rows].T, dx, beside))
-    fewest, most = filter.tap_count(dx, float(axes[:, 0].max())), len(textures.line) - 1
+    fewest = filter.tap_count(dx, float(axes[:, 0].max()))
     filters = {}
     for normalise in needed:
         estimated = filter.estimate_filter(
-            spectra, approaches, tangent, normalise=normalise, degree=contact.filter_degree,
+            spectra, approaches, tangent, normalise=normalise, degree=degree,
             asymptote=LONG_WAVE / (2 * math.pi * axes[:, 0]),
         )  # fmt: skip
-        filters[normalise] = filter.design_fir(estimated, dx, contact.filter_taps, least=fewest, most=most)
+        filters[normalise] = filter.design_fir(estimated, dx, order, least=fewest, most=most)
     return filters, scan.total(each.counts for each in scans)
 
 
-def _scanned_strips(jobs: Sequence[scan.ScanJob], progress: Progress) -> list[scan.ScannedForces]:
+def _scanned_strips(jobs: Sequence[scan.ScanJob], progress: Progress | None) -> list[scan.ScannedForces]:
     """Forces at constant approach along each strip."""
     workers = thread_count() if jobs[0].device is None else 1  # one block fills a device
 
@@ -345,17 +380,24 @@ def _scanned_strips(jobs: Sequence[scan.ScanJob], progress: Progress) -> list[sc
     return list(counted(scans, len(jobs), "scanning for the contact filters", progress))
 
 
-def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) -> None:
+_SHORTER = ": the report shows both. Leave out contact.filter_taps, or roll over a longer path."
+_NORMALISED = 'Set contact.normalise = "tangent", or take a law that has it by default.'
+_WITHOUT_KEY = "Take a law whose filter is one at the tangent stiffness, as shifted."
+
+
+def warn_of_filter(
+    found: filter.LineFilter, law: str, working_approach: float, *, has_keys: bool = True
+) -> None:
     """Say what of a filter a law that uses it should not rest on, with the working approach, m.
 
-    That the texture lacks the long waves at which the printed filter is one, or that the taps miss the fit.
+    That the texture lacks the long waves at which the printed filter is one, or that the taps miss the fit;
+    and what helps, of a case that has keys for it.
     """
     if found.miss > LARGEST_MISS:
         order = found.taps.shape[1] - 1
         ContactFilterWarning.warn(
             f"the filter of the law {law} with J = {order} misses the fitted one by "
-            f"{rounded(found.miss, 2)} dB above −30 dB: the report shows both. Leave out "
-            "contact.filter_taps, or roll over a longer path."
+            f"{rounded(found.miss, 2)} dB above −30 dB{_SHORTER if has_keys else '.'}"
         )
     estimated = found.contact_filter
     share = float(np.interp(working_approach, estimated.approaches, estimated.long_wave_share))
@@ -367,5 +409,5 @@ def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) 
         f"only {100 * share:.0f} % of the texture's power lies in waves with k a < {LONG_WAVE:g}, where the "
         f"filter of the law {law} is set to one: k_0/k_t = {ratio:.2f} under the working load, so its "
         f"force keeps {-20 * math.log10(ratio):.1f} dB that the contact averages away across the path. "
-        'Set contact.normalise = "tangent", or take a law that has it by default.'
+        f"{_NORMALISED if has_keys else _WITHOUT_KEY}"
     )

@@ -230,6 +230,7 @@ def raceways_of(prepared: PreparedBearing, progress: Progress | None) -> list[On
         OnRaceway(
             smooth, surface, load, case.contact_damping, of.hardness, cache=Store(), progress=progress,
             shortest=radius * pace / case.highest_frequency,
+            parameters={law: case.law_parameters(law) for law in case.laws},
         )
         for (smooth, load), surface, radius, pace in each
     ]  # fmt: skip
@@ -260,7 +261,10 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
 
     found = {}
     for name in case.laws:
-        run = _within_scan(case, ons, once) if name in looked_up else once(*(of[name] for of in laws_of))
+        if name in looked_up:
+            run = _within_scan(case, name, ons, once)
+        else:
+            run = once(*(of[name] for of in laws_of))
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
@@ -275,19 +279,22 @@ TRIED = 0.1
 
 
 def _within_scan(
-    case: BallBearingCase, ons: Sequence[OnRaceway], once: Callable[[Any, Any, float], RolledBearing]
+    case: BallBearingCase,
+    law: str,
+    ons: Sequence[OnRaceway],
+    once: Callable[[Any, Any, float], RolledBearing],
 ) -> RolledBearing:
-    """Run by `table` in the states expected; where forces leave what was scanned, scan more and run anew."""
+    """Run by a law in the states expected; where forces leave what was scanned, scan more and run anew."""
     loads = case.static.inner_load, case.static.outer_load
     states = [on.states_under(each.min(), each.max()) for on, each in zip(ons, loads, strict=True)]
     duration = max(TRIED * case.duration, case.step)
     while True:
         with PhysicsWarning.caught() as caught:
-            inner, outer = (on.tabled(each) for on, each in zip(ons, states, strict=True))
+            inner, outer = (on.build(law, each) for on, each in zip(ons, states, strict=True))
             run = once(inner, outer, duration)
         wider = [
-            on.wider(each, law, (1.0 - DAMPED) * least, (1.0 + DAMPED) * most)
-            for on, each, law, (least, most) in zip(ons, states, (inner, outer), run.reached, strict=True)
+            on.wider(each, (1.0 - DAMPED) * least, (1.0 + DAMPED) * most)
+            for on, each, (least, most) in zip(ons, states, run.reached, strict=True)
         ]
         if wider == states and duration == case.duration:
             break

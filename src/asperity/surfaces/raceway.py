@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal, Self
 
 import numpy as np
 from scipy import fft
@@ -168,6 +169,10 @@ def closed_trace(trace: ArrayLike) -> tuple[Array, Array]:
     return np.append(angle[:n], angle[0] + turn), np.append(deviation[:n], deviation[0])
 
 
+FRINGE = 16
+"""Rows beyond either end of a circle, from which splines close it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Raceway:
     """Surface of a raceway or a ball, closed along its rows: behind the last comes the first.
@@ -217,6 +222,33 @@ class Raceway:
     def circumference(self) -> float:
         """Length of the path, m."""
         return len(self.heights) * self.spacing[0]
+
+    def on_cells(self, spacing: tuple[float, float], lines: int, *, forwards: bool = True) -> Self:
+        """The surface on other cells (dx, dy), m, and so many lines; of rows in the other order if backwards.
+
+        Its rows are as far apart as they can be for the path to close. Its long waves lie in its heights.
+        """
+        from scipy.ndimage import map_coordinates
+
+        rows, wide = self.heights.shape
+        count = round(self.circumference / spacing[0])  # the same cells, but for what closes the circle
+        along = np.arange(count) * (rows / count) + FRINGE
+        across = (np.arange(lines) - lines // 2) * (spacing[1] / self.spacing[1]) + wide // 2
+        at = np.meshgrid(along, across, indexing="ij")
+
+        def sampled(values: Array, order: Literal[1, 3]) -> Array:
+            around = np.pad(values, ((FRINGE, FRINGE), (0, 0)), "wrap")
+            found = np.asarray(map_coordinates(around, at, order=order, mode="nearest"))
+            return found if forwards else np.roll(found[::-1], 1, axis=0)
+
+        edges = None
+        if self.edges is not None:
+            fields = (self.edges.distance, self.edges.normal, self.edges.drop)
+            distance, normal, drop = (sampled(each, 1) for each in fields)
+            edges = Edges(distance, normal, drop, spacing)
+        heights, faults = sampled(self.heights + self.line[:, None], 3), sampled(self.faults, 1)
+        steps = self.circumference / count, spacing[1]
+        return type(self)(heights, steps, faults=faults, edges=edges)
 
 
 def raceway(
