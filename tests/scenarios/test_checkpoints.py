@@ -2,7 +2,6 @@
 
 import gc
 import weakref
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,23 +12,20 @@ from asperity.running import prepare_case, run
 from asperity.scenarios import reducing
 from asperity.scenarios.laws import ReducedCase
 from asperity.scenes import compute
-from small_cases import BALL, CASES, WHEEL
+from small_cases import BALL, BEARING, CASES, WHEEL
 
-DIRECT = SimpleNamespace(name="direct")
 FLAT = np.zeros((4, 3))
-PATH = SimpleNamespace(rows=lambda first, last: FLAT[first:last], shape=FLAT.shape)
-TEXTURES = SimpleNamespace(path=PATH, surface=PATH)
 
 
 def name(case):
     """Name of what is kept of a case, on the same path."""
-    return compute.checkpoint_of(DIRECT, SimpleNamespace(case=case, textures=TEXTURES), None).key
+    return compute.checkpoint_of("direct", case, lambda: [FLAT], None).key
 
 
-@pytest.mark.parametrize("kind", CASES)
+@pytest.mark.parametrize("kind", [*CASES, "ball-bearing"])
 def test_every_key_of_a_case_but_its_laws_names_another_checkpoint(monkeypatch, kind):
     """Whichever keys there will be: a ball's rolled on with the grid of an earlier case."""
-    case = content(as_case(CASES[kind]))
+    case = content(as_case((CASES | {"ball-bearing": BEARING})[kind]))
     monkeypatch.setattr("asperity.scenes.compute.content", lambda values, *_: dict(values))
     told_of = [case | {key: "other"} for key in case.keys() & set(compute.TOLD_OF)]
     names = {name(each) for each in (case, case | {"laws": ["direct"]}, *told_of)}

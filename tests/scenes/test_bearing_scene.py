@@ -39,6 +39,11 @@ OUTER = 0.5 * BALLS * TURNS * (1.0 - D / PITCH)
 INNER = 0.5 * BALLS * TURNS * (1.0 + D / PITCH)
 
 
+OF_THREE = {
+    "balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"
+}  # fmt: skip
+
+
 def group(tree, name="bearing"):
     return tree[name].to_dataset()
 
@@ -246,11 +251,10 @@ def test_faults_that_overlap_and_pressures_that_dent_are_told_before_the_run():
 @pytest.mark.filterwarnings("ignore::asperity.errors.TruncatedContactWarning")  # of few cells
 def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
     """On coarse cells: a ball's waves under the contact, and their heights beside a smooth ball."""
-    of = {"balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"}
     case = as_case(
-        {"kind": "ball-bearing", "bearing": of, "axial": "60 N", "radial": "5 N", "speed": "120000 1/min",
-         "laws": ["areal", "direct"], "duration": "2.1 ms", "settling": "0 s", "time_step": "3 us",
-         "centrifugal": False, "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
+        {"kind": "ball-bearing", "bearing": OF_THREE, "axial": "60 N", "radial": "5 N",
+         "speed": "120000 1/min", "laws": ["areal", "direct"], "duration": "2.1 ms", "settling": "0 s",
+         "time_step": "3 us", "centrifugal": False, "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
     )  # fmt: skip
     directions, made = [], raceway_laws.laws_on
 
@@ -276,8 +280,13 @@ def test_direct_rolls_balls_as_their_average_where_waves_are_long(monkeypatch):
 
 
 def test_forces_that_leave_the_states_scanned_have_more_scanned_and_are_those_of_all(monkeypatch):
-    of = {"balls": 3, "ball_diameter": "7.94 mm", "pitch_diameter": "39.04 mm", "contact_angle": "20 deg"}
-    keys = {"bearing": of, "radial": "5 N", "axial": "60 N", "speed": "120000 1/min", "centrifugal": False}
+    keys = {
+        "bearing": OF_THREE,
+        "radial": "5 N",
+        "axial": "60 N",
+        "speed": "120000 1/min",
+        "centrifugal": False,
+    }
     keys |= {"laws": ["table"], "duration": "2.1 ms", "settling": "0 s", "time_step": "3 us"}
     prepared = prepare_bearing(as_case(BEARING | keys))
     ends, found = [], []
@@ -386,3 +395,38 @@ def test_a_law_that_is_registered_rolls_in_a_bearing_with_keys_of_its_own(tmp_pa
             case.with_(laws=["hertz"], stiffer={"factor": 2.0})
     finally:
         laws.unregister("stiffer")
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")  # of few cells
+def test_direct_in_a_bearing_that_was_stopped_goes_on_to_the_last_bit(monkeypatch, tmp_path):
+    """Balls with waves on their own: their surfaces, and what each contact started from, come back."""
+    case = as_case(
+        {"kind": "ball-bearing", "bearing": OF_THREE, "axial": "60 N", "speed": "600000 1/min",
+         "laws": ["direct"], "duration": "1 ms", "settling": "0 s", "time_step": "15 us",
+         "centrifugal": False, "balls": {"waves": [2], "amplitudes": ["0.2 um"]}}
+    )  # fmt: skip
+    monkeypatch.setattr(raceway_laws, "CELLS", (3, 4))
+    monkeypatch.setattr("asperity.rolling.bearing.INSTANTS", 1)
+    prepared = prepare_bearing(case)
+    steps = []
+
+    def rolling(stop):
+        def progress(done, total, message):
+            if message == "rolling":
+                steps.append(done)
+                if done >= stop:
+                    raise KeyboardInterrupt
+
+        return rolled(prepared, progress)["direct"]
+
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "whole"))
+    whole = rolling(math.inf)
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "stopped"))
+    with pytest.raises(KeyboardInterrupt):
+        rolling(0.5 * max(steps))
+    left = steps[-1]
+    steps.clear()
+    resumed = rolling(math.inf)
+    assert left < steps[0] <= left + 8 < max(steps)  # not from the start
+    for name in ("inner_force", "outer_force", "ball_motion", "inner_motion", "acceleration"):
+        np.testing.assert_array_equal(getattr(resumed, name), getattr(whole, name))

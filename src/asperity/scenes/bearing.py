@@ -27,6 +27,7 @@ from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on, ra
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
 from asperity.scenes.bearing_validity import bearing_findings
+from asperity.scenes.compute import checkpoint_of
 from asperity.scenes.result import root_attributes, scenario_group
 from asperity.schema import Values, bearing, contact, rolling, spectra, tree
 from asperity.store import Store
@@ -249,14 +250,19 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
     averaged = [ball_heights(smooth, surface, load) for surface in prepared.balls]
     sensors: list[Sensor] = [("outer", angle, "radial") for angle in case.sensors]
 
-    def once(inner: Any, outer: Any, duration: float = case.duration) -> RolledBearing:
+    def surfaces() -> list[Array]:
+        every = (*prepared.raceways, *prepared.balls)
+        return [heights for each in every for heights in (each.heights, each.line, each.faults)]
+
+    def once(law: str, inner: Any, outer: Any, duration: float = case.duration) -> RolledBearing:
         return roll_bearing(
             of, bearing_rings(case), inner, outer,
             speed=case.speed, radial=case.radial, axial=case.axial, rotating=case.rotating,
             duration=duration, time_step=case.step, settling=case.settling, slip=cage_slip(case),
             ball_heights=[] if isinstance(inner, list) else averaged,
             centrifugal=case.centrifugal, sensors=sensors,
-            highest_frequency=case.highest_frequency, progress=progress
+            highest_frequency=case.highest_frequency, progress=progress,
+            checkpoint=checkpoint_of(law, case, surfaces, Store()),
         )  # fmt: skip
 
     found = {}
@@ -264,7 +270,7 @@ def rolled(prepared: PreparedBearing, progress: Progress) -> dict[str, RolledBea
         if name in looked_up:
             run = _within_scan(case, name, ons, once)
         else:
-            run = once(*(of[name] for of in laws_of))
+            run = once(name, *(of[name] for of in laws_of))
         every = case.steps_per_sample
         signals: dict[str, Any] = {each: thinned(getattr(run, each), every) for each in SIGNALS}
         signals |= {each: np.maximum(signals[each], getattr(run, each).min()) for each in FORCES}
@@ -282,7 +288,7 @@ def _within_scan(
     case: BallBearingCase,
     law: str,
     ons: Sequence[OnRaceway],
-    once: Callable[[Any, Any, float], RolledBearing],
+    once: Callable[[str, Any, Any, float], RolledBearing],
 ) -> RolledBearing:
     """Run by a law in the states expected; where forces leave what was scanned, scan more and run anew."""
     loads = case.static.inner_load, case.static.outer_load
@@ -291,7 +297,7 @@ def _within_scan(
     while True:
         with PhysicsWarning.caught() as caught:
             inner, outer = (on.build(law, each) for on, each in zip(ons, states, strict=True))
-            run = once(inner, outer, duration)
+            run = once(law, inner, outer, duration)
         wider = [
             on.wider(each, (1.0 - DAMPED) * least, (1.0 + DAMPED) * most)
             for on, each, (least, most) in zip(ons, states, run.reached, strict=True)

@@ -11,11 +11,12 @@ import numpy as np
 
 from asperity import __version__
 from asperity.arguments import Array, NDArray
+from asperity.case.any_case import AnyCase
 from asperity.case.form import content, file_digest
 from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
 from asperity.errors import PhysicsWarning
-from asperity.laws import Law, Need, Role, in_role, names, needs_of, spec_of
+from asperity.laws import Need, Role, in_role, names, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies, without_rounding
@@ -168,7 +169,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             sensors=case.rolled_over.sensor_positions,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=checkpoint_of(laws[0], prepared, store),
+            checkpoint=checkpoint_of(name, case, lambda: _heights_of(prepared), store),
         )
         return without_rounding(run)
 
@@ -236,14 +237,23 @@ def _passed(computed: Computed, progress: Progress) -> tuple[Array, ...]:
     return tuple(np.sum(each, axis=0) for each in zip(*parts, strict=True))
 
 
-def checkpoint_of(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
-    """Where a law that is solved in every step is kept, by the whole case and its path.
+def _heights_of(prepared: PreparedCase) -> list[Array]:
+    """Heights of all of the path, before it is run in."""
+    if prepared.textures.path is None:
+        return [prepared.textures.line]
+    surface = prepared.textures.surface
+    return [surface.rows(0, surface.shape[0])]
+
+
+def checkpoint_of(
+    law: str, case: AnyCase, surfaces: Callable[[], Sequence[Array]], store: Store
+) -> Checkpoint | None:
+    """Where a law that is solved in every step is kept, by the whole case and the heights it rolls over.
 
     Left out of the case are `TOLD_OF` and the names of its laws, each of which rolls alone.
     """
-    if prepared.textures.path is None or not spec_of(law.name).solved_every_step:
+    if not spec_of(law).solved_every_step:
         return None
-    case = {n: held for n, held in content(prepared.case, file_digest).items() if n not in TOLD_OF}
-    surface = prepared.textures.surface
-    rows, told = surface.rows(0, surface.shape[0]), json.dumps(case, sort_keys=True)
-    return Checkpoint(store, content_key(law.name, FORMAT, __version__, rows, told))
+    keys = {name: held for name, held in content(case, file_digest).items() if name not in TOLD_OF}
+    told = json.dumps(keys, sort_keys=True)
+    return Checkpoint(store, content_key(law, FORMAT, __version__, *surfaces(), told))
