@@ -64,8 +64,8 @@ _RENAMED = {"BallBearingCase": "BearingUnderLoad"}
 
 def _cases() -> dict[str, str]:
     """Kinds of case by the classes of their cases."""
-    presets = importlib.import_module("asperity.case").PRESETS
-    return {place.rpartition(".")[2]: kind for kind, place in presets.items()}
+    known = importlib.import_module("asperity.case").kinds()
+    return {place.rpartition(".")[2]: kind for kind, place in known.items()}
 
 
 def __getattr__(name: str) -> Any:

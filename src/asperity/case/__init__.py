@@ -1,5 +1,7 @@
 """The case: what a person says of a scene, each key declared once; presets, one file and one line each."""
 
+from asperity import extensions
+
 PRESETS: dict[str, str] = {
     "ball-on-beam": "asperity.case.beam.BallOnBeam",
     "wheel-on-rail": "asperity.case.bodies.WheelOnRail",
@@ -7,3 +9,12 @@ PRESETS: dict[str, str] = {
     "ball-bearing": "asperity.case.ball_bearing.BearingUnderLoad",
 }
 """Kinds of case by name, each with its module and class."""
+
+
+def kinds() -> dict[str, str]:
+    """All kinds of case by name, those of packages beside this one last, each with its module and class.
+
+    What a package names is not imported for that.
+    """
+    others = {each.name: each.place.replace(":", ".") for each in extensions.offers(extensions.KINDS)}
+    return PRESETS | {name: place for name, place in others.items() if name not in PRESETS}

@@ -1,11 +1,13 @@
 """Bodies roll, one or many, over any structure: the scene with all its choices; and a wheel on a rail."""
 
-from collections.abc import Iterator
-from typing import ClassVar
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
 
+from asperity import extensions
+from asperity.arguments import require, shown
 from asperity.case.beam import BeamKeys
 from asperity.case.body import OF_SEVERAL, Rolling
-from asperity.case.form import section
+from asperity.case.form import Inner, section
 from asperity.case.rolled_over import RolledOver, StructureKeys, TrackKeys
 from asperity.case.scene import Case
 from asperity.case.sections import NoiseKeys
@@ -18,8 +20,28 @@ from asperity.structures.body import GRAVITY
 from asperity.units import written
 from asperity.written_numbers import rounded
 
-STRUCTURES = ("plane", "beam", "track", "structure")
+BUILT_IN = ("plane", "beam", "track", "structure")
 """What may be rolled over; but for the plane, each is a section of the case."""
+
+
+def structures() -> tuple[str, ...]:
+    """What may be rolled over, structures of packages beside this one last."""
+    return (*BUILT_IN, *_installed_structures())
+
+
+def _installed_structures() -> dict[str, Inner]:
+    """Sections of structures that packages beside this one offer, by name."""
+    return extensions.taken(extensions.STRUCTURES, _installed_structure)
+
+
+def _installed_structure(name: str, model: Any) -> Inner:
+    """Section of a structure that another package offers under a name."""
+    right = isinstance(model, type) and issubclass(model, RolledOver)
+    allowed = "a class of asperity.case.rolled_over.RolledOver"
+    require(right, f'structure "{name}"', shown(model), allowed)
+    free = name.isidentifier() and name not in {*Bodies.keys, *Bodies.inner, *BUILT_IN}
+    require(free, f'structure "{name}"', "its name", "a word that is no other key or section of a case")
+    return Inner(model, model.summary())
 
 
 class OverTrack(Case):
@@ -54,7 +76,7 @@ class Bodies(OverTrack):
 
     kind: str = key(Choice(("bodies",)), "bodies", "what rolls")
     over: str = key(
-        Choice(STRUCTURES),
+        Choice(structures),
         "beam",
         "what is rolled over: a rigid plane, or what the section of this name describes",
     )
@@ -76,9 +98,20 @@ class Bodies(OverTrack):
         """What is rolled over, in a word."""
         return self.over
 
+    @classmethod
+    def sections(cls) -> Mapping[str, Inner]:
+        """Sections inside it, by name, those of structures of other packages last."""
+        return {**super().sections(), **_installed_structures()}
+
+    @property
+    def section_names(self) -> tuple[str, ...]:
+        """Sections that matter: a structure of another package where it is rolled over."""
+        installed = self.over in _installed_structures()
+        return (*super().section_names, self.over) if installed else super().section_names
+
     def problems(self) -> Iterator[InputError]:
         """Only what is rolled over is described, and it is; what must fit together across the sections."""
-        for name in STRUCTURES[1:]:
+        for name in structures()[1:]:
             on_plane = {"material"} if (name, self.over) == ("structure", "plane") else set()
             named = getattr(self, name).given().keys() - on_plane
             if name != self.over and named:

@@ -7,8 +7,9 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from asperity.arguments import file_path, nearest, shown
-from asperity.case import PRESETS, scene, toml
+from asperity import extensions
+from asperity.arguments import file_path, nearest, require, shown
+from asperity.case import PRESETS, kinds, scene, toml
 from asperity.case.any_case import AnyCase, commented, in_toml
 from asperity.errors import CaseError, InputError
 from asperity.laws import family_of, law_keys, spec_of
@@ -151,18 +152,39 @@ def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> AnyCase:
 
 
 def case_class(kind: object) -> type[AnyCase]:
-    """Class of the cases of a kind, one of `PRESETS`; an `InputError` says if there is none."""
-    if not isinstance(kind, str) or kind not in PRESETS:
-        raise not_a_kind(kind, tuple(PRESETS))
+    """Class of the cases of a kind, one of `kinds`; an `InputError` says if there is none."""
+    if not isinstance(kind, str) or kind not in kinds():
+        raise not_a_kind(kind, tuple(kinds()))
+    if kind not in PRESETS:
+        offer = next(each for each in extensions.offers(extensions.KINDS) if each.name == kind)
+        return _installed_kind(kind, offer.load())
     module, _, name = PRESETS[kind].rpartition(".")
     model: type[AnyCase] = getattr(importlib.import_module(module), name)
     return model
 
 
+def _installed_kind(kind: str, model: Any) -> type[AnyCase]:
+    """Class of a kind that a package beside this one offers under a name."""
+    what = f'kind of case "{kind}"'
+    require(kind not in PRESETS, what, "a name of this program", "a name of its own")
+    right = isinstance(model, type) and issubclass(model, AnyCase)
+    require(right, what, shown(model), "a class of cases, as asperity.case.scene.Case")
+    found: type[AnyCase] = model
+    called = found.keys["kind"].default
+    require(called == kind, what, f'a class whose key kind is "{called}"', f'kind = "{kind}"')
+    return found
+
+
+def case_classes() -> dict[str, type[AnyCase]]:
+    """Classes of all kinds by name; one that cannot be imported is named in a warning, and left out."""
+    own = {kind: case_class(kind) for kind in PRESETS}
+    return own | extensions.taken(extensions.KINDS, _installed_kind)
+
+
 def of_bodies(case: AnyCase, what: str) -> scene.Case:
     """A case of bodies that roll; an `InputError` says that another kind does not have what is asked."""
     if not isinstance(case, scene.Case):
-        held = (kind for kind in PRESETS if issubclass(case_class(kind), scene.Case))
+        held = (kind for kind, model in case_classes().items() if issubclass(model, scene.Case))
         allowed = f"a kind that has it: {', '.join(held)}"
         raise InputError(what, f"a {case.kind} case, of which there is none", allowed)
     return case

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_
 
 import numpy as np
 
-from asperity import __version__
+from asperity import __version__, extensions
 from asperity.arguments import nearest, shown
 from asperity.case import documented
 from asperity.errors import CaseError, InputError
@@ -109,6 +109,12 @@ class Section:
         inner = [(name, each) for name, each in declared.items() if isinstance(each, Inner)]
         cls.inner = dict(sorted(inner, key=lambda named: named[1].last))
         type.__setattr__(cls, "__doc__", _Documentation(vars(cls)["__doc__"] or ""))
+
+    @classmethod
+    def summary(cls) -> str:
+        """First sentence of its docstring, without the full stop."""
+        text: str = inspect.cleandoc(vars(cls)["__doc__"].summary)
+        return text.partition("\n")[0].rstrip(".")
 
     @classmethod
     def sections(cls) -> Mapping[str, Inner]:
@@ -398,10 +404,10 @@ def case_key(
 ) -> str:
     """Name of what is kept of a case, as `content_key`: by its keys, its files, and what else is told.
 
-    Beside them by the version of what is kept, and of the program.
+    Beside them by the version of what is kept, of the program, and of packages that extend it.
     """
     told = json.dumps(content(case, of_file), sort_keys=True)
-    return content_key(name, version, __version__, told, *more)
+    return content_key(name, version, __version__, told, *more, *extensions.stamp())
 
 
 def holds_memory(value: Any) -> bool:

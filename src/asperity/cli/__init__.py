@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from asperity import __version__
-from asperity.case import PRESETS
+from asperity.case import kinds
 from asperity.cli import commands
 from asperity.cli.commands import PATH, Program, output
 from asperity.errors import InputError
@@ -20,7 +20,7 @@ Document = dict[str, Any]
 
 def templates() -> tuple[str, ...]:
     """List what 'asperity new' can write."""
-    return (*PRESETS, "study", "what-helps", "optimisation")
+    return (*kinds(), "study", "what-helps", "optimisation")
 
 
 @click.group(cls=Program, document=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -29,7 +29,7 @@ def templates() -> tuple[str, ...]:
 def main(debug: bool) -> None:
     """Roll a body over a rough surface: 3-D contact, reduced to a point force, and its vibration.
 
-    Kinds of case: PRESETS.
+    Kinds of case: KINDS.
 
     Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
     'asperity COMMAND --help' shows examples of each command.

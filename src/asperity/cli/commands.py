@@ -16,7 +16,7 @@ from typing import Any
 import click
 
 from asperity import __version__, errors
-from asperity.case import PRESETS
+from asperity.case import kinds
 from asperity.errors import InputError, printable
 from asperity.interrupts import interruptible, was_interrupted
 from asperity.terminal import (
@@ -65,8 +65,8 @@ class Command(click.Command):
     ) -> None:
         super().__init__(*arguments, **settings)
         self.section = section
-        text = inspect.cleandoc(self.help or "").replace("PRESETS", ", ".join(PRESETS))
-        text = text.replace("KIND", next(iter(PRESETS)))
+        text = inspect.cleandoc(self.help or "").replace("KINDS", ", ".join(kinds()))
+        text = text.replace("KIND", next(iter(kinds())))
         self.help, _, self.examples = text.partition("\n\nExamples\n--------\n")
         if document:
             words = "Print one JSON document, as docs/json.md describes, for programs."

@@ -9,6 +9,7 @@ imports compiled code before it is needed.
 import importlib
 from collections.abc import Iterable, Mapping
 
+from asperity import extensions
 from asperity.arguments import nearest, require, shown
 from asperity.errors import InputError
 from asperity.laws.areal import Areal
@@ -54,21 +55,43 @@ _specs: dict[str, LawSpec] = {}  # of laws and variants
 _families: dict[str, tuple[str, ...]] = {}  # names of each law and its variants
 
 
+def _installed() -> tuple[str, ...]:
+    """Laws that every process knows: those of the program, and of packages beside it, which it registers."""
+    return (*BUILT_IN, *extensions.taken(extensions.LAWS, _take))
+
+
+def _take(name: str, law: object) -> LawSpec:
+    """Register a law of another package, which calls it by its name."""
+    require(isinstance(law, LawSpec), "law", shown(law), "an asperity.laws.LawSpec")
+    assert isinstance(law, LawSpec)
+    require(law.name == name, "name of the law", shown(law.name), f'"{name}", as its entry point has it')
+    _add(law)
+    return law
+
+
+def _known() -> dict[str, LawSpec]:
+    """All laws and variants by name."""
+    _installed()
+    return _specs
+
+
 def names() -> tuple[str, ...]:
     """List the names that may stand in a case, each law followed by its variants."""
-    return tuple(_specs)
+    return tuple(_known())
 
 
 def spec_of(name: object) -> LawSpec:
     """Find a law, or a variant of one, by its name, as ``"linear-filtered"``."""
-    if not isinstance(name, str) or name not in _specs:
-        allowed = ", ".join(f'"{known}"' for known in _specs)
+    known = _known()
+    if not isinstance(name, str) or name not in known:
+        allowed = ", ".join(f'"{each}"' for each in known)
         raise InputError("law", shown(name), allowed, nearest(name, names()))
-    return _specs[name]
+    return known[name]
 
 
 def family_of(name: str) -> str:
     """Name of the law that a law is a variant of, or is itself."""
+    _installed()
     return next(family for family, members in _families.items() if name in members)
 
 
@@ -90,13 +113,15 @@ def built(materials: Materials) -> Law:
 
 def law_keys() -> dict[str, Mapping[str, Key]]:
     """Keys of the laws that have some of their own, by the name of the law and by theirs."""
-    return {name: _specs[name].parameters for name in _families if _specs[name].parameters}
+    known = _known()
+    return {name: known[name].parameters for name in _families if known[name].parameters}
 
 
 def register(law: LawSpec) -> None:
     """Add a law, which may then stand in cases of any kind.
 
-    It is known to this process until `unregister`, where the members of a study that roll it are computed.
+    It is known to this process until `unregister`, where the members of a study that roll it are computed. A
+    law of an installed package, which names it by an entry point ``asperity.laws``, is known to all.
 
     Parameters
     ----------
@@ -120,6 +145,12 @@ def register(law: LawSpec) -> None:
     >>> laws.unregister("stiffer")
     """
     require(isinstance(law, LawSpec), "law", shown(law), "an asperity.laws.LawSpec")
+    _installed()
+    _add(law)
+
+
+def _add(law: LawSpec) -> None:
+    """Add a law whose names and roles no other law has."""
     taken: dict[Role | None, str] = {spec.role: spec.name for spec in _specs.values() if spec.role}
     remedy = "Take another name, or unregister that law first."
     for spec in law.family:
@@ -134,13 +165,13 @@ def register(law: LawSpec) -> None:
 
 def comes_with_the_program(name: str) -> bool:
     """Whether every process knows a law, or it was registered in this one."""
-    return family_of(name) in BUILT_IN
+    return family_of(name) in _installed()
 
 
 def unregister(name: str) -> None:
-    """Forget a law that was registered, with its variants; those that come with the program stay."""
+    """Forget a law that was registered, with its variants; those that are installed stay."""
     spec_of(name)
-    own = [law for law in _families if law not in BUILT_IN]
+    own = [law for law in _families if law not in _installed()]
     registered = ", ".join(f'"{law}"' for law in own) or "none is"
     require(name in own, "law", shown(name), f"a law that was registered ({registered})")
     for member in _families.pop(name):
@@ -171,4 +202,4 @@ def reference(laws: Iterable[str]) -> str | None:
 
 
 for _module in BUILT_IN:
-    register(importlib.import_module(f"asperity.laws.{_module}").LAW)
+    _add(importlib.import_module(f"asperity.laws.{_module}").LAW)

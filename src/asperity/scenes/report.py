@@ -3,15 +3,14 @@
 import base64
 import os
 from collections.abc import Sequence
-from functools import cache
 from html import escape
-from importlib.metadata import entry_points
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import xarray
 
-from asperity.arguments import file_path, shown
+from asperity import extensions
+from asperity.arguments import file_path, require, shown
 from asperity.errors import InputError, printable
 from asperity.files import together, write_bytes
 from asperity.reporting import contact_figures, data, headline, tables, texture_figures
@@ -38,8 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure
 
 PAGE = "report.html"
-OF_OTHERS = "asperity.chapters"
-"""Group of entry points under which other packages name chapters of their own."""
 CHAPTERS = (
     Chapter(
         "bearing",
@@ -106,10 +103,17 @@ CHAPTERS = (
 """In the order of the page; what a result lacks is left out."""
 
 
-@cache
 def chapters() -> tuple[Chapter, ...]:
-    """All chapters of reports; those that other packages name stand last."""
-    return (*CHAPTERS, *(each.load() for each in entry_points(group=OF_OTHERS)))
+    """All chapters of reports; those of packages beside this one stand last."""
+    return (*CHAPTERS, *extensions.taken(extensions.CHAPTERS, _installed_chapter).values())
+
+
+def _installed_chapter(name: str, chapter: Any) -> Chapter:
+    """A chapter that another package offers."""
+    allowed = "an asperity.reporting.figure.Chapter"
+    require(isinstance(chapter, Chapter), f'chapter "{name}"', shown(chapter), allowed)
+    assert isinstance(chapter, Chapter)
+    return chapter
 
 
 def figures_of(tree: xarray.DataTree) -> list[PageFigure]:

@@ -19,7 +19,7 @@ from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.scenarios.law_choice import LawChoice, advised_law
 from asperity.scenarios.scene import PreparedCase, force_transfer
-from asperity.scenes import creep, measured, noise, roundness, schema, sideways, track, validity
+from asperity.scenes import creep, measured, noise, observer, roundness, schema, sideways, track, validity
 from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import contact_group, surface_group
 from asperity.scenes.population import answers
@@ -82,7 +82,10 @@ def computed_result(
     textures, reduced = surface_group(computed, brief=brief), contact_group(computed, found, population)
     expected = {provenance.EXPECTED_ERRORS: choice.entries()} if choice else {}
     scenario = scenario_group(case, _numerics(computed, choice, losses)) | expected
-    result = tree(scenario | textures | reduced | rolling_group(computed) | over_frequency | own)
+    laid_out = scenario | textures | reduced | rolling_group(computed) | over_frequency | own
+    added, more_sources = observer.observed(computed, laid_out)
+    sources += more_sources
+    result = tree(laid_out | added)
     verdict = validity.verdict(computed, in_bands, found, choice)
     result.attrs = root_attributes(case, case.title, sources, verdict, caught, computed.textures.drawn)
     return result

@@ -9,7 +9,7 @@ from typing import Any
 
 from asperity import __version__
 from asperity.arguments import shown
-from asperity.case import PRESETS, any_case, cases, scene, toml
+from asperity.case import any_case, cases, scene, toml
 from asperity.case.documented import allowed_in
 from asperity.errors import InputError
 from asperity.files import amount
@@ -38,7 +38,9 @@ def page_text() -> str:
 @cache
 def forms() -> dict[str, dict[str, Any]]:
     """Make the form of each kind of bodies that roll: what it is, and its sections with their keys."""
-    return {name: _form(model) for name in PRESETS if issubclass(model := cases.case_class(name), scene.Case)}
+    return {
+        name: _form(model) for name, model in cases.case_classes().items() if issubclass(model, scene.Case)
+    }
 
 
 def _form(model: type[scene.Case]) -> dict[str, Any]:

@@ -7,16 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from asperity import extensions
 from asperity.arguments import require, shown, whole
 from asperity.errors import InputError, MissingPointsWarning, percent
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, guards, iso_25178, matlab, text
 from asperity.surfaces.readers.belief import judge_sizes
+from asperity.surfaces.readers.formats import SurfaceFormat
 from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.libraries import CLASSIC, read_apart
 from asperity.written_numbers import count_of
 
-__all__ = ["read_all", "read_surface"]
+__all__ = ["SurfaceFormat", "read_all", "read_surface"]
 
 Reader = Callable[[Path, Hints], list[guards.Surface]]
 
@@ -33,6 +35,18 @@ OWN: dict[str, tuple[str, Reader]] = {
 }
 TEXT: tuple[str, Reader] = "text", text.read
 OTHER: tuple[str, Reader] = "known instrument", read_apart("read_instrument", "known instrument")
+
+
+def _installed(name: str, format: Any) -> SurfaceFormat:
+    """A format that a package beside this one reads."""
+    allowed = "an asperity.surfaces.readers.SurfaceFormat"
+    require(isinstance(format, SurfaceFormat), f'reader "{name}"', shown(format), allowed)
+    assert isinstance(format, SurfaceFormat)
+    taken = sorted((OWN.keys() | READ_AS_TEXT) & set(format.extensions))
+    remedy = "Say what its files begin with."
+    known = bool(format.begins) or not taken
+    require(known, f'reader "{name}"', ", ".join(taken), "extensions of its own", remedy)
+    return format
 
 
 def read_surface(
@@ -145,17 +159,25 @@ def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
     file = guards.readable_file(path)
     with file.open("rb") as stream:
         head = stream.read(32)
-    extension, content = file.suffix.lower().replace(".nc4", ".nc"), _by_content(file, head)
+    extension = file.suffix.lower().replace(".nc4", ".nc")
+    installed = extensions.taken(extensions.READERS, _installed).values()
+    format = next((each for each in installed if each.has(extension, head)), None)
+    kind, reader = _own(file, head, extension) if format is None else (format.name, format.surfaces)
+    with guards.hostile(file.name, kind):
+        surfaces = _read_by(reader, file, hints)
+    judge_sizes(surfaces[0], hints)
+    return surfaces
+
+
+def _own(file: Path, head: bytes, extension: str) -> tuple[str, Reader]:
+    """What a file that begins so is called, and what reads it, of the formats that this program knows."""
+    content = _by_content(file, head)
     if extension in OWN:
         received, allowed = f"a file that starts with {head[:8]!r}", f"a {OWN[extension][0]} file"
         remedy = "Export it again, or correct the extension."
         require(content == extension, file.name, received, allowed, remedy)
     as_text = extension in READ_AS_TEXT and (extension not in MAY_BE_BINARY or text.holds_text(file))
-    kind, reader = OWN[content] if content else TEXT if as_text else OTHER
-    with guards.hostile(file.name, kind):
-        surfaces = _read_by(reader, file, hints)
-    judge_sizes(surfaces[0], hints)
-    return surfaces
+    return OWN[content] if content else TEXT if as_text else OTHER
 
 
 def _read_by(reader: Reader, file: Path, hints: Hints) -> list[guards.Surface]:
