@@ -35,7 +35,7 @@ def test_imports_point_one_way():
 LATE = [f"scipy.{name}" for name in ("optimize", "interpolate", "ndimage", "signal", "stats", "sparse")]
 WAITING = {
     "from asperity.cli import main; main(['--help'], standalone_mode=False)": [
-        "numpy", "numba", "scipy", "xarray", "matplotlib", "pint", "pydantic", "rich", "jinja2", "starlette",
+        "numpy", "numba", "scipy", "xarray", "matplotlib", "pydantic", "rich", "jinja2", "starlette",
         "uvicorn",
     ],
     "import asperity.laws, asperity.case.scene, asperity.case.beam": [

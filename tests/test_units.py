@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from asperity.errors import InputError
-from asperity.units import _OTHERS, _PREFIXED, _PREFIXES, factor, quantity
+from asperity.unit_table import BASE, UNITS, scale_of
+from asperity.units import factor, quantity
 
 READ = [
     (0.025, "m", ["25 mm", "25mm"]),
@@ -109,17 +110,45 @@ def test_messages(text, dimension, message):
     assert message in str(caught.value)
 
 
-@pytest.mark.parametrize("dimension", _PREFIXED)
-def test_usual_units_are_those_of_the_unit_library(dimension):
+OTHERWISE = {"gramme", "degC", "°C", "celsius", "dB", "decibel", "Np", "neper", "rayl"}
+"""Names that the library lacks, or of which it makes scales with a zero of their own, or logarithms."""
+SHADOWED = {"mcd", "mcc"}
+"""Millicandela and thousandths of a cubic centimetre, which the library takes for other things."""
+PRODUCTS = (
+    "N s/m", "N/m/s", "N/m s", "kg m^2", "kg*m**2", "kN·m", "N/mm²", "m^-1", "m per s", "square meter",
+    "cubic cm", "meters squared", "kg/m^3 s^2", "W/m^2", "N mm/deg", "hours", "lbs", "min^-1",
+)  # fmt: skip
+
+
+def prefixed():
+    """Names of the table, some with prefixes."""
+    for name in sorted({name for names in UNITS for name in names.split()} - OTHERWISE):
+        yield name
+        if name not in "%°µμ mmHg":
+            yield from (each for prefix in ("m", "k", "µ", "mega") if (each := prefix + name) not in SHADOWED)
+
+
+def test_units_and_their_products_are_what_the_library_pint_says_they_are():
+    """To the digits of its sums of floats: those of the table are exact."""
     library = pint.UnitRegistry()
-    for unit in (dimension, *(prefix + dimension for prefix in _PREFIXES)):
-        expected = library.Quantity(1.0, unit).to(dimension).magnitude
-        assert factor(unit, dimension) == pytest.approx(
-            expected, rel=1e-15, abs=0.0
-        )  # its digits, not its last bit
+    for unit in (*prefixed(), *PRODUCTS):
+        found = scale_of(unit)
+        in_base = "*".join(f"{base}**{n}" for base, n in zip(BASE, found.exponents, strict=True) if n)
+        expected = library.Quantity(1.0, unit.replace("·", "*")).to(in_base or "dimensionless")
+        assert found.value == pytest.approx(expected.magnitude, rel=1e-12), unit
 
 
-@pytest.mark.parametrize(("unit", "dimension"), _OTHERS)
-def test_other_units_that_need_no_library_are_its_units(unit, dimension):
-    expected = pint.UnitRegistry().Quantity(1.0, unit).to(dimension).magnitude
-    assert factor(unit, dimension) == pytest.approx(expected, rel=1e-15)
+@pytest.mark.parametrize(
+    "unit", ["m//s", "per m", "/m", "m/", "square", "m square", "furlongz", "Pas", "m%", "squared m"]
+)
+def test_what_is_no_unit_has_no_scale(unit):
+    assert scale_of(unit) is None
+
+
+def test_an_angle_is_a_number_but_for_frequencies_which_count_turns():
+    assert quantity("1 rad/s", "Hz") == pytest.approx(1.0 / (2.0 * math.pi), rel=1e-15)
+    assert quantity("360 deg/s", "Hz") == pytest.approx(1.0, rel=1e-15)
+    assert quantity("6 krpm", "Hz") == pytest.approx(100.0, rel=1e-15)
+    assert quantity("5 kN m/rad", "N m") == 5000.0
+    assert quantity("1 turn", "rad") == pytest.approx(2.0 * math.pi, rel=1e-15)
+    assert quantity("3 dB/km", "dB/m") == 0.003

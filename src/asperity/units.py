@@ -4,15 +4,14 @@ import math
 import re
 from decimal import Decimal
 from functools import lru_cache
-from typing import Any
 
 from asperity.errors import InputError
+from asperity.unit_table import ONE, scale_of
 
 _NUMBER = re.compile(
     r"\s*+([+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][+-]?[0-9]++)?|[+-]?inf|nan)(?![0-9.,_])\s*+(.*)",
     re.IGNORECASE | re.DOTALL,
 )
-# Names, single-digit powers, products and quotients: nothing that takes the unit library long.
 _POWER = r"(?:(?:\^|\*\*)?-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"[A-Za-zµμΩ°%]+{_POWER}(?:\s*[ */·]\s*[A-Za-zµμΩ°%]+{_POWER})*")
 _IN_BRACKETS = re.compile(r"[(\[]((?:[^()\[\]]|\([^()\[\]]*\))*)[)\]]")
@@ -20,33 +19,18 @@ _NUMERATOR, _DENOMINATOR = re.compile(r"^\(([^()]*)\)(?=/)"), re.compile(r"/ ?\(
 _LONGEST = 40  # characters
 _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit have 70
 
-# What nearly every case is written in: its values need no unit library, which takes 0.3 s to be ready.
 _PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m", "N m^2")
 LEAST_NUMBER, MOST_NUMBER = 1e-3, 1e5
 """A quantity keeps its unit while its number lies between these."""
 _PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
-_OTHERS = {
-    ("pm", "m"): 1e-12,
-    ("deg", "rad"): math.pi / 180.0,
-    ("h", "s"): 3600.0,
-    ("min", "s"): 60.0,
-    ("t", "kg"): 1000.0,
-}
 _TURNS = ("1/min", "rpm", "r/min", "min^-1", "min⁻¹")
-"""Turns, where Hz are meant: the unit library would count radians."""
+"""Turns, where Hz are meant."""
 
 
 _WRITTEN = (
     "km/h", "mm/s", "N/mm", "kN/mm", "kg/m", "kg/m^3", "mm^2", "N s/mm", "kN s/m", "deg", "rad", "kg", "t"
 )  # fmt: skip
 """Units that people write beside SI units and their prefixes."""
-
-
-@lru_cache(maxsize=1)
-def _registry() -> Any:
-    import pint  # 0.2 s to import: only where a unit string is met
-
-    return pint.UnitRegistry()
 
 
 @lru_cache(maxsize=256)
@@ -58,27 +42,21 @@ def factor(unit: str, dimension: str) -> float:
     unit = unit.strip()
     if unit == dimension:
         return 1.0
-    if dimension in _PREFIXED and unit[:1] in _PREFIXES and unit[1:] == dimension:
-        return _PREFIXES[unit[0]]
-    if (unit, dimension) in _OTHERS:
-        return _OTHERS[unit, dimension]
     if dimension == "Hz" and unit in _TURNS:
         return 1.0 / 60.0
-    import pint
-
     allowed = f"a unit that converts to {dimension}" if dimension else "no unit"
     if "dB" in (unit, dimension):  # a level is not a multiple of a physical unit
         raise InputError("unit", repr(unit), allowed, f"Write the quantity as in '1 {dimension}'.")
     misread = unit.lower().endswith(("mph", "kph")) and len(unit) > 3  # "kmph" is no thousand miles per hour
     remedy = "Write names, '/', '*' and powers, as in 'kg/m^3'."
     if len(unit) <= _LONGEST and not misread and _UNIT.fullmatch(unit):
-        try:
-            return float(_registry().Quantity(1.0, unit.replace("·", "*")).to(dimension).magnitude)
-        except pint.DimensionalityError:
+        found, wanted = scale_of(unit), scale_of(dimension) or ONE
+        if found is not None and found.converts(wanted):
+            return (found.of_turns() if dimension == "Hz" else found).value
+        remedy = "Check its spelling."
+        if found is not None:
             such = f"Write the quantity with such a unit, as in '1 {dimension}'."
             remedy = such if dimension else "Leave the unit away."
-        except Exception:  # pint raises errors of many kinds on malformed text
-            remedy = "Check its spelling."
     raise InputError("unit", repr(unit[:_LONGEST]), allowed, _meant(unit, dimension) or remedy)
 
 
@@ -92,10 +70,9 @@ def _meant(unit: str, dimension: str) -> str:
 
 
 def _converts(unit: str, dimension: str) -> bool:
-    """Whether a unit is one of a dimension; the unit library knows another kind of levels."""
-    if "dB" in dimension:
-        return unit == dimension
-    return bool(_registry().Quantity(1.0, unit).is_compatible_with(dimension))
+    """Whether a unit is one of a dimension."""
+    found = scale_of(unit)
+    return found is not None and found.converts(scale_of(dimension) or ONE)
 
 
 def _letters(unit: str) -> str:
