@@ -32,6 +32,8 @@ BALL = COARSE | {
     "settling": "0 s",
     "contact": COARSE["contact"] | {"samples": 2, "sample_length": "3 mm"},
 }
+LINE = BALL | {"laws": ["hertz"], "surface": {"spectrum": "iso3095", "level": "-30 dB"}}
+"""The same on a line, of which no sample is pressed."""
 WHEEL = changed(
     "wheel-on-rail",
     laws=["shifted", "linear"],
@@ -170,7 +172,7 @@ class TestNumbers:
     def test_a_setting_that_is_too_coarse_is_named(self):
         """A time step of six points per period of the highest frequency."""
         coarse = {"laws": ["hertz", "linear"], "numerics": COARSE["numerics"] | {"time_step": "80 us"}}
-        verdict = asperity.run(BALL | coarse, converge=True)["convergence"].attrs["verdict"]
+        verdict = asperity.run(LINE | coarse, converge=True)["convergence"].attrs["verdict"]
         expected = "Of its settings, time step (80 µs → 40 µs) changes the levels of hertz most"
         assert verdict.startswith(expected)
 
@@ -198,8 +200,7 @@ class TestLimits:
         assert 0.0 < abs(told(found, "stiffness_change")["window"]) < 0.1
 
     def test_a_line_has_no_samples(self):
-        case = BALL | {"laws": ["hertz"], "surface": {"spectrum": "iso3095", "level": "-30 dB"}}
-        result = asperity.run(case, converge=True)
+        result = asperity.run(LINE, converge=True)
         reason = "nothing is reduced from samples here"
         limited = [name for name, limit in told(result, "limit").items() if limit == reason]
         assert limited == ["window", "samples", "approaches"]
@@ -239,9 +240,11 @@ class TestLimits:
 
 
 class TestKept:
-    def test_an_interrupted_convergence_goes_on_where_it_was(self, own_cache):
+    def test_an_interrupted_convergence_goes_on_where_it_was(self, own_cache, monkeypatch):
         prepared = case_of(BALL)
         result = asperity.run(prepared)
+        some = [settings(prepared)[name] for name in ("grid", "window", "samples")]
+        monkeypatch.setattr(converging, "settings_for", lambda *_: some)
 
         def messages(stop="never"):
             seen = []
@@ -279,7 +282,7 @@ class TestKept:
 @SILENT
 def test_the_command_line_does_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "case.toml").write_text(as_case(BALL | {"laws": ["hertz"]}).to_toml())
+    (tmp_path / "case.toml").write_text(as_case(LINE).to_toml())
     words = ("run", "case.toml", "--converge", "-o", "out", "--no-report")
     assert "Of its settings" in call(*words).stdout
     result = asperity.open_result("out")
