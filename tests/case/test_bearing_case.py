@@ -81,7 +81,10 @@ test_what_no_raceway_has_is_refused = refusals(
     ("keys", "told"),
     [
         ({"speed": "1797 Hz"}, r'speed = 1797 Hz is 107820 1/min, 4.2·10⁶.* Then write "1797 1/min"'),
-        ({"fault": PIT | {"shape": "spall", "length": "25 mm"}}, r"raceway is 25 mm long, .* are 16\.36 mm"),
+        (
+            {"fault": PIT | {"shape": "spall", "length": "17 mm", "width": "1 mm"}},
+            r"raceway is 17 mm long, .* are 16\.36 mm",
+        ),
         ({"outer_raceway": {"waves": [4], "amplitudes": ["50 um"]}}, r"Waves all around of ± 50 µm are"),
         ({"bearing": {"name": "6205", "clearance": "-100 um"}}, r"-100 µm alone presses .* a looser fit"),
         ({"bearing": {"name": "6205", "clearance": "-20 um"}}, r"-20 µm presses every .* GPa, .* unit right"),
