@@ -25,7 +25,7 @@ WHEEL = {
     "settling": "20 ms",
     "surface": {"spectrum": "iso3095"},
     "wheel": {"roughness": "disc", "section": "rigid"},
-    "contact": {"spacing": "1 mm", "samples": 2, "sample_length": "60 mm"},
+    "contact": {"spacing": "1 mm", "samples": 2, "sample_length": "0.1 m"},
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
     "sideways": {"contact_place": "5 mm"},
 }
@@ -36,10 +36,10 @@ HEARD = {
     "surface": {"spectrum": "iso3095"},
     "wheel": {"roughness": "disc", "section": "rigid"},
     "track": {"name": "uic60"},
-    "contact": {"spacing": "1 mm"},
+    "contact": {"spacing": "1 mm", "samples": 2, "sample_length": "0.1 m"},
     "numerics": {"highest_frequency": "4 kHz", "kernel": "scatter"},
 }
-"""Keys of a wheel on a rail whose sound is looked at."""
+"""Keys of a wheel on a rail whose sound is looked at: of a linear contact, which no sample changes."""
 BODIES = ON_BEAM | {
     "kind": "bodies",
     "over": "beam",

@@ -42,7 +42,7 @@ ON_TRACK = {
     "speed": SPEED, "start": 2.0, "duration": 0.3, "settling": 0.06, "laws": ["linear", "hertz"],
     "track": {"name": "nordborg", "points": [4.0]},
     "numerics": {"time_step": 0.5e-3 / SPEED, "highest_frequency": 2500, "kernel": "scatter"},
-    "contact": {"spacing": 0.5e-3, "window": 20e-3},
+    "contact": {"spacing": 0.5e-3, "window": 20e-3, "samples": 2, "sample_length": 60e-3},
     "surface": {"line": Profile(LINE, 0.5e-3), "continuation": "mirror"},
 }  # fmt: skip
 WHEEL = {"radius": 0.46, "mass": 600, "load": 65e3, "transverse_radius": "inf"}
