@@ -7,13 +7,13 @@ import numpy as np
 from asperity.arguments import Array
 
 COEFFICIENTS = {
-    "ball": (-2.44, 1.02, 0.76, 0.10, 0.00),
-    "blows": (2.25, 0.00, 0.00, 0.00, 0.59),
-    "elsewhere": (-0.51, 0.56, 0.68, 0.00, 0.50),
-    "fault": (0.09, 0.81, 0.37, 0.49, 0.42),
-    "fault, shaft not found": (-1.49, 0.91, 0.00, 1.45, 0.61),
+    "ball": (-2.26, 0.61, 1.28, 0.26, 0.00),
+    "blows": (1.34, 0.00, 0.00, 0.00, 0.96),
+    "elsewhere": (-0.78, 0.51, 0.78, 0.00, 0.52),
+    "fault": (0.32, 0.96, 0.47, 0.41, 0.39),
+    "fault, shaft not found": (-1.07, 0.88, 0.16, 1.32, 0.63),
     "nothing": (2.44, 0.00, 0.00, 0.00, 0.00),
-    "sound": (3.10, 0.00, 0.00, 0.00, 0.00),
+    "sound": (3.06, 0.00, 0.00, 0.00, 0.00),
 }
 """Log-odds by kind of verdict: a constant, and slopes over the `Basis.features`.
 
