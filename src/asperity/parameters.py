@@ -401,8 +401,6 @@ class ListOf(ValueKind):
 
 GIVEN = "given in the case"
 """Source of a material that states none."""
-
-
 _SOLIDS = "solids that roll lie between"
 _OF_A_MATERIAL: dict[str, tuple[ValueKind, str]] = {
     "name": (Text(), ""),
@@ -470,7 +468,8 @@ def outside(name: str, value: object, kind: ValueKind, within: str) -> Iterator[
         return
     low, high, reason = limits_in(within)
     unit = kind.dimension if isinstance(kind, Quantity) else ""
-    least, most = (quantity(limit, unit) if unit else float(limit) for limit in (low, high))
+    least = quantity(low, unit) if unit else float(low)
+    most = quantity(high, unit) if unit else float(high)
     if not least <= value <= most:
         received = written(value, unit, unit) if unit else f"{value:.4g}"
         yield InputError(name, received, f"{low} to {high}", f"{reason[0].upper()}{reason[1:]}.")
@@ -593,6 +592,7 @@ def checked_parameters(model: Any) -> None:
                 raise first.about(f"{name} of the {of}") from None
 
 
+@cache
 def limits_in(within: str) -> tuple[str, str, str]:
     """Limits and reason of a text as ``"1 mm to 1 km: beams lie between"``."""
     limits, _, reason = within.partition(": ")

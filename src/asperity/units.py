@@ -81,6 +81,7 @@ def _letters(unit: str) -> str:
     return re.sub(r"[^a-z0-9]", "", re.sub(r"(?<=[a-z])(per|p)(?=[a-z]$|hr?$)", "", text)).replace("hr", "h")
 
 
+@lru_cache(maxsize=1024)
 def quantity(text: str, dimension: str) -> float:
     """SI value of a quantity written with its unit, as ``"25 mm"``; ``"inf"`` needs no unit.
 

@@ -1,6 +1,7 @@
 """Cases as they are read: defaults of each kind, what follows from what is given, and the template."""
 
 import math
+import sys
 import tomllib
 
 import numpy as np
@@ -250,3 +251,35 @@ def test_parameters_are_listed_with_units_and_marked():
     }
     assert {key: (listed[key]["value"], listed[key]["is_default"]) for key in expected} == expected
     assert not {"surface.file", "surface.level", "surface.array", "beam.suspension_frequency"} & listed.keys()
+
+
+def test_reading_a_case_again_takes_few_calls():
+    """Of Python functions, those of the reader of TOML included: defaults and limits are looked at once."""
+    text = """
+kind = "wheel-on-rail"
+speed = "80 km/h"
+laws = ["areal", "linear-filtered"]
+seed = 3
+start = "1 m"
+duration = "0.5 s"
+settling = "0.1 s"
+surface = {rms = "5 um", hurst = 0.8, longest = "60 mm", shortest = "2 mm"}
+contact = {spacing = "0.5 mm", window = "30 mm", samples = 4}
+numerics = {highest_frequency = "5 kHz", rtol = 1e-6}
+wheel = {radius = "0.46 m", mass = "600 kg", load = "65 kN"}
+track = {pad_stiffness = "300 MN/m", sleeper_spacing = "0.6 m", ballast_stiffness = "100 MN/m"}
+"""
+    parse_case(text)
+    calls = 0
+
+    def count(frame, event, argument):
+        nonlocal calls
+        calls += event == "call"
+
+    before = sys.getprofile()
+    sys.setprofile(count)
+    try:
+        parse_case(text)
+    finally:
+        sys.setprofile(before)
+    assert 500 < calls < 2000

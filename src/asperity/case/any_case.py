@@ -205,11 +205,12 @@ _law_sections: dict[str, tuple[Mapping[str, Key], Inner]] = {}
 
 def _sections_of_laws() -> dict[str, Inner]:
     """Sections of laws that have keys of their own, by name; each is made once."""
-    for name, keys in law_keys().items():
+    keyed = law_keys()
+    for name, keys in keyed.items():
         if _law_sections.get(name, (None,))[0] is not keys:
             model = type("LawKeys", (Section,), {"__doc__": f"Keys of the law {name}."}, parameters=keys)
             _law_sections[name] = keys, Inner(model, f"keys of the law {name}")
-    return {name: _law_sections[name][1] for name in law_keys()}
+    return {name: _law_sections[name][1] for name in keyed}
 
 
 class AnyCase(Section):

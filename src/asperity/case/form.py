@@ -159,7 +159,7 @@ class Section:
             given = self.prepared(numbered(given))
         except Problems as problems:
             return problems.errors
-        held["given_names"] = frozenset(name for name, value in given.items() if value is not None)
+        held["given_names"] = frozenset([name for name, value in given.items() if value is not None])
         for name, key in self.keys.items():
             try:
                 left_out = name not in given or (given[name] is None and key.default is None)
@@ -168,8 +168,10 @@ class Section:
                 errors.append(error.about(name))
             except Problems as problems:
                 errors += [_below(name, error) for error in problems.errors]
-        several = {name: inner for name in given if (inner := self.section_at(name))}
-        for name, inner in {**self.sections(), **several}.items():
+        sections = self.sections()
+        others = [name for name in given if name not in self.keys and name not in sections]
+        several = {name: inner for name in others if (inner := self.section_at(name))}
+        for name, inner in {**sections, **several}.items():
             value = given.get(name)
             value = value.given() if isinstance(value, Section) else value
             made = held[name] = inner.model.__new__(inner.model)
@@ -180,15 +182,14 @@ class Section:
             if (number := _NUMBER.search(name)) and (before := int(number[1]) - 1) > 1:
                 gap = name.replace(number[0], f"[{before}]")
                 errors += [] if gap in given else [InputError(name, f"one without {gap}", "one by one")]
-        unknown = [name for name in given if name not in {*self.keys, *self.sections(), *several}]
-        errors += [_unknown(name, type(self), whole, title) for name in unknown]
+        errors += [_unknown(name, type(self), whole, title) for name in others if name not in several]
         return errors or self._inconsistent()
 
     def _inconsistent(self) -> list[InputError]:
         """What is wrong with keys that are right one by one; what follows from others is filled in before."""
         implausible = list[InputError]()
-        for name, key in self.keys.items():
-            value = getattr(self, name)
+        for name in [name for name in self.keys if name in self.given_names and self.keys[name].within]:
+            key, value = self.keys[name], getattr(self, name)
             for each in value if isinstance(value, tuple) else (value,):
                 implausible += outside(name, each, key.one, key.within)
         if implausible:

@@ -55,16 +55,16 @@ def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str,
 
 def refuse_vast(data: Mapping[str, Any], source: str) -> None:
     """Refuse what would take long to check and fill screens with errors."""
-    level: list[Any] = [data]  # one depth after the other: nothing here may recurse
+    level: list[Any] = [dict(data)]  # one depth after the other: nothing here may recurse
     count = 0
     for _ in range(DEEPEST):
-        inner = [item for each in level for item in (each.values() if isinstance(each, Mapping) else each)]
+        inner = [item for each in level for item in (each.values() if isinstance(each, dict) else each)]
         count += len(inner)
         if count > MOST_VALUES:
             allowed = f"a case with at most {MOST_VALUES}"
             remedy = "Keep heights in a file of their own."
             raise InputError(source, f"{count} keys and values", allowed, remedy)
-        level = [item for item in inner if isinstance(item, Mapping | list | tuple)]
+        level = [item for item in inner if isinstance(item, dict | list | tuple)]
     if level:
         raise _too_deep(source)
 

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -46,38 +46,10 @@ class Hertz:
         for name in ("modulus", "radius_x", "radius_y"):
             positive(f"Hertz {name}", getattr(self, name))
 
-    @cached_property
+    @property
     def _shape(self) -> tuple[float, float, float]:
         """Axis ratio b/a (≤ 1), K(e), and (K(e) − E(e))/e²."""
-        ratio = min(self.radius_x, self.radius_y) / max(self.radius_x, self.radius_y)
-
-        def integrals(axis_ratio: float) -> tuple[float, float]:
-            m1 = axis_ratio**2
-            m = 1.0 - m1
-            if m < 1e-7:  # series: K and E cancel
-                return 0.5 * math.pi * (1.0 + 0.25 * m), 0.25 * math.pi * (1.0 + 0.375 * m)
-            # not where contacts are only compiled
-            from scipy.special import ellipe, ellipkm1
-
-            k = float(ellipkm1(m1))
-            return k, (k - float(ellipe(m))) / m
-
-        def mismatch(axis_ratio: float) -> float:
-            # curvature ratio A/B = (K − E) / ((a/b)² E − K) in complete elliptic integrals
-            m1 = axis_ratio**2
-            k, d = integrals(axis_ratio)
-            m = 1.0 - m1
-            # (E − m1 K)/m = K − d
-            return m1 * d / (k - d) - ratio if m > 0.0 else 1.0 - ratio
-
-        axis_ratio = 1.0
-        if ratio <= 1.0 - 1e-12:
-            low, high = math.log(1e-9), 0.0
-            for _ in range(HALVINGS):
-                middle = 0.5 * (low + high)
-                low, high = (low, middle) if mismatch(math.exp(middle)) > 0.0 else (middle, high)
-            axis_ratio = math.exp(0.5 * (low + high))
-        return (axis_ratio, *integrals(axis_ratio))
+        return _shape_of(min(self.radius_x, self.radius_y) / max(self.radius_x, self.radius_y))
 
     @cached_property
     def stiffness_constant(self) -> float:
@@ -167,6 +139,39 @@ class Hertz:
             return 0.0
         a, b = self.semi_axes(approach)
         return 1.5 * self.force(approach) / (math.pi * a * b)
+
+
+@lru_cache(maxsize=1024)
+def _shape_of(ratio: float) -> tuple[float, float, float]:
+    """Axis ratio b/a (≤ 1), K(e), and (K(e) − E(e))/e² of a ratio of radii (≤ 1)."""
+
+    def integrals(axis_ratio: float) -> tuple[float, float]:
+        m1 = axis_ratio**2
+        m = 1.0 - m1
+        if m < 1e-7:  # series: K and E cancel
+            return 0.5 * math.pi * (1.0 + 0.25 * m), 0.25 * math.pi * (1.0 + 0.375 * m)
+        # not where contacts are only compiled
+        from scipy.special import ellipe, ellipkm1
+
+        k = float(ellipkm1(m1))
+        return k, (k - float(ellipe(m))) / m
+
+    def mismatch(axis_ratio: float) -> float:
+        # curvature ratio A/B = (K − E) / ((a/b)² E − K) in complete elliptic integrals
+        m1 = axis_ratio**2
+        k, d = integrals(axis_ratio)
+        m = 1.0 - m1
+        # (E − m1 K)/m = K − d
+        return m1 * d / (k - d) - ratio if m > 0.0 else 1.0 - ratio
+
+    axis_ratio = 1.0
+    if ratio <= 1.0 - 1e-12:
+        low, high = math.log(1e-9), 0.0
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if mismatch(math.exp(middle)) > 0.0 else (middle, high)
+        axis_ratio = math.exp(0.5 * (low + high))
+    return (axis_ratio, *integrals(axis_ratio))
 
 
 SLENDER = (0.1, 1.0 / 3.0)

@@ -53,6 +53,7 @@ BUILT_IN = (
 
 _specs: dict[str, LawSpec] = {}  # of laws and variants
 _families: dict[str, tuple[str, ...]] = {}  # names of each law and its variants
+_keys: dict[str, Mapping[str, Key]] = {}  # of the laws that have some of their own
 
 
 def _installed() -> tuple[str, ...]:
@@ -113,8 +114,8 @@ def built(materials: Materials) -> Law:
 
 def law_keys() -> dict[str, Mapping[str, Key]]:
     """Keys of the laws that have some of their own, by the name of the law and by theirs."""
-    known = _known()
-    return {name: known[name].parameters for name in _families if known[name].parameters}
+    _installed()
+    return _keys
 
 
 def register(law: LawSpec) -> None:
@@ -161,6 +162,8 @@ def _add(law: LawSpec) -> None:
         require(spec.role not in taken, f"role of law {spec.name}", received, allowed)
     _specs.update({spec.name: spec for spec in law.family})
     _families[law.name] = tuple(spec.name for spec in law.family)
+    if law.parameters:
+        _keys[law.name] = law.parameters
 
 
 def comes_with_the_program(name: str) -> bool:
@@ -174,6 +177,7 @@ def unregister(name: str) -> None:
     own = [law for law in _families if law not in _installed()]
     registered = ", ".join(f'"{law}"' for law in own) or "none is"
     require(name in own, "law", shown(name), f"a law that was registered ({registered})")
+    _keys.pop(name, None)
     for member in _families.pop(name):
         del _specs[member]
 
