@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.io import wavfile
 
+import asperity
 from asperity.case.cases import as_case
 from command_line import call, words_of
 from faulty_signals import faulty_signal
@@ -289,5 +290,14 @@ def test_a_bearing_is_checked_run_reported_drawn_and_heard():
     call("figures", "out", "--format", "png", "load_zone", "envelope_spectrum")
     call("listen", "out")
     assert [path.name for path in Path("out/sounds").glob("*.wav")] == ["ring_acceleration-hertz-0_rad.wav"]
-    refused = call("compare", "out", "out/run.nc", code=2).stderr
-    assert "runs to compare: received runs of bearings; allowed: runs of bodies that roll" in refused
+    tree = asperity.open_result("out")
+    tree["bearing"]["band_velocity"] = 2.0 * tree["bearing/band_velocity"]
+    tree.attrs["seed"] = 2
+    asperity.save(tree, "twice/run.nc")
+    call("compare", "out", "twice", "-o", "beside")
+    page = Path("beside/comparison.html").read_text().replace("\u00a0", " ")
+    assert "Velocities in the bands of ISO 15242-2" in page
+    assert page.count("+6.0") >= 3
+    rows = [row for row in Path("beside/comparison.csv").read_text().splitlines() if "band_velocity" in row]
+    assert rows[0].startswith("velocity,band_velocity,hertz,50 to 300 Hz,m/s,")
+    assert float(rows[0].split(",")[-1]) == pytest.approx(20.0 * np.log10(2.0))

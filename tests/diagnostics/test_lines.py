@@ -9,6 +9,7 @@ import pytest
 from asperity.diagnostics import (
     ISO_BANDS,
     amplitude_spectrum,
+    band_deviations,
     band_velocities,
     envelope_spectrum,
     explained_lines,
@@ -189,3 +190,19 @@ def test_harmonics_tell_the_deviation_the_more_closely():
     amplitude[[100, 201, 301, 402, 502]] = 1.0
     found = find_lines((frequency, amplitude), 100.0, slip=0.02, harmonics=5)
     assert 100.0 * (1.0 + found.deviation) == pytest.approx(100.4, rel=1e-9)
+
+
+def test_how_sure_a_velocity_in_a_band_is_follows_bandwidth_and_time():
+    """White acceleration: velocity as 1/f², effective bandwidth (∫S)²/∫S²; a line in all parts is sure."""
+    rate, time, draws = 12_000.0, 4.0, np.random.default_rng(7)
+    bands = ((300.0, 1800.0), (1800.0, 5000.0), (1800.0, 10_000.0))
+    found = [band_deviations(draws.standard_normal(int(rate * time)), rate, bands) for _ in range(12)]
+    assert np.isnan(found).all(axis=0).tolist() == [False, False, True]  # beyond the sampling
+    low, high = np.array(bands[:2]).T
+    width = (1.0 / low - 1.0 / high) ** 2 / ((low**-3.0 - high**-3.0) / 3.0)
+    expected = 0.5 / np.sqrt(width * time)
+    np.testing.assert_allclose(
+        np.mean(found, axis=0)[:2], expected, rtol=0.25
+    )  # of eight parts, twelve times
+    line = np.sin(2.0 * np.pi * 500.0 * np.arange(int(rate * time)) / rate)
+    assert band_deviations(line, rate, bands)[0] < 1e-6

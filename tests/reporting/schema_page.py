@@ -25,7 +25,8 @@ version is refused, with what to do. Every variable has `units` and `long_name`;
 (NaN), `missing` says why. "Not in all" says which results have what not all have.
 """
 OF_BEARINGS = """A run of a ball bearing holds these and, of the above, the attributes of the root and of
-`scenario`, `contact: validity`, laws, time and frequency, and the energy balance.
+`scenario`, `contact: validity`, laws, time and frequency, force levels in bands with how sure they are, and
+the energy balance.
 """
 
 

@@ -108,7 +108,7 @@ def test_a_bearing_writes_and_draws_what_its_schema_says(runs):
     assert_as_declared(tree, [*OWN, *ENTRIES], OWN)
     assert {fact.name for fact in FACTS} == set(tree["bearing"].attrs)
     shown = [part.name for chapter in CHAPTERS if chapter.name in OF_BEARINGS for part in chapter.figures]
-    assert [part.name for part in figures_of(tree)] == shown
+    assert [part.name for part in figures_of(tree)] == [*shown, "force_bands"]
     assert "Diamond: the fault of the outer raceway." in figures_of(tree)[0].caption
 
 

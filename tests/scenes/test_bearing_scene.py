@@ -430,3 +430,23 @@ def test_direct_in_a_bearing_that_was_stopped_goes_on_to_the_last_bit(monkeypatc
     assert left < steps[0] <= left + 8 < max(steps)  # not from the start
     for name in ("inner_force", "outer_force", "ball_motion", "inner_motion", "acceleration"):
         np.testing.assert_array_equal(getattr(resumed, name), getattr(whole, name))
+
+
+def test_levels_of_a_bearing_hold_the_energy_of_its_forces_and_its_acceleration(runs):
+    """Bands together have the mean square of all lines within them, but for the bursts of a short record."""
+    tree = runs(BEARING)
+    found, moved = group(tree, "spectra"), group(tree, "rolling")
+    begin, end = found["band"].values[[0, -1]] * 10.0 ** np.array([-0.05, 0.05])
+    forces = np.concatenate([moved[f"{ring}_force"].values[0] for ring in ("inner", "outer")])
+    for records, level in (
+        (forces, found["force_level"].values[0]),
+        (moved["ring_acceleration"].values[0] / 1e-6, found["ring_acceleration_level"].values[0, 0]),
+    ):
+        window = np.sqrt(8.0 / 3.0) * np.hanning(records.shape[1])
+        lines = np.fft.rfft(window * (records - records.mean(axis=1, keepdims=True)))
+        frequency = np.fft.rfftfreq(records.shape[1], 1.0 / RATE)
+        within = (frequency > begin) & (frequency < end)
+        square = 2.0 * np.mean(np.sum(np.abs(lines[:, within]) ** 2, axis=1)) / records.shape[1] ** 2
+        assert 10.0 * np.log10(np.sum(10.0 ** (level / 10.0)) / square) == pytest.approx(0.0, abs=2.0)
+    deviation = group(tree)["band_velocity_deviation"].values
+    assert ((deviation > 0.0) & (deviation < 0.5)).all()

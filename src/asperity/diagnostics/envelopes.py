@@ -1,8 +1,10 @@
 """Spectra of a bearing's signal: its lines, those of its envelope, and velocities in bands."""
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
+from scipy import fft
 
 from asperity.arguments import Array, ArrayLike, finite_array, one_of, positive, require
 from asperity.spectra import band_energies, psd
@@ -206,3 +208,44 @@ def band_velocities(
     low, high = np.array(bands, dtype=float).T
     rms = np.sqrt(np.maximum(band_energies(frequency, density, low, high), 0.0))
     return np.where(high <= 0.5 * rate, rms, np.nan)
+
+
+PARTS = 8
+"""Parts of a record by which it is known how sure a velocity in a band is."""
+
+
+def band_deviations(
+    acceleration: ArrayLike, rate: float, bands: tuple[tuple[float, float], ...] = ISO_BANDS
+) -> Array:
+    """Standard deviation of the rms velocity in bands by the chance of one record, over it.
+
+    The mean square of so many parts of the record scatters about that of all of it. Lines that beat within
+    a part, as those of waviness do, do not scatter; what is drawn anew with another seed is not in it.
+
+    Parameters
+    ----------
+    acceleration : array_like (n,)
+        m/s².
+    rate : float
+        Samples per second, Hz.
+    bands : tuple of (float, float)
+        Edges, Hz.
+
+    Returns
+    -------
+    ndarray (bands,)
+        NaN where the sampling does not reach the upper edge.
+    """
+    values, rate = checked_signal(acceleration, rate)
+    spectrum = fft.rfft(values - values.mean())
+    frequency = fft.rfftfreq(len(values), 1.0 / rate)
+    velocity = spectrum / (2j * np.pi * np.maximum(frequency, frequency[1]))
+    found = np.full(len(bands), np.nan)
+    for n, (low, high) in enumerate(bands):
+        within = (frequency >= low) & (frequency < high)
+        squares = fft.irfft(velocity * within, len(values)) ** 2
+        means = squares[: len(values) // PARTS * PARTS].reshape(PARTS, -1).mean(axis=1)
+        if high <= 0.5 * rate:
+            # the rms varies by half of what its square does
+            found[n] = 0.5 * means.std(ddof=1) / math.sqrt(PARTS) / means.mean()
+    return found

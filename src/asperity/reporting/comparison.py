@@ -10,7 +10,7 @@ import xarray
 
 from asperity.reporting import chart, data
 from asperity.results import variable
-from asperity.schema import Entry, contact, provenance, rolling, spectra
+from asperity.schema import Entry, bearing, contact, provenance, rolling, spectra
 from asperity.spectra import a_weighted_total, level_of
 
 POINTS_PER_DECADE = 40
@@ -33,7 +33,7 @@ OF_FORCE: Mapping[str, tuple[str, Entry, Callable[[Any], Any]]] = {
 _WORKING = (contact.WORKING_LOAD, contact.WORKING_APPROACH, contact.WORKING_STIFFNESS)
 OF_CONTACT = (*_WORKING, contact.CONTACT_AREA_RATIO)
 """Attributes of the reduced contact that are compared."""
-RATIOS = (contact.WORKING_STIFFNESS.name, "stiffness")
+RATIOS = (contact.WORKING_STIFFNESS.name, "stiffness", bearing.BAND_VELOCITY.name)
 """Quantities of which 20 lg of the ratio is told in place of the difference."""
 Variables = dict[str, xarray.Variable]
 Curve = tuple[chart.Numbers, chart.Numbers]
@@ -48,8 +48,8 @@ class NamedRun:
 
     @property
     def laws(self) -> list[str]:
-        """Laws that have a force, the main one first."""
-        return data.laws(self.tree, rolling.CONTACT_FORCE)
+        """Laws that have a force, or its levels, the main one first."""
+        return data.laws(self.tree, rolling.CONTACT_FORCE) or data.laws(self.tree, spectra.FORCE_LEVEL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,6 +174,10 @@ def _of_run(run: NamedRun, levels: Sequence[Entry], *, main: bool) -> xarray.Dat
     for of in OF_CONTACT:
         number = data.number(tree, of)
         add(of.name, xarray.DataArray(np.nan if number is None else number), of.units, of.meaning)
+    if data.present(tree, bearing.BAND_VELOCITY):
+        velocity = data.variable_of(tree, bearing.BAND_VELOCITY).isel({bearing.SENSOR.name: 0})
+        meaning = f"{bearing.BAND_VELOCITY.long_name}, first sensor"
+        add(bearing.BAND_VELOCITY.name, velocity, bearing.BAND_VELOCITY.units, meaning)
     if data.present(tree, contact.APPROACH, contact.STIFFNESS):
         stiffness = data.variable_of(tree, contact.STIFFNESS).dropna("approach")
         meaning = "contact stiffness F/r, mean of the samples"
@@ -200,6 +204,8 @@ def _with_differences(table: xarray.Dataset, told: Mapping[str, Mapping[str, str
     if "step" in table.dims:
         table = table.assign_coords(step=10.0 ** (table["step"] / POINTS_PER_DECADE))
         axes["step"] = ("wavenumber", "1/m", contact.WAVENUMBER.long_name)
+    if bearing.JUDGED_BAND.name in table.dims:
+        axes[bearing.JUDGED_BAND.name] = (bearing.JUDGED_BAND.name, "1", bearing.JUDGED_BAND.long_name)
     if "approach" in table.dims:
         table["stiffness"] = table["stiffness"].interpolate_na("approach")
         axes["approach"] = ("approach", "m", contact.APPROACH.long_name)

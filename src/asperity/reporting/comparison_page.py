@@ -1,6 +1,6 @@
 """The page of a comparison: its tables, its figures, and what it says in short."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +10,9 @@ from asperity.reporting import chart, data, headline, page, panels, tables
 from asperity.reporting.chart import INK, MUTED, Axis, Flags, Line, Numbers, Panel
 from asperity.reporting.comparison import DEVIATION, MAIN, OF_CONTACT, UNLIKE_RUNS, ComparedRuns
 from asperity.reporting.figure import PageFigure
-from asperity.reporting.tables import Cell, ReportTable, number_cells, text_cells
+from asperity.reporting.tables import Cell, ReportTable, in_digits, number_cells, text_cells
 from asperity.schema import contact, provenance, rolling
+from asperity.schema.bearing import BAND_VELOCITY, JUDGED_BAND
 from asperity.spectra import nominal_frequency
 from asperity.written_numbers import capital, rounded
 
@@ -45,7 +46,7 @@ def table_rows(of: ComparedRuns) -> tuple[list[str], list[list[object]]]:
 def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
     """A quantity at each place, in all runs, and its differences: those kept, or plain ones."""
     held, kept = table[name], table.get(f"{name}_difference")
-    what = {"approach": "contact", "wavenumber": "filter", "band": "level"}
+    what = {"approach": "contact", "wavenumber": "filter", "band": "level", JUDGED_BAND.name: "velocity"}
     own = [dim for dim in held.dims if dim != "run"]
     place = next((str(dim) for dim in own if dim != "law"), "")
     units, less_units = str(held.attrs["units"]), str((held if kept is None else kept).attrs["units"])
@@ -56,10 +57,17 @@ def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
             continue
         less = (found - found[0] if kept is None else kept.isel(at).values)[1:].tolist()
         law = str(table["law"].values[at["law"]]) if "law" in at else ""
-        where = f"{rounded(float(table[place][at[place]]), 6)} {table[place].attrs['units']}" if place else ""
+        where = _place(table[place][at[place]]) if place else ""
         kind = what.get(place, "contact" if not law else "level" if name.endswith("_a") else "force")
         last = ["", *[""] * len(less)] if name == DEVIATION else [less_units, *less]
         yield [kind, name, law, where, units, *found.tolist(), *last]
+
+
+def _place(at: xarray.DataArray) -> str:
+    """Where a number stands: a word, or a number with its unit."""
+    if at.dtype.kind == "U":
+        return str(at.values)
+    return f"{rounded(float(at), 6)} {at.attrs['units']}"
 
 
 def summary(of: ComparedRuns) -> str:
@@ -204,6 +212,11 @@ def _contacts(of: ComparedRuns) -> Iterator[Panel | str]:
 # --- the page
 
 
+def _known(table: xarray.Dataset, names: Iterable[str]) -> bool:
+    """Whether any run has any of some numbers."""
+    return any(bool(table[name].notnull().any()) for name in names)
+
+
 def comparison_page(of: ComparedRuns, file: str) -> str:
     """The whole page as one self-contained HTML text; `file` is the name of the CSV file beside it."""
     beside = {"all numbers (CSV)": file}
@@ -214,12 +227,16 @@ def comparison_page(of: ComparedRuns, file: str) -> str:
 
 def compared_blocks(of: ComparedRuns) -> list[page.Block]:
     """What the page shows: cases, what each run says, force, each level, contact."""
-    found: list[page.Block] = [_runs_table(of), _case_table(of), _numbers_table(of.table)]
+    found: list[page.Block] = [_runs_table(of), _case_table(of)]
+    if _known(of.table, _FORCE):
+        found.append(_numbers_table(of.table))
+    if BAND_VELOCITY.name in of.table:
+        found.append(_velocity_table(of))
     for name, title in of.levels.items():
         found += [PageFigure.of(name, capital(title), _level(of, name)), _difference_table(of, name)]
     if {"stiffness", "filter"} & set(of.table):
         found.append(PageFigure.of("stiffness_and_filter", "Stiffness and filter", _contacts(of)))
-    return [*found, _contact_table(of)]
+    return [*found, _contact_table(of)] if _known(of.table, (entry.name for entry in OF_CONTACT)) else found
 
 
 # --- tables
@@ -283,6 +300,23 @@ def _difference_table(of: ComparedRuns, name: str) -> ReportTable:
         note += f" All of {drawn} is in brackets: {ANOTHER}."
     title = f"{capital(of.levels[name])}, {over}, in dB"
     return tables.table(f"{name}_difference", title, columns, note)
+
+
+def _velocity_table(of: ComparedRuns) -> ReportTable:
+    """Velocities of bearings in the bands in which they are judged, a row for each law and run."""
+    velocity = of.table[BAND_VELOCITY.name]
+    change = of.table[f"{BAND_VELOCITY.name}_difference"].values
+    law, run = np.nonzero(np.isfinite(velocity.values).any(axis=2).T)
+    columns = {
+        "law": text_cells(of.table["law"].values[law], "name"),
+        "run": text_cells(of.table["run"].values[run], "name"),
+    }
+    for n, band in enumerate(map(str, of.table[JUDGED_BAND.name].values)):
+        columns[f"{band}, µm/s"] = number_cells(1e6 * velocity.values[run, law, n], in_digits(3))
+        less = [data.signed(each) if r else "–" for r, each in zip(run, change[run, law, n], strict=True)]
+        columns[f"{band}, over {of.names[0]}, dB"] = text_cells(less, "number")
+    note = "Rms radial velocity at the first accelerometer, and 20 lg of its ratio to the first run."
+    return tables.table("judged_bands", "Velocities in the bands of ISO 15242-2", columns, note)
 
 
 def _contact_table(of: ComparedRuns) -> ReportTable:

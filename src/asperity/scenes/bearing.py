@@ -26,6 +26,7 @@ from asperity.scenarios.problems import refuse
 from asperity.scenarios.raceway_laws import OnRaceway, ball_heights, laws_on, raceway_on
 from asperity.scenarios.raceway_limits import doubt_fault, doubt_surface
 from asperity.scenes import schema
+from asperity.scenes.bearing_levels import levels_group
 from asperity.scenes.bearing_validity import bearing_findings
 from asperity.scenes.compute import checkpoint_of
 from asperity.scenes.result import root_attributes, scenario_group
@@ -345,7 +346,8 @@ def bearing_result(
     scenario = scenario_group(case, _numerics(case, time.monotonic() - began))
     scenario[contact.VALIDITY] = [finding.row() for finding in found]
     at_rest = static_group(case.static, case.kinematics)
-    result = tree(scenario | at_rest | motion_group(case, runs) | heard | apart)
+    levels = levels_group(case, runs)
+    result = tree(scenario | at_rest | motion_group(case, runs) | heard | levels | apart)
     result.attrs = root_attributes(
         case,
         case.title,

@@ -341,12 +341,11 @@ def comparison_of(
     if len(called) != len(results) or len(set(called)) != len(called):
         raise InputError("names", shown(list(called)), "one name for each run, each once")
     runs = [NamedRun(printable(name), _tree(result)) for name, result in zip(called, results, strict=True)]
-    if not any(run.laws for run in runs):
-        remedy = "'asperity report' writes the numbers of their figures as CSV."
-        raise InputError("runs to compare", "runs of bearings", "runs of bodies that roll", remedy)
     held = {name for run in runs for group in run.tree.children.values() for name in group.data_vars}
-    levels = (e for e in KEPT if e.units.startswith("dB re") and e.dims[-1].endswith("band"))
-    return compared(runs, [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)])
+    levels = (
+        e for e in (*KEPT, *of_bearing.KEPT) if e.units.startswith("dB re") and e.dims[-1].endswith("band")
+    )
+    return compared(runs, list(dict.fromkeys([FORCE_LEVEL, *(each for each in levels if each.name in held)])))
 
 
 def _tree(result: object) -> xarray.DataTree:

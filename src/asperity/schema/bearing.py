@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from asperity.schema import Attribute, Entry
+from asperity.schema import Attribute, Entry, spectra
 
 OF_BEARING = "of a ball bearing"
 _bearing, _rolling, _spectra = (
@@ -57,6 +57,11 @@ INNER_FORCE, OUTER_FORCE = (
     _rolling(f"{ring}_force(law, ball, time)", "N", f"contact force of a ball and the {ring} ring")
     for ring in ("inner", "outer")
 )
+SPECTRA_SENSOR = _spectra("ring_sensor", "rad", _SENSOR)
+_LEVEL = "level of the acceleration of the outer ring, radially"
+ACCELERATION_LEVEL = _spectra(
+    "ring_acceleration_level(law, ring_sensor, band)", "dB re 1e-6 m/s2", _LEVEL, missing=_STILL
+)
 BALL_MOTION = _rolling("ball_motion(law, ball, time)", "m", "motion of a ball along its contacts, outwards")
 RING_MOTION = _rolling("ring_motion(law, ring, direction, time)", "m", "motion of a ring")
 RING_ACCELERATION = _rolling(
@@ -70,6 +75,10 @@ JUDGED_BAND = _bearing("judged_band", "1", "band in which bearings are judged (I
 _BEYOND = "the sampling does not reach the band"
 BAND_VELOCITY = _bearing(
     "band_velocity(law, ring_sensor, judged_band)", "m/s", "rms radial velocity in a band", missing=_BEYOND
+)
+_CHANCE = "standard deviation of a velocity by the chance of one record, over it, by parts of the record"
+BAND_DEVIATION = _bearing(
+    "band_velocity_deviation(law, ring_sensor, judged_band)", "1", _CHANCE, missing=f"{_BEYOND}, or {_STILL}"
 )
 SOURCE = _bearing("source", "1", "part that is as it is, where all others are smooth")
 ALONE_VELOCITY = _bearing(
@@ -112,6 +121,9 @@ LINES_FOUND = _bearing("lines_found(law, part)", "1", "whether its lines stand o
 FIRST = {"harmonic": 1}
 KEPT: dict[Entry, dict[str, int]] = {
     BAND_VELOCITY: {},
+    BAND_DEVIATION: {},
+    ACCELERATION_LEVEL: {},
+    spectra.FORCE_LEVEL: {},
     TONE: {},
     LINE_FREQUENCY: FIRST,
     LINE_AMPLITUDE: FIRST,

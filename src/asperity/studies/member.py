@@ -74,7 +74,8 @@ def _of_bearing(tree: xarray.DataTree) -> dict[str, Any]:
         .isel({bearing.SENSOR.name: 0}, missing_dims="ignore", drop=True)
         for entry, at in bearing.KEPT.items()
     }
-    found[bearing.BAND_VELOCITY.name] = found[bearing.BAND_VELOCITY.name].rename(judged_band="range")
+    for entry in (bearing.BAND_VELOCITY, bearing.BAND_DEVIATION):
+        found[entry.name] = found[entry.name].rename(judged_band="range")
     load = tree["bearing"].to_dataset()[bearing.BALL_LOAD.name].max(("cage_angle", "ball"))
     motion = tree["rolling"].to_dataset()
     each = [motion[entry.name].max(("ball", "time")) for entry in (bearing.INNER_FORCE, bearing.OUTER_FORCE)]

@@ -280,10 +280,18 @@ def bands_table(tree: DataTree) -> ReportTable:
         rows += [(str(alone.attrs.get("law")), f"{name} alone") for name in alone["source"].values]
         velocities = np.concatenate([velocities, alone.values])
     columns = {"law": text_cells(law for law, _ in rows), "of": text_cells(what for _, what in rows)}
-    for band, values in zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True):
+    chance = data.values(tree, bearing.BAND_DEVIATION) if data.present(tree, bearing.BAND_DEVIATION) else None
+    for n, (band, values) in enumerate(
+        zip(data.words(tree, bearing.JUDGED_BAND), 1e6 * velocities.T, strict=True)
+    ):
         columns[f"{band}, µm/s"] = number_cells(values, in_digits(3))
+        if chance is not None:
+            of_records = np.full(len(rows), np.nan)
+            of_records[: chance[..., n].size] = chance[..., n].ravel()
+            columns[f"± by chance, {band}"] = number_cells(of_records, data.in_percent)
     note = (
         "Rms radial velocity of the outer ring; alone: at the first accelerometer, all other parts smooth. "
+        "By chance: one standard deviation by eight parts of this record; another seed draws other waves. "
         "ISO 15242-2 measures it at 1800 1/min of the inner ring under an axial load, with filters whose "
         "slopes this leaves out."
     )
