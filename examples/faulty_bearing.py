@@ -13,7 +13,7 @@ import numpy as np
 from asperity import BallBearing
 from asperity.diagnostics import envelope_spectrum
 from asperity.laws import HertzLaw
-from asperity.rolling.bearing import BearingRings, roll_bearing
+from asperity.rolling import BearingRings, roll_bearing
 from asperity.scenarios.raceway_laws import raceway_laws, raceway_on
 from asperity.structures.ring import Ring
 from asperity.surfaces.faults import Fault

@@ -136,6 +136,17 @@ MODULES = {
     "asperity.errors": "Errors and warnings",
 }
 """Modules whose public names are told of, and their headings."""
+EXTENDING = (
+    "asperity.case.rolled_over.RolledOver",
+    "asperity.case.scene.Case",
+    "asperity.parameters.key",
+    "asperity.parameters.optional",
+    "asperity.reporting.figure.Chapter",
+    "asperity.scenes.observer.Observer",
+    "asperity.schema.Entry",
+    "asperity.surfaces.readers.SurfaceFormat",
+)
+"""What packages of one's own are made of."""
 
 
 def imported() -> list[str]:
@@ -165,9 +176,13 @@ def api() -> str:
         parts += [heading, "-" * len(heading), "", ".. autosummary::", "   :toctree: api", ""]
         parts += [*(f"   {name}.{each}" for each in shown), ""]
     further = [name for name in imported() if name.rpartition(".")[0] not in MODULES]
-    heading = "What pages and examples use beside these"
-    parts += [heading, "-" * len(heading), "", ".. autosummary::", "   :toctree: api", ""]
-    parts += [*(f"   {name}" for name in further), ""]
+    others = {
+        "What packages of your own are made of": EXTENDING,
+        "What pages and examples use beside these": [name for name in further if name not in EXTENDING],
+    }
+    for heading, told in others.items():
+        parts += [heading, "-" * len(heading), "", ".. autosummary::", "   :toctree: api", ""]
+        parts += [*(f"   {name}" for name in told), ""]
     return "\n".join(parts)
 
 

@@ -160,7 +160,7 @@ def test_keys_limits_and_templates_of_a_law_and_a_structure_follow(lab):
     written = template("bodies", laws=["damped"])
     assert 'viscosity = "0 N s/m"' in written
     assert "[plate]" in written
-    assert "# rectangular plate" in written.replace("# A rectangular", "# rectangular")
+    assert "# a rectangular plate on simple supports all around" in written
     assert "[damped]" not in template("bodies")
     with pytest.raises(CaseError, match=r"plate\.thickness: received 2 m; allowed: 10 um to 1 m"):
         parse_case('kind = "bodies"\nover = "plate"\nsurface.rms = "1 um"\nplate.thickness = "2 m"')

@@ -41,7 +41,8 @@ def _installed_structure(name: str, model: Any) -> Inner:
     require(right, f'structure "{name}"', shown(model), allowed)
     free = name.isidentifier() and name not in {*Bodies.keys, *Bodies.inner, *BUILT_IN}
     require(free, f'structure "{name}"', "its name", "a word that is no other key or section of a case")
-    return Inner(model, model.summary())
+    meaning = model.summary()
+    return Inner(model, f"{meaning[:1].lower()}{meaning[1:]}")
 
 
 class OverTrack(Case):
