@@ -12,7 +12,11 @@ from asperity import store
 from asperity.kernels import options
 
 MODULE = """
-from asperity.kernels.options import CALLED, INNER, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, ONCE, compiled
+
+@compiled(**ONCE)
+def in_one_place(x):
+    return x + 0.5
 
 @compiled(**INNER)
 def inlined(x):
@@ -24,7 +28,7 @@ def called(x):
 
 @compiled(**LOOP)
 def calling(x):
-    return called(x) + 1.0
+    return in_one_place(called(x)) + 0.5
 
 @compiled(**LOOP)
 def thrice(x):
@@ -80,6 +84,13 @@ DAMAGE = {
     "another program's pickle": lambda *contents: [b"cos\nsystem\n(S'exit 3'\ntR." for _ in contents],
     "exchanged": lambda first, second: (second, first),
 }
+
+
+def test_what_is_compiled_where_it_is_called_is_kept_where_python_calls_it(folder, module):
+    for times in (0, 1):
+        imported, *_ = fresh(module)
+        assert imported.in_one_place(1.0) == 1.5
+        assert sum(imported.in_one_place._entered.stats.cache_hits.values()) == times
 
 
 @pytest.mark.parametrize("damage", DAMAGE)

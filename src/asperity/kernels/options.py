@@ -41,7 +41,10 @@ INNER: dict[str, Any] = {"_nrt": False, "forceinline": True, "no_cpython_wrapper
 CALLED: dict[str, Any] = {"_nrt": False, "no_cpython_wrapper": True}
 """Likewise, for what takes long to compile or is called in several places of a kernel."""
 ONCE: dict[str, Any] = {"_nrt": False, "inline": "always"}
-"""For what is called in one place and contains much: it is compiled there, not before and there again."""
+"""For what is called in one place and contains much: it is compiled there, not before and there again.
+
+What Python calls of it is kept on disk, too.
+"""
 REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}
 """Lets sums over poles be vectorised; NaN stays NaN."""
 UNCHECKED: dict[str, Any] = {"error_model": "numpy"}
@@ -79,7 +82,8 @@ class _Inner(CPUDispatcher):
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python: compiled once more, with an entry."""
         if not hasattr(self, "_entered"):
-            options = {k: v for k, v in self.targetoptions.items() if k in (*DOCUMENTED, "_nrt")}
+            kept = {*DOCUMENTED, "_nrt"} - {"inline"}
+            options = {k: v for k, v in self.targetoptions.items() if k in kept}
             self._entered = compiled(**options, cache=True)(self.py_func)
         return self._entered(*arguments)
 
@@ -92,7 +96,7 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     def decorate(function: Callable[..., Any]) -> Any:
         kernel: Any = njit(**options | {"no_cfunc_wrapper": True})(function)
-        if "no_cpython_wrapper" in options:
+        if "no_cpython_wrapper" in options or options.get("inline") == "always":
             kernel.__class__ = _Inner
         if keep:
             kernel._cache = Kept(function)  # what ``cache=True`` would set
