@@ -590,10 +590,11 @@ class Found:
         aim = level(self.railway.rates(REFERENCE, "vertical", "2015")).mean(axis=0)
         return fitted(lambda keys: hammered(tracks_of(keys)), FREE, aim)[0]
 
-    def case(self, section, **more):
+    def case(self, section, track=None, **more):
         """A coach that passes a section at 139 km/h, as measured on it."""
         rail = spectrum_of(self.railway.wavelengths, mean_roughness(self.railway.rail_roughness(section, 4)))
-        return passing(self.track, SPEED, rail, rates_of(self.railway, section), **more)
+        keys = self.track | (track or {})
+        return passing(keys, SPEED, rail, rates_of(self.railway, section), **more)
 
     @cached_property
     def reference(self):
@@ -806,6 +807,7 @@ PLACES = {
     "even, over a ballast shoulder 0.315 m below the rail": SHOULDER,
     "dipoles over it": SHOULDER | {"directivity": "dipole"},
     "even, over grass": SHOULDER | {"ground": "grass"},
+    "even, over ground of 10 kPa s/m²": {"flow_resistivity": 10e3, "ground_depth": 0.315},
     "dipoles over hard ground": {"directivity": "dipole"},
     "directivity of CNOSSOS-EU over hard ground": {"directivity": "cnossos"},
     "far rail screened by 10 dB, hard ground": {"rail_distance": 1.5, "far_rail_screening": 10.0},
@@ -814,6 +816,7 @@ RUNS = {
     "wheel with a curved web": {"wheel": {"section": "curved-web"}},
     "wheel with a bent web": {"wheel": {"section": "bent-web"}},
     "contact in the middle of the head": {"place": 0.0},
+    "continuous supports, rates as measured": {"track": {"continuous": True}},
 }
 
 
