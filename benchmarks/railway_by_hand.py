@@ -1,8 +1,8 @@
 """The sound of a run over a track, computed a second time: by frequency, at fixed points, and on paper.
 
-What a run in time tells of force, rail and microphone is held against formulas that share none of its steps:
-the contact force by the receptances of wheel, contact and rail at places that stand still, the motion of the
-rail by points that the wheel passes, the level by a line source.
+What a run in time tells of force, rail and microphone is held against other formulas: the contact force by
+receptances of wheel, contact and rail at places that stand still, which are the package's own, the motion of
+the rail by points that the wheel passes, the level by a line source.
 """
 
 from __future__ import annotations
