@@ -154,7 +154,7 @@ def _digest(place: str) -> str:
     """SHA-256 over the file of a module, which is not imported; empty where it is not found."""
     try:
         spec = find_spec(place.partition(":")[0])
-    except (ImportError, ValueError, AttributeError):
+    except (Exception, SystemExit):  # whatever the package around it does when it is imported
         return ""
     if spec is None or spec.origin is None or not os.path.isfile(spec.origin):
         return ""

@@ -182,6 +182,7 @@ BROKEN = {
         "lost": "broken_lab:LAW",
         "named": "broken_lab.things:LAW",
         "areal": "broken_lab.things:AREAL",
+        "angry": "angry_lab.law:LAW",
     },
     "asperity.readers": {"words": "broken_lab.things:TEXT", "number": "broken_lab.things:NUMBER"},
     "asperity.structures": {"track": "broken_lab.things:NUMBER", "deck": "broken_lab.gone:Deck"},
@@ -217,6 +218,7 @@ MESSAGES = {
         'the law "lost" of the package broken-lab 1.0: received broken_lab:LAW, .* fails with .*no law today',
         "name of the law: received 'another'; allowed: \"named\", as its entry point has it",
         "name of a law: received 'areal'; allowed: a name that no other law has",
+        'the law "angry" .* fails with SystemExit .not on Sundays.',
     ],
     lambda: asperity.read_surface("line.csv"): [
         'reader "words": received .txt; allowed: extensions of its own. Say what its files begin with',
@@ -242,6 +244,8 @@ def broken(beside, tmp_path, monkeypatch):
         "def __getattr__(name):\n    raise OSError('no law today')\n"
     )
     (beside / "broken_lab" / "things.py").write_text(THINGS)
+    (beside / "angry_lab").mkdir()
+    (beside / "angry_lab" / "__init__.py").write_text("raise SystemExit('not on Sundays')")
     installed(beside, BROKEN, "broken-lab")
     monkeypatch.chdir(tmp_path)
     Path("line.csv").write_text("x (mm); z (um)\n" + "".join(f"{n}; {n % 3}\n" for n in range(20)))
@@ -256,6 +260,7 @@ def test_what_cannot_be_used_is_named_and_everything_else_works(broken):
         assert all("It is left out; mend or remove the package." in str(each.message) for each in met)
         ask()  # told once: a second warning would be an error here
     assert "areal" in laws.names()
+    assert len(extensions.stamp()) == sum(map(len, BROKEN.values()))
     with pytest.raises(
         CaseError, match=r'the kind of case "skates" of the package broken-lab 1\.0: received'
     ):
