@@ -67,7 +67,10 @@ def on_table(
 
 
 def _laid_out(table: ForceTable, at: Array) -> tuple[Array, Array, Array]:
-    """g = F^(2/3), its slopes and the first touch at some positions."""
+    """g = F^(2/3), its slopes and the first touch at some positions.
+
+    As all of it is compared state by state, the positions of a state lie beside each other in memory.
+    """
     root = np.cbrt(table.at(at)) ** 2
     touches = table.touch_at(at)
     root = _straight_to_touch(table.approaches, root, touches)
@@ -76,11 +79,12 @@ def _laid_out(table: ForceTable, at: Array) -> tuple[Array, Array, Array]:
 
 def _straight_to_touch(states: Array, root: Array, touches: Array) -> Array:
     """Replace g before first touch, and a little after, by the line through the touch and the next state."""
-    beyond = states - touches[:, None] > 0.2 * np.gradient(states)
-    first = np.minimum(np.argmax(beyond, axis=1), len(states) - 1)
+    apart = np.subtract.outer(states, touches).T
+    beyond = apart > 0.2 * np.gradient(states)
+    first = np.argmax(beyond, axis=1)
     rows = np.arange(len(root))
     rise = root[rows, first] / np.maximum(states[first] - touches, np.finfo(float).tiny)
-    line = np.where(beyond.any(axis=1), rise, 0.0)[:, None] * (states - touches[:, None])
+    line = np.where(beyond[rows, first], rise, 0.0)[:, None] * apart
     return np.where(beyond, root, line)
 
 

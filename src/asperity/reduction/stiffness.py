@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -301,7 +302,7 @@ class ForceTable:
         """Forces (n, s), N, at positions (n,), m, by cubic splines: not negative, not falling with states."""
         count = self.forces.shape[1]
         index = grid_index("force table", count, self.start, self.spacing, positions)
-        result = np.empty((index.size, len(self.approaches)))
+        result = np.empty((index.size, len(self.approaches)), order="F")  # states are compared as a whole
         for i in range(0, index.size, PIECE):
             piece = index[i : i + PIECE]
             first = max(0, int(piece.min()) - OVERLAP)
@@ -309,7 +310,10 @@ class ForceTable:
             known = np.ascontiguousarray(self.forces[:, first:stop])
             result[i : i + PIECE] = splines_along(known, piece - first)
         # a spline may undershoot beside a place where contact is lost
-        return np.maximum.accumulate(np.maximum(result, 0.0, out=result), axis=1)
+        np.maximum(result, 0.0, out=result)
+        for lower, upper in pairwise(result.T):
+            np.maximum(lower, upper, out=upper)
+        return result
 
     def touch_at(self, positions: ArrayLike) -> Array:
         """Approach at first touch at positions (n,), m, interpolated linearly."""

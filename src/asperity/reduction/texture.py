@@ -69,9 +69,10 @@ def grid_index(what: str, points: int, start: float, spacing: float, positions: 
     index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
     last = points - 1
     slack = 1e-6  # of a spacing: rounding of the positions
-    received = f"{start + spacing * index.min():.6g} to {start + spacing * index.max():.6g}"
+    least, most = index.min(), index.max()
+    received = f"{start + spacing * least:.6g} to {start + spacing * most:.6g}"
     allowed = f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known"
-    inside = index.min() >= -slack and index.max() <= last + slack
+    inside = least >= -slack and most <= last + slack
     require(inside, "path (m)", received, allowed, "Shorten the duration or provide a longer texture.")
     return np.clip(index, 0.0, last)
 

@@ -97,7 +97,8 @@ def system_of(
     coefficients = steps.resolved_step(natural, ratios, h)
     shapes = steps.padded([row for body in bodies for row in body.shapes])
     rows = steps.padded([row for body in bodies for row in body.contacts])
-    step = steps.padded([steps.body_step(body, h) for body in bodies])  # (b, 2, d, 4, d)
+    of_each = {body: steps.body_step(body, h) for body in dict.fromkeys(bodies)}  # balls are one body
+    step = steps.padded([of_each[body] for body in bodies])  # (b, 2, d, 4, d)
     pressed = np.einsum("bxijk,bk->bxi", step[..., 2:, :], steps.padded([body.pressing for body in bodies]))
     before, now = np.einsum("nxijk,nk->jnxi", step[of][..., 2:, :], rows).reshape(2, n, -1)
     answers = coefficients[3, len(ground.natural) :].reshape(b, -1)[of]
