@@ -19,7 +19,7 @@ import asperity
 smooth = asperity.BallOnBeam(
     laws=["areal"],
     start="0.3 m",
-    duration="0.4 s",
+    duration="0.3 s",
     surface={"rms": "0.02 um", "longest": "0.4 mm", "shortest": "32 um"},
     ball={"radius": "10 mm", "load": "5 N"},
     contact={"window": "0.4 mm", "samples": 2, "sample_length": "2 mm"},
