@@ -229,7 +229,7 @@ def test_the_plan_counts_contact_solutions():
 LONG = """
 kind = "ball-on-beam"
 laws = ["table"]
-surface = { rms = "0.05 um", longest = "0.4 mm", shortest = "40 um" }
+surface = { rms = "0.05 um", longest = "0.2 mm", shortest = "0.1 mm" }
 beam.length = "4 m"
 [contact]
 spacing = "10 um"

@@ -182,6 +182,7 @@ def test_flaws_are_told_with_their_share_and_graded_by_it(kind):
 # --- motions that are none, and records that hold nothing: told before, or in the verdict
 
 SHORT = {"kind": "wheel-on-rail", "surface": {"spectrum": "iso3095"}, "wheel": {"section": "rigid"}}
+SHORT |= {"contact": {"samples": 2, "sample_length": "0.1 m"}}
 
 
 @pytest.mark.parametrize("duration", [0.03, 0.1, 0.3, 0.5, 1.0])
