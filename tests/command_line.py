@@ -21,7 +21,7 @@ spectrum = "iso3095"
 """
 """A case of a second: smooth bodies follow a line."""
 RAIL = 'kind = "wheel-on-rail"\nduration = "0.2 s"\nsettling = "0.1 s"\n[surface]\nspectrum = "iso3095"\n'
-RAIL += '[wheel]\nsection = "rigid"\n'
+RAIL += '[contact]\nsamples = 2\n[wheel]\nsection = "rigid"\n'
 PROGRAM = "from asperity.__main__ import start; start()"
 NOISE = np.random.default_rng(0)
 
