@@ -19,6 +19,7 @@ from click.testing import CliRunner
 import asperity
 from asperity import extensions, laws
 from asperity.case.cases import case_class, parse_case, template
+from asperity.case.form import case_key
 from asperity.cli import main
 from asperity.errors import CaseError
 from asperity.extensions import ExtensionWarning
@@ -55,7 +56,7 @@ def beside(tmp_path_factory, monkeypatch):
     """Folder of modules, as of an environment, whose packages are known; afterwards they are forgotten."""
     folder = tmp_path_factory.mktemp("site")
     monkeypatch.syspath_prepend(folder)
-    for table in ("_specs", "_families"):
+    for table in ("_specs", "_families", "_keys"):
         monkeypatch.setattr(laws, table, dict(getattr(laws, table)))
     before = set(sys.modules)
     extensions.forget()
@@ -288,12 +289,14 @@ def test_a_command_names_what_fails_in_a_line_and_goes_on(broken):
 
 
 def test_what_is_kept_depends_on_the_packages(lab, beside):
-    before = extensions.stamp()
+    case = asperity.Bodies(surface={"rms": "1 um"})
+    before, key = extensions.stamp(), case_key("run", 1, case)
     assert len(before) == 6
     file = beside / "our_lab" / "damped.py"
     file.write_text(file.read_text(encoding="utf-8") + "\n", encoding="utf-8")
-    extensions.forget()
+    extensions.stamp.cache_clear()
     assert sum(a != b for a, b in zip(before, extensions.stamp(), strict=True)) == 1
+    assert case_key("run", 1, case) != key
 
 
 def test_nothing_is_looked_for_where_no_package_names_this_program(beside, monkeypatch):
