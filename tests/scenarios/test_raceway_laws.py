@@ -100,9 +100,9 @@ def test_states_and_positions_that_a_motion_asks_for_have_the_forces_of_all():
     assert on.wider(wider, least, most) == wider
 
 
-@pytest.mark.parametrize("waves", [4, 12])
+@pytest.mark.parametrize("waves", [2, 6])
 def test_waves_are_felt_by_sin_q_over_q(waves):
-    radius, texture = 0.7 * MM, AroundTexture(waves=(waves,), amplitudes=(5 * NM,))
+    radius, texture = 0.35 * MM, AroundTexture(waves=(waves,), amplitudes=(5 * NM,))
     surface = raceway_on(CONTACT, LOAD, radius, texture, seed=3)
     long = 2 * np.pi * radius / waves > FOLLOWED * ALONG
     assert long == (not surface.heights.any()) == bool(surface.line.any())
