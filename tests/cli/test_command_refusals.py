@@ -201,7 +201,8 @@ REFUSED = [
      "what a study keeps: "),
     (f"{VARY} seed=1 -o rail.toml", "rail.toml is a file)"),
     (f"{VARY} seed=1 --noise '20 dB'", "--noise: received signals of no study; allowed: it goes with"),
-    ("run|study small.toml --what-helps", "what helps: received a ball-on-beam case; allowed: a case over a"),
+    ("run|study small.toml --what-helps", "what helps: received a ball-on-beam case; allowed: a case over a"
+     " track, which is heard, or of a ball bearing"),
     # runs
     ("listen {run} --what drums", "received 'drums'; allowed: acceleration"),
     ("figures {run} scene force_band -o new", 'Did you mean "force_bands"?'),

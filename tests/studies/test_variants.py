@@ -9,6 +9,7 @@ import xarray
 from executors import Here
 
 import asperity
+from asperity.case.cases import as_case
 from asperity.errors import CaseError, InputError
 from asperity.scenes import schema
 from asperity.scenes.figures.effects import Effects, effects_table
@@ -355,3 +356,33 @@ def test_what_helps_stands_in_the_result_of_a_run(table, cache, monkeypatch):
     assert "Left out: wheel.roughness is disc, not cast-iron." in page
     assert "Helps most: smooth, " in page.partition("<main>")[0]
     assert "asperity run case.toml --what-helps" in page
+
+
+QUIET = {
+    "kind": "ball-bearing", "speed": "3600 1/min", "axial": "100 N", "laws": ["hertz"], "duration": "50 ms",
+    "settling": "10 ms", "bearing": {"name": "6205"}, "inner_raceway": {"waviness": "20 nm"},
+    "outer_raceway": {"waviness": "20 nm"},
+}  # fmt: skip
+
+
+def test_what_helps_a_bearing_is_told_by_its_velocities(cache, monkeypatch):
+    """Under an axial load half of all waves are 6 dB less; a named bearing has a clearance to take from."""
+    case = as_case(QUIET)
+    every = what_helps(case)
+    assert every.sweep["seed"] == [1, 2, 3]
+    assert {tuple(member.case.laws) for member in every.members() if member.case} == {("hertz",)}
+    tighter = next(m.case for m in every.members() if m.case and "less clearance" in m.label)
+    assert tighter.bearing.clearance == pytest.approx(5e-6)
+    chosen = {name: every.sweep["variant"][name] for name in ("all half as wavy", "balls half as wavy")}
+    plan = study_of(case, {"variant": chosen})
+    monkeypatch.setattr("asperity.studies.effects.what_helps", lambda case: plan)
+    tree = with_effects(case, asperity.run(case, brief=True))
+    found = tree["effects"].to_dataset()
+    assert found["judged"].values.tolist()[-1] == "total"
+    np.testing.assert_allclose(found["effect"].sel(variant="all half as wavy"), -6.02, atol=0.05)
+    velocity = tree["bearing/band_velocity"].values[0, 0]
+    np.testing.assert_allclose(found["level"][:3], 20.0 * np.log10(velocity / 1e-9), atol=1e-6)
+    assert found["level"][-1] == pytest.approx(10.0 * np.log10(np.sum(velocity**2) / 1e-18))
+    page = asperity.report(tree, "page").read_text(encoding="utf-8")
+    assert "Helps most: all half as wavy, −6.0 dB." in page
+    assert "Left out: the case has no balls.waviness." in page

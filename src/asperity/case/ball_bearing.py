@@ -80,6 +80,12 @@ class BearingGeometry(Section, parameters=DIMENSIONS):
         given = {name: getattr(self, name) for name in DIMENSIONS if getattr(self, name) is not None}
         return BallBearing(**given) if self.name is None else BallBearing.named(self.name, **given)
 
+    def default_of(self, name: str) -> Any:
+        """Value of a key that is left out: a dimension of the named bearing."""
+        if name in DIMENSIONS and self.name is not None and name not in self.given_names:
+            return getattr(self.bearing, name)
+        return super().default_of(name)
+
     def problems(self) -> Iterator[InputError]:
         """All dimensions of a bearing without a name, which must be one that can be."""
         missing = [name for name in NEEDED if getattr(self, name) is None]

@@ -20,7 +20,7 @@ Document = dict[str, Any]
 
 def templates() -> tuple[str, ...]:
     """List what 'asperity new' can write."""
-    return (*kinds(), "study", "what-helps", "optimisation")
+    return (*kinds(), "study", "what-helps", "what-helps-in-bearings", "optimisation")
 
 
 @click.group(cls=Program, document=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -98,17 +98,24 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     asperity new study > study.toml
     # what helps against noise: a list of changes, for one's own to be added
     asperity new what-helps > helps.toml
+    # the same of a ball bearing
+    asperity new what-helps-in-bearings > helps.toml
     # the quietest texture of a case, within bounds
     asperity new optimisation > aim.toml
     """
     from asperity.case.cases import not_a_kind, template
     from asperity.optimising.definition import aim_template
     from asperity.studies.definition import TEMPLATE
-    from asperity.studies.effects import ready_list
+    from asperity.studies.effects import IN_BEARINGS, ready_list
 
     if kind not in templates():
         raise not_a_kind(kind, templates())
-    others = {"study": lambda: TEMPLATE, "what-helps": ready_list, "optimisation": aim_template}
+    others = {
+        "study": lambda: TEMPLATE,
+        "what-helps": ready_list,
+        "what-helps-in-bearings": lambda: ready_list(IN_BEARINGS),
+        "optimisation": aim_template,
+    }
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 

@@ -232,7 +232,8 @@ converge = click.option(
 what_helps = click.option(
     "--what-helps",
     is_flag=True,
-    help="Over a track: what pads, roughness, speed … do to the sound of rail, sleepers and wheel.",
+    help="Over a track: what pads, roughness, speed … do to the sound of rail, sleepers and wheel; in a ball "
+    "bearing what clearance, preload, waves … do to its velocities.",
 )
 
 

@@ -26,7 +26,7 @@ from asperity.schema.spectra import FORCE_LEVEL
 from asperity.studies import table as tables
 from asperity.studies.axes import VARIANT
 from asperity.studies.definition import Study, separated, study_of
-from asperity.studies.effects import effects, weighted_levels, what_helps
+from asperity.studies.effects import effects, judged_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SEED, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES
 from asperity.studies.signals import SignalSet
@@ -83,7 +83,7 @@ def run_study(
         several = table.sizes.get(SEED, 0)
         mean, scatter = mean_and_scatter(table) if several > 1 else (table, None)
         band = prediction_band(table) if several >= FEWEST and FORCE_LEVEL.name in table else None
-        effect = effects(table) if VARIANT in table.dims and weighted_levels(table) else None
+        effect = effects(table) if VARIANT in table.dims and judged_levels(table) else None
         told = _by_place(table, effect)
         for words, found in told:
             _print_effects(words, found)
@@ -237,7 +237,7 @@ def _figures(
     looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
     figures = []
     for key in json.loads(mean.attrs["sweep"]):
-        if mean.sizes.get(key, 0) > 1 and (key != VARIANT or not weighted_levels(mean)):
+        if mean.sizes.get(key, 0) > 1 and (key != VARIANT or not judged_levels(mean)):
             for name, title, parts in study_figures.key_figures(mean, scatter, key, looks, names):
                 figures.append(PageFigure.of(name, title, parts))
     if band is not None and VARIANT not in band.dims:

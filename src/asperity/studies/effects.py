@@ -11,7 +11,8 @@ import xarray
 from xarray import DataTree
 
 from asperity.arguments import NDArray, one_of, shown
-from asperity.case import any_case, cases, rolled_over, toml
+from asperity.case import any_case, cases, rolled_over, scene, toml
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.scenes import schema
@@ -19,22 +20,40 @@ from asperity.schema import Entry, spectra
 from asperity.studies.axes import AS_IT_IS, VARIANT
 from asperity.studies.definition import Study, study_of
 from asperity.studies.ensemble import SEED, student
+from asperity.studies.member import JUDGED, VELOCITY_LEVEL
 
 SEEDS = 3
 """Textures by which the ready list says how sure its effects are: that of the case, and the next."""
 CONFIDENCE = 0.95
 
 
-def ready_list() -> str:
-    """The study of what helps, as a commented text."""
-    return resources.files(__package__).joinpath("what_helps.toml").read_text(encoding="utf-8")
+OVER_TRACKS, IN_BEARINGS = "what_helps.toml", "what_helps_in_bearings.toml"
+"""Ready lists: of what is heard beside a track, and of a ball bearing."""
+
+
+def ready_list(name: str = OVER_TRACKS) -> str:
+    """A study of what helps, as a commented text."""
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _listed(case: any_case.AnyCase) -> dict[str, Any]:
+    """Named changes of a case that are ready to be asked; an `InputError` says if there are none."""
+    if isinstance(case, BearingUnderLoad):
+        name, own = IN_BEARINGS, {}
+    elif isinstance(case, scene.Case) and isinstance(case.rolled_over, rolled_over.TrackKeys):
+        name, own = OVER_TRACKS, {"wheel": case.ROLLING}  # of bodies, the section is called otherwise
+    else:
+        allowed = "a case over a track, which is heard, or of a ball bearing"
+        raise InputError("what helps", f"a {case.kind} case", allowed)
+    listed = toml.read_toml(ready_list(name), "study", name)["sweep"][VARIANT]
+    return {variant: {own.get(key, key): keys[key] for key in keys} for variant, keys in listed.items()}
 
 
 def what_helps(
     case: str | os.PathLike[str] | Mapping[str, Any] | any_case.AnyCase,
     sweep: Mapping[str, Any] | None = None,
 ) -> Study:
-    """Make the study that answers what makes a case over a track quieter.
+    """Make the study that answers what makes a case over a track, or a ball bearing, quieter.
 
     Parameters
     ----------
@@ -47,12 +66,14 @@ def what_helps(
     -------
     Study
         Of the main law of the case, of its seed and the next two, and of variants of it: pads, roughness,
-        speed, …, as ``asperity new what-helps`` lists them. `asperity.study` computes it, `effects` reads it.
+        speed, …, as ``asperity new what-helps`` lists them; of a bearing clearance, preload, grooves, waves
+        of each part, …, as ``asperity new what-helps-in-bearings`` does. `asperity.study` computes it,
+        `effects` reads it.
 
     Raises
     ------
     InputError
-        If the case is wrong, or rolls over no track.
+        If the case is wrong, or neither rolls over a track nor is that of a bearing.
 
     Examples
     --------
@@ -61,12 +82,8 @@ def what_helps(
     >>> sorted(plan.sweep), plan.sweep["variant"]["a fifth slower"]
     (['seed', 'variant'], {'speed': 'times 0.8'})
     """
-    given = cases.of_bodies(cases.as_case(case), "what helps")
-    if not isinstance(given.rolled_over, rolled_over.TrackKeys):
-        raise InputError("what helps", f"a {given.kind} case", "a case over a track, which is heard")
-    listed = toml.read_toml(ready_list(), "study", "what_helps.toml")["sweep"][VARIANT]
-    own = {"wheel": given.ROLLING}  # of bodies, the section is called otherwise
-    variants = {name: {own.get(key, key): keys[key] for key in keys} for name, keys in listed.items()}
+    given = cases.as_case(case)
+    variants = _listed(given)
     seeds = [given.seed + more for more in range(SEEDS)]
     asked: dict[str, Any] = {SEED: seeds, VARIANT: variants, **(sweep or {})}
     return study_of(given.with_(laws=given.laws[:1]), asked)
@@ -81,9 +98,13 @@ def with_effects(case: any_case.AnyCase, result: DataTree, progress: Progress | 
     return tree
 
 
-def weighted_levels(table: xarray.Dataset) -> list[str]:
-    """A-weighted levels of a study, by which effects are told."""
-    return [str(name) for name, each in table.data_vars.items() if each.attrs["units"].startswith("dB(A)")]
+def judged_levels(table: xarray.Dataset) -> list[str]:
+    """Levels of a study by which effects are told: A-weighted ones, and those of a bearing's velocities."""
+    return [
+        str(name)
+        for name, each in table.data_vars.items()
+        if each.attrs["units"].startswith("dB(A)") or name == VELOCITY_LEVEL
+    ]
 
 
 def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
@@ -94,8 +115,8 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     table : xarray.Dataset
         From `asperity.study`, of variants; with several seeds, they say how sure the effects are.
     quantity : str, optional
-        An A-weighted level of the table; by default the sound power of rail, sleepers and wheel, or the
-        contact force.
+        An A-weighted level of the table; by default the sound power of rail, sleepers and wheel, the
+        velocity of a bearing in its bands, or the contact force.
 
     Returns
     -------
@@ -130,10 +151,10 @@ def effects(table: xarray.Dataset, quantity: str = "") -> xarray.Dataset:
     if not isinstance(table, xarray.Dataset) or VARIANT not in table.dims:
         received = list(map(str, table.dims)) if isinstance(table, xarray.Dataset) else shown(table)
         raise InputError("table of the study", received, f'one with the dimension "{VARIANT}"')
-    weighted = weighted_levels(table)
-    usual = schema.RADIATED_POWER_LEVEL_A.name
-    usual = usual if usual in weighted else f"{spectra.FORCE_LEVEL.name}_a"
-    held = table[one_of("quantity", quantity or usual, weighted)]
+    judged = judged_levels(table)
+    first = schema.RADIATED_POWER_LEVEL_A.name, VELOCITY_LEVEL
+    usual = next((name for name in first if name in judged), f"{spectra.FORCE_LEVEL.name}_a")
+    held = table[one_of("quantity", quantity or usual, judged)]
     law = str(table["law"].values[0])
     held = held.sel(law=law, drop=True) if "law" in held.dims else held
     base = held.sel({VARIANT: AS_IT_IS}, drop=True)
@@ -180,7 +201,8 @@ def _left_out(table: xarray.Dataset, effect: xarray.DataArray) -> xarray.DataArr
 
 def _order(effect: xarray.DataArray, sweep: Collection[str]) -> NDArray[np.int64]:
     """Places of the variants by what they do to the whole, of several parts; mean over other keys."""
-    parts = schema.EFFECT_RADIATOR.name
-    whole = effect.sel({parts: "total"}) if parts in effect.coords else effect
+    whole = effect
+    for parts in {schema.EFFECT_RADIATOR.name, JUDGED} & set(effect.dims):
+        whole = whole.sel({parts: "total"})
     whole = whole.isel({dim: -1 for dim in whole.dims if dim not in sweep})
     return np.argsort(whole.mean([dim for dim in whole.dims if dim != VARIANT]).values, kind="stable")

@@ -15,7 +15,7 @@ from asperity.errors import TOO_MUCH_MEMORY, AsperityError, ComputationError
 from asperity.results import variable
 from asperity.scenes import schema as scene
 from asperity.schema import Entry, bearing, contact, provenance, rolling, spectra
-from asperity.spectra import a_weighted_total
+from asperity.spectra import a_weighted_total, level_of
 
 if TYPE_CHECKING:
     from asperity.case.any_case import AnyCase
@@ -80,10 +80,32 @@ def _of_bearing(tree: xarray.DataTree) -> dict[str, Any]:
     motion = tree["rolling"].to_dataset()
     each = [motion[entry.name].max(("ball", "time")) for entry in (bearing.INNER_FORCE, bearing.OUTER_FORCE)]
     peak = xarray.concat(each, "ring").assign_coords(ring=load["ring"]).transpose("law", "ring")
+    found[VELOCITY_LEVEL] = _velocity_levels(found[bearing.BAND_VELOCITY.name])
     found["largest_load"] = _described(load, "N", LOADS["largest_load"])
     found["peak_force"] = _described(peak, "N", LOADS["peak_force"])
     found[SIGNAL] = motion[bearing.RING_ACCELERATION.name][0].variable
     return found
+
+
+JUDGED, TOTAL, VELOCITY_LEVEL = "judged", "total", "velocity_level"
+"""Bands in which a bearing is judged with all of them together, and levels of its velocities in these."""
+VELOCITY_REFERENCE = 1e-9
+"""Of levels of velocities, m/s (ISO 1683)."""
+
+
+def _velocity_levels(velocity: xarray.DataArray) -> xarray.DataArray:
+    """Levels of velocities by range, and of all ranges together."""
+    total = (velocity**2).sum("range") ** 0.5  # without ranges that the sampling does not reach
+    names = np.array([*velocity["range"].values.tolist(), TOTAL])
+    every = np.concatenate([velocity.values, total.values[:, None]], axis=1)
+    found = level_of((every / VELOCITY_REFERENCE) ** 2)
+    judged = variable(JUDGED, names, "1", "band in which bearings are judged, or all together")
+    level = xarray.DataArray(
+        np.where(np.isfinite(found), found, np.nan), {"law": velocity["law"], JUDGED: judged}, ("law", JUDGED)
+    )
+    return _described(level, "dB re 1 nm/s", "radial velocity level, first sensor").assign_attrs(
+        missing=bearing.BAND_VELOCITY.missing
+    )
 
 
 LOADS = {
@@ -122,7 +144,13 @@ def names_kept() -> set[str]:
     """Names that the table of a study may have."""
     entries = (*KEPT, OF_CONTACTS, contact.RUNNING_IN_LOWERING, *scene.KEPT, *bearing.KEPT)
     bands = (each for each in entries if each.units.startswith(LEVEL) and each.dims[-1].endswith("band"))
-    found = {*LOADS, *rolling.FORCES, *(each.name for each in entries), *(fact.name for fact in FACTS)}
+    found = {
+        *LOADS,
+        VELOCITY_LEVEL,
+        *rolling.FORCES,
+        *(each.name for each in entries),
+        *(fact.name for fact in FACTS),
+    }
     found |= {f"{entry.name}_a" for entry in bands}
     return found | {_weighted_name(entry) for entry in spectra.FORCE_LEVEL_DIFFERENCES.values()}
 

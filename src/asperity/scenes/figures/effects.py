@@ -54,7 +54,7 @@ class Effects:
     def best(self) -> str:
         """What helps most; empty where nothing surely helps."""
         helps = self.effect[0, 0] < -np.nan_to_num(self.error[0, 0])
-        how = f"{data.signed(self.effect[0, 0])} dB(A)"
+        how = f"{data.signed(self.effect[0, 0])} {'dB(A)' if 'dB(A)' in self.units else 'dB'}"
         words = f"Helps most: {self.variants[0]}, {how}. {self.in_words[self.variants[0]]} {self.silent}"
         return words.rstrip() if helps else ""
 
