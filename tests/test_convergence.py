@@ -3,6 +3,7 @@
 import json
 import re
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from asperity.reporting.page import sections_of
 from asperity.reporting.tables import changes_table, settings_table
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted, settings_for
+from asperity.scenes.bearing_refining import settings_of_bearing
 from asperity.scenes.report import CHAPTERS
 from asperity.schema import Entry, convergence
 from asperity.surfaces.synthesis import long_self_affine
@@ -183,7 +185,7 @@ def converged(monkeypatch):
 
     def converged(prepared, *settings):
         result = asperity.run(prepared)
-        monkeypatch.setattr(converging, "settings_for", lambda *_: settings)
+        monkeypatch.setattr(converging, "settings_of", lambda *_: settings)
         return converging.with_convergence(prepared, result, lambda *_: None)
 
     return converged
@@ -244,7 +246,7 @@ class TestKept:
         prepared = case_of(BALL)
         result = asperity.run(prepared)
         some = [settings(prepared)[name] for name in ("grid", "window", "samples")]
-        monkeypatch.setattr(converging, "settings_for", lambda *_: some)
+        monkeypatch.setattr(converging, "settings_of", lambda *_: some)
 
         def messages(stop="never"):
             seen = []
@@ -289,3 +291,45 @@ def test_the_command_line_does_it(tmp_path, monkeypatch):
     assert json.loads(result["scenario"].attrs["laws"])[0]["name"] == "hertz"
     assert "convergence" in result.children
     assert "Nothing to do" in call(*words).stderr
+
+
+class TestBearing:
+    """A ball bearing is made finer by the same machinery: by settings of its own, on records of its own."""
+
+    CASE: ClassVar = {
+        "kind": "ball-bearing", "speed": "3600 1/min", "axial": "100 N", "laws": ["hertz"],
+        "duration": "50 ms", "settling": "10 ms", "bearing": {"name": "6205"},
+        "inner_raceway": {"waviness": "50 nm"}, "housing": {"lobes": 3},
+    }  # fmt: skip
+
+    @SILENT
+    def test_changes_of_the_time_step_are_of_second_order(self, converged):
+        sizes = []
+        for step in ("8 us", "4 us"):
+            prepared = prepare_case(as_case(self.CASE | {"time_step": step}))
+            (setting,) = (each for each in settings_of_bearing(prepared, None) if each.name == "time step")
+            found = converged(prepared, setting)
+            level = found["convergence/force_level_change"].values[0, 0]
+            sizes.append(np.sqrt(np.mean(level[np.isfinite(level)][:12] ** 2)))
+        assert 3.0 < sizes[0] / sizes[1] < 5.5
+
+    @SILENT
+    def test_what_matters_is_told_with_what_was_not_changed(self, converged, tmp_path):
+        case = as_case(self.CASE)
+        prepared = prepare_case(case)
+        every = {each.name: each for each in settings_of_bearing(prepared, None)}
+        found = converged(prepared, *(every[name] for name in ("grid", "lobes", "path length")))
+        assert told(found, "change")["lobes"] == "3 → 5"
+        assert told(found, "largest_change")["lobes"] > 0.5
+        assert "Of its settings, lobes (3 → 5) changes the levels of hertz most" in found.attrs["verdict"]
+        assert found.attrs["verdict"].endswith("Not changed: grid.")
+        assert np.isfinite(found["convergence/motion_level_change"].values[1:]).any()
+        assert "lobes" in asperity.report(found, tmp_path).read_text(encoding="utf-8")
+        slips = prepare_case(case.with_(cage_slip=[0.0, 0.01], housing={"lobes": None}, settling=0.0))
+        limits = {each.name: each.limit for each in settings_of_bearing(slips, None)}
+        assert limits["run-in"].startswith("the cage slips by chance")
+        assert limits["lobes"] == "the outer ring is rigid, or bends by given modes"
+        still = {
+            each.name: each for each in settings_of_bearing(prepare_case(case.with_(settling=0.0)), None)
+        }
+        assert still["run-in"].ways[0].words == "0 ms → 50 ms"

@@ -10,18 +10,16 @@ import xarray
 from xarray import DataTree
 
 from asperity.arguments import Array, NDArray
+from asperity.case.any_case import AnyCase, ReadyCase, named
 from asperity.case.form import case_key, content, file_digest
-from asperity.case.scene import Case
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress, counted
 from asperity.scenarios.geometry import window_cells
-from asperity.scenarios.preparing import prepare
-from asperity.scenarios.refining import Setting, Way, restricted, settings_for
+from asperity.scenarios.refining import Setting, Way, restricted
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenes import schema as scene
-from asperity.scenes.result import computed_result
 from asperity.scenes.validity import compared_bands
-from asperity.schema import Entry, Values, contact, convergence, group, provenance, rolling, spectra
+from asperity.schema import Entry, Values, bearing, contact, convergence, group, provenance, rolling, spectra
 from asperity.spectra import (
     HALF_BAND,
     band_levels,
@@ -53,12 +51,18 @@ class Comparison:
     change: xarray.Dataset  # of the finer computation over the coarser, on the bands of the result
 
 
-def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progress) -> DataTree:
+def settings_of(prepared: ReadyCase, result: DataTree) -> Sequence[Setting]:
+    """All settings by which a case of any kind is made finer, as its kind lists them."""
+    settings: Sequence[Setting] = named(prepared.case.REFINED_BY)(prepared, result)
+    return settings
+
+
+def with_convergence(prepared: ReadyCase, result: DataTree, progress: Progress) -> DataTree:
     """Compute a case again with each setting made finer, and add to its result what that changes.
 
     Parameters
     ----------
-    prepared : PreparedCase
+    prepared : ReadyCase
         The case.
     result : xarray.DataTree
         What it gave.
@@ -73,8 +77,7 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
     """
     # those of the case itself were told
     with PhysicsWarning.ignored(), one_thread_in_linear_algebra():
-        states = result[contact.APPROACH.group].to_dataset()[contact.APPROACH.name].values
-        settings = settings_for(prepared, states)
+        settings = settings_of(prepared, result)
         each = (_compared(prepared, result, setting, _named(setting, progress)) for setting in settings)
         found = list(counted(each, len(settings), "convergence", progress))
     group = convergence_group(result, found)
@@ -97,14 +100,14 @@ def _named(setting: Setting, progress: Progress) -> Progress:
     return told
 
 
-def _compared(prepared: PreparedCase, result: DataTree, setting: Setting, progress: Progress) -> Comparison:
+def _compared(prepared: ReadyCase, result: DataTree, setting: Setting, progress: Progress) -> Comparison:
     """Take the first way of changing a setting that can be computed."""
     base, limit = levels_of(result), setting.limit
     for way in setting.ways:
         try:
             if setting.name == convergence.PATH_LENGTH:
                 case = prepared.case
-                coarser, finer = halves(result, case.time_step, case.numerics.highest_frequency)
+                coarser, finer = halves(result, case.recorded_step, case.highest_frequency)
             else:
                 finer, coarser = _both(prepared, base, setting, way, progress)
         except AsperityError as error:
@@ -115,12 +118,15 @@ def _compared(prepared: PreparedCase, result: DataTree, setting: Setting, progre
 
 
 def _both(
-    prepared: PreparedCase, base: xarray.Dataset, setting: Setting, way: Way, progress: Progress
+    prepared: ReadyCase, base: xarray.Dataset, setting: Setting, way: Way, progress: Progress
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the finer and of the coarser computation; `base` are those of the case."""
-    changed = prepare(prepared.case.with_(**way.changes))
+    case = prepared.case.with_(**way.changes)
+    changed: ReadyCase = named(case.PREPARED_BY)(case, "case")
     if not setting.laid_anew:
         return _levels(changed.case, "", lambda: changed, progress), base
+    assert isinstance(prepared, PreparedCase)  # whose textures lie on a grid
+    assert isinstance(changed, PreparedCase)
     small, large = (changed, prepared) if way.coarser else (prepared, changed)
     textures_of = json.dumps(content(large.case, file_digest), sort_keys=True)
     twin = _levels(small.case, textures_of, lambda: on_the_surface_of(small, large), progress)
@@ -138,12 +144,12 @@ def on_the_surface_of(small: PreparedCase, large: PreparedCase) -> PreparedCase:
 
 
 def _levels(
-    case: Case, textures_of: str, make: Callable[[], PreparedCase], progress: Progress
+    case: AnyCase, textures_of: str, make: Callable[[], ReadyCase], progress: Progress
 ) -> xarray.Dataset:
     """Levels of a run, kept by all that they depend on."""
 
     def computed() -> dict[str, NDArray[Any]]:
-        found = levels_of(computed_result(make(), progress, []))
+        found = levels_of(named(case.COMPUTED_BY)(make(), progress, [], brief=True))
         return {str(name): values.values for name, values in found.variables.items()}
 
     return _laid_out(**made(Store(), case_key("convergence", FORMAT, case, textures_of), computed))
@@ -167,7 +173,7 @@ def levels_of(tree: DataTree) -> xarray.Dataset:
     if recorded is not None:
         power = 10.0 ** (held[recorded.name].values / 10.0)
         motion = level_of(power.mean(axis=tuple(range(1, power.ndim - 1))))
-    stiffness = tree[contact.WORKING_STIFFNESS.group].attrs[contact.WORKING_STIFFNESS.name]
+    stiffness = tree[contact.WORKING_STIFFNESS.group].attrs.get(contact.WORKING_STIFFNESS.name, np.nan)
     return _laid_out(held[spectra.BAND.name].values, force, motion, stiffness)
 
 
@@ -186,8 +192,18 @@ def _over(finer: xarray.Dataset, coarser: xarray.Dataset, base: xarray.Dataset) 
 
 def motion_entry(held: Mapping[Any, Any]) -> Entry | None:
     """The level of a motion that spectra hold, by law and band; None if there is none."""
-    fitting = (e for e in scene.KEPT if e.dims[0] == "law" and e.dims[-1] == "band" and e.name in held)
+    levels = (entry for entry in (*scene.KEPT, bearing.ACCELERATION_LEVEL))
+    fitting = (e for e in levels if e.dims[0] == "law" and e.dims[-1] == "band" and e.name in held)
     return next(fitting, None)
+
+
+def contact_forces(tree: DataTree) -> Array:
+    """Forces of all contacts in time (laws, contacts, n), N: of a bearing of all balls with both rings."""
+    held = tree[rolling.CONTACT_FORCE.group].to_dataset()
+    if rolling.CONTACT_FORCE.name in held:
+        return np.asarray(held[rolling.CONTACT_FORCE.name].values)
+    rings = (bearing.INNER_FORCE, bearing.OUTER_FORCE)
+    return np.concatenate([held[each.name].values for each in rings], axis=1)
 
 
 def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset, xarray.Dataset]:
@@ -195,7 +211,7 @@ def halves(tree: DataTree, step: float, highest: float) -> tuple[xarray.Dataset,
 
     An `InputError` says that the half holds no one-third octave up to the highest frequency.
     """
-    force = tree[rolling.CONTACT_FORCE.group].to_dataset()[rolling.CONTACT_FORCE.name].values
+    force = contact_forces(tree)
     half = force.shape[-1] // 2
     segment = min(spectrum_segment(force.shape[-1], step), half)
     lowest = lowest_band(half, step, segment=segment)
@@ -268,9 +284,10 @@ def _sentences(group: xarray.Dataset, main: str) -> Iterator[str]:
         )
         yield _told_of_others(first, others, size)
         stiffness = dict(zip(names, group[convergence.STIFFNESS_CHANGE.name].values.tolist(), strict=True))
-        most = max(tried, key=lambda name: abs(stiffness[name]))
-        share = f"{100 * stiffness[most]:+.2f} %".replace("-", "−")
-        yield f"The mean contact stiffness depends most on {most} ({share})."
+        if softened := [name for name in tried if np.isfinite(stiffness[name])]:
+            most = max(softened, key=lambda name: abs(stiffness[name]))
+            share = f"{100 * stiffness[most]:+.2f} %".replace("-", "−")
+            yield f"The mean contact stiffness depends most on {most} ({share})."
     if convergence.PATH_LENGTH in known:
         yield f"The first half of the record is up to {size[convergence.PATH_LENGTH]:.1f} dB from all of it."
     if unchanged := [name for name in names if limits[name]]:

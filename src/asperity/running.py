@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Mapping
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import shown
@@ -64,16 +63,14 @@ def run(
     >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
     1
     """
-    from asperity.case.any_case import ReadyCase
-    from asperity.case.cases import as_case, of_bodies
+    from asperity.case.any_case import ReadyCase, named
+    from asperity.case.cases import as_case
     from asperity.errors import PhysicsWarning
     from asperity.progress import shown_progress
     from asperity.scenes.report import Result
     from asperity.threads import one_thread_in_linear_algebra
 
     loaded = case if isinstance(case, ReadyCase) else as_case(case)
-    if converge:
-        of_bodies(loaded.case if isinstance(loaded, ReadyCase) else loaded, "convergence")
     if progress is not None and not callable(progress):
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
     try:
@@ -84,12 +81,10 @@ def run(
         ):
             prepared = loaded if isinstance(loaded, ReadyCase) else prepare_case(loaded)
             caught += prepared.caught
-            result: DataTree = _named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)
+            result: DataTree = named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence import with_convergence
-                from asperity.scenarios.scene import PreparedCase
 
-                assert isinstance(prepared, PreparedCase)  # of bodies
                 result = with_convergence(prepared, result, told)
     except ComputationError:
         _warn_again(caught)  # they may say why
@@ -137,11 +132,7 @@ def open_result(path: str | os.PathLike[str]) -> Result:
 
 def prepare_case(case: AnyCase, source: str = "case") -> ReadyCase:
     """Lay a case of any kind ready to be run or announced; messages call it `source`."""
-    prepared: ReadyCase = _named(case.PREPARED_BY)(case, source)
+    from asperity.case.any_case import named
+
+    prepared: ReadyCase = named(case.PREPARED_BY)(case, source)
     return prepared
-
-
-def _named(function: str) -> Any:
-    """A function by its module and name."""
-    module, _, name = function.rpartition(".")
-    return getattr(import_module(module), name)

@@ -5,6 +5,7 @@ import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from html import escape
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, NoReturn, Protocol, Self, runtime_checkable
 
@@ -227,6 +228,8 @@ class AnyCase(Section):
     """Function (case, source) that makes a `ReadyCase` of it, by module and name."""
     COMPUTED_BY: ClassVar[str]
     """Function (ready case, progress, warnings caught, brief=…) that makes its result."""
+    REFINED_BY: ClassVar[str]
+    """Function (ready case, its result) that lists the settings by which it is made finer."""
     WRITTEN_OUT: ClassVar[Mapping[str, str]] = {}
     """Values, in TOML, of keys that have no default and shall stand in a commented case."""
     SHOWN: ClassVar[Mapping[str, tuple[str, ...]]] = {}
@@ -269,6 +272,16 @@ class AnyCase(Section):
     @property
     def numbers_written(self) -> float:
         """How many numbers its result holds, at most."""
+        raise NotImplementedError
+
+    @property
+    def recorded_step(self) -> float:
+        """Time between two samples of its records, s."""
+        raise NotImplementedError
+
+    @property
+    def highest_frequency(self) -> float:
+        """Highest frequency that its spectra hold, Hz."""
         raise NotImplementedError
 
     def with_(self, **changes: Any) -> Self:
@@ -418,6 +431,12 @@ class ReadyCase(Protocol):
     def caught(self) -> tuple[warnings.WarningMessage, ...]:
         """Warnings met on the way."""
         ...
+
+
+def named(function: str) -> Any:
+    """A function by its module and name, as a kind of case names those that compute it."""
+    module, _, name = function.rpartition(".")
+    return getattr(import_module(module), name)
 
 
 def _change(data: dict[str, Any], changes: Mapping[str, Any]) -> None:

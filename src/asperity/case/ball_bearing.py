@@ -259,6 +259,7 @@ class BearingUnderLoad(AnyCase):
     NEEDED = "a bearing and its load"
     PREPARED_BY = "asperity.scenes.bearing.prepare_bearing"
     COMPUTED_BY = "asperity.scenes.bearing.bearing_result"
+    REFINED_BY = "asperity.scenes.bearing_refining.settings_of_bearing"
     WRITTEN_OUT: ClassVar = {
         "bearing.name": '"6205"', "axial": '"100 N"', "inner_raceway.waviness": '"0.5 um"',
         "outer_raceway.waviness": '"0.5 um"',
@@ -427,6 +428,11 @@ class BearingUnderLoad(AnyCase):
     def highest_frequency(self) -> float:
         """Highest frequency that the record holds, Hz."""
         return self.sampling_rate / SAMPLING
+
+    @property
+    def recorded_step(self) -> float:
+        """Time between two samples that are written, s."""
+        return 1.0 / self.sampling_rate
 
     @property
     def steps_per_sample(self) -> int:

@@ -186,7 +186,7 @@ def of_bodies(case: AnyCase, what: str) -> scene.Case:
     if not isinstance(case, scene.Case):
         held = (kind for kind, model in case_classes().items() if issubclass(model, scene.Case))
         allowed = f"a kind that has it: {', '.join(held)}"
-        raise InputError(what, f"a {case.kind} case, of which there is none", allowed)
+        raise InputError(what, f"a {case.kind} case, for which it is not available", allowed)
     return case
 
 

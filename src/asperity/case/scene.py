@@ -56,6 +56,7 @@ class Case(AnyCase):
 
     PREPARED_BY = "asperity.scenarios.preparing.prepare"
     COMPUTED_BY = "asperity.scenes.result.computed_result"
+    REFINED_BY = "asperity.scenarios.refining.settings_of_scene"
     ROLLING: ClassVar[str]
     """Section of what rolls; of a contact of several, its name in messages."""
     OVER: ClassVar[str] = ""
@@ -234,6 +235,16 @@ class Case(AnyCase):
         fraction, of ``contact.spacing``.
         """
         return self.chosen_step if self.numerics.time_step is None else self.numerics.time_step
+
+    @property
+    def recorded_step(self) -> float:
+        """Time between two samples of its records, s: every time step."""
+        return self.time_step
+
+    @property
+    def highest_frequency(self) -> float:
+        """Highest frequency that its spectra hold, Hz."""
+        return self.numerics.highest_frequency
 
     @cached_property
     def chosen_step(self) -> float:

@@ -16,7 +16,6 @@ import asperity
 from asperity import files
 from asperity.arguments import no_file
 from asperity.case.any_case import AnyCase, ReadyCase
-from asperity.case.cases import of_bodies
 from asperity.case.form import case_key, file_digest
 from asperity.cli.commands import taken_folder
 from asperity.errors import Finding, Grade, InputError, PhysicsWarning
@@ -83,8 +82,6 @@ def run_case(
         from asperity.studies.effects import what_helps as plan
 
         plan(case)  # refuses a case over no track
-    if converge:
-        of_bodies(case, CONVERGENCE)
     if not again and os.path.lexists(directory / RESULT):
         tree = earlier_result(case, directory, report=report, more=more)
     computed = tree is None
@@ -140,12 +137,10 @@ def _run_alone(case: AnyCase, directory: Path, source: str, *, report: bool, mor
     _write(tree, directory, report=report)
     if more:
         from asperity.convergence import with_convergence
-        from asperity.scenarios.scene import PreparedCase
         from asperity.studies.effects import with_effects
 
         with progress_bar() as progress:
             if CONVERGENCE in more:
-                assert isinstance(prepared, PreparedCase)  # of bodies
                 tree = with_convergence(prepared, tree, progress)
             if EFFECTS in more:
                 tree = with_effects(case, tree, progress)

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from asperity.reporting import chart, data
 from asperity.reporting.tables import OFF, ReportTable, error_on_map, setting_names, setting_numbers
-from asperity.schema import bearing, contact, convergence, provenance, rolling
+from asperity.schema import contact, convergence, provenance, rolling
 from asperity.spectra import nominal_frequency
 from asperity.written_numbers import capital
 
@@ -106,7 +106,7 @@ def _expected(tree: DataTree) -> Iterator[Light]:
 def _settings(tree: DataTree) -> Iterator[Light]:
     """What finer settings changed."""
     names, limit = setting_names(tree), f"up to {OFF:g} dB"
-    if not names and bearing.BAND_VELOCITY.group not in tree.children:
+    if not names:
         yield Light("change of levels by finer settings", "not known: run with --converge", limit, UNKNOWN)
     sizes = dict(zip(names, setting_numbers(tree, convergence.LARGEST_CHANGE).tolist(), strict=True))
     chance = sizes.pop(convergence.PATH_LENGTH, np.nan)  # no setting

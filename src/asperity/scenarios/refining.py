@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from scipy import fft
+from xarray import DataTree
 
 from asperity.arguments import Array
 from asperity.case import beam, rolled_over
@@ -14,6 +15,7 @@ from asperity.errors import InputError
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import Textures
+from asperity.schema import contact
 from asperity.schema.convergence import PATH_LENGTH
 from asperity.spectra import psd
 from asperity.structures.rail_poles import POLES
@@ -137,6 +139,12 @@ class Setting:
     limit: str = ""  # why there is no way
     # whether textures are laid out anew: the surface of the finer case is then restricted for the coarser one
     laid_anew: bool = False
+
+
+def settings_of_scene(prepared: PreparedCase, result: DataTree) -> list[Setting]:
+    """All settings of a case that was run, whose states its result has."""
+    states = result[contact.APPROACH.group].to_dataset()[contact.APPROACH.name].values
+    return settings_for(prepared, states)
 
 
 def settings_for(prepared: PreparedCase, approaches: Array) -> list[Setting]:
