@@ -11,7 +11,6 @@ import asperity
 from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
 from asperity.scenes.bearing import bearing_rings, expected, prepare_bearing
-from asperity.serving.worker import read_case_file
 from asperity.structures.modal import ModalStructure
 from asperity.structures.ring import Ring
 from asperity.studies.definition import study_of
@@ -265,5 +264,4 @@ test_a_fault_off_the_raceway_is_refused_before_the_run = refusals(
 NOT_THERE = "received a ball-bearing case, for which it is not available; allowed: a kind that has it: ball"
 test_what_is_not_there_for_a_bearing_says_so = refusals(
     (lambda: asperity.optimise(CASE), f"optimisation: {NOT_THERE}"),
-    (lambda: read_case_file(as_case(CASE).to_toml(), "."), f"page: {NOT_THERE}"),
 )

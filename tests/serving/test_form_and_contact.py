@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import asperity
 from asperity.case.any_case import entries
 from asperity.case.cases import case_class, case_of, parse_case, template
 from asperity.case.toml import read_toml
@@ -10,8 +11,9 @@ from asperity.errors import InputError
 from asperity.parameters import Origin
 from asperity.serving.case_form import case_data, form_values, forms
 from asperity.serving.contact_preview import MOST_CELLS_SHOWN, PressedSample
+from asperity.serving.run_view import viewed_run
 from refusals import refusals
-from small_cases import BALL, WHEEL
+from small_cases import BALL, BEARING, WHEEL
 
 UNITS = Origin("the case", units=True)
 
@@ -145,3 +147,33 @@ def test_a_wide_window_is_thinned_and_says_so():
 
 def test_a_sample_of_each_kind_can_be_pressed():
     assert PressedSample(case_of(WHEEL)).at(0.5)["force"] > 0.0
+
+
+PITTED = {"fault.on": "outer", "fault.length": "0.18 mm", "fault.depth": "0.1 mm"}
+
+
+def test_the_most_loaded_ball_of_a_bearing_is_pressed_on_its_raceway():
+    """Smooth it is Hertz's contact under its load; over a pit it is softer, and waves pass at its pace."""
+    typed = form_values(read_toml(template("ball-bearing"), "case", "case"), lambda path: None)
+    typed |= {"inner_raceway.waviness": "", "outer_raceway.waviness": ""}
+    smooth, pitted = (
+        PressedSample(case_of(case_data("ball-bearing", typed | more, no_file), UNITS))
+        for more in ({}, PITTED)
+    )
+    found = smooth.at(None)
+    assert found["force"] == pytest.approx(smooth.load, rel=1e-4)
+    assert found["smooth_force"] == pytest.approx(smooth.load, rel=0.01)
+    assert found["largest_pressure"] == pytest.approx(smooth.hertz.peak_pressure(found["approach"]), rel=0.02)
+    assert 1.003 < pitted.working / smooth.working < 1.1  # narrower than the contact
+    assert "over the middle of what is damaged" in pitted.source
+    along, _ = smooth.hertz.semi_axes(smooth.hertz.approach(smooth.load))
+    pace = 2.0 * np.pi * 23.49e-3 * 0.5 * 30.0 * (1.0 - 7.94 / 39.04)  # of the cage on the outer raceway
+    assert smooth.passing == pytest.approx(pace / (2.0 * along), rel=0.01)
+
+
+def test_a_bearing_that_was_run_is_shown_with_its_figures(runs, tmp_path):
+    file = asperity.save(runs(BEARING), tmp_path / "run.nc")
+    shown = viewed_run(str(file))
+    assert shown["force"] is None
+    for title in ("The bearing and its load zone", "Envelope spectrum", "Contact force levels in one-third"):
+        assert title in shown["blocks"]

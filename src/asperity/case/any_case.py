@@ -230,6 +230,8 @@ class AnyCase(Section):
     """Function (ready case, progress, warnings caught, brief=…) that makes its result."""
     REFINED_BY: ClassVar[str]
     """Function (ready case, its result) that lists the settings by which it is made finer."""
+    PRESSED_BY: ClassVar[str]
+    """Function (case) that lays out the contact which the page lets people press."""
     WRITTEN_OUT: ClassVar[Mapping[str, str]] = {}
     """Values, in TOML, of keys that have no default and shall stand in a commented case."""
     SHOWN: ClassVar[Mapping[str, tuple[str, ...]]] = {}

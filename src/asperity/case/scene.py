@@ -57,6 +57,7 @@ class Case(AnyCase):
     PREPARED_BY = "asperity.scenarios.preparing.prepare"
     COMPUTED_BY = "asperity.scenes.result.computed_result"
     REFINED_BY = "asperity.scenarios.refining.settings_of_scene"
+    PRESSED_BY = "asperity.serving.contact_preview.scene_surface"
     ROLLING: ClassVar[str]
     """Section of what rolls; of a contact of several, its name in messages."""
     OVER: ClassVar[str] = ""

@@ -9,7 +9,7 @@ from typing import Any
 
 from asperity import __version__
 from asperity.arguments import shown
-from asperity.case import any_case, cases, scene, toml
+from asperity.case import any_case, cases, toml
 from asperity.case.documented import allowed_in
 from asperity.errors import InputError
 from asperity.files import amount
@@ -23,7 +23,11 @@ YES, NO = "yes", "no"
 _KIND = "kind"
 
 
-SLIDERS = (("Roughness", "surface.rms surface.level"), ("Load", ".load"), ("Speed", "speed"))
+SLIDERS = (
+    ("Roughness", "surface.rms surface.level outer_raceway.roughness outer_raceway.waviness"),
+    ("Load", ".load axial radial"),
+    ("Speed", "speed"),
+)
 """What is turned most, and ends of the keys that do it: the first of them that holds a number."""
 
 
@@ -37,13 +41,11 @@ def page_text() -> str:
 
 @cache
 def forms() -> dict[str, dict[str, Any]]:
-    """Make the form of each kind of bodies that roll: what it is, and its sections with their keys."""
-    return {
-        name: _form(model) for name, model in cases.case_classes().items() if issubclass(model, scene.Case)
-    }
+    """Make the form of each kind of case: what it is, and its sections with their keys."""
+    return {name: _form(model) for name, model in cases.case_classes().items()}
 
 
-def _form(model: type[scene.Case]) -> dict[str, Any]:
+def _form(model: type[any_case.AnyCase]) -> dict[str, Any]:
     whole, sections = model.TITLE.rstrip("."), model.sections()
     shown = [
         each

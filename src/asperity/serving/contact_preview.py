@@ -1,11 +1,14 @@
 """A contact to play with: one sample of a case's surface under its body, pressed by hand."""
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from asperity.arguments import Array
+from asperity.case.any_case import AnyCase, named
+from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.scene import Case
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.solved import Contact
@@ -16,6 +19,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.preparing import prepare
 from asperity.scenarios.scene import PreparedCase
 from asperity.scenarios.textures import strip_rows
+from asperity.scenes.bearing import prepare_bearing, raceways_of
 from asperity.written_numbers import rounded
 
 MOST_CELLS_SHOWN = 129
@@ -29,6 +33,17 @@ SPARE = 4.0
 """Length of the path beyond a strip for the filters, in windows: one sample needs no longer one."""
 
 
+@dataclass(frozen=True, eq=False)
+class PressedSurface:
+    """What is pressed: a body on heights, on the window of a contact."""
+
+    shape: Geometry  # gap, load and smooth contact
+    heights: Array  # (nx, ny), m, peaks positive
+    speed: float  # of the contact along them, m/s
+    hardness: float | None  # Pa
+    source: str  # where the heights come from
+
+
 class PressedSample:
     """One sample of a surface, which is pressed to one approach after the other, each from the last pressure.
 
@@ -36,20 +51,19 @@ class PressedSample:
     in a run it counts from the highest one of all samples.
     """
 
-    def __init__(self, case: Case) -> None:
-        prepared = _prepared(case)
-        shape = prepared.shape.within_window()
-        self.heights, gap, self.thinning = _laid_out(prepared)
+    def __init__(self, case: AnyCase) -> None:
+        pressed: PressedSurface = named(case.PRESSED_BY)(case)
+        shape = pressed.shape.within_window()
+        self.heights, gap, self.thinning = _thinned(pressed)
         self.spacing = tuple(self.thinning * d for d in shape.spacing)
         self.load, self.hertz = shape.load, shape.hertz
-        self.passing = case.speed / (2.0 * shape.semi_axes[0])  # Hz, of waves as long as the contact
+        self.passing = pressed.speed / (2.0 * shape.semi_axes[0])  # Hz, of waves as long as the contact
         self.half_space = HalfSpace(
             (gap.shape[0], gap.shape[1]), (self.spacing[0], self.spacing[1]), shape.modulus,
-            case.contact.hardness,
+            pressed.hardness,
         )  # fmt: skip
         self.gap = gap
-        smooth = "smooth bodies: no sample is given"
-        self.source = prepared.textures.origin if prepared.textures.maps else smooth
+        self.source = pressed.source
         self.touch = float(gap.min())
         self.last = self.half_space.solve(gap, load=self._largest(shape), rtol=RTOL)
         self.deepest = self.last.approach
@@ -126,16 +140,38 @@ def _prepared(case: Case) -> PreparedCase:
         return prepare(case)
 
 
-def _laid_out(prepared: PreparedCase) -> tuple[Array, Array, int]:
-    """Heights and gap (nx, ny), m, of the first sample, and how many cells apart their points are."""
+def scene_surface(case: Case) -> PressedSurface:
+    """The first sample of a case under its body."""
+    prepared = _prepared(case)
     shape, maps = prepared.shape, prepared.textures.maps
-    heights = np.zeros_like(shape.body)
+    heights, source = np.zeros_like(shape.body), "smooth bodies: no sample is given"
     if maps:
         cells = (shape.body.shape[0], shape.body.shape[1])
         weights = punch_weights(shape.spacing, shape.semi_axes)
-        heights = patches([m.heights for m in maps], cells, prepared.case.contact.samples, weights)[0]
+        heights = patches([m.heights for m in maps], cells, case.contact.samples, weights)[0]
+        source = prepared.textures.origin
+    return PressedSurface(shape, heights, case.speed, case.contact.hardness, source)
+
+
+def raceway_surface(case: BearingUnderLoad) -> PressedSurface:
+    """The most loaded ball on the outer raceway: over the middle of what is damaged, else where it begins."""
+    on = raceways_of(prepare_bearing(case), None)[1]
+    turning = case.kinematics
+    damaged = np.flatnonzero(on.surface.damaged.any(axis=1))
+    middle = int(damaged[len(damaged) // 2]) if damaged.size else 0
+    rows = (np.arange(len(on.shape.body)) - len(on.shape.body) // 2 + middle) % on.rows
+    heights = (on.surface.heights + on.surface.faults)[rows]
+    passing = 2.0 * np.pi * case.bearing.bearing.raceway_radii[1] * abs(turning.cage - turning.outer)
+    where = "over the middle of what is damaged" if damaged.size else "where it begins"
+    source = f"the most loaded ball on the outer raceway, {where}; long waves lift it as a whole"
+    return PressedSurface(on.shape, heights, passing, on.hardness, source)
+
+
+def _thinned(pressed: PressedSurface) -> tuple[Array, Array, int]:
+    """Heights and gap (nx, ny), m, and how many cells apart their points are."""
+    heights, body = pressed.heights, pressed.shape.body
     step = math.ceil(max(heights.shape) / MOST_CELLS_SHOWN)
     first = [(n // 2) % step for n in heights.shape]  # the middle cell stays
     thinned = heights[first[0] :: step, first[1] :: step]
-    gap = shape.body[first[0] :: step, first[1] :: step] - thinned
+    gap = body[first[0] :: step, first[1] :: step] - thinned
     return thinned, np.ascontiguousarray(gap), step

@@ -14,6 +14,7 @@ from asperity.reporting import chart, data, page, payload
 from asperity.reporting.comparison_page import compared_blocks, summary
 from asperity.reporting.figure import PageFigure
 from asperity.results import read_result
+from asperity.scenes.figures import bearing
 from asperity.scenes.figures.force import force_bands, force_envelope
 from asperity.scenes.report import comparison_of, report
 from asperity.schema import contact, provenance
@@ -22,7 +23,7 @@ from asperity.serving.stored_runs import sounds_of_run
 
 PIECE = 20_000
 """Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""
-FIGURES = (force_bands, force_envelope)
+FIGURES = (*bearing.QUIET, force_bands, force_envelope)
 LINE_POINTS = 20_000
 STRETCH = 4
 """Length over which a texture that is looked at has no mean, in its widths."""

@@ -22,7 +22,8 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 from asperity import errors
-from asperity.case import cases, scene, toml
+from asperity.case import cases, toml
+from asperity.case.any_case import AnyCase
 from asperity.files import alone_in
 from asperity.parameters import Origin
 from asperity.progress import Progress
@@ -52,10 +53,10 @@ _pressed: "OrderedDict[str, PressedSample]" = OrderedDict()
 # --- questions about cases and files
 
 
-def _case(kind: str, values: dict[str, object], surfaces: str) -> scene.Case:
+def _case(kind: str, values: dict[str, object], surfaces: str) -> AnyCase:
     root = Path(surfaces)
     data = case_form.case_data(kind, values, lambda identifier: stored_runs.surface_named(root, identifier))
-    return cases.of_bodies(cases.case_of(data, Origin("the case", root, units=True)), "page")
+    return cases.case_of(data, Origin("the case", root, units=True))
 
 
 def read_form(kind: str, values: dict[str, object], surfaces: str) -> Told:
@@ -70,7 +71,7 @@ def read_case_file(text: str, surfaces: str) -> Told:
     """Read a case file into the form."""
     root = Path(surfaces)
     data = toml.read_toml(text, "case", "the case")
-    cases.of_bodies(cases.case_of(data, Origin("the case", root, units=True)), "page")
+    cases.case_of(data, Origin("the case", root, units=True))
     return {
         "kind": data["kind"],
         "values": case_form.form_values(data, lambda path: stored_runs.identifier_of(root, path)),
@@ -96,7 +97,7 @@ def prepare_to_press() -> Told:
     """Press a sample once, so that the first one finds everything imported and compiled."""
     from asperity.serving.contact_preview import PressedSample
 
-    PressedSample(cases.of_bodies(cases.demo_case(), "page")).at(None)
+    PressedSample(cases.demo_case()).at(None)
     return {}
 
 
