@@ -10,7 +10,7 @@ import xarray
 from xarray import DataTree
 
 from asperity.arguments import Array, NDArray
-from asperity.case.any_case import AnyCase, ReadyCase, named
+from asperity.case.any_case import AnyCase, ReadyCase, function_named
 from asperity.case.form import case_key, content, file_digest
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress, counted
@@ -53,7 +53,7 @@ class Comparison:
 
 def settings_of(prepared: ReadyCase, result: DataTree) -> Sequence[Setting]:
     """All settings by which a case of any kind is made finer, as its kind lists them."""
-    settings: Sequence[Setting] = named(prepared.case.REFINED_BY)(prepared, result)
+    settings: Sequence[Setting] = function_named(prepared.case.REFINED_BY)(prepared, result)
     return settings
 
 
@@ -122,7 +122,7 @@ def _both(
 ) -> tuple[xarray.Dataset, xarray.Dataset]:
     """Levels of the finer and of the coarser computation; `base` are those of the case."""
     case = prepared.case.with_(**way.changes)
-    changed: ReadyCase = named(case.PREPARED_BY)(case, "case")
+    changed: ReadyCase = function_named(case.PREPARED_BY)(case, "case")
     if not setting.laid_anew:
         return _levels(changed.case, "", lambda: changed, progress), base
     assert isinstance(prepared, PreparedCase)  # whose textures lie on a grid
@@ -149,7 +149,7 @@ def _levels(
     """Levels of a run, kept by all that they depend on."""
 
     def computed() -> dict[str, NDArray[Any]]:
-        found = levels_of(named(case.COMPUTED_BY)(make(), progress, [], brief=True))
+        found = levels_of(function_named(case.COMPUTED_BY)(make(), progress, [], brief=True))
         return {str(name): values.values for name, values in found.variables.items()}
 
     return _laid_out(**made(Store(), case_key("convergence", FORMAT, case, textures_of), computed))

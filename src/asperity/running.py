@@ -63,7 +63,7 @@ def run(
     >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
     1
     """
-    from asperity.case.any_case import ReadyCase, named
+    from asperity.case.any_case import ReadyCase, function_named
     from asperity.case.cases import as_case
     from asperity.errors import PhysicsWarning
     from asperity.progress import shown_progress
@@ -81,7 +81,7 @@ def run(
         ):
             prepared = loaded if isinstance(loaded, ReadyCase) else prepare_case(loaded)
             caught += prepared.caught
-            result: DataTree = named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)
+            result: DataTree = function_named(prepared.case.COMPUTED_BY)(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence import with_convergence
 
@@ -132,7 +132,7 @@ def open_result(path: str | os.PathLike[str]) -> Result:
 
 def prepare_case(case: AnyCase, source: str = "case") -> ReadyCase:
     """Lay a case of any kind ready to be run or announced; messages call it `source`."""
-    from asperity.case.any_case import named
+    from asperity.case.any_case import function_named
 
-    prepared: ReadyCase = named(case.PREPARED_BY)(case, source)
+    prepared: ReadyCase = function_named(case.PREPARED_BY)(case, source)
     return prepared

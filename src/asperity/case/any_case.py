@@ -435,7 +435,7 @@ class ReadyCase(Protocol):
         ...
 
 
-def named(function: str) -> Any:
+def function_named(function: str) -> Any:
     """A function by its module and name, as a kind of case names those that compute it."""
     module, _, name = function.rpartition(".")
     return getattr(import_module(module), name)

@@ -96,26 +96,19 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     asperity new bodies --law areal --law linear > case.toml
     # many cases: lists of values for some keys
     asperity new study > study.toml
-    # what helps against noise: a list of changes, for one's own to be added
+    # what helps against noise, or in a bearing: a list of changes, for one's own to be added
     asperity new what-helps > helps.toml
-    # the same of a ball bearing
-    asperity new what-helps-in-bearings > helps.toml
     # the quietest texture of a case, within bounds
     asperity new optimisation > aim.toml
     """
     from asperity.case.cases import not_a_kind, template
     from asperity.optimising.definition import aim_template
     from asperity.studies.definition import TEMPLATE
-    from asperity.studies.effects import IN_BEARINGS, ready_list
+    from asperity.studies.effects import READY_LISTS
 
     if kind not in templates():
         raise not_a_kind(kind, templates())
-    others = {
-        "study": lambda: TEMPLATE,
-        "what-helps": ready_list,
-        "what-helps-in-bearings": lambda: ready_list(IN_BEARINGS),
-        "optimisation": aim_template,
-    }
+    others = {"study": lambda: TEMPLATE, "optimisation": aim_template, **READY_LISTS}
     say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.case.any_case import AnyCase, named
+from asperity.case.any_case import AnyCase, function_named
 from asperity.case.ball_bearing import BearingUnderLoad
 from asperity.case.scene import Case
 from asperity.contact.halfspace import HalfSpace
@@ -52,7 +52,7 @@ class PressedSample:
     """
 
     def __init__(self, case: AnyCase) -> None:
-        pressed: PressedSurface = named(case.PRESSED_BY)(case)
+        pressed: PressedSurface = function_named(case.PRESSED_BY)(case)
         shape = pressed.shape.within_window()
         self.heights, gap, self.thinning = _thinned(pressed)
         self.spacing = tuple(self.thinning * d for d in shape.spacing)

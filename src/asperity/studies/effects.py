@@ -2,7 +2,8 @@
 
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from importlib import resources
 from typing import Any
 
@@ -34,6 +35,13 @@ OVER_TRACKS, IN_BEARINGS = "what_helps.toml", "what_helps_in_bearings.toml"
 def ready_list(name: str = OVER_TRACKS) -> str:
     """A study of what helps, as a commented text."""
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+READY_LISTS: Mapping[str, Callable[[], str]] = {
+    "what-helps": ready_list,
+    "what-helps-in-bearings": partial(ready_list, IN_BEARINGS),
+}
+"""By the words of ``asperity new``."""
 
 
 def _listed(case: any_case.AnyCase) -> dict[str, Any]:
