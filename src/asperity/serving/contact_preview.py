@@ -148,7 +148,7 @@ def scene_surface(case: Case) -> PressedSurface:
     if maps:
         cells = (shape.body.shape[0], shape.body.shape[1])
         weights = punch_weights(shape.spacing, shape.semi_axes)
-        heights = patches([m.heights for m in maps], cells, case.contact.samples, weights)[0]
+        heights = patches([m.heights for m in maps], cells, prepared.case.contact.samples, weights)[0]
         source = prepared.textures.origin
     return PressedSurface(shape, heights, case.speed, case.contact.hardness, source)
 
