@@ -95,7 +95,7 @@ LEAST, MOST = 0.1, 3.0
 """Bounds of the expected length of a step; an exact inverse as preconditioner would make it one."""
 PATIENCE, OFTEN = 100, 10
 """Iterations after which every tenth is a step of the projected gradient."""
-NEAR, NEARLY = 0.02, 0.2
+NEAR, NEARLY = 0.03, 0.2
 """Error that gaps at rims may have between their computations: of the residual, and of the tolerance."""
 RENEWED = 3
 """Iterations after which the cells at rims are found anew."""
@@ -307,8 +307,7 @@ def solve(
         if rims is not None and 0.0 < violated <= rims.number[0]:
             violated = still_violated(b, rims, violated, tolerance, taps[0])
         if rims is not None and followed > 0 and (not violated or followed >= RENEWED):
-            off = NEARLY * task.rtol * task.largest if not violated else np.inf
-            set_rims(b, rims, level, taps[0], off)
+            set_rims(b, rims, level, taps[0])
             followed = 0
             continue
         if not violated:
@@ -353,5 +352,5 @@ def solve(
             followed += 1
         yielded += share * further
     if rims is not None and followed > 0:
-        set_rims(b, rims, level, taps[0], NEARLY * task.rtol * task.largest)
+        set_rims(b, rims, level, taps[0])
     return iteration, moving

@@ -135,17 +135,16 @@ def remaining_gap(ratio: float, slant: float) -> tuple[float, float, float]:
 
 CHUNK = 64
 """Cells at rims that are computed in one go."""
-P, X, Y, UNMET, GAP, OWN, BY_P, BY_X, BY_Y, CURVED, BENT, WEIGHT, ALONE, MASKED, ERROR = range(15)
+P, X, Y, UNMET, GAP, OWN, BY_P, BY_X, BY_Y, CURVED, BENT, WEIGHT, ALONE, MASKED = range(14)
 """What is known of a cell at a rim, one number after the other.
 
 Its pressure and the differences beside it, along and across, Pa, and the residual, m, of which all else is
 computed; the gap that is left, m; its difference quotient up to the pressure that the residual asks for, not
 positive, and its derivatives by the first three, m/Pa; halves of the second derivatives by the pressure and
 by the differences, about, m/Pa²; weight of the cell where steps are preconditioned, and what it yields beyond
-that to a residual of its own, Pa/m; residual on the free set, m, before it is weighed; how much the gap may
-be off since, m.
+that to a residual of its own, Pa/m; residual on the free set, m, before it is weighed.
 """
-NUMBERS = 15
+NUMBERS = 16
 
 
 class Rims(NamedTuple):
@@ -162,24 +161,19 @@ class Rims(NamedTuple):
     above: NDArray  # places of the cells before them, along; idle ones where there are none
     below: NDArray  # places of those after them
     gap: NDArray  # that is left in them, and off the residual, m
-    known: NDArray  # (NUMBERS, their number), what is known of each
+    known: NDArray  # (NUMBERS times their number,), what is known of each
     due: NDArray  # those, by number, of which it has to be computed anew
-    listed: NDArray  # (room of a box,), whether the cell at a place of the box is one of them
     chunk: NDArray  # room for what is computed in one go
 
 
-def rims(along: float, across: float, count: int, size: int, dtype: DTypeLike) -> Rims:
-    """Make room for what is known of the rims among so many cells, with sides over E*, m/Pa.
-
-    Fields of a box are no longer than `size`.
-    """
+def rims(along: float, across: float, count: int, dtype: DTypeLike) -> Rims:
+    """Make room for what is known of the rims among so many cells, with sides over E*, m/Pa."""
     row, cell, above, below, due = np.zeros((5, count), dtype=np.int64)
     number = np.zeros(1, dtype=np.int64)
     gap: NDArray = np.zeros(count, dtype=dtype)
-    known: NDArray = np.zeros((NUMBERS, count), dtype=dtype)
+    known: NDArray = np.zeros(NUMBERS * count, dtype=dtype)
     chunk: NDArray = np.zeros(NUMBERS * CHUNK, dtype=dtype)
-    listed = np.zeros(size, dtype=np.bool_)
-    return Rims(along, across, number, row, cell, above, below, gap, known, due, listed, chunk)
+    return Rims(along, across, number, row, cell, above, below, gap, known, due, chunk)
 
 
 @compiled(**INNER)
@@ -195,56 +189,28 @@ def _place(b: Box, rims: Rims, k: int, i: int, j: int) -> None:
     rims.row[k], rims.cell[k] = i, q
     rims.above[k] = q - b.pitch if i > 0 else idle
     rims.below[k] = q + b.pitch if i + 1 < b.nx else idle
-    rims.listed[q] = True
 
 
-@compiled(**INNER, **REASSOCIATE)
-def _mark_rims(
-    above: NDArray, row: NDArray, below: NDArray, before: float, after: float, marks: NDArray
-) -> float:
-    """Mark cells of a row whose pressure is less than END² of the step between their neighbours, with ones.
-
-    Rows of pressures, Pa, the middle one with an idle cell; `before` and `after` are one, or zero where there
-    is no row above or below. Returns the number of marks.
-    """
-    real = marks.dtype.type
-    zero, one, most, number = real(0.0), real(1.0), real(END**4), real(0.0)
-    before, after = real(before), real(after)
-    for j in range(len(marks)):
-        x = after * below[j] - before * above[j]
-        y = row[j + 1] - (row[j - 1] if j > 0 else zero)
-        marks[j] = one if row[j] * row[j] < most * (x * x + y * y) else zero
-        number += marks[j]
-    return number
-
-
-@compiled(**CALLED)
+@compiled(**INNER)
 def _find_rims(b: Box, rims: Rims, level: float) -> int:
-    """List further cells whose pressure is less than the step between their neighbours; how many are listed.
+    """List the cells whose pressure is less than the step between their neighbours.
 
-    Not those without pressure that stay apart by more than a rim leaves in any cell. What was listed stays:
-    where there is no rim any more nothing is left.
+    Not those without pressure that stay apart by more than a rim leaves in any cell.
     """
-    p, side, found = b.pressure, max(rims.along, rims.across), rims.number[0]
+    found, p, side = 0, b.pressure, max(rims.along, rims.across)
     for i in range(b.nx):
         first = i * b.pitch
         above, below = first - b.pitch if i > 0 else first, first + b.pitch if i + 1 < b.nx else first
         before, after = 1.0 if i > 0 else 0.0, 1.0 if i + 1 < b.nx else 0.0
-        marks = b.z[first : first + b.ny]
-        row = p[first : first + b.ny + 1]
-        if _mark_rims(p[above : above + b.ny], row, p[below : below + b.ny], before, after, marks) == 0.0:
-            continue
         for j in range(b.ny):
             q = first + j
-            if marks[j] == 0.0 or rims.listed[q]:
-                continue
             x, y = after * p[below + j] - before * p[above + j], p[q + 1] - p[q - 1]
-            far, near = max(abs(x), abs(y)), min(abs(x), abs(y))
-            most = side * min(far + STEEP * near, MOST_LEFT * (far + near))
-            if p[q] > 0.0 or b.residual[q] - level < most:
-                _place(b, rims, found, i, j)
-                rims.gap[found] = 0.0
-                found += 1
+            if p[q] * p[q] < END**4 * (x * x + y * y):
+                far, near = max(abs(x), abs(y)), min(abs(x), abs(y))
+                most = side * min(far + STEEP * near, MOST_LEFT * (far + near))
+                if p[q] > 0.0 or b.residual[q] - level < most:
+                    _place(b, rims, found, i, j)
+                    found += 1
     return found
 
 
@@ -322,35 +288,27 @@ def _renew(b: Box, rims: Rims, number: int, level: float, stiffness: float) -> N
         for i in range(count):
             k = rims.due[first + i]
             for n in range(MASKED):
-                known[n, k] = c[n * CHUNK + i]
+                known[NUMBERS * k + n] = c[n * CHUNK + i]
             gap = c[GAP * CHUNK + i]
             rims.gap[k] = gap
             b.residual[rims.cell[k]] -= gap
 
 
 @compiled(**CALLED)
-def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float, allowed: float) -> None:
-    """Find further cells at rims, and take the gap that is left in them off the residual, from the pressure.
+def set_rims(b: Box, rims: Rims | None, level: float, stiffness: float) -> None:
+    """Find the cells at rims, and take the gap that is left in them off the residual, from the pressure.
 
-    That of those known is computed anew where it may be off by more than is allowed, m. The gap falls with
-    the pressure, the steeper the less there is: what counts is the difference quotient up to the pressure
-    that would meet the residual above a level, m, if no other cell changed its own. The stiffness, Pa/m, is
-    that of a cell among others.
+    What was taken off before is given back. The gap falls with the pressure, the steeper the less there is:
+    what counts is the difference quotient up to the pressure that would meet the residual above a level, m,
+    if no other cell changed its own. The stiffness, Pa/m, is that of a cell among others.
     """
     if rims is not None:
-        known, due = rims.number[0], 0
+        give_back(b, rims)
         number = _find_rims(b, rims, level)
         rims.number[0] = number
-        if allowed < np.inf:
-            for k in range(known):
-                if _change(b, rims, k)[0] > allowed:
-                    b.residual[rims.cell[k]] += rims.gap[k]
-                    rims.due[due] = k
-                    due += 1
-        for k in range(known, number):
-            rims.due[due] = k
-            due += 1
-        _renew(b, rims, due, level, stiffness)
+        for k in range(number):
+            rims.due[k] = k
+        _renew(b, rims, number, level, stiffness)
 
 
 @compiled(**INNER)
@@ -365,65 +323,52 @@ def take_off(b: Box, rims: Rims | None) -> None:
 def move_rims(b: Box, rims: Rims | None, pitch: int, row: int, column: int) -> None:
     """Place cells at rims in a box that begins in a row and a column of theirs, whose pitch is given."""
     if rims is not None:
-        number, kept = rims.number[0], 0
-        forget_rims(rims)
-        for k in range(number):
+        for k in range(rims.number[0]):
             i = rims.row[k]
-            j = rims.cell[k] - i * pitch - column
-            if 0 <= i - row < b.nx and 0 <= j < b.ny:  # else there is no pressure near it
-                if kept < k:
-                    for n in range(MASKED):
-                        rims.known[n, kept] = rims.known[n, k]
-                    rims.gap[kept] = rims.gap[k]
-                _place(b, rims, kept, i - row, j)
-                kept += 1
-        rims.number[0] = kept
+            _place(b, rims, k, i - row, rims.cell[k] - i * pitch - column)
 
 
 @compiled(**INNER)
 def forget_rims(rims: Rims | None) -> None:
     """Forget the cells at rims; what they keep is on the residual."""
     if rims is not None:
-        for k in range(rims.number[0]):
-            rims.listed[rims.cell[k]] = False
         rims.number[0] = 0
 
 
 @compiled(**INNER)
-def _change(b: Box, rims: Rims, k: int) -> tuple[float, float]:
-    """Find how much the gap that is left may be off if it follows the pressure straight, and that gap, m."""
-    p, known, q = b.pressure, rims.known, rims.cell[k]
-    dp = p[q] - known[P, k]
-    dx = p[rims.below[k]] - p[rims.above[k]] - known[X, k]
-    dy = p[q + 1] - p[q - 1] - known[Y, k]
-    error = known[CURVED, k] * dp * dp + known[BENT, k] * (dx * dx + dy * dy)
-    gap = known[GAP, k] + known[BY_P, k] * dp + known[BY_X, k] * dx + known[BY_Y, k] * dy
-    return error, gap
+def give_back(b: Box, rims: Rims | None) -> None:
+    """Give the gap that was taken off the residual back."""
+    if rims is not None:
+        for k in range(rims.number[0]):
+            b.residual[rims.cell[k]] += rims.gap[k]
 
 
 @compiled(**CALLED)
 def follow(b: Box, rims: Rims, level: float, stiffness: float, allowed: float) -> None:
     """Let the gap that is left follow the pressure, straight where an error that is allowed, m, permits."""
-    worst, due, error = 0.0, 0, rims.known[ERROR]
+    due, p, known = 0, b.pressure, rims.known
     for k in range(rims.number[0]):
-        q, before = rims.cell[k], rims.gap[k]
-        error[k], gap = _change(b, rims, k)
-        rims.gap[k] = gap
-        b.residual[q] += before - gap
-        worst = max(worst, error[k])
-    if worst > allowed:
-        for k in range(rims.number[0]):
-            if error[k] > allowed:
-                b.residual[rims.cell[k]] += rims.gap[k]
-                rims.due[due] = k
-                due += 1
+        q, o = rims.cell[k], NUMBERS * k
+        dp = p[q] - known[o + P]
+        dx = p[rims.below[k]] - p[rims.above[k]] - known[o + X]
+        dy = p[q + 1] - p[q - 1] - known[o + Y]
+        error = known[o + CURVED] * dp * dp + known[o + BENT] * (dx * dx + dy * dy)
+        before = rims.gap[k]
+        b.residual[q] += before
+        if error > allowed:
+            rims.due[due] = k
+            due += 1
+        else:
+            gap = known[o + GAP] + known[o + BY_P] * dp + known[o + BY_X] * dx + known[o + BY_Y] * dy
+            rims.gap[k] = gap
+            b.residual[q] -= gap
     _renew(b, rims, due, level, stiffness)
 
 
 @compiled(**INNER, **UNCHECKED)
 def _stiffness_share(rims: Rims, k: int, stiffness: float) -> float:
     """How far a cell at a rim gives way to a residual, over what a cell among others does."""
-    return 1.0 / (1.0 - rims.known[OWN, k] * stiffness)
+    return 1.0 / (1.0 - rims.known[NUMBERS * k + OWN] * stiffness)
 
 
 @compiled(**CALLED)
@@ -452,8 +397,8 @@ def weigh(b: Box, rims: Rims) -> None:
     margin = (len(b.masked) - len(b.residual)) // 2
     for k in range(rims.number[0]):
         m = b.masked[margin + rims.cell[k]]
-        rims.known[MASKED, k] = m
-        b.masked[margin + rims.cell[k]] = m * rims.known[WEIGHT, k]
+        rims.known[NUMBERS * k + MASKED] = m
+        b.masked[margin + rims.cell[k]] = m * rims.known[NUMBERS * k + WEIGHT]
 
 
 @compiled(**INNER)
@@ -461,10 +406,10 @@ def weigh_step(b: Box, rims: Rims, target: NDArray) -> tuple[float, float, float
     """Weigh a preconditioned residual likewise; return what m·target, previous·target and its sum gain."""
     rho, moved, total = 0.0, 0.0, 0.0
     for k in range(rims.number[0]):
-        q = rims.cell[k]
-        before, m = target[q], rims.known[MASKED, k]
-        alone = rims.known[ALONE, k] * m
-        target[q] = before * rims.known[WEIGHT, k] + alone
+        q, o = rims.cell[k], NUMBERS * k
+        before, m = target[q], rims.known[o + MASKED]
+        alone = rims.known[o + ALONE] * m
+        target[q] = before * rims.known[o + WEIGHT] + alone
         gained = target[q] - before
         rho += alone * m
         moved += b.previous[q] * gained
@@ -478,7 +423,7 @@ def bend(b: Box, rims: Rims) -> float:
     stored = 0.0
     for k in range(rims.number[0]):
         step = b.step[rims.cell[k]]
-        stored -= rims.known[OWN, k] * step * step
+        stored -= rims.known[NUMBERS * k + OWN] * step * step
     return stored
 
 

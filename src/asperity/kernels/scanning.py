@@ -87,7 +87,7 @@ def room(
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
     dtype = known.spectra.dtype
     size = box_room(nx, ny, mx, my, width(dtype))
-    covered = None if sides is None else rims(*sides, nx * ny, size, dtype)
+    covered = None if sides is None else rims(*sides, nx * ny, dtype)
     edges = soft_cells(soft, nx * ny, dtype)
     return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype), covered, edges)
 
@@ -231,7 +231,7 @@ def solve_contact(known: Influence, b: Block, approach: float, pressure: NDArray
     true_residual(everywhere, outer, task, edges)
     if guessed and load < 0.0 and (not _scale(outer, hardness) or edges.number[0]):
         true_residual(everywhere, outer, task, edges)
-    set_rims(outer, b.room.rims, 0.0, known.taps[0], np.inf)
+    set_rims(outer, b.room.rims, 0.0, known.taps[0])
     worst, level, top, bottom, near, far = survey(outer, task, b.room.rims, known.taps[0])
     iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
     moving, last = True, (0, 0, 0, 0)
