@@ -10,18 +10,13 @@ count as far as they are covered; the reference are 24 covered ones. With ``--ta
 """
 
 import argparse
-import dataclasses
 import os
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from unittest.mock import patch
 
 import numpy as np
 
 from asperity.case.cases import parse_case
-from asperity.contact.halfspace import HalfSpace
-from asperity.laws.direct import Direct, DirectOnPath
 from asperity.running import prepare_case
 from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
@@ -45,45 +40,29 @@ load = "{load} N"
 spacing = "{spacing} um"
 window = "{window} mm"
 samples = 2
+rim_cells = "{cells}"
 """
-
-
-def means(heights: np.ndarray) -> np.ndarray:
-    """Means of heights over cells, to the fourth order."""
-    z = np.pad(heights, 1, mode="reflect", reflect_type="odd")
-    beside = z[2:, 1:-1] + z[:-2, 1:-1] + z[1:-1, 2:] + z[1:-1, :-2]
-    return heights + (beside - 4.0 * heights) / 24.0
-
-
-@contextmanager
-def all_cells(cells: str, averaged: bool) -> Iterator[None]:
-    """Let half-spaces have such cells, `direct` means of heights over them; nothing is kept."""
-    prepare = Direct.prepare
-
-    def prepared(law: Direct, positions: np.ndarray) -> DirectOnPath:
-        heights = means(law.heights) if averaged else law.heights
-        return prepare(dataclasses.replace(law, heights=heights), positions)
-
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        patch.dict(os.environ, ASPERITY_CACHE=folder),
-        patch.object(HalfSpace.__init__, "__defaults__", (None, cells, "free")),
-        patch.object(Direct, "prepare", prepared),
-    ):
-        yield
 
 
 def levels(cells: str, across: int, seed: int, laws: list[str]) -> list[np.ndarray]:
     """One-third-octave levels of the force, dB, of each law."""
-    any_grid = {"laws": '["hertz"]', "seed": 1, "rms": 1, "shortest": 100, "spacing": 10, "window": 1}
+    any_grid = {
+        "laws": '["hertz"]',
+        "seed": 1,
+        "rms": 1,
+        "shortest": 100,
+        "spacing": 10,
+        "window": 1,
+        "cells": cells,
+    }
     hertz = parse_case(CASE.format(**any_grid, load=LOAD)).smooth_contact
     approach = hertz.approach(LOAD)
     half_width = hertz.semi_axes(approach)[0]
     numbers = {"rms": SHARE * approach * 1e6, "shortest": 0.8 * half_width * 1e6, "load": LOAD}
-    grid = {"spacing": half_width / across * 1e6, "window": 2.6 * half_width * 1e3}
+    grid = {"spacing": half_width / across * 1e6, "window": 2.6 * half_width * 1e3, "cells": cells}
     names = "[" + ", ".join(f'"{law}"' for law in laws) + "]"
     case = CASE.format(laws=names, seed=seed, **numbers, **grid)
-    with all_cells(cells, averaged=cells == "covered" and "table" not in laws):  # whose scans have none
+    with tempfile.TemporaryDirectory() as folder, patch.dict(os.environ, ASPERITY_CACHE=folder):
         computed = compute(prepare_case(parse_case(case)), lambda *_: None)
     found = []
     for law in laws:
