@@ -28,7 +28,7 @@ from asperity.studies.axes import VARIANT
 from asperity.studies.definition import Study, separated, study_of
 from asperity.studies.effects import effects, judged_levels, what_helps
 from asperity.studies.ensemble import FEWEST, SEED, mean_and_scatter, prediction_band
-from asperity.studies.member import PLACES
+from asperity.studies.member import PLACES, VELOCITY_LEVEL
 from asperity.studies.signals import SignalSet
 from asperity.studies.words import MISSING, table_in_words
 from asperity.terminal import line_width, remark, say, say_files, say_table
@@ -87,7 +87,7 @@ def run_study(
         told = _by_place(table, effect)
         for words, found in told:
             _print_effects(words, found)
-        if asked or not told:
+        if asked or not (told and _effects_say_all(table)):
             print_table(mean, asked or tables.USUAL, scatter, asked=bool(asked))
         for name in (name for name in asked if name not in table):
             say(f"{name}: no member has it", err=True)
@@ -192,7 +192,7 @@ def _write(
         told = _by_place(table, effect)
         blocks: list[page.Block] = [*_blocks(told)]
         blocks += _figures(mean, scatter, band, asked or tables.USUAL_IN_FIGURES)
-        if blocks and not told:
+        if blocks and not (told and _effects_say_all(table)):
             blocks.append(_table(mean, asked or tables.USUAL))
         if blocks:
             names["page"] = PAGE
@@ -237,7 +237,7 @@ def _figures(
     looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
     figures = []
     for key in json.loads(mean.attrs["sweep"]):
-        if mean.sizes.get(key, 0) > 1 and (key != VARIANT or not judged_levels(mean)):
+        if mean.sizes.get(key, 0) > 1 and (key != VARIANT or not _effects_say_all(mean)):
             for name, title, parts in study_figures.key_figures(mean, scatter, key, looks, names):
                 figures.append(PageFigure.of(name, title, parts))
     if band is not None and VARIANT not in band.dims:
@@ -247,6 +247,11 @@ def _figures(
 
 
 # --- what each variant does
+
+
+def _effects_say_all(table: xarray.Dataset) -> bool:
+    """Whether effects stand for all that is shown of variants: of bearings lines are shown as well."""
+    return bool(judged_levels(table)) and VELOCITY_LEVEL not in table
 
 
 def _by_place(table: xarray.Dataset, effect: xarray.Dataset | None) -> list[tuple[str, Effects]]:

@@ -234,7 +234,7 @@ def band_deviations(
     Returns
     -------
     ndarray (bands,)
-        NaN where the sampling does not reach the upper edge.
+        NaN where the sampling does not reach the upper edge, or the record is too short for the band.
     """
     values, rate = checked_signal(acceleration, rate)
     spectrum = fft.rfft(values - values.mean())
@@ -245,7 +245,7 @@ def band_deviations(
         within = (frequency >= low) & (frequency < high)
         squares = fft.irfft(velocity * within, len(values)) ** 2
         means = squares[: len(values) // PARTS * PARTS].reshape(PARTS, -1).mean(axis=1)
-        if high <= 0.5 * rate:
+        if high <= 0.5 * rate and within.any():
             # the rms varies by half of what its square does
             found[n] = 0.5 * means.std(ddof=1) / math.sqrt(PARTS) / means.mean()
     return found
