@@ -132,8 +132,8 @@ def test_help_lists_every_command_with_a_whole_sentence():
 @pytest.mark.parametrize(
     ("words", "completions"),
     [
-        ("new ", {*PRESETS, "study", "what-helps", "optimisation"}),
-        ("new w", {"wheel-on-rail", "what-helps"}),
+        ("new ", {*PRESETS, "study", "what-helps", "what-helps-in-bearings", "optimisation"}),
+        ("new w", {"wheel-on-rail", "what-helps", "what-helps-in-bearings"}),
         ("new --law sh", {"shifted", "shifted-unfiltered"}),
         ("run --device ", {"cpu", "gpu"}),
         ("com", {"compare", "completion"}),
@@ -151,7 +151,9 @@ def test_a_shell_is_told_how_to_complete():
 
 def test_what_a_shell_asks_is_answered():
     asked = {"_ASPERITY_COMPLETE": "bash_complete", "COMP_WORDS": "asperity new w", "COMP_CWORD": "2"}
-    assert program(**asked).stdout.split() == ["plain,wheel-on-rail", "plain,what-helps"]
+    assert program(**asked).stdout.split() == [
+        f"plain,{name}" for name in ("wheel-on-rail", "what-helps", "what-helps-in-bearings")
+    ]
 
 
 # --- new
