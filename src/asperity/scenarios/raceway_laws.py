@@ -29,15 +29,8 @@ from asperity.reduction.stiffness import (
     stiffness_ensemble,
 )
 from asperity.reduction.texture import StateTexture, areal_texture, punch_weights
+from asperity.scenarios import reducing
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry
-from asperity.scenarios.reducing import (
-    LEAST_DATUM,
-    FilteredStates,
-    chosen_states,
-    filters_of,
-    normalisation,
-    warn_of_filter,
-)
 from asperity.scenarios.scanned_positions import OF_TEXTURE, OF_WAVE
 from asperity.scenarios.scanned_states import states_around, states_expected
 from asperity.store import Store
@@ -317,7 +310,7 @@ class OnRaceway:
         window, even = len(self.shape.body), sound[:: max(1, math.ceil(len(sound) / few))]
         chosen = [(self.positions[at], self.planes[at]) for at in np.union1d(extreme, even).astype(int)]
         places = [self.scanned[row : row + window] - plane for row, plane in chosen]
-        return chosen_states(places, self.shape, self.space)
+        return reducing.chosen_states(places, self.shape, self.space)
 
     @property
     def around(self) -> ScannedForces:
@@ -356,7 +349,18 @@ class OnRaceway:
         return ScannedForces(forces, scan.total(counts), single)
 
     def table_in(self, states: slice) -> ForceTable:
-        """The scan in some states, to look forces up in."""
+        """The scan in some states, to look forces up in; the last one is held."""
+        asked = states.start, states.stop
+        if asked not in self._tables:
+            self._tables.clear()
+            self._tables[asked] = self._tabled(states)
+        return self._tables[asked]
+
+    @cached_property
+    def _tables(self) -> dict[tuple[int, int], ForceTable]:
+        return {}
+
+    def _tabled(self, states: slice) -> ForceTable:
         stride = self.scanned_stride
         step = stride * self.surface.spacing[0]
         touches = self.touches[:: stride // self.stride]
@@ -404,16 +408,16 @@ class OnRaceway:
     @property
     def datum(self) -> float:
         """d₀, m, with which all states are positive in contact: minus the first touch of any place."""
-        lowest = -LEAST_DATUM if self.ensemble is None else float(self.touches.min())
-        return -min(lowest, self.curve.first_touch, -LEAST_DATUM)
+        lowest = -reducing.LEAST_DATUM if self.ensemble is None else float(self.touches.min())
+        return -min(lowest, self.curve.first_touch, -reducing.LEAST_DATUM)
 
     @cached_property
-    def loaded(self) -> FilteredStates:
+    def loaded(self) -> reducing.FilteredStates:
         """States that carry load, and their mean forces."""
         forces = self.curve.force(self.approaches)
         carries = forces > 0.0
         approaches = self.approaches[carries]
-        return FilteredStates(approaches, forces[carries], self.curve.stiffness(approaches))
+        return reducing.FilteredStates(approaches, forces[carries], self.curve.stiffness(approaches))
 
     @cached_property
     def filters(self) -> dict[Normalise, LineFilter]:
@@ -422,7 +426,7 @@ class OnRaceway:
         around, rough = np.arange(min(rows + beyond, self.rows)), self.surface.heights
         firsts = np.arange(FILTER_STRIPS) * self.rows // FILTER_STRIPS
         strips = [HeightMap(rough[(first + around) % self.rows], self.surface.spacing) for first in firsts]
-        found, counts = filters_of(
+        found, counts = reducing.filters_of(
             strips, self.shape, self.loaded, get_args(Normalise), hardness=self.hardness,
             accuracy=self.accuracy, most=self.rows - 1, progress=self.progress,
         )  # fmt: skip
@@ -492,9 +496,9 @@ class OnRaceway:
         line = self.wavy[:, self.wavy.shape[1] // 2]
         if Need.FILTER not in law.needs:
             return self._texture(line + self.over_faults)
-        found = self.filters[normalisation(None, law)]
+        found = self.filters[reducing.normalisation(None, law)]
         if self.ensemble is not None:  # of a smooth raceway they are exact
-            warn_of_filter(found, law.name, float(self.curve.inverse(self.load)), has_keys=False)
+            reducing.warn_of_filter(found, law.name, float(self.curve.inverse(self.load)), has_keys=False)
         reach = found.taps.shape[1]
         filtered = filtered_texture(
             self._around(line, reach), found.spacing, found.taps, found.contact_filter.approaches
